@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "core/image.h"
+#include "core/trajectory.h"
+
+namespace saccade {
+
+struct StampedFile {
+  double t_s = 0;
+  std::filesystem::path file;  ///< absolute or relative to the working folder
+};
+
+/// What dataset.yaml states; absent in a plain Event Camera Dataset folder.
+struct DatasetFacts {
+  std::optional<double> mean_depth_m;  ///< d of dt_rel (thesis 8.1)
+  std::optional<double> contrast_on;   ///< [log units]
+  std::optional<double> contrast_off;
+  double log_eps = 1e-3;               ///< eps of L = ln(eps + I)
+  std::string name;                    ///< scene or folder name
+};
+
+/// A dataset folder, simulated or recorded: the layout of the Event Camera Dataset (events.txt,
+/// groundtruth.txt, calib.txt, images.txt) with or without events.h5, depth maps and dataset.yaml.
+/// Opening reads the small tables and checks them; events and images are read on request.
+/// Everything malformed is an InputError with file and line.
+class Dataset {
+ public:
+  [[nodiscard]] static Dataset open(const std::filesystem::path& folder);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  [[nodiscard]] const DatasetFacts& facts() const { return facts_; }
+  /// World-from-camera poses; empty when the folder holds none.
+  [[nodiscard]] const Trajectory& groundtruth() const { return groundtruth_; }
+  /// Grey frames and depth maps in order of time. A frame has an 8-bit PNG, a linear EXR, or both.
+  [[nodiscard]] const std::vector<StampedFile>& frames() const { return frames_; }
+  [[nodiscard]] const std::vector<StampedFile>& depth_maps() const { return depth_maps_; }
+
+  /// Events with start_s <= t < end_s, in EventOrder. Seconds count from the dataset's time zero.
+  [[nodiscard]] Events load_events(
+      double start_s = -std::numeric_limits<double>::infinity(),
+      double end_s = std::numeric_limits<double>::infinity()) const;
+  /// Linear radiance of frame `index`: the EXR where there is one, else the PNG sRGB-decoded to [0, 1].
+  [[nodiscard]] ImageF load_frame(std::size_t index) const;
+  /// z depth [m] of depth map `index`, 0 = nothing hit.
+  [[nodiscard]] ImageF load_depth(std::size_t index) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path events_file_;
+  PinholeCamera camera_;
+  DatasetFacts facts_;
+  Trajectory groundtruth_;
+  std::vector<StampedFile> frames_;
+  std::vector<StampedFile> depth_maps_;
+};
+
+}  // namespace saccade

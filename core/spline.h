@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/rigid3.h"
+#include "core/trajectory.h"
+
+namespace saccade {
+
+/// Pose and analytic derivatives at one instant.
+struct SplineState {
+  Rigid3 world_from_body;
+  Eigen::Vector3d velocity_in_world;              ///< [m/s]
+  Eigen::Vector3d acceleration_in_world;          ///< [m/s^2], without gravity
+  Eigen::Vector3d angular_velocity_in_body;       ///< [rad/s]
+  Eigen::Vector3d angular_acceleration_in_body;   ///< [rad/s^2]
+};
+
+/// Cumulative cubic B-spline on R^3 x SO(3), C2, knots at any strictly increasing times:
+///   p(t) = p_0 + sum_j B_j(t) (p_j - p_{j-1}),   R(t) = R_0 prod_j Exp(B_j(t) Log(R_{j-1}^-1 R_j))
+/// over the four control poses of a segment (Kim et al., SIGGRAPH 1995; Sommer et al., CVPR 2020).
+/// Immutable and thread-safe. Outside [start_s, end_s] the time is clamped.
+class Spline {
+ public:
+  /// Passes through every pose at its time (to 1e-6 m and 1e-6 rad); knots at the poses' times, natural
+  /// ends. At least 2 poses, times strictly increasing.
+  [[nodiscard]] static Spline interpolate(std::span<const StampedPose> poses);
+
+  /// Least-squares fit with uniform knots `knot_spacing_s` apart, for recorded motion.
+  [[nodiscard]] static Spline smooth(std::span<const StampedPose> poses, double knot_spacing_s);
+
+  /// Uniform spline from control poses: segment i starts at start_s + i * knot_spacing_s and uses control
+  /// poses i..i+3. At least 4 control poses.
+  [[nodiscard]] static Spline from_control_poses(std::span<const Rigid3> control_poses, double start_s,
+                                                 double knot_spacing_s);
+
+  [[nodiscard]] double start_s() const;
+  [[nodiscard]] double end_s() const;
+
+  [[nodiscard]] Rigid3 pose(double t_s) const;
+  [[nodiscard]] SplineState state(double t_s) const;
+};
+
+}  // namespace saccade
