@@ -1,0 +1,20 @@
+# The installed package: find_package(saccade) gives saccade::core, ::simulator, ::estimator and ::eval.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
+foreach(room IN LISTS SACCADE_ROOMS)
+  install(TARGETS saccade_${room} EXPORT saccadeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade FILES_MATCHING PATTERN *.h)
+endforeach()
+if(TARGET saccade)
+  install(TARGETS saccade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+install(EXPORT saccadeTargets NAMESPACE saccade:: DESTINATION ${package_dir})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/saccadeConfig.cmake.in ${PROJECT_BINARY_DIR}/saccadeConfig.cmake
+  INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/saccadeConfig.cmake ${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindSlimOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimLibzip.cmake
+        DESTINATION ${package_dir})

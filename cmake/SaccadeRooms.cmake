@@ -1,0 +1,56 @@
+# One static library per room of the house: saccade_<room>, with the alias saccade::<room>.
+set(SACCADE_ROOMS core simulator estimator eval)
+set(SACCADE_INSTALLED_ROOMS)
+
+# saccade_add_room(<room> PUBLIC <targets> PRIVATE <targets> HEADER_ONLY <targets>)
+# HEADER_ONLY dependencies are used in the room's own sources alone and need not be found by an outside project.
+# A room without sources becomes an interface library, so that the others configure.
+function(saccade_add_room room)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PUBLIC;PRIVATE;HEADER_ONLY")
+  set(target saccade_${room})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${room}/*.cpp)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:${ARG_HEADER_ONLY}>)
+    saccade_set_warnings(${target})
+    saccade_precompile(${target} <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <optional> <span> <string>
+                       <string_view> <vector> <Eigen/Core> <Eigen/Geometry>)
+    set(visibility PUBLIC)
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${ARG_PUBLIC})
+    set(visibility INTERFACE)
+  endif()
+  target_compile_features(${target} ${visibility} cxx_std_20)
+  target_include_directories(${target} ${visibility}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/saccade>)
+  if(room STREQUAL "core")
+    # -march=native raises Eigen's alignment to 32 or 64 bytes and with it the layout of every fixed-size member.
+    # Held at 16, the ABI is the same in all presets, in Debian's Ceres and in outside projects built for plain x86-64.
+    target_compile_definitions(${target} ${visibility} EIGEN_MAX_ALIGN_BYTES=16)
+  endif()
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${room})
+  add_library(saccade::${room} ALIAS ${target})
+endfunction()
+
+# apps/main.cpp becomes the command `saccade` in the root of the build folder; the rest of apps/ a library, so that tests link it.
+function(saccade_add_command)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*.cpp)
+  set(main ${PROJECT_SOURCE_DIR}/apps/main.cpp)
+  if(NOT main IN_LIST sources)
+    return()
+  endif()
+  list(REMOVE_ITEM sources ${main})
+  set(linked saccade::simulator saccade::estimator saccade::eval CLI11::CLI11)
+  if(sources)
+    add_library(saccade_apps STATIC ${sources})
+    add_library(saccade::apps ALIAS saccade_apps)
+    target_link_libraries(saccade_apps PUBLIC ${linked})
+    saccade_set_warnings(saccade_apps)
+    set(linked saccade_apps)
+  endif()
+  add_executable(saccade ${main})
+  target_link_libraries(saccade PRIVATE ${linked})
+  saccade_set_warnings(saccade)
+  set_target_properties(saccade PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+endfunction()
