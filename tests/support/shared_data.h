@@ -7,14 +7,16 @@
 
 namespace saccade::testing {
 
-/// Path of a real recording that is too large for the repository, e.g. "slider_depth". Looked for in the folder named by the
-/// environment variable SACCADE_SHARED_DATA, or else in ../shared/data beside the checkout. Empty when it is not there.
+/// Path of a real recording that is too large for the repository, e.g. "slider_depth". Looked for
+/// in the folder named by the environment variable SACCADE_SHARED_DATA, or else in ../shared/data
+/// beside the checkout. Empty when it is not there.
 [[nodiscard]] std::filesystem::path find_shared_data(const std::string& name);
 
 }  // namespace saccade::testing
 
-/// Defines `path` as the recording `name`, or skips the test with a message that says where it was looked for.
-#define SACCADE_SHARED_DATA_OR_SKIP(path, name)                                                         \
-  const std::filesystem::path path = ::saccade::testing::find_shared_data(name);                        \
-  if (path.empty())                                                                                     \
+/// Defines `path` as the recording `name`, or skips the test with a message that says where it was
+/// looked for.
+#define SACCADE_SHARED_DATA_OR_SKIP(path, name)                                  \
+  const std::filesystem::path path = ::saccade::testing::find_shared_data(name); \
+  if (path.empty())                                                              \
   GTEST_SKIP() << "recording " << (name) << " is in neither $SACCADE_SHARED_DATA nor ../shared/data"

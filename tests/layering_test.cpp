@@ -1,0 +1,164 @@
+// The direction of the house: apps -> eval, simulator, estimator -> core. Reads every source of the
+// tree; the checker itself is tested on samples that break each rule.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Rooms = std::set<std::string>;
+
+const std::map<std::string, Rooms> kMayInclude{
+    {"core", {"core"}},
+    {"simulator", {"core", "simulator"}},
+    {"estimator", {"core", "estimator"}},
+    {"eval", {"core", "eval"}},
+    {"apps", {"core", "simulator", "estimator", "eval", "apps"}},
+    {"tests", {"core", "simulator", "estimator", "eval", "apps", "tests"}},
+};
+
+struct Include {
+  int line;
+  bool quoted;
+  std::string path;
+};
+
+std::vector<Include> read_includes(const std::string& text) {
+  std::vector<Include> includes;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::istringstream words(line);
+    std::string directive, path;
+    words >> directive >> path;
+    if (directive == "#") {
+      directive += path;
+      words >> path;
+    } else if (const std::size_t open = directive.find_first_of("\"<"); open != std::string::npos) {
+      path = directive.substr(open);
+      directive.resize(open);
+    }
+    if (directive != "#include" || path.size() < 2) continue;
+    includes.push_back({number, path.front() == '"', path.substr(1, path.find_last_of("\">") - 1)});
+  }
+  return includes;
+}
+
+std::string room_of(const fs::path& path) { return path.begin()->string(); }
+
+/// What is wrong with the includes of the file `path` (relative to the root), one line each.
+/// `has_header`: a .cpp has a .h of the same name beside it.
+std::vector<std::string> check_source(const fs::path& path, const std::string& text,
+                                      bool has_header) {
+  std::vector<std::string> errors;
+  const auto report = [&](int line, const std::string& what) {
+    errors.push_back(path.string() + ":" + std::to_string(line) + ": " + what);
+  };
+  const std::string room = room_of(path);
+  const std::vector<Include> includes = read_includes(text);
+  for (const Include& include : includes) {
+    const std::string target = room_of(include.path);
+    if (!kMayInclude.contains(target)) {
+      if (include.quoted) {
+        report(include.line, "\"" + include.path + "\" is not written from the root");
+      }
+    } else if (!kMayInclude.at(room).contains(target)) {
+      report(include.line, room + " must not include " + target + " (" + include.path + ")");
+    }
+  }
+  const std::string own = fs::path(path).replace_extension(".h").generic_string();
+  if (has_header && (includes.empty() || includes.front().path != own)) {
+    report(includes.empty() ? 1 : includes.front().line,
+           "\"" + own + "\" comes first, which shows that the header stands alone");
+  }
+  return errors;
+}
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<fs::path> find_sources(const fs::path& root) {
+  std::vector<fs::path> sources;
+  for (const auto& [room, allowed] : kMayInclude) {
+    if (!fs::exists(root / room)) continue;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / room)) {
+      const fs::path relative = entry.path().lexically_relative(root);
+      const fs::path extension = relative.extension();
+      // The outside project of the package test sees installed headers, like any user.
+      const bool is_outside = relative.generic_string().starts_with("tests/package/");
+      if ((extension == ".h" || extension == ".cpp") && !is_outside) sources.push_back(relative);
+    }
+  }
+  std::sort(sources.begin(), sources.end());
+  return sources;
+}
+
+struct Sample {
+  const char* path;
+  const char* text;
+  bool has_header;
+  const char* error;  ///< part of the message; empty: the sample is allowed
+};
+
+class LayeringChecker : public ::testing::TestWithParam<Sample> {};
+
+TEST_P(LayeringChecker, JudgesSample) {
+  const Sample& sample = GetParam();
+  const std::vector<std::string> errors = check_source(sample.path, sample.text, sample.has_header);
+  if (*sample.error == '\0') {
+    EXPECT_TRUE(errors.empty()) << errors.front();
+  } else {
+    ASSERT_EQ(errors.size(), 1U);
+    EXPECT_NE(errors.front().find(sample.error), std::string::npos) << errors.front();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Samples, LayeringChecker,
+    ::testing::Values(
+        Sample{"core/a.h", "#include <vector>\n#include \"core/event.h\"\n", false, ""},
+        Sample{"apps/main.cpp", "#include \"eval/a.h\"\n", false, ""},
+        Sample{"tests/unit/core/a_test.cpp", "#include \"tests/support/b.h\"\n", false, ""},
+        Sample{"core/a.h", "\n#include \"simulator/a.h\"\n", false,
+               "core/a.h:2: core must not include simulator"},
+        Sample{"simulator/a.cpp", "#include \"estimator/a.h\"\n", false,
+               "simulator must not include estimator"},
+        Sample{"estimator/a.cpp", "  #  include <eval/a.h>\n", false,
+               "estimator must not include eval"},
+        Sample{"eval/a.cpp", "#include\"simulator/a.h\" // why\n", false,
+               "eval must not include simulator"},
+        Sample{"eval/a.cpp", "#include \"apps/a.h\"\n", false, "eval must not include apps"},
+        Sample{"apps/a.cpp", "#include \"tests/support/a.h\"\n", false,
+               "apps must not include tests"},
+        Sample{"core/a.cpp", "#include \"event.h\"\n", false, "not written from the root"},
+        Sample{"core/a.cpp", "#include \"../core/event.h\"\n", false, "not written from the root"},
+        Sample{"core/a.cpp", "#include \"core/a.h\"\n", true, ""},
+        Sample{"core/a.cpp", "#include <vector>\n#include \"core/a.h\"\n", true,
+               "core/a.cpp:1: \"core/a.h\" comes first"}));
+
+TEST(Layering, EveryIncludeFollowsTheDirection) {
+  const fs::path root = SACCADE_SOURCE_DIR;
+  const std::vector<fs::path> sources = find_sources(root);
+  ASSERT_FALSE(sources.empty()) << "no sources below " << root;
+  for (const fs::path& source : sources) {
+    const bool has_header =
+        source.extension() == ".cpp" && fs::exists(root / fs::path(source).replace_extension(".h"));
+    for (const std::string& error : check_source(source, read_text(root / source), has_header)) {
+      ADD_FAILURE() << error;
+    }
+  }
+}
+
+}  // namespace
