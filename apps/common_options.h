@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+
+namespace saccade {
+
+/// Options that every verb with a configuration shares.
+struct CommonOptions {
+  std::vector<std::string> overrides;  ///< "key.path=value"
+  std::optional<std::uint64_t> seed;
+  int threads = 0;  ///< 0: all cores
+  bool quiet = false;
+  bool print_config = false;
+
+  /// Sets the process-wide thread count and the progress display.
+  void apply() const;
+
+  /// The configuration file (none: the defaults) with --set and --seed on top.
+  [[nodiscard]] config::Document load(const std::string& config_file) const;
+};
+
+/// --threads and -q, for every verb.
+void add_common_options(CLI::App& command, CommonOptions& options);
+/// --set, --seed and --print-config, for verbs that read a configuration.
+void add_config_options(CLI::App& command, CommonOptions& options);
+
+}  // namespace saccade

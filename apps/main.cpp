@@ -1,0 +1,64 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "apps/usage_error.h"
+#include "apps/verbs.h"
+#include "core/error.h"
+#include "core/version.h"
+
+namespace saccade {
+namespace {
+
+enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+void describe_command(CLI::App& command) {
+  command.description(
+      "saccade: simulate event cameras, estimate motion from their events, score the result.\n");
+  command.footer(
+      "Example, from a mesh to a scored trajectory:\n"
+      "  saccade simulate configs/simulation/walls.yaml -o data/walls\n"
+      "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
+      "  saccade eval runs/walls\n"
+      "  saccade report runs/walls -o report.html\n\n"
+      "Exit codes: 0 done, 1 failed, 2 bad usage or bad input.");
+  command.set_version_flag("--version", version_text());
+  command.require_subcommand(1);
+  command.get_formatter()->column_width(32);
+  add_simulate_verb(command);
+  add_run_verb(command);
+  add_eval_verb(command);
+  add_report_verb(command);
+  add_render_verb(command);
+  add_info_verb(command);
+  add_convert_verb(command);
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App command;
+  describe_command(command);
+  try {
+    command.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::Success& success) {
+    return command.exit(success);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    fmt::print(stderr, "saccade: {}\n", explain_usage_error(command, error, arguments));
+    return kBadInput;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "saccade: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "saccade: failed: {}\n", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace saccade
+
+int main(int argc, char** argv) { return saccade::run_command(argc, argv); }

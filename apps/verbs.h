@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace saccade {
+
+/// Each adds one verb with its options and help to the command; its callback does the work.
+void add_simulate_verb(CLI::App& command);
+void add_run_verb(CLI::App& command);
+void add_eval_verb(CLI::App& command);
+void add_report_verb(CLI::App& command);
+void add_render_verb(CLI::App& command);
+void add_info_verb(CLI::App& command);
+void add_convert_verb(CLI::App& command);
+
+}  // namespace saccade

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace saccade::testing {
+
+struct CommandResult {
+  int exit_code = -1;  ///< -1: ended by a signal
+  std::string output;  ///< stdout and stderr as they came
+};
+
+/// Runs a program as a user would, without a shell in between.
+[[nodiscard]] CommandResult run_command(const std::string& program,
+                                        const std::vector<std::string>& arguments);
+
+/// A folder of its own below the system's temporary folder, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Writes a text file, with the folders above it, and returns its path.
+  std::filesystem::path write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The whole file as text; fails the running test when it cannot be read.
+[[nodiscard]] std::string read_file(const std::filesystem::path& path);
+
+}  // namespace saccade::testing
