@@ -186,7 +186,7 @@ TEST_P(MalformedInput, IsAClearErrorWithItsPlace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, MalformedInput, ::testing::ValuesIn(cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 /// The files that the cases above spoil are valid as they are; otherwise a case proves nothing.
 TEST(ValidInput, UnspoiltFilesAreAccepted) {
