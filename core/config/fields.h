@@ -101,23 +101,33 @@ class Fields {
   Fields(Mode mode, std::string path, const Node* input, Place place);
 
   [[nodiscard]] bool writing() const { return mode_ == Mode::kPrint || mode_ == Mode::kCheck; }
+  /// The dotted path of a key.
   [[nodiscard]] std::string name_of(std::string_view key) const;
-  /// The value that is read at the key; nullptr when absent or not reading values.
+  /// What the input holds at a key; nullptr when absent or not reading.
   [[nodiscard]] const Node* input_at(std::string_view key) const;
-  /// Makes the key known; its stated value when reading, else nullptr.
+  /// Makes the key known; its input when values are to be taken from it, else nullptr.
   const Node* declare(std::string_view key);
+  /// Adds to the output; the value that rules must check, if any.
   const Node* put(std::string_view key, Node value, std::string_view help);
-  std::size_t choose(std::string_view key, std::vector<std::string> names, std::size_t current,
-                     std::string_view help);
+  void note(const std::string& name, const std::string& text);
+  void require(const std::string& name);
+
+  std::size_t choose(std::string_view key, const std::vector<std::string>& names,
+                     std::size_t current, std::string_view help);
   Rule each(std::string_view key, std::size_t size, const std::function<void(std::size_t)>& resize,
             const std::function<void(Fields&, std::size_t)>& describe_item, std::string_view help);
-  /// Runs `describe_section` over one map (`input` may be nullptr) and reports its unknown and
-  /// missing keys.
-  Node run(const std::string& path, const Node* input, const Describe& describe_section);
-  void finish(const Describe& describe_section);
-  [[noreturn]] void fail_unknown(const Entry& entry, const Describe& describe_section);
+  /// Describes the map of a child: reads `input` (nullptr: absent), or returns the child's output.
+  Node child(const std::string& name, const Node* input, const Describe& describe_child) const;
+
+  /// Reports keys that nobody described, then keys that are missing.
+  void finish(const Describe& describe_this);
+  [[noreturn]] void fail_unknown(const Entry& entry, const Describe& describe_this) const;
+  /// "source: file (it belongs to source: circle)" when another choice makes the key valid, else
+  /// "".
   [[nodiscard]] std::string choice_that_knows(const std::string& key,
-                                              const Describe& describe_section) const;
+                                              const Describe& describe_this) const;
+  [[noreturn]] void fail(const Node& at, const std::string& name, const std::string& separator,
+                         const std::string& problem) const;
 
   Mode mode_;
   std::string path_;   ///< dotted keys from the root; "" at the root
@@ -127,6 +137,7 @@ class Fields {
   std::vector<std::string> keys_;     ///< described so far
   std::vector<std::string> missing_;  ///< required and not stated
   std::vector<Choice> choices_;
+  const Choice* probed_ = nullptr;  ///< the choice that a probe pretends to read
   bool unknown_allowed_ = false;
 };
 
@@ -135,7 +146,7 @@ Rule Fields::value(std::string_view key, T& target, std::string_view help) {
   const Node* node = declare(key);
   if (node != nullptr) from_node(*node, name_of(key), target);
   if (writing()) node = put(key, to_node(target), help);
-  return {*this, std::string(key), node};
+  return {*this, name_of(key), node};
 }
 
 template <class E>
@@ -148,7 +159,7 @@ Rule Fields::choice(std::string_view key, E& target, const Names<std::type_ident
     texts.push_back(text);
   }
   target = names[choose(key, std::move(texts), current, help)].second;
-  return {*this, std::string(key), nullptr};
+  return {*this, name_of(key), nullptr};
 }
 
 template <class T>
@@ -165,7 +176,7 @@ Rule Fields::section(std::string_view key, std::optional<T>& target, std::string
   if (target) return section(key, *target, help);
   declare(key);
   if (writing()) put(key, Node{}, help);
-  return {*this, std::string(key), nullptr};
+  return {*this, name_of(key), nullptr};
 }
 
 template <class T>

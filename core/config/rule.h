@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ class Fields;
 /// value; a key that the file leaves out keeps its default, which is not checked again.
 class Rule {
  public:
+  static constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();
+
   Rule& range(double low, double high);  ///< low <= x <= high
   Rule& above(double low);               ///< x > low
   Rule& at_least(double low);            ///< x >= low
@@ -35,11 +38,14 @@ class Rule {
 
   template <class Holds>
   void check_numbers(Holds holds, const std::string& broken, const std::string& allowed) const;
-  [[noreturn]] void fail(const Node& at, const std::string& problem) const;
+  template <class Check>
+  void check_texts(Check check) const;
+  void check_length(const Node& list, const std::string& name, std::size_t least,
+                    std::size_t most) const;
   Rule& note(const std::string& text);
 
   Fields& fields_;
-  std::string key_;
+  std::string key_;  ///< dotted, from the root
   const Node*
       node_;  ///< the value as stated (reading) or as it is (checking); nullptr: nothing to check
 };

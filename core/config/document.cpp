@@ -1,0 +1,121 @@
+#include "core/config/document.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/check.h"
+#include "core/config/convert.h"
+#include "core/config/merge.h"
+#include "core/config/yaml_parse.h"
+#include "core/error.h"
+
+namespace saccade::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A configuration is written by people; a larger file is data given by mistake.
+constexpr std::uintmax_t kMaxBytes = 16 << 20;
+
+std::string read_text(const fs::path& file, const std::string& place) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError(place, "no such file '" + file.string() + "'");
+  if (fs::is_directory(file, error))
+    throw InputError(place, "'" + file.string() + "' is a folder, expected a YAML file");
+  if (const auto size = fs::file_size(file, error); !error && size > kMaxBytes)
+    throw InputError(place, "'" + file.string() + "' is too large to be a configuration");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad())
+    throw InputError(place, "cannot read '" + file.string() + "'");
+  return text;
+}
+
+/// A file and what it includes, files that include each other excluded.
+class Loader {
+ public:
+  Node load(const fs::path& file, const Place& stated_at) {
+    const std::string place = stated_at.source ? stated_at.text() : file.string();
+    std::error_code error;
+    const fs::path identity = fs::weakly_canonical(file, error);
+    if (std::find(open_.begin(), open_.end(), identity) != open_.end())
+      throw InputError(place, "include cycle: '" + file.string() + "' includes itself");
+    open_.push_back(identity);
+    Node root = parse(read_text(file, place), file.string(), file.parent_path());
+    open_.pop_back();
+    return root;
+  }
+
+  Node parse(const std::string& text, const std::string& name, const fs::path& folder) {
+    const auto source = std::make_shared<const Source>(Source{name, folder});
+    Node stated = parse_yaml(text, source);
+    if (stated.kind == Node::Kind::kNull) stated = empty_map(stated.place);
+    require_map(stated);
+    Node root = empty_map(stated.place);
+    if (Entry* include = stated.find("include")) {
+      for (const auto& [file, place] : included_files(include->value))
+        merge(root, load(file, place));
+      stated.entries.erase(stated.entries.begin() + (include - stated.entries.data()));
+    }
+    merge(root, std::move(stated));
+    return root;
+  }
+
+ private:
+  static Node empty_map(const Place& place) {
+    Node node = Node::map();
+    node.place = place;
+    return node;
+  }
+
+  static void require_map(const Node& root) {
+    if (root.kind == Node::Kind::kMap) return;
+    const bool no_space =
+        root.kind == Node::Kind::kScalar && root.text.find(':') != std::string::npos;
+    throw InputError(root.place.text(), "expected 'key: value' lines, got " + root.shown() +
+                                            (no_space ? "; a space must follow ':'" : ""));
+  }
+
+  static std::vector<std::pair<fs::path, Place>> included_files(const Node& include) {
+    const bool single = include.kind != Node::Kind::kList;
+    std::vector<std::pair<fs::path, Place>> files;
+    for (const Node& item : single ? std::vector{include} : include.items)
+      from_node(item, "include", files.emplace_back(fs::path(), item.place).first);
+    return files;
+  }
+
+  std::vector<fs::path> open_;
+};
+
+Document with_overrides(Node root, std::span<const std::string> overrides) {
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  return Document(std::move(root));
+}
+
+}  // namespace
+
+Document::Document(Node root) : root_(std::move(root)) {
+  SACCADE_CHECK(root_.kind == Node::Kind::kMap);
+}
+
+Document Document::empty(std::span<const std::string> overrides) {
+  Node root = Node::map();
+  root.place.source = std::make_shared<const Source>(Source{"configuration", {}});
+  return with_overrides(std::move(root), overrides);
+}
+
+Document load(const fs::path& file, std::span<const std::string> overrides) {
+  return with_overrides(Loader().load(file, {}), overrides);
+}
+
+Document parse(std::string_view yaml, const std::string& name, const fs::path& folder,
+               std::span<const std::string> overrides) {
+  return with_overrides(Loader().parse(std::string(yaml), name, folder), overrides);
+}
+
+}  // namespace saccade::config

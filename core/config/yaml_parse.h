@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/config/node.h"
+
+namespace saccade::config {
+
+/// Turns YAML text (one document) into a tree whose places name `source`; with `lines` false (one
+/// value on a command line) they have no line. Empty text is a null node. Throws InputError for
+/// syntax errors, duplicate keys, keys that are no text, explicit tags, a second document, and
+/// trees too deep or too large (recursive anchors).
+[[nodiscard]] Node parse_yaml(const std::string& text, const std::shared_ptr<const Source>& source,
+                              bool lines = true);
+
+}  // namespace saccade::config
