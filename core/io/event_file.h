@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "core/event.h"
+
+namespace saccade {
+
+/// Sensor size that coordinates are checked against [px]; 0 = unknown, not checked.
+struct SensorSize {
+  int width = 0;
+  int height = 0;
+};
+
+/// Unit of the integer times in events.h5; in memory they are always ns.
+enum class TimestampUnit { kMicroseconds, kNanoseconds };
+
+/// Half-open window start <= t < end [ns].
+struct TimeWindow {
+  TimeNs start_ns = std::numeric_limits<TimeNs>::min();
+  TimeNs end_ns = std::numeric_limits<TimeNs>::max();
+};
+
+/// What a file holds, without reading all of it where the format allows that.
+struct EventFileInfo {
+  std::uint64_t count = 0;
+  TimeNs first_ns = 0;  ///< 0 when there are no events
+  TimeNs last_ns = 0;
+  TimestampUnit unit = TimestampUnit::kNanoseconds;
+};
+
+/// Events of a `.h5`/`.hdf5` file (events_h5.h) or, with any other ending, a text file
+/// (events_text.h), in EventOrder: the file must be in order of time, ties are sorted here. Throws
+/// InputError with line or index for everything malformed, coordinates outside `size` included.
+[[nodiscard]] Events read_events(const std::filesystem::path& file, SensorSize size,
+                                 TimeWindow window = {});
+[[nodiscard]] EventFileInfo read_event_file_info(const std::filesystem::path& file);
+
+/// Writes a stream of events in order of time, span by span. Nothing stands under the final name
+/// before close(); without it everything is discarded.
+class EventWriter {
+ public:
+  virtual ~EventWriter() = default;
+  /// `events` ordered by time and not earlier than those appended before (contract).
+  virtual void append(std::span<const Event> events) = 0;
+  virtual void close() = 0;
+  [[nodiscard]] virtual std::uint64_t count() const = 0;
+};
+
+/// The writer for the file's ending, as read_events() chooses; `unit` matters to HDF5 only.
+[[nodiscard]] std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
+                                                             TimestampUnit unit);
+
+/// Sorts runs of equal time by EventOrder; `events` are in order of time.
+void sort_ties(std::span<Event> events);
+
+}  // namespace saccade

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/image.h"
+
+namespace saccade {
+
+using Rgba8 = std::array<std::uint8_t, 4>;
+using ImageRgba8 = Image<Rgba8>;
+
+/// 8-bit pictures (PNG, JPEG, BMP, TIFF ... whatever OpenCV decodes) as their stored codes; colour
+/// is turned to grey and grey to colour where the file has the other. 16-bit files lose their low
+/// byte. InputError with the path when a file is missing or no picture.
+[[nodiscard]] ImageU8 read_image_grey(const std::filesystem::path& file);
+[[nodiscard]] ImageRgb8 read_image_rgb(const std::filesystem::path& file);
+/// With the alpha channel; 255 where the file has none.
+[[nodiscard]] ImageRgba8 read_image_rgba(const std::filesystem::path& file);
+/// The same from memory; `place` is what errors name.
+[[nodiscard]] ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes,
+                                           const std::string& place);
+
+void write_png(const std::filesystem::path& file, const ImageU8& image);
+void write_png(const std::filesystem::path& file, const ImageRgb8& image);
+[[nodiscard]] std::string encode_png(const ImageU8& image);
+[[nodiscard]] std::string encode_png(const ImageRgb8& image);
+
+}  // namespace saccade

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "core/trajectory.h"
+
+namespace saccade {
+
+/// Lines `t tx ty tz qx qy qz qw` (TUM, Event Camera Dataset): seconds, world-from-camera.
+/// InputError with `file:line` for malformed lines, times that do not increase, and quaternions
+/// whose length is off 1 by more than 1e-3; smaller deviations are normalised away. An empty file
+/// is an error.
+[[nodiscard]] Trajectory read_tum_trajectory(const std::filesystem::path& file);
+
+/// Comma-separated `timestamp[ns], x, y, z, qx, qy, qz, qw` with an optional line of column names
+/// (rpg_esim); the same checks.
+[[nodiscard]] Trajectory read_esim_trajectory(const std::filesystem::path& file);
+
+/// Either of them: rpg_esim's when the first line with numbers holds a comma.
+[[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
+
+/// TUM text; times with 9 decimals, the rest exact in double.
+void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses);
+
+}  // namespace saccade

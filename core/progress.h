@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+namespace saccade {
+
+/// No progress is shown anywhere from now on (`-q`), or it is again.
+void set_progress_quiet(bool quiet);
+
+/// Shows on stderr how far a piece of work is: a bar with rate and time left, redrawn in place, on
+/// a terminal; otherwise plain lines at growing intervals (after 5 s, then at each doubling of the
+/// time), so that logs stay short. add() is thread-safe and cheap enough for every batch.
+class Progress {
+ public:
+  /// `total`: units of the whole work, 0 when unknown; `unit`: their plural ("events").
+  Progress(std::string label, std::uint64_t total, std::string unit);
+  ~Progress();  ///< finishes
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void add(std::uint64_t units);
+  /// Shows the final state: what was done, how long it took, at which rate. Once.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(Clock::time_point now, bool last);
+
+  const std::string label_;
+  const std::uint64_t total_;
+  const std::string unit_;
+  const bool terminal_;
+  const Clock::time_point start_;
+  std::mutex mutex_;
+  std::uint64_t done_ = 0;
+  Clock::time_point next_;
+  Clock::duration interval_;
+  bool finished_ = false;
+};
+
+}  // namespace saccade
