@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+
+#include "core/rigid3.h"
+
+namespace saccade {
+
+/// The freedom that is taken out of an estimate before it is compared with the truth.
+enum class Alignment { kNone, kSe3, kSim3 };
+
+/// An estimated pose and the true one at the same time.
+struct PosePair {
+  Rigid3 estimated;  ///< world_from_camera
+  Rigid3 truth;      ///< world_from_camera
+};
+
+/// truth ~ scale * rotation * estimate + translation. Orientations are turned, not scaled.
+struct Similarity {
+  double scale = 1;
+  Rigid3 rigid;
+
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return scale * (rigid.rotation() * point) + rigid.translation();
+  }
+  [[nodiscard]] Rigid3 operator*(const Rigid3& pose) const {
+    return {rigid.rotation() * pose.rotation(), *this * pose.translation()};
+  }
+};
+
+/// Least-squares alignment of the positions (Umeyama, PAMI 13(4), 1991):
+///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
+/// with U D V^T the singular value decomposition of the covariance of truth and estimate,
+///   R = U diag(1, 1, det U det V) V^T,  s = tr(R^T covariance) / variance(estimate) (1 for SE(3)).
+///
+/// Where the positions leave the rotation open (one pose, a standstill, a straight line: the second
+/// singular value is below 1e-6 of the first) the orientations decide the rest: their chordal mean
+/// sum R_truth R_estimate^T enters the covariance with a weight of 1e-6, or alone at a standstill.
+/// An estimate that stands still, or that makes the best scale zero, keeps scale 1.
+/// No pairs, or Alignment::kNone: the identity.
+[[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
+
+}  // namespace saccade

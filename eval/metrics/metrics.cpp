@@ -1,0 +1,88 @@
+#include "eval/metrics/metrics.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "core/check.h"
+#include "core/error.h"
+
+namespace saccade {
+namespace {
+
+using Json = nlohmann::json;  // its objects are sorted by key
+
+void flatten(const Json& node, const std::string& prefix, Metrics& metrics) {
+  for (const auto& [name, value] : node.items()) {
+    const std::string key = prefix.empty() ? name : prefix + "." + name;
+    if (value.is_object())
+      flatten(value, key, metrics);
+    else if (value.is_number())
+      metrics.set(key, value.get<double>());
+    else if (value.is_null())
+      metrics.set(key, std::nullopt);
+  }
+}
+
+Json& child(Json& root, std::string_view key) {
+  Json* node = &root;
+  for (;;) {
+    const std::size_t dot = key.find('.');
+    node = &(*node)[std::string(key.substr(0, dot))];
+    if (dot == std::string_view::npos) return *node;
+    key.remove_prefix(dot + 1);
+  }
+}
+
+/// 1234.0 is written as 1234: counts read as counts.
+Json number(double value) {
+  constexpr double kExactIntegers = 9007199254740992.0;
+  if (value == std::floor(value) && std::abs(value) < kExactIntegers)
+    return static_cast<std::int64_t>(value);
+  return value;
+}
+
+}  // namespace
+
+void Metrics::set(std::string key, std::optional<double> value) {
+  if (value && !std::isfinite(*value)) value.reset();
+  values_.insert_or_assign(std::move(key), value);
+}
+
+std::optional<double> Metrics::get(std::string_view key) const {
+  const auto found = values_.find(key);
+  return found == values_.end() ? std::nullopt : found->second;
+}
+
+std::string to_json(const Metrics& metrics) {
+  Json root = Json::object();
+  for (const auto& [key, value] : metrics.values()) {
+    Json& leaf = child(root, key);
+    SACCADE_CHECK(leaf.is_null());
+    if (value) leaf = number(*value);
+  }
+  return root.dump(2) + "\n";
+}
+
+Metrics parse_json_metrics(std::string_view text, const std::string& place) {
+  Metrics metrics;
+  try {
+    const Json root = Json::parse(text);
+    if (!root.is_object()) throw InputError(place, "must be a JSON object");
+    flatten(root, "", metrics);
+  } catch (const Json::parse_error& error) {
+    throw InputError(place, "byte " + std::to_string(error.byte) + " is no valid JSON");
+  }
+  return metrics;
+}
+
+Metrics read_json_metrics(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read");
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  return parse_json_metrics(text, file.string());
+}
+
+}  // namespace saccade

@@ -1,0 +1,44 @@
+#include "eval/metrics/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace saccade {
+
+Statistics statistics_of(std::span<const double> samples) {
+  SACCADE_CHECK(!samples.empty());
+  const double n = static_cast<double>(samples.size());
+  Statistics result;
+  double sum = 0;
+  double sum_of_squares = 0;
+  result.max = samples.front();
+  for (const double sample : samples) {
+    sum += sample;
+    sum_of_squares += sample * sample;
+    result.max = std::max(result.max, sample);
+  }
+  result.mean = sum / n;
+  result.rmse = std::sqrt(sum_of_squares / n);
+  // A second pass: mean of squares minus square of the mean loses small sigmas to cancellation.
+  double squared_deviations = 0;
+  for (const double sample : samples)
+    squared_deviations += (sample - result.mean) * (sample - result.mean);
+  result.sigma = std::sqrt(squared_deviations / n);
+  return result;
+}
+
+void set_statistics(Metrics& metrics, const std::string& key, std::span<const double> samples) {
+  std::optional<Statistics> s;
+  if (!samples.empty()) s = statistics_of(samples);
+  const auto set = [&](const char* name, double Statistics::*member) {
+    metrics.set(key + "." + name, s ? std::optional(*s.*member) : std::nullopt);
+  };
+  set("mean", &Statistics::mean);
+  set("sigma", &Statistics::sigma);
+  set("max", &Statistics::max);
+  set("rmse", &Statistics::rmse);
+}
+
+}  // namespace saccade

@@ -1,0 +1,125 @@
+#include "eval/metrics/trajectory_metrics.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "eval/metrics/relative_error.h"
+#include "eval/metrics/statistics.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+/// True error from which tracking counts as lost.
+constexpr double kLostDepthPercent = 5;
+constexpr double kLostDeg = 5;
+
+ScoredSamples samples_of(const TrajectoryScoreInput& input) {
+  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
+}
+
+ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>& mean_depth_m) {
+  ErrorSeries series;
+  series.t_s = samples.t_s;
+  for (std::size_t i = 0; i < samples.t_s.size(); ++i) {
+    const Rigid3& estimated = samples.estimated[i];
+    const Rigid3& truth = samples.truth[i];
+    const double error_m = (estimated.translation() - truth.translation()).norm();
+    series.dt_m.push_back(error_m);
+    if (mean_depth_m) series.dt_rel_percent.push_back(100 * error_m / *mean_depth_m);
+    series.dtheta_deg.push_back(kDegrees * angle_between(estimated.rotation(), truth.rotation()));
+  }
+  return series;
+}
+
+void set_aligned(Metrics& metrics, const std::string& key, std::span<const PosePair> pairs,
+                 Alignment alignment) {
+  const Similarity truth_from_estimate = align(pairs, alignment);
+  std::vector<double> trans_m, rot_deg;
+  for (const PosePair& pair : pairs) {
+    const Rigid3 aligned = truth_from_estimate * pair.estimated;
+    trans_m.push_back((aligned.translation() - pair.truth.translation()).norm());
+    rot_deg.push_back(kDegrees * angle_between(aligned.rotation(), pair.truth.rotation()));
+  }
+  std::optional<double> ate, rot, scale;
+  if (!pairs.empty()) {
+    ate = statistics_of(trans_m).rmse;
+    rot = statistics_of(rot_deg).rmse;
+    scale = truth_from_estimate.scale;
+  }
+  metrics.set(key + ".ate_rmse_m", ate);
+  metrics.set(key + ".rot_rmse_deg", rot);
+  metrics.set(key + ".scale", scale);
+}
+
+std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
+  if (series.dt_rel_percent.empty()) return std::nullopt;
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < series.t_s.size(); ++i)
+    if (series.dt_rel_percent[i] > kLostDepthPercent || series.dtheta_deg[i] > kLostDeg) ++lost;
+  return duration_s * static_cast<double>(lost) / static_cast<double>(series.t_s.size());
+}
+
+}  // namespace
+
+ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
+  return series_of(samples_of(input), input.mean_depth_m);
+}
+
+std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
+  std::vector<PosePair> pairs;
+  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  if (!interval) return pairs;
+  for (const StampedPose& pose : input.estimate.poses())
+    if (pose.t_s >= interval->start_s && pose.t_s <= interval->end_s)
+      pairs.push_back({pose.world_from_camera, input.truth.at_clamped(pose.t_s)});
+  return pairs;
+}
+
+double reported_lost_s(const std::vector<PoseStatus>& reported, const Interval& interval) {
+  double lost = 0;
+  for (std::size_t i = 0; i < reported.size(); ++i) {
+    if (!reported[i].is_lost) continue;
+    const double until = i + 1 < reported.size() ? reported[i + 1].t_s : interval.end_s;
+    lost += std::max(0.0,
+                     std::min(until, interval.end_s) - std::max(reported[i].t_s, interval.start_s));
+  }
+  return lost;
+}
+
+Metrics score_trajectory(const TrajectoryScoreInput& input) {
+  Metrics metrics;
+  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  const ScoredSamples samples = samples_of(input);
+  const ErrorSeries series = series_of(samples, input.mean_depth_m);
+  set_statistics(metrics, "trajectory.dt_rel_percent", series.dt_rel_percent);
+  set_statistics(metrics, "trajectory.dt_m", series.dt_m);
+  set_statistics(metrics, "trajectory.dtheta_deg", series.dtheta_deg);
+
+  const std::vector<PosePair> pairs = associate(input);
+  set_aligned(metrics, "trajectory.none", pairs, Alignment::kNone);
+  set_aligned(metrics, "trajectory.se3", pairs, Alignment::kSe3);
+  set_aligned(metrics, "trajectory.sim3", pairs, Alignment::kSim3);
+  set_relative_errors(metrics, samples);
+  metrics.set("trajectory.drift_percent", drift_percent(samples));
+
+  metrics.set("trajectory.poses", static_cast<double>(input.estimate.size()));
+  metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
+  std::optional<double> covered, duration, path, lost, reported;
+  if (interval) {
+    duration = interval->duration();
+    covered = coverage(input.estimate, *interval);
+    if (!samples.t_s.empty()) path = path_lengths(samples).back();
+    lost = lost_s(series, *duration);
+    if (input.reported) reported = reported_lost_s(*input.reported, *interval);
+  }
+  metrics.set("trajectory.coverage", covered);
+  metrics.set("trajectory.duration_s", duration);
+  metrics.set("trajectory.path_length_m", path);
+  metrics.set("trajectory.lost_s", lost);
+  metrics.set("trajectory.reported_lost_s", reported);
+  return metrics;
+}
+
+}  // namespace saccade

@@ -1,0 +1,39 @@
+#include "eval/metrics/statistics.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace saccade {
+namespace {
+
+TEST(Statistics, FourNumbersOfAHandComputedSample) {
+  // mean 10/4, squares 1 + 4 + 9 + 16 = 30, deviations 2.25 + 0.25 + 0.25 + 2.25 = 5.
+  const Statistics s = statistics_of(std::vector<double>{1, 2, 3, 4});
+  EXPECT_DOUBLE_EQ(s.mean, 2.5);
+  EXPECT_DOUBLE_EQ(s.sigma, std::sqrt(5.0 / 4));
+  EXPECT_DOUBLE_EQ(s.max, 4);
+  EXPECT_DOUBLE_EQ(s.rmse, std::sqrt(30.0 / 4));
+}
+
+TEST(Statistics, SigmaSurvivesALargeMean) {
+  const Statistics s = statistics_of(std::vector<double>{1e9 + 1, 1e9 - 1});
+  EXPECT_DOUBLE_EQ(s.sigma, 1);
+}
+
+TEST(Statistics, OneSampleHasNoSpread) {
+  const Statistics s = statistics_of(std::vector<double>{0.3});
+  EXPECT_EQ(s.mean, 0.3);
+  EXPECT_EQ(s.sigma, 0);
+}
+
+TEST(Statistics, NothingIsNull) {
+  Metrics metrics;
+  set_statistics(metrics, "k", {});
+  EXPECT_EQ(metrics.values().size(), 4U);
+  EXPECT_EQ(metrics.get("k.mean"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace saccade
