@@ -1,18 +1,36 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
 namespace saccade {
 
-/// Writes a file so that its final name never holds half of it: `write` fills a hidden sibling
-/// (`.NAME.partial-...`, created in the same folder), which is then renamed over `file`. On an
-/// exception the sibling is removed. Missing parent folders are created. Throws InputError with the
-/// path when it cannot be written (no permission, no space).
-void write_atomically(const std::filesystem::path& file,
-                      const std::function<void(const std::filesystem::path& temporary)>& write);
+/// A file that appears under its final name only when it is complete: it is written as a hidden
+/// sibling
+/// (`.NAME.partial-...`) and renamed. Missing parent folders are created. Throws InputError with
+/// the path when that is not possible.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& file);
+  ~AtomicFile();  ///< removes the sibling unless commit() was called
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write until commit().
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+  /// The final name.
+  [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  bool committed_ = false;
+};
+
+/// A whole file at once. Throws InputError with the path (no permission, no space).
 void write_atomically(const std::filesystem::path& file, std::string_view contents);
 
 /// An output folder that appears under its final name only when it is complete.

@@ -1,0 +1,126 @@
+#include "core/io/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "core/check.h"
+#include "core/error.h"
+
+namespace saccade {
+namespace fs = std::filesystem;
+namespace {
+
+/// Absolute, without dots and without a slash at the end.
+fs::path final_name(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  const fs::path name = whole.has_filename() ? whole : whole.parent_path();
+  if (name.filename().empty()) throw InputError(path.string(), "is no name to write to");
+  return name;
+}
+
+/// A hidden name in the same folder, so that renaming stays within one file system; unique among
+/// the processes of this machine.
+fs::path sibling_of(const fs::path& target, const std::string& kind) {
+  static std::atomic<unsigned> counter{0};
+  return target.parent_path() / ("." + target.filename().string() + "." + kind + "-" +
+                                 std::to_string(::getpid()) + "-" + std::to_string(counter++));
+}
+
+void create_parent_of(const fs::path& target) {
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  if (error)
+    throw InputError(target.string(),
+                     "cannot create the folder it should stand in: " + error.message());
+}
+
+void rename_or_throw(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) throw InputError(to.string(), "cannot be put in place: " + error.message());
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& file)
+    : target_(final_name(file)), temporary_(sibling_of(target_, "partial")) {
+  create_parent_of(target_);
+  if (fs::is_directory(target_)) throw InputError(file.string(), "is a folder, not a file");
+  // Fails here rather than after the work when the place is not writable.
+  if (!std::ofstream(temporary_))
+    throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+}
+
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  if (!committed_) fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  SACCADE_CHECK(!committed_);
+  rename_or_throw(temporary_, target_);
+  committed_ = true;
+}
+
+void write_atomically(const fs::path& file, std::string_view contents) {
+  AtomicFile target(file);
+  errno = 0;
+  std::ofstream stream(target.path(), std::ios::binary);
+  stream.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  stream.close();
+  if (!stream)
+    throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+  target.commit();
+}
+
+AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
+    : target_(final_name(folder)),
+      temporary_(sibling_of(target_, "partial")),
+      marker_(std::move(marker)) {
+  check_replaceable();
+  create_parent_of(target_);
+  std::error_code error;
+  fs::create_directory(temporary_, error);
+  if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(temporary_, ignored);
+}
+
+void AtomicFolder::check_replaceable() const {
+  if (!fs::exists(fs::symlink_status(target_))) return;
+  if (!fs::is_directory(target_)) throw InputError(target_.string(), "exists and is no folder");
+  if (!fs::is_empty(target_) && !fs::exists(target_ / marker_))
+    throw InputError(target_.string(), "exists and holds other files (no " + marker_ +
+                                           " in it); choose another name or remove it");
+}
+
+void AtomicFolder::commit() {
+  SACCADE_CHECK(!committed_);
+  check_replaceable();
+  if (!fs::exists(target_)) {
+    rename_or_throw(temporary_, target_);
+    committed_ = true;
+    return;
+  }
+  // Exchanged in one step where the file system can, so that the name is never without a folder.
+  if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+    const fs::path old = sibling_of(target_, "old");
+    rename_or_throw(target_, old);
+    rename_or_throw(temporary_, target_);
+    temporary_ = old;
+  }
+  committed_ = true;
+  fs::remove_all(temporary_);
+}
+
+}  // namespace saccade
