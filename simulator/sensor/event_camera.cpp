@@ -1,0 +1,112 @@
+#include "simulator/sensor/event_camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "simulator/sensor/image_motion.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kLongestSlab_s = 0.010;
+constexpr double kShortestSlab_s = 1e-4;
+constexpr double kSlabMotion_px = kTileSize;
+constexpr std::size_t kTilesPerTask = 16;
+/// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
+constexpr double kTileRadius_px = 2.83;
+
+}  // namespace
+
+EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
+                         const PinholeCamera& camera, const EventOptions& options)
+    : rays_(camera, options.samples_per_pixel),
+      world_{scene, world_from_camera, rays_, options},
+      speeds_(rays_.tile_count()) {
+  tiles_.reserve(rays_.tile_count());
+  for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
+}
+
+void EventCamera::record(double duration_s, const Sink& sink) {
+  parallel_for(
+      tiles_.size(), [&](std::size_t i) { tiles_[i]->start(0); }, kTilesPerTask);
+  double t_s = 0;
+  while (t_s < duration_s) {
+    const double fastest = bound_speeds(t_s);
+    const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
+    // No sliver at the end: the rest is split evenly.
+    const double slabs_left = std::ceil((duration_s - t_s) / slab_s);
+    const bool is_last = slabs_left <= 1;
+    const double end_s = is_last ? duration_s : t_s + (duration_s - t_s) / slabs_left;
+    parallel_for(
+        tiles_.size(),
+        [&](std::size_t i) {
+          const double steps = std::ceil(speeds_[i] * (end_s - t_s) / world_.options.max_step_px);
+          tiles_[i]->advance(end_s, std::max(1, static_cast<int>(steps)));
+        },
+        kTilesPerTask);
+    deliver(end_s, is_last, sink);
+    t_s = end_s;
+  }
+}
+
+double EventCamera::bound_speeds(double t_s) {
+  // The motion changes little within 10 ms; three looks bound it.
+  std::array<Twist, 3> twists;
+  for (std::size_t k = 0; k < twists.size(); ++k)
+    twists[k] = camera_twist(
+        world_.world_from_camera.state(t_s + 0.5 * static_cast<double>(k) * kLongestSlab_s));
+  const PinholeCamera& camera = rays_.camera();
+  parallel_for(
+      tiles_.size(),
+      [&](std::size_t i) {
+        const Tile tile = rays_.tile(i);
+        const Eigen::Vector3d centre = camera.ray(
+            Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
+        const InverseDepthRange range = neighbourhood(i);
+        speeds_[i] = 0;
+        for (const Twist& twist : twists)
+          speeds_[i] =
+              std::max(speeds_[i], image_speed_bound(camera, centre, kTileRadius_px, twist, range));
+      },
+      kTilesPerTask);
+  return *std::max_element(speeds_.begin(), speeds_.end());
+}
+
+InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
+  const int tx = static_cast<int>(tile) % rays_.tiles_x();
+  const int ty = static_cast<int>(tile) / rays_.tiles_x();
+  InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
+  for (int y = std::max(0, ty - 1); y <= std::min(ty + 1, rays_.tiles_y() - 1); ++y)
+    for (int x = std::max(0, tx - 1); x <= std::min(tx + 1, rays_.tiles_x() - 1); ++x) {
+      const InverseDepthRange near =
+          tiles_[static_cast<std::size_t>(y * rays_.tiles_x() + x)]->inverse_depths();
+      range.low = std::min(range.low, near.low);
+      range.high = std::max(range.high, near.high);
+    }
+  return range;
+}
+
+void EventCamera::deliver(double t_s, bool is_last, const Sink& sink) {
+  for (const auto& tile : tiles_)
+    pending_.insert(pending_.end(), tile->events().begin(), tile->events().end());
+  std::sort(pending_.begin(), pending_.end(), EventOrder());
+  // Rounding can put an event of the next slab on this slab's last tick, so that tick stays here.
+  const TimeNs unit = world_.options.timestamp_step_ns();
+  const TimeNs settled = ns_from_seconds(t_s) / unit * unit - unit;
+  const auto end = is_last ? pending_.end()
+                           : std::partition_point(pending_.begin(), pending_.end(),
+                                                  [&](const Event& e) { return e.t_ns < settled; });
+  sink({pending_.begin(), end}, t_s);
+  pending_.erase(pending_.begin(), end);
+}
+
+EventStatistics EventCamera::statistics() const {
+  EventStatistics total;
+  for (const auto& tile : tiles_) total.add(tile->statistics());
+  return total;
+}
+
+}  // namespace saccade

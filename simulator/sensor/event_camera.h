@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/spline.h"
+#include "simulator/scene/scene.h"
+#include "simulator/sensor/event_options.h"
+#include "simulator/sensor/event_tile.h"
+
+namespace saccade {
+
+/// The ideal event camera. Pixel u keeps a reference L_ref, first L(u, 0); it fires ON when
+/// L = ln(eps + I) rises to L_ref + C_on and OFF when it falls to L_ref - C_off, L_ref moves by
+/// exactly that threshold, and the time is that of the crossing of the continuous signal.
+///
+/// Time advances in slabs of at most 10 ms and 4 px of image motion. Within a slab every tile of
+/// 4 x 4 pixels takes its own number of equal steps, so that no point seen by it or by the eight
+/// tiles around it moves more than `max_step_px` per step: what a fast, thin occluder can reach
+/// within the slab is in those tiles. Tiles run in parallel and depend on one another only through
+/// the state at the slab's start, so the stream is the same for any number of threads.
+class EventCamera {
+ public:
+  /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera.
+  EventCamera(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
+              const EventOptions& options);
+
+  /// Receives the events up to a time [s], in EventOrder over all calls.
+  using Sink = std::function<void(std::span<const Event> events, double t_s)>;
+
+  /// Records from time 0 to `duration_s`. Call once.
+  void record(double duration_s, const Sink& sink);
+
+  [[nodiscard]] EventStatistics statistics() const;
+
+ private:
+  /// Bound of the image speed of every tile over [t, t + longest slab], into speeds_; the largest.
+  double bound_speeds(double t_s);
+  [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
+  /// Moves the tiles' events into pending_ and hands out those that no later slab can precede.
+  void deliver(double t_s, bool is_last, const Sink& sink);
+
+  PixelRays rays_;
+  EventWorld world_;
+  std::vector<std::unique_ptr<EventTile>> tiles_;
+  std::vector<double> speeds_;  ///< per tile [px/s]
+  Events pending_;
+};
+
+}  // namespace saccade

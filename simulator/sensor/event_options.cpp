@@ -1,0 +1,36 @@
+#include "simulator/sensor/event_options.h"
+
+namespace saccade {
+namespace {
+
+enum class Preset { kIdeal };
+
+}  // namespace
+
+void describe(config::Fields& fields, EventOptions& options) {
+  Preset preset = Preset::kIdeal;
+  fields.choice("preset", preset, {{"ideal", Preset::kIdeal}}, "noise models switched on together");
+  fields.value("contrast_on", options.contrast.on, "threshold of ON events [log units]")
+      .range(0.001, 10);
+  fields.value("contrast_off", options.contrast.off, "threshold of OFF events [log units]")
+      .range(0.001, 10);
+  fields.value("log_eps", options.log_eps, "eps of the log intensity ln(eps + I)").range(1e-9, 1);
+  fields
+      .value("time_tolerance_us", options.time_tolerance_us,
+             "bound of every event's time error, before rounding to the unit [us]")
+      .range(1e-3, 1000);
+  fields.value("samples_per_pixel", options.samples_per_pixel,
+               "rays whose mean radiance a pixel sees: 1, 4 or 16");
+  fields.expect(options.samples_per_pixel == 1 || options.samples_per_pixel == 4 ||
+                    options.samples_per_pixel == 16,
+                "samples_per_pixel", "must be 1, 4 or 16");
+  fields.choice("timestamp_unit", options.timestamp_unit,
+                {{"us", TimestampUnit::kMicroseconds}, {"ns", TimestampUnit::kNanoseconds}},
+                "resolution of the recorded times");
+  fields
+      .value("max_step_px", options.max_step_px,
+             "image motion between two looks at a pixel, over its neighbourhood [px]")
+      .range(0.01, 2);
+}
+
+}  // namespace saccade

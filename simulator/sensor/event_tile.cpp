@@ -1,0 +1,169 @@
+#include "simulator/sensor/event_tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// What a pixel sees at one instant through its kRays rays.
+template <std::size_t kRays>
+struct PixelSample {
+  double t_s = 0;
+  double log_intensity = 0;
+  std::array<TriangleId, kRays> triangles{};
+};
+
+template <std::size_t kRays>
+class LockstepTile final : public EventTile {
+ public:
+  LockstepTile(const EventWorld& world, std::size_t index)
+      : world_(world),
+        tile_(world.rays.tile(index)),
+        directions_(world.rays.rays(index)),
+        tolerance_s_(1e-6 * world.options.time_tolerance_us) {
+    search_.shortest_s = tolerance_s_;
+  }
+
+  void start(double t_s) override {
+    trace(t_s);
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      pixels_[i] = EventPixel(next_[i].log_intensity, world_.options.contrast);
+      changes_[i] = 0;
+    }
+    samples_ = next_;
+  }
+
+  void advance(double t_s, int steps) override {
+    events_.clear();
+    const double from_s = samples_[0].t_s;
+    for (int k = 1; k < steps; ++k) step(from_s + (t_s - from_s) * k / steps);
+    step(t_s);
+  }
+
+  [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
+
+ private:
+  using Sample = PixelSample<kRays>;
+
+  void step(double t_s) {
+    trace(t_s);
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      walk(i);
+      changes_[i] = std::abs(next_[i].log_intensity - samples_[i].log_intensity);
+    }
+    samples_ = next_;
+  }
+
+  void walk(std::size_t i) {
+    const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
+      return look(i, t, lo, hi);
+    };
+    const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
+    const double width_s = walk_step(pixels_[i], world_.options.contrast, samples_[i], next_[i],
+                                     changes_[i], tolerance_s_, search_, evaluate, emit);
+    statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
+  }
+
+  void record(std::size_t i, double t_s, int polarity) {
+    const double unit_ns = static_cast<double>(world_.options.timestamp_step_ns());
+    const auto units = static_cast<TimeNs>(std::llround(t_s * 1e9 / unit_ns));
+    events_.push_back({units * world_.options.timestamp_step_ns(),
+                       static_cast<std::uint16_t>(tile_.x(i)),
+                       static_cast<std::uint16_t>(tile_.y(i)), static_cast<std::int8_t>(polarity)});
+  }
+
+  /// All rays of the tile at time `t_s`, into next_.
+  void trace(double t_s) {
+    const Rigid3 pose = world_.world_from_camera.pose(t_s);
+    const Eigen::Matrix3d rotation = pose.rotation_matrix();
+    const std::size_t count = directions_.size();
+    std::array<Ray, kTilePixels * kRays> rays;
+    std::array<TriangleId, kTilePixels * kRays> triangles;
+    for (std::size_t k = 0; k < count; ++k)
+      rays[k] = {pose.translation(), rotation * directions_[k]};
+    for (std::size_t k = 0; k < count; k += kTilePixels) {
+      const std::size_t n = std::min(kTilePixels, count - k);
+      world_.scene.visible({&rays[k], n}, {&triangles[k], n});
+    }
+    statistics_.rays += count;
+    inverse_depths_ = {std::numeric_limits<double>::infinity(), 0};
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      Sample& sample = next_[i];
+      sample.t_s = t_s;
+      double sum = 0;
+      for (std::size_t s = 0; s < kRays; ++s) {
+        const std::size_t k = i * kRays + s;
+        sample.triangles[s] = triangles[k];
+        const Shade shade = world_.scene.shade(rays[k], triangles[k]);
+        sum += shade.radiance;
+        const double inverse = shade.distance > 0 ? 1 / shade.distance : 0;
+        inverse_depths_.low = std::min(inverse_depths_.low, inverse);
+        inverse_depths_.high = std::max(inverse_depths_.high, inverse);
+      }
+      sample.log_intensity = log_intensity(sum);
+    }
+  }
+
+  /// Pixel `i` at a time between two samples.
+  Sample look(std::size_t i, double t_s, const Sample& lo, const Sample& hi) {
+    const Rigid3 pose = world_.world_from_camera.pose(t_s);
+    Sample sample{t_s, 0, lo.triangles};
+    std::array<Ray, kRays> rays;
+    for (std::size_t s = 0; s < kRays; ++s)
+      rays[s] = {pose.translation(), pose.rotation() * directions_[i * kRays + s]};
+    if (lo.triangles != hi.triangles) {
+      world_.scene.visible(rays, sample.triangles);
+      statistics_.rays += kRays;
+    } else {
+      statistics_.surface_looks += kRays;
+    }
+    double sum = 0;
+    for (std::size_t s = 0; s < kRays; ++s)
+      sum += world_.scene.shade(rays[s], sample.triangles[s]).radiance;
+    sample.log_intensity = log_intensity(sum);
+    return sample;
+  }
+
+  [[nodiscard]] double log_intensity(double radiance_sum) const {
+    return std::log(world_.options.log_eps + radiance_sum / static_cast<double>(kRays));
+  }
+
+  const EventWorld& world_;
+  Tile tile_;
+  std::span<const Eigen::Vector3d> directions_;
+  double tolerance_s_;
+  ExcursionSearch search_;
+  InverseDepthRange inverse_depths_;
+  std::array<EventPixel, kTilePixels> pixels_;
+  std::array<Sample, kTilePixels> samples_;  ///< at the last step's end
+  std::array<Sample, kTilePixels> next_;
+  std::array<double, kTilePixels> changes_{};  ///< |L| change over the last step
+};
+
+}  // namespace
+
+void EventStatistics::add(const EventStatistics& other) {
+  rays += other.rays;
+  surface_looks += other.surface_looks;
+  time_bound_s = std::max(time_bound_s, other.time_bound_s);
+}
+
+std::unique_ptr<EventTile> make_event_tile(const EventWorld& world, std::size_t index) {
+  switch (world.rays.rays_per_pixel()) {
+    case 1:
+      return std::make_unique<LockstepTile<1>>(world, index);
+    case 4:
+      return std::make_unique<LockstepTile<4>>(world, index);
+    case 16:
+      return std::make_unique<LockstepTile<16>>(world, index);
+    default:
+      SACCADE_CHECK(false);
+      return nullptr;
+  }
+}
+
+}  // namespace saccade

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "core/spline.h"
+
+namespace saccade {
+
+/// Twist (v, w) of the camera in its own frame [m/s, rad/s].
+[[nodiscard]] Twist camera_twist(const SplineState& state);
+
+/// Range of 1 / z over some pixels [1/m]; 0 stands for the background.
+struct InverseDepthRange {
+  double low = 0;
+  double high = 0;
+};
+
+/// Upper bound of the image speed [px/s] of static points with inverse depth in `range`, seen
+/// within `radius_px` of the direction `ray` = (x, y, 1). The motion field is affine in 1/z, so its
+/// norm is largest at an end of the range; away from `ray` it grows no faster than |w| and |v|/z,
+/// the terms of its gradient (to first order in the radius).
+[[nodiscard]] double image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,
+                                       double radius_px, const Twist& twist,
+                                       const InverseDepthRange& range);
+
+}  // namespace saccade

@@ -1,0 +1,100 @@
+#include "simulator/sensor/view.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/parallel.h"
+#include "simulator/sensor/image_motion.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kTilesPerTask = 16;
+
+/// What each ray of a tile sees: `use(ray index, shade)`.
+template <class Use>
+void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions, const Rigid3& pose,
+                const Use& use) {
+  const Eigen::Matrix3d rotation = pose.rotation_matrix();
+  std::array<Ray, kTilePixels> rays;
+  std::array<TriangleId, kTilePixels> triangles;
+  for (std::size_t first = 0; first < directions.size(); first += kTilePixels) {
+    const std::size_t n = std::min(kTilePixels, directions.size() - first);
+    for (std::size_t k = 0; k < n; ++k)
+      rays[k] = {pose.translation(), rotation * directions[first + k]};
+    scene.visible({rays.data(), n}, {triangles.data(), n});
+    for (std::size_t k = 0; k < n; ++k) use(first + k, scene.shade(rays[k], triangles[k]));
+  }
+}
+
+/// d distort / d pixel (2x2) by central differences; smooth enough for 1e-8.
+Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
+  if (!camera.is_distorted()) return Eigen::Matrix2d::Identity();
+  constexpr double kStep_px = 1e-3;
+  Eigen::Matrix2d jacobian;
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector2d step = kStep_px * Eigen::Vector2d::Unit(k);
+    jacobian.col(k) =
+        (camera.distort(pixel + step) - camera.distort(pixel - step)) / (2 * kStep_px);
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+ViewRenderer::ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel)
+    : scene_(scene), radiance_rays_(camera, rays_per_pixel), centre_rays_(camera, 1) {}
+
+ImageF ViewRenderer::radiance(std::span<const Rigid3> world_from_camera) const {
+  ImageF image(camera().width, camera().height);
+  const std::size_t per_pixel = radiance_rays_.rays_per_pixel();
+  const double count = static_cast<double>(per_pixel * world_from_camera.size());
+  const auto render = [&](std::size_t index) {
+    const Tile tile = radiance_rays_.tile(index);
+    std::array<double, kTilePixels> sums{};
+    for (const Rigid3& pose : world_from_camera)
+      trace_tile(scene_, radiance_rays_.rays(index), pose,
+                 [&](std::size_t ray, const Shade& s) { sums[ray / per_pixel] += s.radiance; });
+    for (std::size_t i = 0; i < tile.pixels(); ++i)
+      image(tile.x(i), tile.y(i)) = static_cast<float>(sums[i] / count);
+  };
+  parallel_for(radiance_rays_.tile_count(), render, kTilesPerTask);
+  return image;
+}
+
+ImageF ViewRenderer::depth(const Rigid3& world_from_camera) const {
+  ImageF image(camera().width, camera().height);
+  const auto render = [&](std::size_t index) {
+    const Tile tile = centre_rays_.tile(index);
+    trace_tile(scene_, centre_rays_.rays(index), world_from_camera,
+               [&](std::size_t i, const Shade& shade) {
+                 image(tile.x(i), tile.y(i)) = static_cast<float>(shade.distance);
+               });
+  };
+  parallel_for(centre_rays_.tile_count(), render, kTilesPerTask);
+  return image;
+}
+
+FlowField ViewRenderer::flow(const SplineState& state) const {
+  FlowField field{ImageF(camera().width, camera().height), ImageF(camera().width, camera().height)};
+  const Twist twist = camera_twist(state);
+  const auto render = [&](std::size_t index) {
+    const Tile tile = centre_rays_.tile(index);
+    const std::span<const Eigen::Vector3d> rays = centre_rays_.rays(index);
+    trace_tile(scene_, rays, state.world_from_body, [&](std::size_t i, const Shade& shade) {
+      const double depth =
+          shade.distance > 0 ? shade.distance : std::numeric_limits<double>::infinity();
+      // In the camera's frame the point moves by minus the camera's twist.
+      const Eigen::Vector2d ideal = -interaction_matrix(camera(), rays[i], depth) * twist;
+      const Eigen::Vector2d pixel = camera().project(rays[i]);
+      const Eigen::Vector2d flow = distortion_jacobian(camera(), pixel) * ideal;
+      field.u(tile.x(i), tile.y(i)) = static_cast<float>(flow.x());
+      field.v(tile.x(i), tile.y(i)) = static_cast<float>(flow.y());
+    });
+  };
+  parallel_for(centre_rays_.tile_count(), render, kTilesPerTask);
+  return field;
+}
+
+}  // namespace saccade
