@@ -104,11 +104,8 @@ void EventTextWriter::append(std::span<const Event> events) {
   for (const Event& event : events) {
     SACCADE_CHECK(event.t_ns >= state_->last);
     state_->last = event.t_ns;
-    const std::uint64_t t = event.t_ns < 0 ? 0 - static_cast<std::uint64_t>(event.t_ns)
-                                           : static_cast<std::uint64_t>(event.t_ns);
-    fmt::format_to(std::back_inserter(state_->buffer), "{}{}.{:09} {} {} {}\n",
-                   event.t_ns < 0 ? "-" : "", t / 1'000'000'000, t % 1'000'000'000, event.x,
-                   event.y, event.polarity > 0 ? 1 : 0);
+    fmt::format_to(std::back_inserter(state_->buffer), "{} {} {} {}\n", decimal_seconds(event.t_ns),
+                   event.x, event.y, event.polarity > 0 ? 1 : 0);
     if (state_->buffer.size() > kFlushBytes) state_->flush();
   }
   state_->count += events.size();

@@ -1,6 +1,7 @@
 #include "core/io/text_table.h"
 
 #include <fast_float/fast_float.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -193,6 +194,12 @@ bool TextReader::next(std::string_view& line) {
     const std::size_t content = line.find_first_not_of(" \t\r");
     if (content != std::string_view::npos && line[content] != '#') return true;
   }
+}
+
+std::string decimal_seconds(TimeNs t_ns) {
+  const std::uint64_t t =
+      t_ns < 0 ? 0 - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
+  return fmt::format("{}{}.{:09}", t_ns < 0 ? "-" : "", t / 1'000'000'000, t % 1'000'000'000);
 }
 
 NumberTable read_number_table(const std::filesystem::path& file, const char* header) {

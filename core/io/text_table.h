@@ -80,6 +80,9 @@ void for_each_row(const std::filesystem::path& file, const Parse& parse) {
   }
 }
 
+/// ns -> decimal seconds with 9 decimals, exact; what TextRow::seconds() reads back.
+[[nodiscard]] std::string decimal_seconds(TimeNs t_ns);
+
 /// A whole table of finite numbers with the same number of columns in every row.
 struct NumberTable {
   std::string file;

@@ -1,0 +1,44 @@
+#include "core/io/run_record.h"
+
+#include "core/config/config.h"
+#include "core/io/atomic_file.h"
+
+namespace saccade {
+
+void describe(config::Fields& fields, RunRecord::Window& window) {
+  fields.value("start_s", window.start_s, "first instant").required();
+  fields.value("end_s", window.end_s, "instant after the last event").required();
+  fields.expect(window.start_s <= window.end_s, "end_s", "must not be below start_s");
+}
+
+void describe(config::Fields& fields, RunRecord& record) {
+  fields.value("format_version", record.format_version, "layout of this folder")
+      .required()
+      .range(1, 1);
+  fields.value("module", record.module, "estimator").required();
+  fields.group(
+      "dataset",
+      [&](config::Fields& dataset) {
+        dataset.value("path", record.dataset, "folder").required();
+        dataset.value("sha256", record.dataset_sha256, "of dataset.yaml or of the events");
+      },
+      "what it was given");
+  fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
+  fields.value("seed", record.seed, "of every random number");
+  fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);
+  fields.value("tool_version", record.tool_version, "that wrote this folder");
+  fields.value("command", record.command, "command line");
+  fields.value("machine", record.machine, "it ran on");
+  if (fields.has("config") || (!fields.reading() && !record.config_yaml.empty()))
+    fields.embed("config", record.config_yaml, "resolved configuration");
+}
+
+RunRecord read_run_record(const std::filesystem::path& file) {
+  return config::read<RunRecord>(config::load(file));
+}
+
+void write_run_record(const std::filesystem::path& file, const RunRecord& record) {
+  write_atomically(file, config::print(record));
+}
+
+}  // namespace saccade

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/config/fields.h"
+
+namespace saccade {
+
+/// The contents of run.yaml: where a run folder comes from. Only `format_version`, `module` and
+/// `dataset.path` must be stated.
+struct RunRecord {
+  /// The part of the dataset the estimator was given, in seconds from the dataset's time zero.
+  struct Window {
+    double start_s = 0;
+    double end_s = 0;
+  };
+
+  int format_version = 1;
+  std::string module;             ///< "track", "depth", ...
+  std::filesystem::path dataset;  ///< folder; in the file relative to run.yaml, or absolute
+  std::string dataset_sha256;     ///< of its dataset.yaml, or of its events where it has none
+  std::optional<Window> window;   ///< nullopt: the whole dataset
+  std::uint64_t seed = 0;
+  int threads = 0;           ///< 0: not stated
+  std::string tool_version;  ///< "0.1.0 (1234567890ab)"
+  std::string command;       ///< command line; empty when the library was called
+  std::string machine;       ///< processor and operating system
+  std::string config_yaml;   ///< the resolved configuration, as text
+};
+
+void describe(config::Fields& fields, RunRecord& record);
+
+/// InputError with file:line; another format_version than 1 is an error.
+[[nodiscard]] RunRecord read_run_record(const std::filesystem::path& file);
+void write_run_record(const std::filesystem::path& file, const RunRecord& record);
+
+}  // namespace saccade

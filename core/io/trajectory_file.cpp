@@ -1,0 +1,101 @@
+#include "core/io/trajectory_file.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/io/atomic_file.h"
+#include "core/io/text_table.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kUnitTolerance = 1e-3;
+
+/// `tx ty tz qx qy qz qw`.
+Rigid3 read_pose(TextRow& row) {
+  Eigen::Vector3d t;
+  Eigen::Quaterniond q;
+  t.x() = row.number("tx");
+  t.y() = row.number("ty");
+  t.z() = row.number("tz");
+  q.x() = row.number("qx");
+  q.y() = row.number("qy");
+  q.z() = row.number("qz");
+  q.w() = row.number("qw");
+  const double norm = q.norm();
+  if (!(std::abs(norm - 1) <= kUnitTolerance))
+    row.fail(fmt::format("the quaternion's length is {:.6g}; a rotation's is 1 (within {})", norm,
+                         kUnitTolerance));
+  return {q, t};
+}
+
+void append(std::vector<StampedPose>& poses, const StampedPose& pose, const TextRow& row) {
+  if (!poses.empty() && !(pose.t_s > poses.back().t_s))
+    row.fail(
+        fmt::format("times must increase: {:.9f} s after {:.9f} s", pose.t_s, poses.back().t_s));
+  poses.push_back(pose);
+}
+
+Trajectory finished(std::vector<StampedPose> poses, const std::filesystem::path& file) {
+  if (poses.empty()) throw InputError(file.string(), "holds no poses");
+  return Trajectory(std::move(poses));
+}
+
+/// A first line of column names that is not commented out.
+bool is_header(std::string_view line) {
+  return std::isalpha(static_cast<unsigned char>(line.front())) != 0 && !line.starts_with("nan") &&
+         !line.starts_with("inf");
+}
+
+}  // namespace
+
+Trajectory read_tum_trajectory(const std::filesystem::path& file) {
+  std::vector<StampedPose> poses;
+  for_each_row(file, [&](TextRow& row) {
+    const double t_s = row.number("t");
+    append(poses, {t_s, read_pose(row)}, row);
+    row.expect_end("t tx ty tz qx qy qz qw");
+    return true;
+  });
+  return finished(std::move(poses), file);
+}
+
+Trajectory read_esim_trajectory(const std::filesystem::path& file) {
+  std::vector<StampedPose> poses;
+  TextReader reader(file);
+  std::string_view line;
+  for (bool first = true; reader.next(line); first = false) {
+    if (first && is_header(line)) continue;
+    TextRow row = reader.row(line);
+    const double t_s = seconds_from_ns(row.integer("timestamp"));
+    append(poses, {t_s, read_pose(row)}, row);
+    row.expect_end("timestamp[ns], x, y, z, qx, qy, qz, qw");
+  }
+  return finished(std::move(poses), file);
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  TextReader reader(file);
+  std::string_view line;
+  bool comma = false;
+  if (reader.next(line)) comma = line.find(',') != std::string_view::npos;
+  return comma ? read_esim_trajectory(file) : read_tum_trajectory(file);
+}
+
+void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses) {
+  fmt::memory_buffer text;
+  for (const StampedPose& pose : poses) {
+    const Eigen::Vector3d& t = pose.world_from_camera.translation();
+    const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
+    fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {} {}\n", pose.t_s, t.x(),
+                   t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+}  // namespace saccade
