@@ -10,6 +10,20 @@ namespace saccade {
 /// No progress is shown anywhere from now on (`-q`), or it is again.
 void set_progress_quiet(bool quiet);
 
+/// What one line of progress says.
+struct ProgressState {
+  std::string label;
+  std::string unit;  ///< plural
+  std::uint64_t done = 0;
+  std::uint64_t total = 0;  ///< 0 = unknown
+  double elapsed_s = 0;
+  bool with_bar = false;
+  bool finished = false;
+};
+
+/// "simulating: [####....]  50 %, 1.2 M events/s, 3.4 s left".
+[[nodiscard]] std::string progress_text(const ProgressState& state);
+
 /// Shows on stderr how far a piece of work is: a bar with rate and time left, redrawn in place, on
 /// a terminal; otherwise plain lines at growing intervals (after 5 s, then at each doubling of the
 /// time), so that logs stay short. add() is thread-safe and cheap enough for every batch.
@@ -27,7 +41,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void show(Clock::time_point now, bool last);
+  void show(Clock::time_point now, bool last) const;
 
   const std::string label_;
   const std::uint64_t total_;
@@ -37,7 +51,6 @@ class Progress {
   std::mutex mutex_;
   std::uint64_t done_ = 0;
   Clock::time_point next_;
-  Clock::duration interval_;
   bool finished_ = false;
 };
 

@@ -140,7 +140,8 @@ ImageF Dataset::load_frame(std::size_t index) const {
   ImageF image = read_plane(file);
   expect_size(image, camera_, file);
   for (const float radiance : image.pixels())
-    if (!std::isfinite(radiance)) throw InputError(file.string(), "holds a pixel that is no number");
+    if (!std::isfinite(radiance))
+      throw InputError(file.string(), "holds a pixel that is no number");
   return image;
 }
 
