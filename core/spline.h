@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/rigid3.h"
+#include "core/spline_segment.h"
 #include "core/trajectory.h"
 
 namespace saccade {
@@ -11,10 +13,10 @@ namespace saccade {
 /// Pose and analytic derivatives at one instant.
 struct SplineState {
   Rigid3 world_from_body;
-  Eigen::Vector3d velocity_in_world;              ///< [m/s]
-  Eigen::Vector3d acceleration_in_world;          ///< [m/s^2], without gravity
-  Eigen::Vector3d angular_velocity_in_body;       ///< [rad/s]
-  Eigen::Vector3d angular_acceleration_in_body;   ///< [rad/s^2]
+  Eigen::Vector3d velocity_in_world;             ///< [m/s]
+  Eigen::Vector3d acceleration_in_world;         ///< [m/s^2], without gravity
+  Eigen::Vector3d angular_velocity_in_body;      ///< [rad/s]
+  Eigen::Vector3d angular_acceleration_in_body;  ///< [rad/s^2]
 };
 
 /// Cumulative cubic B-spline on R^3 x SO(3), C2, knots at any strictly increasing times:
@@ -23,23 +25,47 @@ struct SplineState {
 /// Immutable and thread-safe. Outside [start_s, end_s] the time is clamped.
 class Spline {
  public:
-  /// Passes through every pose at its time (to 1e-6 m and 1e-6 rad); knots at the poses' times, natural
-  /// ends. At least 2 poses, times strictly increasing.
+  /// Passes through every pose at its time (to 1e-6 m and 1e-6 rad); knots at the poses' times,
+  /// natural ends (no acceleration there). At least 2 poses, times strictly increasing. Throws
+  /// InputError where consecutive rotations are too far apart for a spline through them to be
+  /// found; up to 150 degrees it is.
   [[nodiscard]] static Spline interpolate(std::span<const StampedPose> poses);
 
-  /// Least-squares fit with uniform knots `knot_spacing_s` apart, for recorded motion.
+  /// Least-squares fit with uniform knots `knot_spacing_s` apart (rounded so that whole segments
+  /// fill the poses' span), for recorded motion. Where poses are missing the motion goes on evenly.
+  /// At least 2 poses, times strictly increasing. Throws InputError if the rotations do not
+  /// converge.
   [[nodiscard]] static Spline smooth(std::span<const StampedPose> poses, double knot_spacing_s);
 
-  /// Uniform spline from control poses: segment i starts at start_s + i * knot_spacing_s and uses control
-  /// poses i..i+3. At least 4 control poses.
-  [[nodiscard]] static Spline from_control_poses(std::span<const Rigid3> control_poses, double start_s,
-                                                 double knot_spacing_s);
+  /// Uniform spline from control poses: segment i starts at start_s + i * knot_spacing_s and uses
+  /// control poses i..i+3. At least 4 control poses.
+  [[nodiscard]] static Spline from_control_poses(std::span<const Rigid3> control_poses,
+                                                 double start_s, double knot_spacing_s);
 
-  [[nodiscard]] double start_s() const;
-  [[nodiscard]] double end_s() const;
+  /// The piece [from_s, from_s + duration_s] of the same motion, its time counted from from_s. The
+  /// piece lies within [start_s, end_s] (contract) and lasts longer than 0.
+  [[nodiscard]] Spline cut(double from_s, double duration_s) const;
+
+  [[nodiscard]] double start_s() const { return start_s_; }
+  [[nodiscard]] double end_s() const { return end_s_; }
+  [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
 
   [[nodiscard]] Rigid3 pose(double t_s) const;
   [[nodiscard]] SplineState state(double t_s) const;
+
+ private:
+  Spline(std::vector<SplineSegment> segments, double start_s, double end_s);
+  [[nodiscard]] std::size_t bucket_of(double t_s) const;
+  [[nodiscard]] const SplineSegment& segment_at(double t_s) const;
+  [[nodiscard]] double clamped(double t_s) const;
+
+  std::vector<SplineSegment> segments_;
+  double start_s_;
+  double end_s_;
+  double buckets_per_s_;
+  /// Per bucket of time the last segment that starts in an earlier bucket, so that a look-up
+  /// compares a few neighbours only, however uneven the knots.
+  std::vector<std::uint32_t> buckets_;
 };
 
 }  // namespace saccade

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/banded.h"
+#include "core/check.h"
+#include "core/error.h"
+#include "core/spline.h"
+#include "core/spline_rotation.h"
+
+namespace saccade {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Weight of evenness (second differences of the control poses) against one sample per segment. It
+/// decides where samples are missing and is far below any measurement elsewhere.
+constexpr double kEvenness = 1e-6;
+
+/// Least squares over uniform knots: samples at (segment, u), control poses 0 .. segments + 2.
+class Smoothing {
+ public:
+  Smoothing(std::span<const StampedPose> poses, Index segments)
+      : poses_(poses),
+        segments_(segments),
+        basis_(bases_between(std::vector<double>{0, 1}).front()),
+        start_s_(poses.front().t_s),
+        spacing_s_((poses.back().t_s - start_s_) / static_cast<double>(segments)),
+        evenness_(kEvenness * std::max(1.0, static_cast<double>(poses.size()) /
+                                                static_cast<double>(segments))) {}
+
+  [[nodiscard]] double start_s() const { return start_s_; }
+  [[nodiscard]] double spacing_s() const { return spacing_s_; }
+
+  [[nodiscard]] std::vector<Rigid3> solve() const {
+    const Eigen::MatrixXd positions = solve_positions();
+    const std::vector<Eigen::Quaterniond> rotations = solve_rotations();
+    std::vector<Rigid3> controls;
+    for (Index k = 0; k < controls_count(); ++k) {
+      controls.emplace_back(rotations[static_cast<std::size_t>(k)], positions.row(k).transpose());
+    }
+    return controls;
+  }
+
+ private:
+  [[nodiscard]] Index controls_count() const { return segments_ + 3; }
+
+  /// Calls `visit(segment, basis value, pose)` for every sample.
+  template <class Visit>
+  void for_each_sample(const Visit& visit) const {
+    for (const StampedPose& sample : poses_) {
+      const double x = (sample.t_s - start_s_) / spacing_s_;
+      const Index segment = std::min(static_cast<Index>(x), segments_ - 1);
+      visit(segment, basis_.value(x - static_cast<double>(segment)), sample.world_from_camera);
+    }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd solve_positions() const {
+    // Relative to the first pose, so that a far-away origin costs no digits.
+    const Eigen::Vector3d origin = poses_.front().world_from_camera.translation();
+    BandedLeastSquares system(controls_count(), 3, 3);
+    for_each_sample([&](Index segment, const Eigen::Array4d& b, const Rigid3& pose) {
+      const Eigen::RowVector4d weights(1 - b[0], b[0] - b[1], b[1] - b[2], b[2]);
+      const Eigen::RowVector3d target = (pose.translation() - origin).transpose();
+      system.add(segment, weights, target);
+    });
+    const Eigen::RowVector3d second_difference =
+        std::sqrt(evenness_) * Eigen::RowVector3d(1, -2, 1);
+    for (Index k = 0; k + 2 < controls_count(); ++k) {
+      system.add(k, second_difference, Eigen::RowVector3d::Zero());
+    }
+    std::optional<Eigen::MatrixXd> positions = system.solve();
+    SACCADE_CHECK(positions.has_value());
+    positions->rowwise() += origin.transpose();
+    return *positions;
+  }
+
+  /// Gauss-Newton over right perturbations of the control rotations.
+  [[nodiscard]] std::vector<Eigen::Quaterniond> solve_rotations() const {
+    constexpr int kMaxIterations = 50;
+    constexpr double kTolerance = 1e-9;
+    std::vector<Eigen::Quaterniond> controls = first_rotations();
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      const std::optional<Eigen::MatrixXd> step = rotation_system(controls).solve();
+      if (!step || !step->allFinite()) break;
+      for (std::size_t k = 0; k < controls.size(); ++k) {
+        const Eigen::Vector3d turn = step->middleRows<3>(3 * static_cast<Index>(k));
+        controls[k] = (controls[k] * so3_exp(turn)).normalized();
+      }
+      if (step->cwiseAbs().maxCoeff() < kTolerance) return controls;
+    }
+    throw InputError(
+        {}, fmt::format("the smoothing spline with knots {} s apart does not converge on these "
+                        "rotations; choose a shorter spacing",
+                        spacing_s_));
+  }
+
+  /// The samples' rotations at the times where control pose k has its greatest weight.
+  [[nodiscard]] std::vector<Eigen::Quaterniond> first_rotations() const {
+    const Trajectory trajectory(std::vector<StampedPose>(poses_.begin(), poses_.end()));
+    std::vector<Eigen::Quaterniond> controls;
+    for (Index k = 0; k < controls_count(); ++k) {
+      const double t = start_s_ + static_cast<double>(k - 1) * spacing_s_;
+      controls.push_back(trajectory.at_clamped(t).rotation());
+    }
+    return controls;
+  }
+
+  [[nodiscard]] BandedLeastSquares rotation_system(
+      const std::vector<Eigen::Quaterniond>& controls) const {
+    BandedLeastSquares system(3 * controls_count(), 11, 1);
+    for_each_sample([&](Index segment, const Eigen::Array4d& b, const Rigid3& pose) {
+      const auto k = static_cast<std::size_t>(segment);
+      const auto at =
+          rotation_between(b, {controls[k], controls[k + 1], controls[k + 2], controls[k + 3]});
+      const Eigen::Vector3d residual = so3_log(at.rotation.conjugate() * pose.rotation());
+      system.add(3 * segment, at.jacobian, residual);
+    });
+    const double weight = std::sqrt(evenness_);
+    for (std::size_t k = 0; k + 2 < controls.size(); ++k) {
+      const Unevenness u = unevenness(controls[k], controls[k + 1], controls[k + 2]);
+      system.add(3 * static_cast<Index>(k), weight * u.jacobian, -weight * u.value);
+    }
+    return system;
+  }
+
+  std::span<const StampedPose> poses_;
+  Index segments_;
+  CumulativeBasis basis_;
+  double start_s_;
+  double spacing_s_;
+  double evenness_;
+};
+
+}  // namespace
+
+Spline Spline::smooth(std::span<const StampedPose> poses, double knot_spacing_s) {
+  SACCADE_CHECK(poses.size() >= 2 && knot_spacing_s > 0);
+  const double span = poses.back().t_s - poses.front().t_s;
+  SACCADE_CHECK(span > 0);
+  const Smoothing smoothing(
+      poses, std::max(Index{1}, static_cast<Index>(std::lround(span / knot_spacing_s))));
+  return from_control_poses(smoothing.solve(), smoothing.start_s(), smoothing.spacing_s());
+}
+
+}  // namespace saccade
