@@ -14,11 +14,6 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kLostDepthPercent = 5;
 constexpr double kLostDeg = 5;
 
-ScoredSamples samples_of(const TrajectoryScoreInput& input) {
-  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
-  return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
-}
-
 ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>& mean_depth_m) {
   ErrorSeries series;
   series.t_s = samples.t_s;
@@ -63,8 +58,13 @@ std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
 
 }  // namespace
 
+ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
+  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
+}
+
 ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
-  return series_of(samples_of(input), input.mean_depth_m);
+  return series_of(scored_samples(input), input.mean_depth_m);
 }
 
 std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
@@ -91,7 +91,7 @@ double reported_lost_s(const std::vector<PoseStatus>& reported, const Interval& 
 Metrics score_trajectory(const TrajectoryScoreInput& input) {
   Metrics metrics;
   const std::optional<Interval> interval = scored_interval(input.truth, input.window);
-  const ScoredSamples samples = samples_of(input);
+  const ScoredSamples samples = scored_samples(input);
   const ErrorSeries series = series_of(samples, input.mean_depth_m);
   set_statistics(metrics, "trajectory.dt_rel_percent", series.dt_rel_percent);
   set_statistics(metrics, "trajectory.dt_m", series.dt_m);

@@ -33,6 +33,9 @@ struct ErrorSeries {
   std::vector<double> dtheta_deg;      ///< angle between q and q_gt (thesis 8.2)
 };
 
+/// Estimate and truth on the grid of the scored interval; empty where one of them is missing.
+[[nodiscard]] ScoredSamples scored_samples(const TrajectoryScoreInput& input);
+
 /// Errors without alignment; empty where there is no estimate or nothing to score against.
 [[nodiscard]] ErrorSeries errors_over_time(const TrajectoryScoreInput& input);
 

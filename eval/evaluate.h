@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "eval/metrics/metrics.h"
+
+namespace saccade {
+
+struct EvaluateOptions {
+  /// Scored against this dataset instead of the one in run.yaml.
+  std::optional<std::filesystem::path> dataset;
+  /// d of dt_rel instead of the dataset's mean scene depth [m], > 0.
+  std::optional<double> mean_depth_m;
+};
+
+/// Scores a run folder against the ground truth of its dataset and writes RUN/metrics.json
+/// (docs/metrics.md). What cannot be measured is null: a dataset without ground truth still gives
+/// the speed. Throws InputError for a folder that is no run, a missing dataset, malformed files.
+Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options = {});
+
+/// Scores a trajectory of any program (TUM text) against a dataset's whole ground truth. Writes the
+/// scores to `output` where one is given.
+Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
+                            const std::filesystem::path& dataset_folder,
+                            const std::optional<std::filesystem::path>& output = std::nullopt,
+                            const std::optional<double>& mean_depth_m = std::nullopt);
+
+/// The scores as a table for a terminal, below a line with `title`; a dash where a score is null.
+[[nodiscard]] std::string format_metrics(const Metrics& metrics, const std::string& title);
+
+/// A number of timing.json: the plain value at `key`, or its median where it was repeated.
+[[nodiscard]] std::optional<double> speed_value(const Metrics& metrics, const std::string& key);
+
+}  // namespace saccade

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include "eval/evaluate.h"
+
+namespace saccade {
+namespace {
+
+constexpr const char* kNothing = "-";
+
+std::string shown(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
+}
+
+/// A count with separators: 1,800,000.
+std::string counted(const std::optional<double>& value) {
+  if (!value) return kNothing;
+  std::string digits = fmt::format("{:.0f}", *value);
+  for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), ",");
+  return digits;
+}
+
+void add_errors(std::string& text, const Metrics& metrics) {
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "sigma", "max", "RMSE");
+  const auto row = [&](const char* label, const std::string& key, int decimals) {
+    text += fmt::format("  {:<14}", label);
+    for (const char* name : {".mean", ".sigma", ".max", ".rmse"})
+      text += fmt::format("{:>10}", shown(metrics.get("trajectory." + key + name), decimals));
+    text += "\n";
+  };
+  row("dt_rel [%]", "dt_rel_percent", 3);
+  row("dtheta [deg]", "dtheta_deg", 3);
+  row("dt [m]", "dt_m", 4);
+}
+
+void add_alignments(std::string& text, const Metrics& metrics) {
+  text +=
+      fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", "alignment", "ATE [mm]", "rot [deg]", "scale");
+  for (const char* name : {"none", "se3", "sim3"}) {
+    const std::string key = std::string("trajectory.") + name;
+    std::optional<double> ate_mm = metrics.get(key + ".ate_rmse_m");
+    if (ate_mm) *ate_mm *= 1000;
+    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", name, shown(ate_mm, 2),
+                        shown(metrics.get(key + ".rot_rmse_deg"), 3),
+                        shown(metrics.get(key + ".scale"), 5));
+  }
+}
+
+void add_tracking(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) { return metrics.get(std::string("trajectory.") + key); };
+  std::optional<double> coverage = get("coverage");
+  if (coverage) *coverage *= 100;
+  text += fmt::format("  {} poses over {} s, coverage {} %, lost {} s (reported {} s)\n",
+                      counted(get("poses")), shown(get("duration_s"), 3), shown(coverage, 2),
+                      shown(get("lost_s"), 3), shown(get("reported_lost_s"), 3));
+  text += fmt::format("  path {} m, end drift {} %, per second {} m and {} deg\n",
+                      shown(get("path_length_m"), 3), shown(get("drift_percent"), 3),
+                      shown(get("rpe.per_second.trans_rmse_m"), 4),
+                      shown(get("rpe.per_second.rot_rmse_deg"), 3));
+  if (metrics.values().contains("trajectory.reprojection_px.rms"))
+    text +=
+        fmt::format("  reprojection {} px RMS, worst instant {} px RMS, worst point {} px\n",
+                    shown(get("reprojection_px.rms"), 3), shown(get("reprojection_px.rms_max"), 3),
+                    shown(get("reprojection_px.max"), 2));
+}
+
+void add_speed(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) {
+    return speed_value(metrics, std::string("speed.") + key);
+  };
+  std::optional<double> wall_ms = get("wall_s");
+  if (wall_ms) *wall_ms *= 1000;
+  text += fmt::format("  {} ms, {} events/s, {} poses/s, {} x real time\n", shown(wall_ms, 1),
+                      counted(get("events_per_s")), counted(get("poses_per_s")),
+                      shown(get("realtime_factor"), 2));
+}
+
+}  // namespace
+
+std::optional<double> speed_value(const Metrics& metrics, const std::string& key) {
+  if (const std::optional<double> value = metrics.get(key)) return value;
+  return metrics.get(key + ".median");
+}
+
+std::string format_metrics(const Metrics& metrics, const std::string& title) {
+  std::string text = title + "\n";
+  if (metrics.values().contains("trajectory.poses")) {
+    add_errors(text, metrics);
+    add_alignments(text, metrics);
+    add_tracking(text, metrics);
+  }
+  add_speed(text, metrics);
+  return text;
+}
+
+}  // namespace saccade

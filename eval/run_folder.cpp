@@ -1,0 +1,87 @@
+#include "eval/run_folder.h"
+
+#include <limits>
+
+#include "core/error.h"
+#include "core/io/csv_reader.h"
+#include "core/io/text_table.h"
+#include "core/io/trajectory_file.h"
+
+namespace saccade {
+namespace {
+
+std::vector<PoseRow> read_pose_rows(const std::filesystem::path& file) {
+  const CsvColumns csv(file);
+  const std::size_t t = csv.require("t_s");
+  const std::size_t status = csv.require("status");
+  const auto first = csv.find("first_event_s");
+  const auto last = csv.find("last_event_s");
+  const auto inliers = csv.find("inlier_ratio");
+  const auto iterations = csv.find("iterations");
+  const auto residual = csv.find("residual");
+  std::vector<PoseRow> rows;
+  for (std::size_t i = 0; i < csv.rows(); ++i) {
+    const auto number = [&](const std::optional<std::size_t>& column) {
+      return column ? csv.number(i, *column) : std::numeric_limits<double>::quiet_NaN();
+    };
+    rows.push_back({csv.number(i, t), number(first), number(last), csv.text(i, status),
+                    number(inliers), number(iterations), number(residual)});
+  }
+  return rows;
+}
+
+}  // namespace
+
+RunFolder RunFolder::open(const std::filesystem::path& folder) {
+  RunFolder run;
+  run.folder = folder;
+  if (!std::filesystem::exists(folder / "run.yaml"))
+    throw InputError(folder.string(), "is no run: it holds no run.yaml");
+  run.record = read_run_record(folder / "run.yaml");
+  if (const auto file = folder / "trajectory.txt"; std::filesystem::exists(file))
+    run.trajectory = read_estimate(file);
+  if (const auto file = folder / "poses.csv"; std::filesystem::exists(file))
+    run.poses = read_pose_rows(file);
+  if (const auto file = folder / "timing.json"; std::filesystem::exists(file))
+    run.timing = read_json_metrics(file);
+  if (const auto file = folder / "metrics.json"; std::filesystem::exists(file))
+    run.metrics = read_json_metrics(file);
+  return run;
+}
+
+std::string RunFolder::name() const {
+  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
+}
+
+PointCloud RunFolder::load_map() const {
+  const std::filesystem::path file = folder / "map.ply";
+  return std::filesystem::exists(file) ? read_ply(file) : PointCloud{};
+}
+
+Dataset RunFolder::open_dataset(const std::optional<std::filesystem::path>& instead) const {
+  return Dataset::open(instead.value_or(record.dataset));
+}
+
+Trajectory read_estimate(const std::filesystem::path& file) {
+  TextReader reader(file);
+  std::string_view line;
+  return reader.next(line) ? read_tum_trajectory(file) : Trajectory{};
+}
+
+TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
+  TrajectoryScoreInput input;
+  if (run.trajectory) input.estimate = *run.trajectory;
+  input.truth = dataset.groundtruth();
+  input.mean_depth_m = dataset.facts().mean_depth_m;
+  if (run.record.window)
+    input.window = Interval{run.record.window->start_s, run.record.window->end_s};
+  if (run.poses) {
+    input.reported.emplace();
+    for (const PoseRow& row : *run.poses)
+      input.reported->push_back({row.t_s, row.status == "lost"});
+  }
+  return input;
+}
+
+}  // namespace saccade
