@@ -26,9 +26,10 @@ struct SplineState {
 class Spline {
  public:
   /// Passes through every pose at its time (to 1e-6 m and 1e-6 rad); knots at the poses' times,
-  /// natural ends (no acceleration there). At least 2 poses, times strictly increasing. Throws
-  /// InputError where consecutive rotations are too far apart for a spline through them to be
-  /// found; up to 150 degrees it is.
+  /// natural ends (no acceleration there). At least 2 poses, times strictly increasing. Consecutive
+  /// rotations may be 150 degrees apart and more about changing axes where times are evenly spaced;
+  /// throws InputError where no spline through them is found (large turns within very uneven
+  /// times).
   [[nodiscard]] static Spline interpolate(std::span<const StampedPose> poses);
 
   /// Least-squares fit with uniform knots `knot_spacing_s` apart (rounded so that whole segments

@@ -149,24 +149,36 @@ std::vector<Eigen::Quaterniond> exponentials(const Vectors& rotation_vectors, do
   return result;
 }
 
+[[noreturn]] void fail_rotations(const Vectors& turns) {
+  double largest = 0;
+  for (const Eigen::Vector3d& w : turns) largest = std::max(largest, w.norm());
+  throw InputError({}, fmt::format("no spline was found through these rotations (consecutive ones "
+                                   "are up to {:.0f} degrees apart); give poses closer together",
+                                   largest * 180 / std::numbers::pi));
+}
+
 /// Increments between control rotations for the given turns (rotation vectors) between poses. The
 /// linear solution is exact for rotation about one axis and a good start otherwise; where Newton's
-/// method gets stuck from there, the turns grow from nothing to their size.
+/// method gets stuck from there, the turns grow from nothing to their size in steps that it can
+/// take.
 Vectors solve_rotations(const Interpolation& interpolation, const Vectors& turns) {
+  constexpr double kLargestStep = 0.04;
+  constexpr double kSmallestStep = 1e-3;
   Vectors increments = interpolation.solve_linear(turns);
   if (interpolation.solve_turns(exponentials(turns, 1), increments)) return increments;
 
-  constexpr int kStages = 24;
   for (Eigen::Vector3d& w : increments) w.setZero();
-  for (int stage = 1; stage <= kStages; ++stage) {
-    const double scale = static_cast<double>(stage) / kStages;
-    if (interpolation.solve_turns(exponentials(turns, scale), increments)) continue;
-    double largest = 0;
-    for (const Eigen::Vector3d& w : turns) largest = std::max(largest, w.norm());
-    throw InputError(
-        {}, fmt::format("no spline was found through these rotations (consecutive ones are up "
-                        "to {:.0f} degrees apart); give poses closer together",
-                        largest * 180 / std::numbers::pi));
+  double step = kLargestStep;
+  for (double reached = 0; reached < 1;) {
+    const double scale = std::min(1.0, reached + step);
+    Vectors candidate = increments;
+    if (interpolation.solve_turns(exponentials(turns, scale), candidate)) {
+      increments = std::move(candidate);
+      reached = scale;
+      step = std::min(kLargestStep, 2 * step);
+    } else if ((step /= 2) < kSmallestStep) {
+      fail_rotations(turns);
+    }
   }
   return increments;
 }
