@@ -16,7 +16,7 @@ std::string counted(const std::optional<double>& value) {
   if (!value) return kNothing;
   std::string digits = fmt::format("{:.0f}", *value);
   for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), ",");
+    digits.insert(static_cast<std::size_t>(at), 1, ',');
   return digits;
 }
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+namespace saccade {
+
+struct RenderOptions {
+  /// A picture of this moment instead of the contact sheet [s]; a video ignores it.
+  std::optional<double> time_s;
+  /// Part of the time that a sheet or a video shows [s].
+  std::optional<double> start_s;
+  std::optional<double> duration_s;
+  /// Dataset of a run, instead of the one in its run.yaml.
+  std::optional<std::filesystem::path> dataset;
+  /// Events drawn per picture, those nearest in time; nullopt: 15 % of the number of pixels.
+  std::optional<std::size_t> events;
+  int upscale = 3;          ///< screen pixels per sensor pixel, 1..8
+  double fps = 30;          ///< of a video, 1..240
+  double slow_motion = 10;  ///< seconds of video per second of recording, > 0
+  bool dark = true;         ///< on a dark or a light background
+};
+
+/// Draws a dataset or a run (a folder with run.yaml) into `output`:
+///   .png   contact sheet over the whole time, or the moment `time_s`: grey frame, events and depth
+///   of
+///          a dataset; events, map tracked over events and trajectory of a run
+///   .mp4   events beside the frame, or events under the tracked map; encoded by the program ffmpeg
+/// Events are drawn undistorted wherever something is drawn over them.
+/// Throws InputError for another ending, an option out of range, a moment without events or truth,
+/// and a missing ffmpeg.
+void render(const std::filesystem::path& path, const std::filesystem::path& output,
+            const RenderOptions& options = {});
+
+}  // namespace saccade

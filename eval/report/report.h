@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace saccade {
+
+struct ReportOptions {
+  std::string title = "saccade";
+};
+
+/// Writes one HTML page about the runs that needs nothing beside it: tables against the thesis,
+/// and for every run its trajectory in 3-D, errors over time, pictures, speed and provenance.
+/// Runs are scored anew against their datasets; where a dataset is gone, the page shows what
+/// metrics.json holds. At least one run. Throws InputError for a folder that is no run.
+void write_report(std::span<const std::filesystem::path> run_folders,
+                  const std::filesystem::path& output, const ReportOptions& options = {});
+
+}  // namespace saccade
