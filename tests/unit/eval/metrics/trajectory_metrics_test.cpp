@@ -112,7 +112,8 @@ TEST(ScoreTrajectory, RotationErrorAndItsAlignment) {
   const Eigen::Quaterniond turn(
       Eigen::AngleAxisd(2 * std::numbers::pi / 180, Eigen::Vector3d::UnitX()));
   std::vector<StampedPose> poses;
-  for (const StampedPose& p : straight(0, 1, 0.01).poses())
+  const Trajectory line = straight(0, 1, 0.01);
+  for (const StampedPose& p : line.poses())
     poses.push_back({p.t_s, Rigid3(turn, p.world_from_camera.translation())});
   const Metrics m = score_trajectory({.estimate = Trajectory(poses),
                                       .truth = straight(0, 1, 0.01),
