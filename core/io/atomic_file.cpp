@@ -1,6 +1,7 @@
 #include "core/io/atomic_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -29,8 +30,8 @@ fs::path final_name(const fs::path& path) {
 /// the processes of this machine.
 fs::path sibling_of(const fs::path& target, const std::string& kind) {
   static std::atomic<unsigned> counter{0};
-  return target.parent_path() / ("." + target.filename().string() + "." + kind + "-" +
-                                 std::to_string(::getpid()) + "-" + std::to_string(counter++));
+  return target.parent_path() /
+         fmt::format(".{}.{}-{}-{}", target.filename().string(), kind, ::getpid(), counter++);
 }
 
 void create_parent_of(const fs::path& target) {
