@@ -1,0 +1,38 @@
+#include "apps/common_options.h"
+
+#include "core/parallel.h"
+#include "core/progress.h"
+
+namespace saccade {
+
+void CommonOptions::apply() const {
+  if (threads > 0) set_thread_count(threads);
+  set_progress_quiet(quiet);
+}
+
+config::Document CommonOptions::load(const std::string& config_file) const {
+  std::vector<std::string> all = overrides;
+  if (seed) all.push_back("seed=" + std::to_string(*seed));
+  return config_file.empty() ? config::Document::empty(all) : config::load(config_file, all);
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  command.add_option("--threads", options.threads, "Number of threads (default: all cores)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("-q,--quiet", options.quiet, "No progress, no tables: errors only");
+}
+
+void add_config_options(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("--set", options.overrides,
+                  "Override one key, e.g. --set events.contrast_on=0.2 (repeatable)")
+      ->type_name("KEY.PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--seed", options.seed, "The same as --set seed=N")->type_name("N");
+  command.add_flag("--print-config", options.print_config,
+                   "Print every key with its value, help and range, and stop");
+}
+
+}  // namespace saccade

@@ -1,0 +1,41 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "apps/common_options.h"
+#include "apps/verbs.h"
+#include "eval/report/report.h"
+
+namespace saccade {
+namespace {
+
+struct ReportVerbOptions {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path output;
+  ReportOptions report;
+  CommonOptions common;
+};
+
+void report(const ReportVerbOptions& options) {
+  options.common.apply();
+  write_report(options.runs, options.output, options.report);
+  if (!options.common.quiet) fmt::print("wrote {}\n", options.output.string());
+}
+
+}  // namespace
+
+void add_report_verb(CLI::App& command) {
+  const auto options = std::make_shared<ReportVerbOptions>();
+  CLI::App* verb =
+      command.add_subcommand("report", "Write one self-contained HTML page about runs");
+  verb->add_option("RUN", options->runs, "Run folders, in the order of the page")->required();
+  verb->add_option("-o,--output", options->output, "The page")->required()->type_name("FILE.html");
+  verb->add_option("--title", options->report.title, "Title of the page")->capture_default_str();
+  add_common_options(*verb, options->common);
+  verb->footer("Example:\n  saccade report runs/walls runs/planes -o report.html");
+  verb->callback([options] { report(*options); });
+}
+
+}  // namespace saccade
