@@ -112,45 +112,51 @@ template <class Sample, class Evaluate>
   return bracket;
 }
 
+/// Slopes |dL/dt| of the signal next to a step: what it may do within, unseen [1/s].
+struct Slopes {
+  double before = 0;
+  double after = 0;
+};
+
 /// How carefully a step is searched for an excursion that leaves the band and comes back.
 struct ExcursionSearch {
   /// A step is halved while an end lies nearer to a threshold than `reach` times the largest change
-  /// of the signal over this step and its neighbours.
-  double reach = 1.0;
+  /// of the signal over this step and, at their slopes, its neighbours.
+  double reach = 1;
   double shortest_s = 1e-6;
 };
 
 /// The first part of (a, b] at whose end the signal is outside the pixel's band, if there is one.
-/// `change` is the magnitude of the signal's change over a step of the same length before `a`.
 template <class Sample, class Evaluate>
 [[nodiscard]] std::optional<Bracket<Sample>> find_exit(const EventPixel& pixel, const Sample& a,
-                                                       const Sample& b, double change,
+                                                       const Sample& b, const Slopes& slopes,
                                                        const ExcursionSearch& search,
                                                        const Evaluate& evaluate) {
   if (!pixel.holds(b.log_intensity)) return Bracket<Sample>{a, b};
-  const auto [low, high] = std::minmax(a.log_intensity, b.log_intensity);
+  const double step_s = b.t_s - a.t_s;
+  const double low = std::min(a.log_intensity, b.log_intensity);
+  const double high = std::max(a.log_intensity, b.log_intensity);
   const double margin = std::min(pixel.upper() - high, low - pixel.lower());
-  const double reach = search.reach * std::max(change, high - low);
-  if (margin >= reach || b.t_s - a.t_s < search.shortest_s) return std::nullopt;
+  const double change = std::max({high - low, slopes.before * step_s, slopes.after * step_s});
+  if (margin >= search.reach * change || step_s < search.shortest_s) return std::nullopt;
   const Sample middle = evaluate(0.5 * (a.t_s + b.t_s), a, b);
-  const double first = std::abs(middle.log_intensity - a.log_intensity);
-  const double second = std::abs(b.log_intensity - middle.log_intensity);
-  if (auto exit = find_exit(pixel, a, middle, std::max(0.5 * change, second), search, evaluate))
+  const double first = 2 * std::abs(middle.log_intensity - a.log_intensity) / step_s;
+  const double second = 2 * std::abs(b.log_intensity - middle.log_intensity) / step_s;
+  if (auto exit = find_exit(pixel, a, middle, {slopes.before, second}, search, evaluate))
     return exit;
-  return find_exit(pixel, middle, b, first, search, evaluate);
+  return find_exit(pixel, middle, b, {first, slopes.after}, search, evaluate);
 }
 
-/// All crossings within the step (a, b], one after the other; `emit(t_s, polarity)`. `change`: as
-/// in find_exit. Thresholds that one final bracket crosses together (a jump) share their time.
-/// Returns the widest final bracket [s].
+/// All crossings within the step (a, b], one after the other; `emit(t_s, polarity)`. Thresholds
+/// that one final bracket crosses together (a jump) share their time. Returns the widest final
+/// bracket [s].
 template <class Sample, class Evaluate, class Emit>
 double walk_step(EventPixel& pixel, const Contrast& contrast, Sample a, const Sample& b,
-                 double change, double tolerance_s, const ExcursionSearch& search,
+                 const Slopes& slopes, double tolerance_s, const ExcursionSearch& search,
                  const Evaluate& evaluate, const Emit& emit) {
-  const double slope = change / (b.t_s - a.t_s);
   double widest_s = 0;
   while (a.t_s < b.t_s) {
-    const auto exit = find_exit(pixel, a, b, slope * (b.t_s - a.t_s), search, evaluate);
+    const auto exit = find_exit(pixel, a, b, slopes, search, evaluate);
     if (!exit) break;
     const int polarity = exit->hi.log_intensity >= pixel.upper() ? 1 : -1;
     const double level = polarity > 0 ? pixel.upper() : pixel.lower();

@@ -38,8 +38,7 @@ void EventCamera::record(double duration_s, const Sink& sink) {
     const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
     // No sliver at the end: the rest is split evenly.
     const double slabs_left = std::ceil((duration_s - t_s) / slab_s);
-    const bool is_last = slabs_left <= 1;
-    const double end_s = is_last ? duration_s : t_s + (duration_s - t_s) / slabs_left;
+    const double end_s = slabs_left <= 1 ? duration_s : t_s + (duration_s - t_s) / slabs_left;
     parallel_for(
         tiles_.size(),
         [&](std::size_t i) {
@@ -47,9 +46,14 @@ void EventCamera::record(double duration_s, const Sink& sink) {
           tiles_[i]->advance(end_s, std::max(1, static_cast<int>(steps)));
         },
         kTilesPerTask);
-    deliver(end_s, is_last, sink);
+    double complete_s = end_s;
+    for (const auto& tile : tiles_) complete_s = std::min(complete_s, tile->searched_s());
+    deliver(complete_s, end_s, sink);
     t_s = end_s;
   }
+  parallel_for(
+      tiles_.size(), [&](std::size_t i) { tiles_[i]->finish(); }, kTilesPerTask);
+  deliver(std::numeric_limits<double>::infinity(), duration_s, sink);
 }
 
 double EventCamera::bound_speeds(double t_s) {
@@ -89,16 +93,15 @@ InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
   return range;
 }
 
-void EventCamera::deliver(double t_s, bool is_last, const Sink& sink) {
-  for (const auto& tile : tiles_)
-    pending_.insert(pending_.end(), tile->events().begin(), tile->events().end());
+void EventCamera::deliver(double complete_s, double t_s, const Sink& sink) {
+  for (const auto& tile : tiles_) tile->take_events(pending_);
   std::sort(pending_.begin(), pending_.end(), EventOrder());
-  // Rounding can put an event of the next slab on this slab's last tick, so that tick stays here.
+  // Rounding can put a later event on the tick of complete_s or on the one before it.
   const TimeNs unit = world_.options.timestamp_step_ns();
-  const TimeNs settled = ns_from_seconds(t_s) / unit * unit - unit;
-  const auto end = is_last ? pending_.end()
-                           : std::partition_point(pending_.begin(), pending_.end(),
-                                                  [&](const Event& e) { return e.t_ns < settled; });
+  const double complete_ns = std::min(1e9 * complete_s, 9e18) - 2 * static_cast<double>(unit);
+  const auto end = std::partition_point(pending_.begin(), pending_.end(), [&](const Event& e) {
+    return static_cast<double>(e.t_ns) < complete_ns;
+  });
   sink({pending_.begin(), end}, t_s);
   pending_.erase(pending_.begin(), end);
 }

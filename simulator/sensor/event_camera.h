@@ -40,8 +40,8 @@ class EventCamera {
   /// Bound of the image speed of every tile over [t, t + longest slab], into speeds_; the largest.
   double bound_speeds(double t_s);
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
-  /// Moves the tiles' events into pending_ and hands out those that no later slab can precede.
-  void deliver(double t_s, bool is_last, const Sink& sink);
+  /// Takes the tiles' events and hands out those before `complete_s`.
+  void deliver(double complete_s, double t_s, const Sink& sink);
 
   PixelRays rays_;
   EventWorld world_;

@@ -30,42 +30,53 @@ class LockstepTile final : public EventTile {
 
   void start(double t_s) override {
     trace(t_s);
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    for (std::size_t i = 0; i < tile_.pixels(); ++i)
       pixels_[i] = EventPixel(next_[i].log_intensity, world_.options.contrast);
-      changes_[i] = 0;
-    }
-    samples_ = next_;
+    from_ = to_ = next_;
   }
 
   void advance(double t_s, int steps) override {
-    events_.clear();
-    const double from_s = samples_[0].t_s;
+    const double from_s = to_[0].t_s;
     for (int k = 1; k < steps; ++k) step(from_s + (t_s - from_s) * k / steps);
     step(t_s);
   }
 
+  void finish() override {
+    search_step([this](std::size_t i) { return slope(from_[i], to_[i]); });
+  }
+
+  [[nodiscard]] double searched_s() const override { return from_[0].t_s; }
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
 
  private:
   using Sample = PixelSample<kRays>;
 
-  void step(double t_s) {
-    trace(t_s);
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      walk(i);
-      changes_[i] = std::abs(next_[i].log_intensity - samples_[i].log_intensity);
-    }
-    samples_ = next_;
+  /// |dL/dt| between two samples; 0 when they are one.
+  static double slope(const Sample& a, const Sample& b) {
+    return b.t_s > a.t_s ? std::abs(b.log_intensity - a.log_intensity) / (b.t_s - a.t_s) : 0;
   }
 
-  void walk(std::size_t i) {
-    const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
-      return look(i, t, lo, hi);
-    };
-    const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
-    const double width_s = walk_step(pixels_[i], world_.options.contrast, samples_[i], next_[i],
-                                     changes_[i], tolerance_s_, search_, evaluate, emit);
-    statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
+  void step(double t_s) {
+    trace(t_s);
+    search_step([this](std::size_t i) { return slope(to_[i], next_[i]); });
+    from_ = to_;
+    to_ = next_;
+  }
+
+  /// All pixels' crossings between from_ and to_; `slope_after(pixel)`.
+  template <class SlopeAfter>
+  void search_step(const SlopeAfter& slope_after) {
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
+        return look(i, t, lo, hi);
+      };
+      const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
+      const double width_s =
+          walk_step(pixels_[i], world_.options.contrast, from_[i], to_[i],
+                    {slopes_before_[i], slope_after(i)}, tolerance_s_, search_, evaluate, emit);
+      statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
+      slopes_before_[i] = slope(from_[i], to_[i]);
+    }
   }
 
   void record(std::size_t i, double t_s, int polarity) {
@@ -139,9 +150,9 @@ class LockstepTile final : public EventTile {
   ExcursionSearch search_;
   InverseDepthRange inverse_depths_;
   std::array<EventPixel, kTilePixels> pixels_;
-  std::array<Sample, kTilePixels> samples_;  ///< at the last step's end
-  std::array<Sample, kTilePixels> next_;
-  std::array<double, kTilePixels> changes_{};  ///< |L| change over the last step
+  /// The last three traced instants; the search is between the first two.
+  std::array<Sample, kTilePixels> from_, to_, next_;
+  std::array<double, kTilePixels> slopes_before_{};
 };
 
 }  // namespace

@@ -34,21 +34,31 @@ struct EventStatistics {
 
 /// 4 x 4 event pixels that are traced in lockstep, one packet of rays per step. Between two steps a
 /// pixel's signal is evaluated alone, wherever the crossings' search asks for it: on the triangle
-/// that both ends of the interval see, or with a ray where they see different ones.
+/// that both ends of the interval see, or with a ray where they see different ones. A step is
+/// searched when the one after it has been traced, so that the search knows the signal on both
+/// sides.
 class EventTile {
  public:
   virtual ~EventTile() = default;
 
   /// Takes the references at time `t_s`.
   virtual void start(double t_s) = 0;
-  /// Advances to `t_s` in `steps` >= 1 equal steps.
+  /// Traces up to `t_s` in `steps` >= 1 equal steps and searches all but the last of them.
   virtual void advance(double t_s, int steps) = 0;
+  /// Searches the last step.
+  virtual void finish() = 0;
 
+  /// Events before this time are complete.
+  [[nodiscard]] virtual double searched_s() const = 0;
   /// Of the surfaces that the pixels see now.
   [[nodiscard]] virtual InverseDepthRange inverse_depths() const = 0;
 
-  /// Events of the last advance(), step by step and pixel by pixel; times rounded to the unit.
-  [[nodiscard]] std::span<const Event> events() const { return events_; }
+  /// Moves out the events found since the last call, step by step and pixel by pixel; times rounded
+  /// to the unit.
+  void take_events(Events& out) {
+    out.insert(out.end(), events_.begin(), events_.end());
+    events_.clear();
+  }
   [[nodiscard]] const EventStatistics& statistics() const { return statistics_; }
 
  protected:

@@ -20,6 +20,11 @@ struct Fired {
   int polarity;
 };
 
+/// Of the straight line from `a` to the signal at `t_s`.
+double slope_at(const std::function<double(double)>& signal, double t_s, const Sample& a) {
+  return std::abs(signal(t_s) - a.log_intensity) / (t_s - a.t_s);
+}
+
 /// Steps a pixel over a signal, `steps` per second.
 struct Walk {
   std::vector<Fired> events;
@@ -35,13 +40,14 @@ struct Walk {
     };
     const auto emit = [&](double t, int polarity) { events.push_back({t, polarity}); };
     Sample a{0, signal(0)};
-    double change = 0;
+    double slope = 0;
     for (int k = 1; k <= steps; ++k) {
       const double t = duration_s * k / steps;
       const Sample b{t, signal(t)};
-      widest_s = std::max(widest_s, walk_step(pixel, contrast, a, b, change, tolerance_s,
-                                              {1.0, tolerance_s}, evaluate, emit));
-      change = std::abs(b.log_intensity - a.log_intensity);
+      widest_s = std::max(widest_s, walk_step(pixel, contrast, a, b,
+                                              {slope, slope_at(signal, t + duration_s / steps, b)},
+                                              tolerance_s, {1.0, tolerance_s}, evaluate, emit));
+      slope = slope_at(signal, t, a);
       a = b;
     }
   }
