@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "simulator/scene/texture.h"
+
+namespace saccade {
+
+/// Light from where nothing is: a constant, or an environment map. The map is equirectangular: its
+/// middle column looks along +x, columns to the left turn towards +y, its top row is +z.
+class Background {
+ public:
+  explicit Background(double radiance) : radiance_(radiance) {}
+  explicit Background(ImageF map)
+      : map_(std::make_shared<Texture>(std::move(map), Wrap::kRepeat, Wrap::kClamp)) {}
+
+  /// `direction` not zero, of any length.
+  [[nodiscard]] double radiance(const Eigen::Vector3d& direction) const {
+    return map_ ? map_radiance(direction) : radiance_;
+  }
+
+ private:
+  [[nodiscard]] double map_radiance(const Eigen::Vector3d& direction) const;
+
+  double radiance_ = 0;
+  std::shared_ptr<const Texture> map_;
+};
+
+}  // namespace saccade

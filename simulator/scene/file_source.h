@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace saccade {
+
+/// A file on disk, or a member of a zip archive: "furniture.sh3f!/desk/desk.obj".
+struct FileLocation {
+  std::filesystem::path archive;  ///< empty: on disk
+  std::filesystem::path file;     ///< in the archive without a leading slash
+
+  [[nodiscard]] static FileLocation parse(const std::filesystem::path& path);
+  [[nodiscard]] std::string text() const;
+};
+
+using Bytes = std::vector<unsigned char>;
+
+/// Reads whole files from one place: the disk or one archive. Not thread-safe.
+class FileSource {
+ public:
+  /// Of the disk when `archive` is empty. Throws InputError when the archive cannot be opened.
+  explicit FileSource(const std::filesystem::path& archive = {});
+  ~FileSource();
+  FileSource(FileSource&&) noexcept;
+  FileSource& operator=(FileSource&&) noexcept;
+
+  [[nodiscard]] bool contains(const std::filesystem::path& file) const;
+  /// nullopt when the file is missing. Throws InputError when it cannot be read to its end.
+  [[nodiscard]] std::optional<Bytes> read(const std::filesystem::path& file) const;
+  [[nodiscard]] const std::filesystem::path& archive() const { return archive_; }
+
+ private:
+  struct Zip;
+  std::filesystem::path archive_;
+  std::unique_ptr<Zip> zip_;
+};
+
+/// What is wrong when nothing is at `path` (of an archive's member: no archive), with the way to
+/// get it where that is known; "" when it is there.
+[[nodiscard]] std::string missing_file_problem(const std::filesystem::path& path);
+
+}  // namespace saccade

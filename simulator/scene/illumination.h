@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "simulator/scene/ray_caster.h"
+#include "simulator/scene/scene_options.h"
+
+namespace saccade {
+
+/// A point on a surface, with unit normals on the side that is looked at.
+struct SurfacePoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d plane_normal;
+  Eigen::Vector3d shading_normal;
+};
+
+/// What falls onto a Lambertian surface: ambient light and lamps with shadows.
+class Illumination {
+ public:
+  /// `shadow_offset`: how far shadow rays start above their surface [m].
+  Illumination(double ambient, const std::vector<LightOptions>& lights, double shadow_offset);
+
+  /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
+  /// without the distance) over the lights that are not in shadow.
+  [[nodiscard]] double at(const SurfacePoint& point, const RayCaster& blockers) const;
+
+ private:
+  double ambient_;
+  std::vector<LightOptions> lights_;
+  double shadow_offset_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,169 @@
+#include "simulator/scene/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kPacket = 16;
+/// Beyond this many triangles Embree's coherent traversal loses against the incoherent one.
+constexpr std::size_t kCoherentTriangles = 500'000;
+
+/// One thread builds the tree, so that it is the same on every machine. Without -march=native the
+/// build promises equal results everywhere, and Embree must not pick what this processor has.
+#ifdef __AVX2__
+constexpr const char* kDeviceOptions = "threads=1";
+#else
+constexpr const char* kDeviceOptions = "threads=1,isa=sse4.2";
+#endif
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+/// Embree's context with the rays in double precision, for the cutout test.
+struct Context {
+  RTCIntersectContext embree;
+  const Ray* rays;
+
+  Context(const Ray* all_rays, RTCIntersectContextFlags flags) : rays(all_rays) {
+    rtcInitIntersectContext(&embree);
+    embree.flags = flags;
+  }
+};
+
+void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> corners,
+                   unsigned geometry_id, RTCFilterFunctionN filter, void* user) {
+  if (corners.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               3 * corners.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), corners.size()));
+  SACCADE_CHECK(vertices != nullptr && indices != nullptr);
+  for (const Corners& triangle : corners)
+    for (const Eigen::Vector3f& corner : triangle)
+      vertices = std::copy_n(corner.data(), 3, vertices);
+  for (unsigned i = 0; i < 3 * corners.size(); ++i) indices[i] = i;
+  if (filter != nullptr) {
+    rtcSetGeometryUserData(geometry, user);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, geometry_id);
+  rtcReleaseGeometry(geometry);
+}
+
+void fill(RTCRayHit16& packet, int* valid, std::span<const Ray> rays) {
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    valid[i] = i < rays.size() ? -1 : 0;
+    const Ray& ray = rays[std::min(i, rays.size() - 1)];
+    packet.ray.org_x[i] = static_cast<float>(ray.origin.x());
+    packet.ray.org_y[i] = static_cast<float>(ray.origin.y());
+    packet.ray.org_z[i] = static_cast<float>(ray.origin.z());
+    packet.ray.dir_x[i] = static_cast<float>(ray.direction.x());
+    packet.ray.dir_y[i] = static_cast<float>(ray.direction.y());
+    packet.ray.dir_z[i] = static_cast<float>(ray.direction.z());
+    packet.ray.tnear[i] = 0;
+    packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
+    packet.ray.time[i] = 0;
+    packet.ray.mask[i] = ~0U;
+    packet.ray.id[i] = static_cast<unsigned>(i);
+    packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+}  // namespace
+
+struct RayCaster::State {
+  Device device;
+  EmbreeScene scene;
+  IsOpaque is_opaque;
+  std::array<TriangleId, 2> first_of_geometry{};
+  RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+
+  static void filter(const RTCFilterFunctionNArguments* arguments) {
+    const auto& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const auto& context = *reinterpret_cast<const Context*>(arguments->context);
+    for (unsigned i = 0; i < arguments->N; ++i) {
+      if (arguments->valid[i] == 0) continue;
+      const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, i);
+      const TriangleId triangle =
+          state.first_of_geometry[1] + RTCHitN_primID(arguments->hit, arguments->N, i);
+      if (!state.is_opaque(context.rays[ray], triangle)) arguments->valid[i] = 0;
+    }
+  }
+};
+
+RayCaster::RayCaster(std::span<const Corners> corners, std::size_t opaque, IsOpaque is_opaque)
+    : state_(std::make_unique<State>()) {
+  SACCADE_CHECK(opaque <= corners.size() && corners.size() < kNothing / 3);
+  state_->device.reset(rtcNewDevice(kDeviceOptions));
+  SACCADE_CHECK(state_->device != nullptr);
+  state_->scene.reset(rtcNewScene(state_->device.get()));
+  state_->is_opaque = std::move(is_opaque);
+  state_->first_of_geometry = {0, static_cast<TriangleId>(opaque)};
+  if (corners.size() > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RTCScene scene = state_->scene.get();
+  add_triangles(state_->device.get(), scene, corners.first(opaque), 0, nullptr, nullptr);
+  add_triangles(state_->device.get(), scene, corners.subspan(opaque), 1, State::filter,
+                state_.get());
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene);
+  SACCADE_CHECK(rtcGetDeviceError(state_->device.get()) == RTC_ERROR_NONE);
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+void RayCaster::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
+  SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size());
+  if (rays.empty()) return;
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kPacket];
+  fill(packet, valid, rays);
+  Context context(rays.data(), state_->flags);
+  rtcIntersect16(valid, state_->scene.get(), &context.embree, &packet);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const unsigned geometry = packet.hit.geomID[i];
+    triangles[i] = geometry == RTC_INVALID_GEOMETRY_ID
+                       ? kNothing
+                       : state_->first_of_geometry[geometry] + packet.hit.primID[i];
+  }
+}
+
+bool RayCaster::is_blocked(const Ray& ray, double distance) const {
+  RTCRay embree{};
+  embree.org_x = static_cast<float>(ray.origin.x());
+  embree.org_y = static_cast<float>(ray.origin.y());
+  embree.org_z = static_cast<float>(ray.origin.z());
+  embree.dir_x = static_cast<float>(ray.direction.x());
+  embree.dir_y = static_cast<float>(ray.direction.y());
+  embree.dir_z = static_cast<float>(ray.direction.z());
+  embree.tfar = static_cast<float>(distance);
+  embree.mask = ~0U;
+  Context context(&ray, RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  rtcOccluded1(state_->scene.get(), &context.embree, &embree);
+  return embree.tfar < 0;
+}
+
+}  // namespace saccade

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/image.h"
+
+namespace saccade {
+
+/// A convex polygon, a disc or a stroke of one grey level that covers what was drawn before it.
+struct TextureShape {
+  Eigen::Vector2f center = Eigen::Vector2f::Zero();  ///< [texel]
+  float reach = 0;  ///< radius of a circle that contains the shape [texel]
+  float log_albedo = 0;
+  float opacity = 1;  ///< 0..1
+  /// Of each side: outward unit normal and distance from the centre [texel]. Without sides the
+  /// shape is a disc, of radius `reach`, or a stroke around the segment center -+ half_axis.
+  std::vector<Eigen::Vector3f> sides;
+  Eigen::Vector2f half_axis = Eigen::Vector2f::Zero();
+  float half_width = 0;  ///< of a disc or stroke [texel]
+
+  /// Signed distance to the border [texel], negative inside; near corners outside a lower bound.
+  [[nodiscard]] float distance(const Eigen::Vector2f& texel) const;
+};
+
+/// Draws the shapes in their order, with borders that blend over `edge` texels. Parallel over rows;
+/// the result does not depend on the number of threads.
+void draw_shapes(ImageF& image, const std::vector<TextureShape>& shapes, float edge);
+
+}  // namespace saccade

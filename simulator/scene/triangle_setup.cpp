@@ -1,0 +1,132 @@
+#include "simulator/scene/triangle_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// Twice the area below this share of the longest edge's square counts as none.
+constexpr double kLeastArea = 1e-12;
+
+/// The form that has these values at the corners.
+AffineForm through(const TriangleInterior& interior, const Eigen::Vector3d& values) {
+  const double second = values[1] - values[0];
+  const double third = values[2] - values[0];
+  return {second * interior.second.gradient + third * interior.third.gradient,
+          values[0] + second * interior.second.offset + third * interior.third.offset};
+}
+
+struct TexelForms {
+  AffineForm x, y;
+};
+
+/// Texel coordinates x = u W - 0.5, y = (1 - v) H - 0.5. Repeated textures are shifted by whole
+/// periods towards their first one, where reading is fastest.
+TexelForms texel_forms(const Texture& texture, const Mesh& mesh, const Triangle& triangle,
+                       const TriangleInterior& interior) {
+  Eigen::Vector3d x, y;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector2d& uv = mesh.uvs[triangle.corners[static_cast<std::size_t>(i)]];
+    x[i] = uv.x() * texture.width();
+    y[i] = (1 - uv.y()) * texture.height();
+  }
+  const auto shift = [](Eigen::Vector3d& values, int size, Wrap wrap) {
+    if (wrap == Wrap::kRepeat) values.array() -= size * std::floor(values.minCoeff() / size);
+    values.array() -= 0.5;
+  };
+  shift(x, texture.width(), texture.wrap_u());
+  shift(y, texture.height(), texture.wrap_v());
+  return {through(interior, x), through(interior, y)};
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+void PreparedTriangles::append(const PreparedTriangles& other) {
+  saccade::append(corners, other.corners);
+  saccade::append(surfaces, other.surfaces);
+  saccade::append(interiors, other.interiors);
+  saccade::append(normals, other.normals);
+  saccade::append(cutouts, other.cutouts);
+}
+
+TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh,
+                             std::uint32_t object)
+    : mesh_(mesh), object_(object), normal_matrix_(world_from_mesh.linear().inverse().transpose()) {
+  for (const std::size_t size : {mesh.normals.size(), mesh.uvs.size(), mesh.colours.size()})
+    SACCADE_CHECK(size == 0 || size == mesh.vertices.size());
+  vertices_.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    vertices_.emplace_back(world_from_mesh * vertex);
+}
+
+bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) const {
+  const Eigen::Vector3d& a = vertices_[triangle.corners[0]];
+  const Eigen::Vector3d to_b = vertices_[triangle.corners[1]] - a;
+  const Eigen::Vector3d to_c = vertices_[triangle.corners[2]] - a;
+  const Eigen::Vector3d normal = to_b.cross(to_c);
+  const double squared = normal.squaredNorm();
+  const double longest =
+      std::max({to_b.squaredNorm(), to_c.squaredNorm(), (to_c - to_b).squaredNorm()});
+  if (!(std::sqrt(squared) > kLeastArea * longest)) return false;
+
+  const auto form = [&a](const Eigen::Vector3d& gradient) {
+    return AffineForm{gradient, -gradient.dot(a)};
+  };
+  const AffineForm plane = form(normal.normalized());
+  const TriangleInterior interior{form(to_c.cross(normal) / squared),
+                                  form(normal.cross(to_b) / squared)};
+  target.corners.push_back({a.cast<float>(), vertices_[triangle.corners[1]].cast<float>(),
+                            vertices_[triangle.corners[2]].cast<float>()});
+  target.surfaces.push_back(surface(triangle, plane, interior));
+  target.interiors.push_back(interior);
+  target.normals.push_back(shading_normals(triangle, plane.gradient));
+  if (const Texture* opacity = mesh_.materials[triangle.material].opacity.get()) {
+    const TexelForms forms = texel_forms(*opacity, mesh_, triangle, interior);
+    target.cutouts.push_back({forms.x, forms.y, opacity});
+  }
+  return true;
+}
+
+TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineForm& plane,
+                                       const TriangleInterior& interior) const {
+  const Material& material = mesh_.materials[triangle.material];
+  TriangleSurface surface{plane, {}, {}, material.texture.get(), material.factor, object_};
+  if (material.texture != nullptr) {
+    SACCADE_CHECK(!mesh_.uvs.empty());
+    const TexelForms forms = texel_forms(*material.texture, mesh_, triangle, interior);
+    surface.x = forms.x;
+    surface.y = forms.y;
+  } else if (!mesh_.colours.empty()) {
+    const auto colour = [&](std::size_t i) { return mesh_.colours[triangle.corners[i]]; };
+    surface.x = through(interior, {colour(0), colour(1), colour(2)});
+  } else {
+    surface.x.offset = material.albedo;
+  }
+  return surface;
+}
+
+ShadingNormals TriangleSetup::shading_normals(const Triangle& triangle,
+                                              const Eigen::Vector3d& plane_normal) const {
+  ShadingNormals normals;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Eigen::Vector3d normal = plane_normal;
+    if (!mesh_.normals.empty()) {
+      const Eigen::Vector3d stated = normal_matrix_ * mesh_.normals[triangle.corners[i]];
+      // Many files wind their faces against their normals.
+      if (stated.norm() > 0)
+        normal = stated.normalized() * (stated.dot(plane_normal) < 0 ? -1.0 : 1.0);
+    }
+    normals[i] = normal.cast<float>();
+  }
+  return normals;
+}
+
+}  // namespace saccade

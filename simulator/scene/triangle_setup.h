@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "simulator/scene/scene_state.h"
+
+namespace saccade {
+
+/// Triangles in the form that rendering reads, in the world.
+struct PreparedTriangles {
+  std::vector<Corners> corners;
+  std::vector<TriangleSurface> surfaces;
+  std::vector<TriangleInterior> interiors;
+  std::vector<ShadingNormals> normals;
+  std::vector<Cutout> cutouts;  ///< one per triangle, or none at all
+
+  void append(const PreparedTriangles& other);
+};
+
+/// Prepares the triangles of a mesh, one by one.
+class TriangleSetup {
+ public:
+  TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, std::uint32_t object);
+
+  /// False, and nothing is added, for a triangle without area. `target` gets its cutout when the
+  /// material has one.
+  bool add(const Triangle& triangle, PreparedTriangles& target) const;
+
+ private:
+  [[nodiscard]] TriangleSurface surface(const Triangle& triangle, const AffineForm& plane,
+                                        const TriangleInterior& interior) const;
+  [[nodiscard]] ShadingNormals shading_normals(const Triangle& triangle,
+                                               const Eigen::Vector3d& plane_normal) const;
+
+  const Mesh& mesh_;
+  std::uint32_t object_;
+  Eigen::Matrix3d normal_matrix_;
+  std::vector<Eigen::Vector3d> vertices_;  ///< in the world
+};
+
+}  // namespace saccade
