@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "core/config/document.h"
 #include "core/config/fields.h"
+#include "core/config/yaml_emit.h"
 
 namespace saccade::config {
 
@@ -14,9 +16,6 @@ class Session {
   [[nodiscard]] static Node write(const std::function<void(Fields&)>& describe_root);
   static void check(const std::function<void(Fields&)>& describe_root);
 };
-
-/// The YAML text of a tree; with comments behind the keys that have one.
-[[nodiscard]] std::string to_yaml(const Node& node, bool comments = false);
 
 /// Reads a whole document into a struct with a describe(Fields&, T&); `options` holds the defaults.
 /// Throws InputError with its place for unknown keys (with the nearest valid one), wrong types,

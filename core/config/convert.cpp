@@ -102,7 +102,11 @@ Node whole_node(T value) {
 template <class T>
 Node real_node(T value) {
   std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  const bool whole = std::floor(value) == value && std::abs(value) < T(1e15);
+  const auto [end, error] =
+      whole ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                            std::chars_format::fixed)
+            : std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   std::string text(buffer.data(), end);
   // YAML 1.1 readers of other languages take "1e-05" for text.
   const std::size_t exponent = text.find('e');

@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/config/config.h"
+#include "core/config/document.h"
 #include "core/config/suggest.h"
+#include "core/config/yaml_emit.h"
 #include "core/error.h"
 
 namespace saccade::config {
@@ -165,19 +166,6 @@ void Fields::fail(const Node& at, const std::string& name, const std::string& se
                   const std::string& problem) const {
   if (mode_ == Mode::kCheck) throw InputError(name, problem);
   throw InputError(at.place.text(), name + separator + problem);
-}
-
-void Session::read(const Document& document, const std::function<void(Fields&)>& describe_root) {
-  const Fields root(Fields::Mode::kRead, {}, nullptr, document.root().place);
-  root.child({}, &document.root(), describe_root);
-}
-
-Node Session::write(const std::function<void(Fields&)>& describe_root) {
-  return Fields(Fields::Mode::kPrint, {}, nullptr, {}).child({}, nullptr, describe_root);
-}
-
-void Session::check(const std::function<void(Fields&)>& describe_root) {
-  Fields(Fields::Mode::kCheck, {}, nullptr, {}).child({}, nullptr, describe_root);
 }
 
 }  // namespace saccade::config

@@ -36,8 +36,7 @@ class Fields {
  public:
   /// bool, int, int64, uint64, float, double (finite), std::string, std::filesystem::path (relative
   /// to the file that states it), fixed (std::array, Eigen vectors) and variable (std::vector)
-  /// lists, std::map<std::string, T>, and std::optional of these
-  /// (`~` is nullopt).
+  /// lists, std::map<std::string, T>, and std::optional of these (`~` is nullopt).
   template <class T>
   Rule value(std::string_view key, T& target, std::string_view help);
 
@@ -146,6 +145,10 @@ Rule Fields::value(std::string_view key, T& target, std::string_view help) {
   const Node* node = declare(key);
   if (node != nullptr) from_node(*node, name_of(key), target);
   if (writing()) node = put(key, to_node(target), help);
+  if (mode_ == Mode::kCheck) {
+    T as_read = target;
+    from_node(*node, name_of(key), as_read);  // what no file could state: NaN, infinity
+  }
   return {*this, name_of(key), node};
 }
 

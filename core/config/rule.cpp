@@ -72,6 +72,7 @@ Rule& Rule::required() {
 
 Rule& Rule::must_exist() {
   check_texts([&](const Node& node, const std::string& name) {
+    if (node.text.empty()) return;
     std::filesystem::path path;
     from_node(node, name, path);
     const std::string whole = path.string();

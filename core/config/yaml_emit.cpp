@@ -1,10 +1,10 @@
+#include "core/config/yaml_emit.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <string>
 #include <string_view>
-
-#include "core/config/config.h"
 
 namespace saccade::config {
 namespace {

@@ -1,90 +1,179 @@
 #include "core/config/yaml_parse.h"
 
-#include <yaml-cpp/yaml.h>
+#include <yaml-cpp/anchor.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
 
 #include <cstddef>
-#include <set>
+#include <map>
+#include <sstream>
+#include <utility>
 #include <vector>
 
+#include "core/config/yaml_text.h"
 #include "core/error.h"
 
 namespace saccade::config {
 namespace {
 
-constexpr int kMaxDepth = 64;
+constexpr std::size_t kMaxDepth = 64;
 /// Aliases are copied, so a small text can ask for a tree of any size.
 constexpr std::size_t kMaxNodes = 1'000'000;
 
-class Builder {
+/// Builds the tree from the parser's events. (YAML::Node would hide duplicate keys and further
+/// documents, and YAML::LoadAll of yaml-cpp 0.7 never returns from a stray comma.)
+class Builder final : public YAML::EventHandler {
  public:
-  Builder(std::shared_ptr<const Source> source, bool lines)
-      : source_(std::move(source)), lines_(lines) {}
+  Builder(const std::string& text, std::shared_ptr<const Source> source, bool lines)
+      : text_(text), source_(std::move(source)), lines_(lines) {}
 
   [[nodiscard]] Place place(const YAML::Mark& mark) const {
     return {source_, lines_ && !mark.is_null() ? mark.line + 1 : 0};
   }
 
-  Node build(const YAML::Node& yaml, int depth) {
-    const Place here = place(yaml.Mark());
-    if (depth > kMaxDepth) throw InputError(here.text(), "nested too deeply");
-    if (++nodes_ > kMaxNodes) throw InputError(here.text(), "too many values");
-    Node node;
-    if (yaml.IsScalar()) node = Node::scalar(yaml.Scalar(), yaml.Tag() == "!");
-    if (yaml.IsSequence()) {
-      node = Node::list();
-      for (const YAML::Node& item : yaml) node.items.push_back(build(item, depth + 1));
-    }
-    if (yaml.IsMap()) node = build_map(yaml, depth);
-    if (const std::string& tag = yaml.Tag(); !tag.empty() && tag != "?" && tag != "!")
-      throw InputError(here.text(), "tags are not supported, found '" + tag + "'");
-    node.place = here;
-    return node;
+  Node take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1)
+      fail(mark, "the document has ended before this; a configuration is one document");
   }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(mark, anchor, Node{}, 1);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool quoted = tag == "!";
+    if (quoted && !is_closed_quote(text_, static_cast<std::size_t>(mark.pos)))
+      fail(mark, "not valid YAML: a quote opens here and is never closed");
+    refuse_tag(mark, tag);
+    add(mark, anchor, Node::scalar(value, quoted), 1);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchored_.find(anchor);
+    if (found == anchored_.end()) fail(mark, "an alias inside of what it names");
+    add(mark, 0, found->second.node, found->second.count);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value /*style*/) override {
+    refuse_tag(mark, tag);
+    open(mark, anchor, Node::list());
+  }
+  void OnSequenceEnd() override { close(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value /*style*/) override {
+    refuse_tag(mark, tag);
+    open(mark, anchor, Node::map());
+  }
+  void OnMapEnd() override { close(); }
 
  private:
-  Node build_map(const YAML::Node& yaml, int depth) {
-    Node node = Node::map();
-    std::set<std::string> seen;
-    for (const auto& pair : yaml) {
-      const YAML::Node& key = pair.first;
-      const Place key_place = place(key.Mark());
-      if (!key.IsScalar()) throw InputError(key_place.text(), "a key must be plain text");
-      if (!seen.insert(key.Scalar()).second) fail_duplicate(node, key.Scalar(), key_place);
-      Entry entry{key.Scalar(), key_place, build(pair.second, depth + 1), {}};
+  /// A list or map whose end has not come yet.
+  struct Open {
+    Node node;
+    YAML::Mark mark;
+    YAML::anchor_t anchor = 0;
+    std::size_t first_node = 0;       ///< count of nodes before it
+    bool has_key = false;             ///< of a map: a key stands, its value comes next
+    std::map<std::string, int> keys;  ///< of a map: the line of each key so far
+  };
+  struct Anchored {
+    Node node;
+    std::size_t count = 1;
+  };
+
+  void open(const YAML::Mark& mark, YAML::anchor_t anchor, Node node) {
+    if (open_.size() >= kMaxDepth) fail(mark, "nested too deeply");
+    node.place = place(mark);
+    open_.push_back({std::move(node), mark, anchor, nodes_++, false, {}});
+  }
+
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    put(done.mark, done.anchor, std::move(done.node), nodes_ - done.first_node);
+  }
+
+  void add(const YAML::Mark& mark, YAML::anchor_t anchor, Node node, std::size_t count) {
+    if (node.place.line == 0) node.place = place(mark);
+    nodes_ += count;
+    put(mark, anchor, std::move(node), count);
+  }
+
+  /// Puts a finished value of `count` nodes where it belongs.
+  void put(const YAML::Mark& mark, YAML::anchor_t anchor, Node node, std::size_t count) {
+    if (anchor != 0) anchored_[anchor] = {node, count};
+    if (anchor != 0) anchored_nodes_ += count;
+    if (nodes_ + anchored_nodes_ > kMaxNodes) fail(mark, "too many values");
+    if (open_.empty()) {
+      root_ = std::move(node);
+    } else if (open_.back().node.kind == Node::Kind::kList) {
+      open_.back().node.items.push_back(std::move(node));
+    } else if (!open_.back().has_key) {
+      put_key(open_.back(), mark, node);
+    } else {
+      Entry& entry = open_.back().node.entries.back();
       // A value left out is marked where the parser noticed, which may be lines later.
-      if (entry.value.kind == Node::Kind::kNull) entry.value.place = key_place;
-      node.entries.push_back(std::move(entry));
+      if (node.kind == Node::Kind::kNull) node.place = entry.place;
+      entry.value = std::move(node);
+      open_.back().has_key = false;
     }
-    return node;
   }
 
-  [[noreturn]] static void fail_duplicate(const Node& map, const std::string& key,
-                                          const Place& second) {
-    std::string problem = "duplicate key '" + key + "'";
-    const Entry* first = map.find(key);
-    if (first != nullptr && first->place.line > 0)
-      problem += ", first stated in line " + std::to_string(first->place.line);
-    throw InputError(second.text(), problem);
+  void put_key(Open& map, const YAML::Mark& mark, const Node& key) const {
+    if (key.kind != Node::Kind::kScalar) fail(mark, "a key must be plain text");
+    const auto [first, is_new] = map.keys.emplace(key.text, place(mark).line);
+    if (!is_new) {
+      const std::string where =
+          lines_ ? ", first stated in line " + std::to_string(first->second) : "";
+      fail(mark, "duplicate key '" + key.text + "'" + where);
+    }
+    map.node.entries.push_back({key.text, place(mark), {}, {}});
+    map.has_key = true;
   }
 
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+    if (!tag.empty() && tag != "?" && tag != "!")
+      fail(mark, "tags are not supported, found '" + tag + "'");
+  }
+
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& problem) const {
+    throw InputError(place(mark).text(), problem);
+  }
+
+  const std::string& text_;
   std::shared_ptr<const Source> source_;
   bool lines_;
-  std::size_t nodes_ = 0;
+  int documents_ = 0;
+  std::size_t nodes_ = 0;           ///< in the tree so far
+  std::size_t anchored_nodes_ = 0;  ///< in the copies kept for aliases
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, Anchored> anchored_;
+  Node root_;
 };
 
 }  // namespace
 
 Node parse_yaml(const std::string& text, const std::shared_ptr<const Source>& source, bool lines) {
-  Builder builder(source, lines);
+  Builder builder(text, source, lines);
+  if (const auto line = line_of_control_character(text))
+    throw InputError(Place{source, lines ? *line : 0}.text(), "not a text file");
+  std::istringstream stream(text);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw InputError(builder.place(documents[1].Mark()).text(),
-                       "a second document starts here; a configuration is one document");
-    return builder.build(documents.empty() ? YAML::Node() : documents[0], 0);
+    YAML::Parser parser(stream);
+    // The second call finds what stands behind the document; it must not be asked for more.
+    if (parser.HandleNextDocument(builder)) parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {
     throw InputError(builder.place(error.mark).text(), "not valid YAML: " + error.msg);
   }
+  return builder.take();
 }
 
 }  // namespace saccade::config

@@ -1,0 +1,18 @@
+#include "core/config/config.h"
+
+namespace saccade::config {
+
+void Session::read(const Document& document, const std::function<void(Fields&)>& describe_root) {
+  const Fields root(Fields::Mode::kRead, {}, nullptr, document.root().place);
+  root.child({}, &document.root(), describe_root);
+}
+
+Node Session::write(const std::function<void(Fields&)>& describe_root) {
+  return Fields(Fields::Mode::kPrint, {}, nullptr, {}).child({}, nullptr, describe_root);
+}
+
+void Session::check(const std::function<void(Fields&)>& describe_root) {
+  Fields(Fields::Mode::kCheck, {}, nullptr, {}).child({}, nullptr, describe_root);
+}
+
+}  // namespace saccade::config

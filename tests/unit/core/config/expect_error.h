@@ -1,0 +1,23 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+
+namespace saccade::config::testing {
+
+/// What InputError says; "no error" when nothing is thrown. Every other exception fails the test.
+template <class Function>
+std::string error_of(Function&& function) {
+  try {
+    static_cast<void>(std::forward<Function>(function)());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace saccade::config::testing
