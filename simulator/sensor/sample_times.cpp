@@ -1,0 +1,30 @@
+#include "simulator/sensor/sample_times.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace saccade {
+
+std::vector<TimeNs> sample_times(double rate_hz, double duration_s) {
+  std::vector<TimeNs> times;
+  if (rate_hz <= 0) return times;
+  const TimeNs end = ns_from_seconds(duration_s);
+  for (std::size_t k = 0;; ++k) {
+    const TimeNs t = ns_from_seconds(static_cast<double>(k) / rate_hz);
+    if (t > end) return times;
+    times.push_back(t);
+  }
+}
+
+std::vector<TimeNs> merge_times(const std::vector<TimeNs>& a, const std::vector<TimeNs>& b) {
+  constexpr TimeNs kSame_ns = 1000;
+  std::vector<TimeNs> merged = a;
+  for (const TimeNs t : b) {
+    const auto near = std::lower_bound(a.begin(), a.end(), t - kSame_ns);
+    if (near == a.end() || *near > t + kSame_ns) merged.push_back(t);
+  }
+  std::sort(merged.begin(), merged.end());
+  return merged;
+}
+
+}  // namespace saccade

@@ -1,0 +1,158 @@
+#include "simulator/simulate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/io/dataset_writer.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "simulator/motion/motion.h"
+#include "simulator/scene/scene_builder.h"
+#include "simulator/sensor/event_camera.h"
+#include "simulator/sensor/sample_times.h"
+#include "simulator/sensor/view.h"
+
+namespace saccade {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since the construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One recording in the making: what the camera moves through and where it is written.
+struct Take {
+  const SimulationConfig& config;
+  const Scene& scene;
+  const Spline& world_from_camera;  ///< time 0 is the recording's start
+  DatasetWriter& writer;
+
+  [[nodiscard]] double duration_s() const { return world_from_camera.end_s(); }
+};
+
+double write_groundtruth(const Take& take) {
+  const TimeNs end = ns_from_seconds(take.duration_s());
+  std::vector<StampedPose> poses;
+  for (const TimeNs t :
+       merge_times({end}, sample_times(take.config.groundtruth.pose_rate_hz, take.duration_s())))
+    poses.push_back({seconds_from_ns(t), take.world_from_camera.pose(seconds_from_ns(t))});
+  take.writer.write_groundtruth(poses);
+  return Trajectory(std::move(poses)).path_length();
+}
+
+/// Poses whose views average to the frame at `t_s`: midpoints of equal parts of the exposure, as
+/// many as keep the image motion between two of them below a quarter of a pixel.
+std::vector<Rigid3> exposure_poses(const Take& take, const ViewRenderer& renderer, double t_s) {
+  constexpr double kMotion_px = 0.25;
+  constexpr double kMostPoses = 256;
+  const double half_s = 0.5 * take.config.frames.exposure_s;
+  if (half_s == 0) return {take.world_from_camera.pose(t_s)};
+  const double from_s = std::max(0.0, t_s - half_s);
+  const double to_s = std::min(take.duration_s(), t_s + half_s);
+  const FlowField flow = renderer.flow(take.world_from_camera.state(t_s));
+  float speed = 0;
+  for (std::size_t i = 0; i < flow.u.size(); ++i)
+    speed = std::max(speed, std::hypot(flow.u.pixels()[i], flow.v.pixels()[i]));
+  const double count = std::clamp(
+      std::ceil(static_cast<double>(speed) * (to_s - from_s) / kMotion_px), 1.0, kMostPoses);
+  std::vector<Rigid3> poses;
+  for (double k = 0.5; k < count; ++k)
+    poses.push_back(take.world_from_camera.pose(from_s + (to_s - from_s) * k / count));
+  return poses;
+}
+
+void write_images(const Take& take) {
+  const ViewRenderer renderer(take.scene, take.config.camera, take.config.events.samples_per_pixel);
+  const GroundtruthOptions& rates = take.config.groundtruth;
+  const std::vector<TimeNs> frames = sample_times(take.config.frames.rate_hz, take.duration_s());
+  const std::vector<TimeNs> depths =
+      merge_times(frames, sample_times(rates.depth_rate_hz, take.duration_s()));
+  const std::vector<TimeNs> flows = sample_times(rates.flow_rate_hz, take.duration_s());
+  Progress progress("images", frames.size() + depths.size() + flows.size(), "images");
+  parallel_for(frames.size(), [&](std::size_t i) {
+    const double t = seconds_from_ns(frames[i]);
+    take.writer.write_frame(i, t, renderer.radiance(exposure_poses(take, renderer, t)));
+    progress.add(1);
+  });
+  parallel_for(depths.size(), [&](std::size_t i) {
+    const double t = seconds_from_ns(depths[i]);
+    take.writer.write_depth(i, t, renderer.depth(take.world_from_camera.pose(t)));
+    progress.add(1);
+  });
+  parallel_for(flows.size(), [&](std::size_t i) {
+    const double t = seconds_from_ns(flows[i]);
+    take.writer.write_flow(i, t, renderer.flow(take.world_from_camera.state(t)));
+    progress.add(1);
+  });
+}
+
+EventStatistics write_events(const Take& take) {
+  EventCamera camera(take.scene, take.world_from_camera, take.config.camera, take.config.events);
+  const auto microseconds = [](double t_s) { return static_cast<std::uint64_t>(1e6 * t_s); };
+  Progress progress("events", microseconds(take.duration_s()), "simulated us");
+  double shown_s = 0;
+  camera.record(take.duration_s(), [&](std::span<const Event> events, double t_s) {
+    take.writer.write_events(events);
+    progress.add(microseconds(t_s) - microseconds(shown_s));
+    shown_s = t_s;
+  });
+  return camera.statistics();
+}
+
+DatasetRecord facts(const Take& take, const std::filesystem::path& output,
+                    const EventStatistics& events) {
+  DatasetRecord record;
+  record.name = output.filename().string();
+  record.seed = take.config.seed;
+  record.config_yaml = config::print(take.config);
+  record.duration_s = take.duration_s();
+  record.contrast_on = take.config.events.contrast.on;
+  record.contrast_off = take.config.events.contrast.off;
+  record.log_eps = take.config.events.log_eps;
+  record.rays = static_cast<std::int64_t>(events.rays);
+  return record;
+}
+
+}  // namespace
+
+std::int64_t SimulationReport::event_count() const {
+  return record.counts ? record.counts->events_on + record.counts->events_off : 0;
+}
+
+SimulationReport simulate(const SimulationConfig& config, const std::filesystem::path& output) {
+  config.camera.check("camera");
+  Stopwatch whole;
+  Stopwatch watch;
+  SimulationReport report;
+  const Spline motion =
+      cut_motion(build_motion(config.trajectory), config.start_s, config.duration_s);
+  const Scene scene = build_scene(config.scene);
+  report.load_s = watch.lap();
+
+  DatasetWriter writer(output, config.camera, {config.events.timestamp_unit});
+  const Take take{config, scene, motion, writer};
+  report.path_length_m = write_groundtruth(take);
+  if (config.imu.rate_hz > 0)
+    writer.write_imu(imu_samples(motion, config.imu, config.gravity_m_s2));
+  write_images(take);
+  report.images_s = watch.lap();
+  report.events = write_events(take);
+  report.events_s = watch.lap();
+  report.record = writer.finish(facts(take, output, report.events));
+  report.total_s = whole.lap();
+  return report;
+}
+
+}  // namespace saccade

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/io/dataset_record.h"
+#include "simulator/sensor/event_tile.h"
+#include "simulator/simulation_config.h"
+
+namespace saccade {
+
+/// What a simulation produced and what it cost.
+struct SimulationReport {
+  DatasetRecord record;  ///< as in dataset.yaml
+  EventStatistics events;
+  double path_length_m = 0;
+  double load_s = 0;    ///< scene and trajectory
+  double images_s = 0;  ///< frames, depth maps and motion fields, with writing
+  double events_s = 0;  ///< events, with writing
+  double total_s = 0;   ///< everything, hashing included
+
+  [[nodiscard]] std::int64_t event_count() const;
+};
+
+/// Simulates `config` into the dataset folder `output` (an existing dataset there is replaced),
+/// which appears under its name when it is complete. Shows progress. The bytes depend on `config`
+/// alone, not on the number of threads. Throws InputError for anything wrong with the configuration
+/// or the files that it names.
+SimulationReport simulate(const SimulationConfig& config, const std::filesystem::path& output);
+
+}  // namespace saccade

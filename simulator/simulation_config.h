@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/config/fields.h"
+#include "simulator/motion/motion_options.h"
+#include "simulator/scene/scene_options.h"
+#include "simulator/sensor/event_options.h"
+#include "simulator/sensor/imu.h"
+
+namespace saccade {
+
+/// Grey frames (section `frames`): frame k shows time k / rate_hz.
+struct FrameOptions {
+  double rate_hz = 24;  ///< 0: none
+  /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
+  /// recording.
+  double exposure_s = 0;
+};
+
+/// Rates of the ground truth, from time 0 (section `groundtruth`); 0: none.
+struct GroundtruthOptions {
+  double pose_rate_hz = 1000;  ///< the last pose is at the recording's end, whatever the rate
+  double depth_rate_hz = 10;   ///< besides at the time of every frame
+  double flow_rate_hz = 0;
+};
+
+/// Everything that `simulate` needs, with all its defaults.
+struct SimulationConfig {
+  SceneOptions scene;
+  MotionOptions trajectory;
+  double start_s = 0;                ///< from the trajectory's first pose
+  std::optional<double> duration_s;  ///< default: to the trajectory's end
+  PinholeCamera camera{240, 180, 200, 200, 119.5, 89.5, {}};
+  EventOptions events;
+  ImuOptions imu;
+  FrameOptions frames;
+  GroundtruthOptions groundtruth;
+  Eigen::Vector3d gravity_m_s2 = kStandardGravity;
+  std::uint64_t seed = 1;
+};
+
+void describe(config::Fields& fields, PinholeCamera& camera);
+void describe(config::Fields& fields, FrameOptions& options);
+void describe(config::Fields& fields, GroundtruthOptions& options);
+void describe(config::Fields& fields, SimulationConfig& config);
+
+}  // namespace saccade
