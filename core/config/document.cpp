@@ -51,7 +51,7 @@ class Loader {
     return root;
   }
 
-  Node parse(const std::string& text, const std::string& name, const fs::path& folder) {
+  Node parse(std::string_view text, const std::string& name, const fs::path& folder) {
     const auto source = std::make_shared<const Source>(Source{name, folder});
     Node stated = parse_yaml(text, source);
     if (stated.kind == Node::Kind::kNull) stated = empty_map(stated.place);
@@ -115,7 +115,7 @@ Document load(const fs::path& file, std::span<const std::string> overrides) {
 
 Document parse(std::string_view yaml, const std::string& name, const fs::path& folder,
                std::span<const std::string> overrides) {
-  return with_overrides(Loader().parse(std::string(yaml), name, folder), overrides);
+  return with_overrides(Loader().parse(yaml, name, folder), overrides);
 }
 
 }  // namespace saccade::config

@@ -105,7 +105,10 @@ Rule Fields::each(std::string_view key, std::size_t size,
 }
 
 Rule Fields::embed(std::string_view key, std::string& yaml, std::string_view help) {
-  if (const Node* node = declare(key)) yaml = to_yaml(*node);
+  if (const Node* node = declare(key)) {
+    static_cast<void>(entries_of(*node, name_of(key)));
+    yaml = to_yaml(*node);
+  }
   if (writing()) put(key, parse(yaml, name_of(key)).root(), help);
   return {*this, name_of(key), nullptr};
 }
@@ -139,6 +142,11 @@ void Fields::finish(const Describe& describe_this) {
 
 void Fields::fail_unknown(const Entry& entry, const Describe& describe_this) const {
   const std::string where = path_.empty() ? "" : " in '" + path_ + "'";
+  const bool no_space =
+      entry.value.kind == Node::Kind::kNull && entry.key.find(':') != std::string::npos;
+  if (no_space)
+    throw InputError(entry.place.text(),
+                     "unknown key '" + entry.key + "'" + where + "; a space must follow ':'");
   const std::string other = choice_that_knows(entry.key, describe_this);
   if (other.empty())
     throw InputError(entry.place.text(), "unknown key '" + entry.key + "'" + where + "; " +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "core/config/yaml_parse.h"
@@ -113,7 +114,8 @@ void apply_override(Node& root, const std::string& assignment) {
   if (assignment.find_first_not_of(" \t\n", equals + 1) == std::string::npos)
     throw InputError(source->name,
                      "no value behind '=' (write '' for empty text, ~ for the default)");
-  Override(path, {source, 0}).apply(root, parse_yaml(assignment.substr(equals + 1), source, false));
+  Override(path, {source, 0})
+      .apply(root, parse_yaml(std::string_view(assignment).substr(equals + 1), source, false));
 }
 
 }  // namespace saccade::config

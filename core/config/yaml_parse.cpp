@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,7 +27,7 @@ constexpr std::size_t kMaxNodes = 1'000'000;
 /// documents, and YAML::LoadAll of yaml-cpp 0.7 never returns from a stray comma.)
 class Builder final : public YAML::EventHandler {
  public:
-  Builder(const std::string& text, std::shared_ptr<const Source> source, bool lines)
+  Builder(std::string_view text, std::shared_ptr<const Source> source, bool lines)
       : text_(text), source_(std::move(source)), lines_(lines) {}
 
   [[nodiscard]] Place place(const YAML::Mark& mark) const {
@@ -148,7 +149,7 @@ class Builder final : public YAML::EventHandler {
     throw InputError(place(mark).text(), problem);
   }
 
-  const std::string& text_;
+  std::string_view text_;
   std::shared_ptr<const Source> source_;
   bool lines_;
   int documents_ = 0;
@@ -161,11 +162,13 @@ class Builder final : public YAML::EventHandler {
 
 }  // namespace
 
-Node parse_yaml(const std::string& text, const std::shared_ptr<const Source>& source, bool lines) {
-  Builder builder(text, source, lines);
+Node parse_yaml(std::string_view text, const std::shared_ptr<const Source>& source, bool lines) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (const auto line = line_of_control_character(text))
     throw InputError(Place{source, lines ? *line : 0}.text(), "not a text file");
-  std::istringstream stream(text);
+  Builder builder(text, source, lines);
+  std::istringstream stream{std::string(text)};
   try {
     YAML::Parser parser(stream);
     // The second call finds what stands behind the document; it must not be asked for more.

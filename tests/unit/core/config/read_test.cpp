@@ -72,6 +72,8 @@ TEST(Read, UnknownKeys) {
             "a.yaml:2: unknown key 'sampels'; did you mean 'samples'?");
   EXPECT_EQ(read_error("blur:\n  sigma: 1\n"),
             "a.yaml:2: unknown key 'sigma' in 'blur'; did you mean 'sigma_px'?");
+  EXPECT_EQ(read_error("verbose: true\nseed:1\n"),
+            "a.yaml:2: unknown key 'seed:1'; a space must follow ':'");
   EXPECT_EQ(read_error("blur: {zzz: 1}\n"),
             "a.yaml:1: unknown key 'zzz' in 'blur'; valid keys: sigma_px, separable");
   EXPECT_EQ(read_error("meshes:\n  - file: x\n  - flie: x\n"),

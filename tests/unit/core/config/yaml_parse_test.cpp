@@ -59,6 +59,13 @@ TEST(ParseYaml, NamesTheQuoteThatIsNeverClosed) {
   EXPECT_EQ(parse_text("a: &x \"q\\\"\"\n").find("a")->value.text, "q\"");
 }
 
+TEST(ParseYaml, FindsQuotesBehindAnyLineEndAndLetter) {
+  for (const std::string start : {"", "\xef\xbb\xbf", "\xc3\xa9: 1\r\n", "# ''\xe2\x82\xac\n"}) {
+    EXPECT_EQ(parse_text(start + "a: 'x'\r\nb: \"y\"\r\n").find("b")->value.text, "y");
+    EXPECT_THAT(parse_error(start + "a: 'x'\r\nb: \"y\r\n"), ::testing::HasSubstr("never closed"));
+  }
+}
+
 TEST(ParseYaml, RefusesWhatIsNoText) {
   EXPECT_EQ(parse_error("a: 1\nb: \x04\nc: 1\n"), "a.yaml:2: not a text file");
   EXPECT_EQ(parse_error(std::string("a: 1\n\0", 6)), "a.yaml:2: not a text file");
