@@ -1,0 +1,157 @@
+#include "eval/picture/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/error.h"
+#include "core/io/image_file.h"
+#include "core/progress.h"
+#include "eval/metrics/scored_samples.h"
+#include "eval/picture/sensor_view.h"
+#include "eval/picture/sheet.h"
+#include "eval/picture/trajectory_picture.h"
+#include "eval/picture/video.h"
+#include "eval/run_folder.h"
+
+namespace saccade {
+namespace {
+
+void check_options(const RenderOptions& options) {
+  const auto check = [](bool holds, const char* name, const char* problem) {
+    if (!holds) throw InputError(name, problem);
+  };
+  check(options.upscale >= 1 && options.upscale <= 8, "upscale", "must be 1..8");
+  check(options.fps >= 1 && options.fps <= 240, "fps", "must be 1..240");
+  check(options.slow_motion > 0 && std::isfinite(options.slow_motion), "slow motion",
+        "must be above 0");
+  check(!options.events || *options.events > 0, "events", "must be above 0");
+  check(!options.duration_s || *options.duration_s > 0, "duration", "must be above 0 s");
+}
+
+/// What is drawn: a dataset, or a run with its dataset.
+struct Subject {
+  std::optional<RunFolder> run;
+  Dataset dataset;
+  std::vector<Eigen::Vector3f> map;
+
+  [[nodiscard]] bool has_poses() const {
+    return run && run->trajectory && !run->trajectory->empty();
+  }
+};
+
+Subject open_subject(const std::filesystem::path& path, const RenderOptions& options) {
+  if (!std::filesystem::exists(path / "run.yaml")) return {{}, Dataset::open(path), {}};
+  Subject subject;
+  subject.run = RunFolder::open(path);
+  subject.dataset = subject.run->open_dataset(options.dataset);
+  subject.map = subject.run->load_map().positions;
+  return subject;
+}
+
+TimeSpan span_of(const Subject& subject, const RenderOptions& options) {
+  TimeSpan span = time_span(subject.dataset);
+  if (subject.run && subject.run->record.window) {
+    span.start_s = std::max(span.start_s, subject.run->record.window->start_s);
+    span.end_s = std::min(span.end_s, subject.run->record.window->end_s);
+  }
+  if (options.start_s) span.start_s = std::max(span.start_s, *options.start_s);
+  if (options.duration_s) span.end_s = std::min(span.end_s, span.start_s + *options.duration_s);
+  if (options.time_s && (*options.time_s < span.start_s || *options.time_s > span.end_s))
+    throw InputError("time", fmt::format("{} s is not within {:.3f} .. {:.3f} s", *options.time_s,
+                                         span.start_s, span.end_s));
+  if (span.end_s < span.start_s)
+    throw InputError(subject.dataset.folder().string(), "there is nothing in that time");
+  return span;
+}
+
+/// The pictures of one moment, left to right.
+std::vector<Picture> pictures_at(const Subject& subject, const SensorView& view, double t_s) {
+  std::vector<Picture> pictures;
+  if (subject.has_poses()) {
+    pictures.push_back(
+        {"map (blue) over events",
+         view.map_over_events(t_s, subject.map, held_pose(*subject.run->trajectory, t_s))});
+  } else {
+    pictures.push_back({"events", view.events(t_s)});
+  }
+  if (auto frame = view.frame(t_s)) pictures.push_back({"frame", std::move(*frame)});
+  if (subject.has_poses()) return pictures;
+  if (auto depth = view.depth(t_s)) pictures.push_back({"depth", std::move(*depth)});
+  return pictures;
+}
+
+std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory, const TimeSpan& span) {
+  std::vector<Eigen::Vector3d> result;
+  for (const StampedPose& pose : trajectory.poses())
+    if (pose.t_s >= span.start_s && pose.t_s <= span.end_s)
+      result.push_back(pose.world_from_camera.translation());
+  return result;
+}
+
+std::string title_of(const Subject& subject) {
+  const std::string& dataset = subject.dataset.facts().name;
+  if (!subject.run) return dataset;
+  return fmt::format("{}: {} on {}", subject.run->name(), subject.run->record.module, dataset);
+}
+
+ImageRgb8 contact_sheet(const Subject& subject, const SensorView& view, const TimeSpan& span) {
+  constexpr double kMoments[] = {0.08, 0.36, 0.64, 0.92};
+  Sheet sheet(title_of(subject), view.theme());
+  for (const double share : kMoments) {
+    const double t_s = span.start_s + share * (span.end_s - span.start_s);
+    sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(subject, view, t_s));
+  }
+  const std::vector<Eigen::Vector3d> truth = positions(subject.dataset.groundtruth(), span);
+  std::vector<Eigen::Vector3d> estimate;
+  if (subject.has_poses()) estimate = positions(*subject.run->trajectory, span);
+  if (!truth.empty() || !estimate.empty())
+    sheet.add_row("",
+                  {{estimate.empty() ? "trajectory" : "trajectory: truth (grey), estimate (orange)",
+                    draw_trajectory(truth, estimate, view.width(), view.height(), view.theme())}});
+  return sheet.draw();
+}
+
+ImageRgb8 moment(const Subject& subject, const SensorView& view, double t_s) {
+  Sheet sheet(title_of(subject), view.theme());
+  sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(subject, view, t_s));
+  return sheet.draw();
+}
+
+void write_video(const Subject& subject, const SensorView& view, const TimeSpan& span,
+                 const std::filesystem::path& output, const RenderOptions& options) {
+  const double step_s = 1 / (options.fps * options.slow_motion);
+  const auto frames = static_cast<std::uint64_t>((span.end_s - span.start_s) / step_s) + 1;
+  const ImageRgb8 first = moment(subject, view, span.start_s);
+  VideoWriter video(output, first.width(), first.height(), options.fps);
+  Progress progress("rendering", frames, "frames");
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    video.add(moment(subject, view, span.start_s + static_cast<double>(i) * step_s));
+    progress.add(1);
+  }
+  video.finish();
+}
+
+}  // namespace
+
+void render(const std::filesystem::path& path, const std::filesystem::path& output,
+            const RenderOptions& options) {
+  check_options(options);
+  const std::filesystem::path ending = output.extension();
+  if (ending != ".png" && ending != ".mp4")
+    throw InputError(output.string(), "must end in .png or .mp4");
+  const Subject subject = open_subject(path, options);
+  const TimeSpan span = span_of(subject, options);
+  const bool single = ending == ".png" && options.time_s.has_value();
+  const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
+  const SensorView view(
+      subject.dataset, loaded.start_s, loaded.end_s,
+      {options.upscale, options.events.value_or(0), options.dark ? kDarkTheme : kLightTheme});
+  if (ending == ".mp4") return write_video(subject, view, span, output, options);
+  write_png(output,
+            single ? moment(subject, view, *options.time_s) : contact_sheet(subject, view, span));
+}
+
+}  // namespace saccade

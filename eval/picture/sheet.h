@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "eval/picture/colour.h"
+
+namespace saccade {
+
+struct Picture {
+  std::string caption;
+  ImageRgb8 image;
+};
+
+/// Rows of captioned pictures below a title, each row with its label; what scenes look like at a
+/// glance.
+class Sheet {
+ public:
+  Sheet(std::string title, const Theme& theme) : title_(std::move(title)), theme_(theme) {}
+
+  void add_row(std::string label, std::vector<Picture> pictures);
+  [[nodiscard]] ImageRgb8 draw() const;
+
+ private:
+  struct Row {
+    std::string label;
+    std::vector<Picture> pictures;
+  };
+
+  std::string title_;
+  Theme theme_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace saccade

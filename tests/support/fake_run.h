@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/rigid3.h"
+
+namespace saccade::testing {
+
+/// Writes the dataset of corner_world() under corner_motion(): events, frames, depth maps and
+/// ground truth over `duration_s`, with `width` pixels on 4:3.
+void write_corner_dataset(const std::filesystem::path& folder, const std::string& name,
+                          double duration_s, int width = 240);
+
+/// How a fake estimator errs.
+struct FakeErrors {
+  double slow_m = 0.004;    ///< amplitude of a slow wander
+  double noise_m = 0.0008;  ///< sigma per pose and axis
+  double slow_deg = 0.2;
+  double noise_deg = 0.04;
+  double rate_hz = 700;      ///< poses per second
+  double lost_from_s = -1;   ///< no poses from here on ...
+  double lost_until_s = -1;  ///< ... to here
+};
+
+/// Writes a run folder "by" the module `track` over that dataset: run.yaml, trajectory.txt,
+/// poses.csv, timing.json and map.ply (edge points of the first frame with their depth).
+void write_fake_run(const std::filesystem::path& folder, const std::filesystem::path& dataset,
+                    const FakeErrors& errors = {});
+
+}  // namespace saccade::testing
