@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -69,25 +70,26 @@ void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> co
   rtcReleaseGeometry(geometry);
 }
 
-void fill(RTCRayHit16& packet, int* valid, std::span<const Ray> rays) {
-  for (std::size_t i = 0; i < kPacket; ++i) {
-    valid[i] = i < rays.size() ? -1 : 0;
-    const Ray& ray = rays[std::min(i, rays.size() - 1)];
-    packet.ray.org_x[i] = static_cast<float>(ray.origin.x());
-    packet.ray.org_y[i] = static_cast<float>(ray.origin.y());
-    packet.ray.org_z[i] = static_cast<float>(ray.origin.z());
-    packet.ray.dir_x[i] = static_cast<float>(ray.direction.x());
-    packet.ray.dir_y[i] = static_cast<float>(ray.direction.y());
-    packet.ray.dir_z[i] = static_cast<float>(ray.direction.z());
-    packet.ray.tnear[i] = 0;
+/// A packet without rays; copied, because filling its constants costs as much as the rays.
+RTCRayHit16 empty_packet() {
+  RTCRayHit16 packet{};
+  for (unsigned i = 0; i < kPacket; ++i) {
     packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
-    packet.ray.time[i] = 0;
     packet.ray.mask[i] = ~0U;
-    packet.ray.id[i] = static_cast<unsigned>(i);
-    packet.ray.flags[i] = 0;
+    packet.ray.id[i] = i;
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
+  return packet;
+}
+
+void set_ray(RTCRay16& packet, std::size_t i, const Ray& ray) {
+  packet.org_x[i] = static_cast<float>(ray.origin.x());
+  packet.org_y[i] = static_cast<float>(ray.origin.y());
+  packet.org_z[i] = static_cast<float>(ray.origin.z());
+  packet.dir_x[i] = static_cast<float>(ray.direction.x());
+  packet.dir_y[i] = static_cast<float>(ray.direction.y());
+  packet.dir_z[i] = static_cast<float>(ray.direction.z());
 }
 
 }  // namespace
@@ -138,11 +140,15 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 void RayCaster::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
   SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size());
   if (rays.empty()) return;
-  alignas(64) RTCRayHit16 packet;
-  alignas(64) int valid[kPacket];
-  fill(packet, valid, rays);
+  static const RTCRayHit16 kEmpty = empty_packet();
+  alignas(64) RTCRayHit16 packet = kEmpty;
+  alignas(64) std::array<int, kPacket> valid{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    set_ray(packet.ray, i, rays[i]);
+    valid[i] = -1;
+  }
   Context context(rays.data(), state_->flags);
-  rtcIntersect16(valid, state_->scene.get(), &context.embree, &packet);
+  rtcIntersect16(valid.data(), state_->scene.get(), &context.embree, &packet);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const unsigned geometry = packet.hit.geomID[i];
     triangles[i] = geometry == RTC_INVALID_GEOMETRY_ID

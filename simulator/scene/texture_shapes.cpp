@@ -27,32 +27,46 @@ Extent extent(const TextureShape& shape, float edge, const ImageF& image) {
           std::min(cut(shape.center.y() + reach, image.height() - 1), image.height() - 1)};
 }
 
-void draw(ImageF& image, const TextureShape& shape, float edge, int first_row, int last_row) {
+/// Signed distance to the border [texel], negative inside; outside near a corner a lower bound.
+float distance_to_polygon(const TextureShape& shape, const Eigen::Vector2f& texel) {
+  const Eigen::Vector2f offset = texel - shape.center;
+  float farthest = -shape.reach;
+  for (const Eigen::Vector3f& side : shape.sides)
+    farthest = std::max(farthest, side.x() * offset.x() + side.y() * offset.y() - side.z());
+  return farthest;
+}
+
+float distance_to_stroke(const TextureShape& shape, const Eigen::Vector2f& texel) {
+  const Eigen::Vector2f offset = texel - shape.center;
+  const float squared = shape.half_axis.squaredNorm();
+  const float along =
+      squared > 0 ? std::clamp(shape.half_axis.dot(offset) / squared, -1.0F, 1.0F) : 0.0F;
+  return (offset - along * shape.half_axis).norm() - shape.half_width;
+}
+
+template <class Distance>
+void draw(ImageF& image, const TextureShape& shape, const Distance& distance, float edge,
+          int first_row, int last_row) {
   const Extent area = extent(shape, edge, image);
   for (int y = std::max(area.y0, first_row); y <= std::min(area.y1, last_row); ++y) {
     float* row = &image(0, y);
     for (int x = area.x0; x <= area.x1; ++x) {
-      const float d = shape.distance({static_cast<float>(x), static_cast<float>(y)});
+      const float d = distance(shape, {static_cast<float>(x), static_cast<float>(y)});
+      if (d >= 0.5F * edge) continue;
       const float cover = shape.opacity * std::clamp(0.5F - d / edge, 0.0F, 1.0F);
       row[x] += cover * (shape.log_albedo - row[x]);
     }
   }
 }
 
-}  // namespace
-
-float TextureShape::distance(const Eigen::Vector2f& texel) const {
-  const Eigen::Vector2f offset = texel - center;
-  if (!sides.empty()) {
-    float farthest = -reach;
-    for (const Eigen::Vector3f& side : sides)
-      farthest = std::max(farthest, side.head<2>().dot(offset) - side.z());
-    return farthest;
-  }
-  const float squared = half_axis.squaredNorm();
-  const float along = squared > 0 ? std::clamp(half_axis.dot(offset) / squared, -1.0F, 1.0F) : 0.0F;
-  return (offset - along * half_axis).norm() - half_width;
+void draw(ImageF& image, const TextureShape& shape, float edge, int first_row, int last_row) {
+  if (shape.sides.empty())
+    draw(image, shape, distance_to_stroke, edge, first_row, last_row);
+  else
+    draw(image, shape, distance_to_polygon, edge, first_row, last_row);
 }
+
+}  // namespace
 
 void draw_shapes(ImageF& image, const std::vector<TextureShape>& shapes, float edge) {
   const int bands = (image.height() + kBandRows - 1) / kBandRows;

@@ -18,9 +18,6 @@ struct TextureShape {
   std::vector<Eigen::Vector3f> sides;
   Eigen::Vector2f half_axis = Eigen::Vector2f::Zero();
   float half_width = 0;  ///< of a disc or stroke [texel]
-
-  /// Signed distance to the border [texel], negative inside; near corners outside a lower bound.
-  [[nodiscard]] float distance(const Eigen::Vector2f& texel) const;
 };
 
 /// Draws the shapes in their order, with borders that blend over `edge` texels. Parallel over rows;
