@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// One estimator that `saccade run` offers.
+struct Module {
+  const char* name;
+  const char* help;  ///< one line
+  /// Runs over a dataset and writes the run folder. Throws InputError for bad input.
+  RunSummary (*run)(const RunRequest&);
+  /// The resolved configuration, documented, as YAML. Throws InputError for a bad one.
+  std::string (*print_config)(const config::Document&);
+};
+
+/// All modules. A new one is one entry here and the files of its room.
+[[nodiscard]] std::span<const Module> modules();
+
+/// Throws InputError that lists the modules when there is none of this name.
+[[nodiscard]] const Module& find_module(const std::string& name);
+
+/// find_module(name).run(request).
+RunSummary run_module(const std::string& name, const RunRequest& request);
+
+}  // namespace saccade

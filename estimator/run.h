@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/config/document.h"
+
+namespace saccade {
+
+/// What `saccade run MODULE` was asked to do, whatever the module.
+struct RunRequest {
+  std::filesystem::path dataset;
+  std::filesystem::path output;  ///< run folder; appears under this name only when complete
+  config::Document config = config::Document::empty();
+  std::optional<double> start_s;      ///< from the dataset's time zero; default: its first event
+  std::optional<double> duration_s;   ///< default: to its last event
+  std::optional<std::uint64_t> seed;  ///< in place of the configuration's
+  int threads = 1;                    ///< as stated in run.yaml
+  int repeat = 1;                     ///< how often the work is done, for timing; >= 1
+  std::string command;                ///< command line, for run.yaml
+};
+
+/// What there is to say on one line after a run.
+struct RunSummary {
+  std::size_t events = 0;  ///< given to the estimator
+  std::size_t poses = 0;
+  std::size_t lost_poses = 0;
+  double wall_s = 0;  ///< median over the repetitions, without reading and writing
+};
+
+}  // namespace saccade

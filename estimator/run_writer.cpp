@@ -1,0 +1,103 @@
+#include "estimator/run_writer.h"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+
+#include "core/check.h"
+#include "core/io/sha256.h"
+#include "core/version.h"
+
+namespace saccade {
+namespace {
+
+/// "Intel(R) Xeon(R) Processor, Linux 6.1".
+std::string machine_name() {
+  std::string processor = "unknown processor";
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  utsname name{};
+  if (uname(&name) != 0) return processor;
+  return processor + ", " + name.sysname + " " + name.release;
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+std::string dataset_hash(const Dataset& dataset) {
+  const std::filesystem::path record = dataset.folder() / "dataset.yaml";
+  if (std::filesystem::exists(record)) return sha256_of_file(record);
+  return dataset.events_file().empty() ? std::string() : sha256_of_file(dataset.events_file());
+}
+
+/// One entry of the JSON object: median, min and max of numerator / wall time.
+std::string rate(std::string_view key, double numerator, const std::vector<double>& wall_s) {
+  const auto [low, high] = std::minmax_element(wall_s.begin(), wall_s.end());
+  // A run without events takes no time.
+  const auto per = [numerator](double seconds) { return seconds > 0 ? numerator / seconds : 0; };
+  return fmt::format("  \"{}\": {{\"median\": {}, \"min\": {}, \"max\": {}}},\n", key,
+                     per(median(wall_s)), per(*high), per(*low));
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  SACCADE_CHECK(!values.empty());
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+std::string to_json(const RunTiming& timing) {
+  const auto [low, high] = std::minmax_element(timing.wall_s.begin(), timing.wall_s.end());
+  std::string json = "{\n";
+  json += fmt::format("  \"wall_s\": {{\"median\": {}, \"min\": {}, \"max\": {}}},\n",
+                      median(timing.wall_s), *low, *high);
+  json += fmt::format("  \"events\": {},\n", timing.events);
+  json += rate("events_per_s", static_cast<double>(timing.events), timing.wall_s);
+  json += fmt::format("  \"poses\": {},\n", timing.poses);
+  json += rate("poses_per_s", static_cast<double>(timing.poses), timing.wall_s);
+  json += rate("realtime_factor", timing.sequence_s, timing.wall_s);
+  json += fmt::format("  \"repetitions\": {},\n", timing.wall_s.size());
+  json += "  \"stages_s\": {";
+  for (std::size_t i = 0; i < timing.stages_s.size(); ++i)
+    json += fmt::format("{}\"{}\": {}", i == 0 ? "" : ", ", timing.stages_s[i].first,
+                        timing.stages_s[i].second);
+  json += fmt::format("}},\n  \"io_s\": {},\n  \"peak_memory_mb\": {}\n}}\n", timing.io_s,
+                      peak_memory_mb());
+  return json;
+}
+
+RunWriter::RunWriter(const RunRequest& request) : folder_(request.output, "run.yaml") {}
+
+void RunWriter::finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
+                       const RunRecord::Window& window, std::uint64_t seed,
+                       const std::string& config_yaml, const RunTiming& timing) {
+  RunRecord record;
+  record.module = module;
+  record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
+  record.dataset_sha256 = dataset_hash(dataset);
+  record.window = window;
+  record.seed = seed;
+  record.threads = request.threads;
+  record.tool_version = fmt::format("{} ({})", version(), git_commit());
+  record.command = request.command;
+  record.machine = machine_name();
+  record.config_yaml = config_yaml;
+  write_run_record(path() / "run.yaml", record);
+  write_atomically(path() / "timing.json", to_json(timing));
+  folder_.commit();
+}
+
+}  // namespace saccade

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/io/atomic_file.h"
+#include "core/io/dataset.h"
+#include "core/io/run_record.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// What timing.json states. All times without reading and writing files but `io_s`.
+struct RunTiming {
+  std::vector<double> wall_s;  ///< of every repetition
+  std::size_t events = 0;      ///< processed in one repetition
+  std::size_t poses = 0;       ///< found in one repetition
+  double sequence_s = 0;       ///< length of the recording
+  double io_s = 0;
+  std::vector<std::pair<std::string, double>> stages_s;  ///< of the last repetition
+};
+
+/// The JSON text: wall_s, events_per_s, poses_per_s and realtime_factor as median, min and max over
+/// the repetitions.
+[[nodiscard]] std::string to_json(const RunTiming& timing);
+
+/// Median of a list that is not empty.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// The run folder while it is filled: run.yaml and timing.json are the same for every module.
+class RunWriter {
+ public:
+  /// Checks that the output folder may be written, before the work begins.
+  explicit RunWriter(const RunRequest& request);
+
+  /// Where the module writes its own files.
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
+
+  /// Writes run.yaml and timing.json and gives the folder its name.
+  void finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
+              const RunRecord::Window& window, std::uint64_t seed, const std::string& config_yaml,
+              const RunTiming& timing);
+
+ private:
+  AtomicFolder folder_;
+};
+
+}  // namespace saccade

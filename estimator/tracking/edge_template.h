@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/gaussian_blur.h"
+#include "estimator/tracking/map_extraction.h"
+
+namespace saccade {
+
+/// How the map is drawn into the current view (thesis 4.5).
+struct TemplateOptions {
+  enum class Splat { kNearest, kBilinear };
+
+  Splat splat =
+      Splat::kBilinear;  ///< nearest is the thesis's; it rounds every point by up to half a pixel
+  int blur_size_px = 5;  ///< odd, 1..15
+  double blur_sigma_px = 1.1;
+  double min_value = 0.01;  ///< pixels of the blurred template above it are template points
+  double redraw_px =
+      0;  ///< the template is kept while the view moved less; 0: drawn for every frame
+};
+
+/// One pixel of the blurred template. 32 bytes, so that one fits half a cache line.
+struct alignas(32) TemplatePoint {
+  Eigen::Vector2f ray;    ///< (x, y) of K^-1 u [-]
+  float inverse_depth;    ///< [1/m], > 0
+  float value;            ///< T(u), 0..1
+  Eigen::Vector2f slope;  ///< (fx dT/du, fy dT/dv): gradient per unit of `ray` [-]
+};
+
+/// Draws template images from map points. Keeps its buffers, so a draw allocates nothing.
+class TemplateDrawer {
+ public:
+  /// `camera` is undistorted; `options` are checked by describe().
+  TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options, const MapPoints& map);
+
+  /// Projects the map into the camera, keeps the nearer of two surfaces that meet in a pixel, blurs
+  /// mask and mask * depth, and divides (4.20). The points come in row-major order; those on the
+  /// border, whose gradient is unknown, are left out. Valid until the next draw.
+  [[nodiscard]] const std::vector<TemplatePoint>& draw(const Rigid3& camera_from_map);
+
+  /// The blurred template T of the last draw, for pictures.
+  [[nodiscard]] const PaddedImage& image() const { return blurred_mask_; }
+
+ private:
+  void project(const Rigid3& camera_from_map);
+  [[nodiscard]] std::size_t nearest_pixel(std::size_t i) const;
+  void find_nearest();
+  void splat_nearest();
+  void splat_bilinear();
+  void collect();
+
+  PinholeCamera camera_;
+  TemplateOptions options_;
+  const MapPoints& map_;
+  GaussianBlur blur_;
+  /// Projected map points in pixels of the padded images (whose margins are drawn too, or the blur
+  /// would see every edge end at the border), and their depth [m]; u = -1 when not visible.
+  std::vector<float> u_, v_, z_;
+  PaddedImage nearest_;       ///< smallest depth per pixel [m], 0 = none
+  PaddedImage mask_, depth_;  ///< mask, mask * depth
+  PaddedImage blurred_mask_, blurred_depth_;
+  std::vector<float> ray_x_;  ///< x of K^-1 u for every column
+  std::vector<int> columns_;  ///< template points of one row
+  std::vector<TemplatePoint> points_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,78 @@
+#include "estimator/tracking/map_extraction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// True unless a neighbour across the edge, one pixel along the gradient, is steeper.
+bool is_ridge(const ImageF& magnitude, const ImageF& image, int x, int y) {
+  const float gx = image(x + 1, y) - image(x - 1, y);
+  const float gy = image(x, y + 1) - image(x, y - 1);
+  const float length = std::sqrt(gx * gx + gy * gy);
+  const float dx = gx / length;
+  const float dy = gy / length;
+  const auto fx = static_cast<float>(x);
+  const auto fy = static_cast<float>(y);
+  const float here = magnitude(x, y);
+  // >= on one side only, so that a tie keeps exactly one of two equal neighbours.
+  return here >= sample(magnitude, fx + dx, fy + dy) && here > sample(magnitude, fx - dx, fy - dy);
+}
+
+/// Nearest valid depth in the 3 x 3 neighbourhood, as long as it belongs to another surface;
+/// 0 when the pixel itself has none and no neighbour has.
+float foreground_depth(const ImageF& depth, int x, int y) {
+  float nearest = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const float d = depth(x + dx, y + dy);
+      if (d > 0 && (nearest == 0 || d < nearest)) nearest = d;
+    }
+  // On one slanted surface neighbours differ by little, and the pixel's own depth is the exact one.
+  constexpr float kStep = 0.9F;
+  const float own = depth(x, y);
+  return own > 0 && nearest > kStep * own ? own : nearest;
+}
+
+}  // namespace
+
+ImageF gradient_magnitude(const ImageF& image) {
+  ImageF magnitude(image.width(), image.height());
+  for (int y = 1; y + 1 < image.height(); ++y)
+    for (int x = 1; x + 1 < image.width(); ++x) {
+      const float gx = (image(x + 1, y) - image(x - 1, y)) / 2;
+      const float gy = (image(x, y + 1) - image(x, y - 1)) / 2;
+      const float g = std::sqrt(gx * gx + gy * gy);
+      if (std::isfinite(g)) magnitude(x, y) = g;
+    }
+  return magnitude;
+}
+
+MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const PinholeCamera& camera,
+                      const MapOptions& options) {
+  SACCADE_CHECK(log_intensity.width() == depth.width() && log_intensity.height() == depth.height());
+  const ImageF magnitude = gradient_magnitude(log_intensity);
+  float largest = 0;
+  for (const float g : magnitude.pixels()) largest = std::max(largest, g);
+  const float threshold = static_cast<float>(options.min_gradient) * largest;
+  MapPoints map;
+  for (int y = 1; y + 1 < depth.height(); ++y)
+    for (int x = 1; x + 1 < depth.width(); ++x) {
+      const float g = magnitude(x, y);
+      if (!(g > threshold)) continue;
+      if (options.thin && !is_ridge(magnitude, log_intensity, x, y)) continue;
+      const float z = options.foreground_depth ? foreground_depth(depth, x, y) : depth(x, y);
+      if (!(z > 0)) continue;
+      const Eigen::Vector3d ray = camera.ray({x, y});
+      map.x.push_back(static_cast<float>(ray.x()) * z);
+      map.y.push_back(static_cast<float>(ray.y()) * z);
+      map.z.push_back(z);
+      map.value.push_back(options.value == MapOptions::Value::kBinary ? 1 : g / largest);
+    }
+  return map;
+}
+
+}  // namespace saccade

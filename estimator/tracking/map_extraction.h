@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+
+namespace saccade {
+
+/// Which pixels of the reference frame become map points (thesis 4.4).
+struct MapOptions {
+  enum class Value { kBinary, kGradient };
+
+  double min_gradient = 0.12;    ///< g_min, share of the largest gradient magnitude, 0..1
+  bool thin = false;             ///< keep only maxima across the edge (non-maximum suppression)
+  Value value = Value::kBinary;  ///< what a point draws into the template: 1, or its gradient
+  bool foreground_depth = true;  ///< an edge between two depths belongs to the nearer one
+};
+
+/// Map points in the camera frame of the reference view, structure of arrays [m].
+struct MapPoints {
+  std::vector<float> x, y, z;  ///< z > 0
+  std::vector<float> value;    ///< what the point draws into the template, (0, 1]
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
+/// Gradient magnitude by central differences [1/px]; 0 on the border and beside NaN pixels.
+[[nodiscard]] ImageF gradient_magnitude(const ImageF& image);
+
+/// Thresholds the gradient magnitude of `log_intensity` (normalised by its maximum) and lifts every
+/// pixel above with a valid depth into 3-D. `depth` [m], same size, 0 or NaN = unknown. `camera` is
+/// undistorted. NaN in `log_intensity` marks pixels that the lens does not show. The result may be
+/// empty.
+[[nodiscard]] MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth,
+                                    const PinholeCamera& camera, const MapOptions& options);
+
+}  // namespace saccade

@@ -1,0 +1,102 @@
+#include "estimator/tracking/reference_view.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/error.h"
+
+namespace saccade {
+namespace {
+
+/// Depth maps belong to a frame when their times agree to a tenth of a millisecond.
+constexpr double kSameTime_s = 1e-4;
+
+template <class Read>
+ImageF undistort(const ImageF& image, const PinholeCamera& camera, float outside,
+                 const Read& read) {
+  ImageF out(image.width(), image.height(), outside);
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const Eigen::Vector2d p = camera.distort({x, y});
+      if (is_inside(image, p.x(), p.y())) out(x, y) = read(p.x(), p.y());
+    }
+  return out;
+}
+
+std::size_t reference_index(const Dataset& dataset, const ReferenceOptions& options,
+                            double start_s) {
+  const auto& frames = dataset.frames();
+  const std::string place = dataset.folder().string();
+  if (frames.empty()) throw InputError(place, "holds no frames (images.txt) to take the map from");
+  if (options.frame) {
+    if (static_cast<std::size_t>(*options.frame) >= frames.size())
+      throw InputError("reference.frame", fmt::format("{} is beyond the {} frames of {}",
+                                                      *options.frame, frames.size(), place));
+    return static_cast<std::size_t>(*options.frame);
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (frames[i].t_s >= start_s - kSameTime_s) return i;
+  throw InputError(place, fmt::format("holds no frame at or after the start at {} s", start_s));
+}
+
+ImageF load_depth_at(const Dataset& dataset, double t_s) {
+  const auto& maps = dataset.depth_maps();
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    if (std::abs(maps[i].t_s - t_s) <= kSameTime_s) return dataset.load_depth(i);
+  throw InputError(dataset.folder().string(),
+                   fmt::format("holds no depth map at {} s, the time of the reference frame; "
+                               "state reference.planar_depth_m to track a planar map",
+                               t_s));
+}
+
+void check_size(const ImageF& image, const PinholeCamera& camera, const std::string& place) {
+  if (image.width() != camera.width || image.height() != camera.height)
+    throw InputError(place, fmt::format("is {} x {}, the sensor {} x {}", image.width(),
+                                        image.height(), camera.width, camera.height));
+}
+
+}  // namespace
+
+ImageF undistort_bilinear(const ImageF& image, const PinholeCamera& camera, float outside) {
+  if (!camera.is_distorted()) return image;
+  return undistort(image, camera, outside,
+                   [&](double x, double y) { return static_cast<float>(sample(image, x, y)); });
+}
+
+ImageF undistort_nearest(const ImageF& image, const PinholeCamera& camera, float outside) {
+  if (!camera.is_distorted()) return image;
+  return undistort(image, camera, outside, [&](double x, double y) {
+    return image(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
+  });
+}
+
+ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& options,
+                             double start_s) {
+  const PinholeCamera& camera = dataset.camera();
+  const std::size_t index = reference_index(dataset, options, start_s);
+  const StampedFile& frame = dataset.frames()[index];
+  ReferenceView view;
+  const ImageF radiance = dataset.load_frame(index);
+  check_size(radiance, camera, frame.file.string());
+  view.log_intensity = radiance;
+  for (float& value : view.log_intensity.pixels())
+    value = static_cast<float>(std::log(static_cast<double>(value) + dataset.facts().log_eps));
+  view.log_intensity =
+      undistort_bilinear(view.log_intensity, camera, std::numeric_limits<float>::quiet_NaN());
+
+  if (options.planar_depth_m) {
+    view.depth = ImageF(camera.width, camera.height, static_cast<float>(*options.planar_depth_m));
+  } else {
+    const ImageF depth = load_depth_at(dataset, frame.t_s);
+    check_size(depth, camera, dataset.folder().string() + ": depth map");
+    view.depth = undistort_nearest(depth, camera, 0);
+  }
+  if (!dataset.groundtruth().empty())
+    view.world_from_reference = dataset.groundtruth().at_clamped(frame.t_s + options.time_offset_s);
+  return view;
+}
+
+}  // namespace saccade

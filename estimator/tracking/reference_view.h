@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/io/dataset.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/track_config.h"
+
+namespace saccade {
+
+/// The view that the map is taken from, on the undistorted sensor.
+struct ReferenceView {
+  ImageF log_intensity;  ///< ln(eps + I); NaN where the lens shows nothing
+  ImageF depth;          ///< z [m], 0 = unknown
+  Rigid3 world_from_reference;
+};
+
+/// Loads the reference frame with its depth and its true pose (identity where the dataset has no
+/// ground truth: the reference view is the world then). `start_s` chooses the frame by default.
+/// Throws InputError naming the dataset when a frame, a depth map at its time, or a pose is
+/// missing.
+[[nodiscard]] ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& options,
+                                           double start_s);
+
+/// The image that a camera without distortion would have taken; bilinear, `outside` beyond the
+/// border.
+[[nodiscard]] ImageF undistort_bilinear(const ImageF& image, const PinholeCamera& camera,
+                                        float outside);
+/// The same with the nearest pixel, for depths, which must not be mixed across an edge.
+[[nodiscard]] ImageF undistort_nearest(const ImageF& image, const PinholeCamera& camera,
+                                       float outside);
+
+}  // namespace saccade

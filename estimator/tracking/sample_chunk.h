@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/edge_template.h"
+#include "estimator/tracking/event_frame.h"
+
+namespace saccade {
+
+/// Up to kCapacity samples of a template on their way through one iteration of the aligner,
+/// structure of arrays in single precision, so that every step but the two lookups is vector code.
+class SampleChunk {
+ public:
+  static constexpr int kCapacity = 256;
+  static constexpr int kColumns = 8;  ///< J (6), T, 1
+
+  /// Loads the samples first .. first + count - 1 of `total`. Sample k is uniform in the k-th of
+  /// `total` equal runs of the points, so that a draw covers the image evenly, and with as many
+  /// samples as points takes each of them once. `key` names the draw; count <= kCapacity.
+  void load(std::span<const TemplatePoint> points, int first, int count, int total,
+            std::uint32_t key);
+
+  /// Where the samples fall in the frame: W(u; current_from_template) (4.15). Samples behind the
+  /// camera or outside the frame become invisible: they count for nothing below.
+  void warp(const PinholeCamera& camera, const EventFrame& frame,
+            const Rigid3& current_from_template);
+
+  /// In place of warp(): all samples are visible.
+  void show_all();
+
+  /// Bilinear value of the frame (full event = 1) and the residual I - gain T - offset.
+  void compare(const EventFrame& frame, float gain, float offset);
+
+  /// The columns J, T, 1 of the normal equations, with
+  ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
+  /// which is grad T times the interaction matrix (4.17, for the point's motion), (a, b) = slope.
+  void differentiate();
+
+  [[nodiscard]] double column_dot_residual(int column) const;
+  [[nodiscard]] double column_dot_column(int a, int b) const;
+  [[nodiscard]] double squared_residual() const;
+  [[nodiscard]] double visible() const;
+  /// Samples where frame and template lie on the same side of their means.
+  [[nodiscard]] double agreeing(float mean_value, float mean_frame) const;
+
+ private:
+  using Floats = std::array<float, kCapacity>;
+  [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
+
+  int count_ = 0;
+  int padded_count_ = 0;  ///< count_ rounded up to whole vectors; the rest is invisible
+  alignas(64) Floats ray_x_, ray_y_, inverse_depth_, value_, slope_x_, slope_y_;
+  alignas(64) Floats visible_;  ///< 1 or 0
+  alignas(64) Floats fraction_x_, fraction_y_;
+  alignas(64) std::array<std::int32_t, kCapacity> pixel_;  ///< offset of the upper left neighbour
+  alignas(
+      64) std::array<std::uint32_t, kCapacity> neighbours_;  ///< the four bytes around the sample
+  alignas(64) Floats frame_value_, residual_;
+  alignas(64) std::array<Floats, kColumns> columns_;
+};
+
+}  // namespace saccade

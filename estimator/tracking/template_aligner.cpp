@@ -1,0 +1,159 @@
+#include "estimator/tracking/template_aligner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/random.h"
+#include "estimator/tracking/sample_chunk.h"
+
+namespace saccade {
+namespace {
+
+using Vector = TemplateAligner::Vector;
+using Matrix = TemplateAligner::Matrix;
+using Means = TemplateAligner::Means;
+
+constexpr int kGain = 6;
+constexpr int kOffset = 7;
+/// Enough for a Hessian within a few percent, which only scales the steps.
+constexpr int kHessianSamples = 2048;
+constexpr double kMinGain = 0.05;
+
+template <class Body>
+void for_each_chunk(int total, const Body& body) {
+  for (int first = 0; first < total; first += SampleChunk::kCapacity)
+    body(first, std::min(SampleChunk::kCapacity, total - first));
+}
+
+void add_normal(const SampleChunk& chunk, Matrix& normal) {
+  for (int i = 0; i < TemplateAligner::kUnknowns; ++i)
+    for (int j = i; j < TemplateAligner::kUnknowns; ++j)
+      normal(i, j) += chunk.column_dot_column(i, j);
+}
+
+/// Removes unknown `k` from the equations.
+void fix_unknown(int k, Matrix& normal) {
+  normal.row(k).setZero();
+  normal.col(k).setZero();
+  normal(k, k) = 1;
+}
+
+}  // namespace
+
+struct TemplateAligner::State {
+  Rigid3 current_from_template;
+  BrightnessModel brightness;
+  double step_gain = 1;  ///< gain that turns a solution of the equations into a twist
+};
+
+TemplateAligner::TemplateAligner(const AlignOptions& options, const PinholeCamera& camera)
+    : options_(options), camera_(camera) {}
+
+void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
+  points_ = points;
+  template_normal_.setZero();
+  template_is_regular_ = false;
+  if (points.empty()) return;
+  const int total = std::min(kHessianSamples, static_cast<int>(points.size()));
+  SampleChunk chunk;
+  for_each_chunk(total, [&](int first, int count) {
+    chunk.load(points, first, count, total, 0);
+    chunk.show_all();
+    chunk.differentiate();
+    add_normal(chunk, template_normal_);
+  });
+  template_normal_ /= total;
+  mean_value_ = static_cast<float>(template_normal_(kGain, kOffset));
+  template_is_regular_ = factor(template_normal_, template_factors_);
+}
+
+Means TemplateAligner::draw_means(const EventFrame& frame, const State& state,
+                                  std::uint32_t key) const {
+  const int total = std::min(options_.samples, static_cast<int>(points_.size()));
+  const auto gain = static_cast<float>(state.brightness.gain);
+  const auto offset = static_cast<float>(state.brightness.offset);
+  Means means;
+  SampleChunk chunk;
+  for_each_chunk(total, [&](int first, int count) {
+    chunk.load(points_, first, count, total, key);
+    chunk.warp(camera_, frame, state.current_from_template);
+    chunk.compare(frame, gain, offset);
+    chunk.differentiate();
+    for (int i = 0; i < kUnknowns; ++i) means.rhs(i) += chunk.column_dot_residual(i);
+    if (options_.hessian == AlignOptions::Hessian::kSamples) add_normal(chunk, means.normal);
+    means.squared_residual += chunk.squared_residual();
+    means.agreeing += chunk.agreeing(mean_value_, gain * mean_value_ + offset);
+    means.visible += chunk.visible();
+  });
+  const double scale = means.visible > 0 ? 1 / means.visible : 0;
+  means.rhs *= scale;
+  means.normal *= scale;
+  means.squared_residual *= scale;
+  means.agreeing *= scale;
+  means.visible /= std::max(total, 1);
+  return means;
+}
+
+bool TemplateAligner::factor(Matrix normal, Cholesky<kUnknowns>& factors) const {
+  normal.diagonal().head<6>() *= 1 + options_.damping;
+  if (options_.brightness != AlignOptions::Brightness::kAffine) fix_unknown(kOffset, normal);
+  if (options_.brightness == AlignOptions::Brightness::kNone) fix_unknown(kGain, normal);
+  return factors.factor(normal);
+}
+
+bool TemplateAligner::step(const Means& means, const Rigid3& prediction, double step_length,
+                           State& state) const {
+  const bool sampled = options_.hessian == AlignOptions::Hessian::kSamples;
+  Cholesky<kUnknowns> sample_factors;
+  if (!(sampled ? factor(means.normal, sample_factors) : template_is_regular_)) return false;
+  Vector rhs = means.rhs;
+  if (options_.damping > 0) {
+    const Matrix& normal = sampled ? means.normal : template_normal_;
+    const Twist offset = (prediction.inverse() * state.current_from_template).log();
+    rhs.head<6>() +=
+        state.step_gain * options_.damping * normal.diagonal().head<6>().cwiseProduct(offset);
+  }
+  if (options_.brightness != AlignOptions::Brightness::kAffine) rhs(kOffset) = 0;
+  if (options_.brightness == AlignOptions::Brightness::kNone) rhs(kGain) = 0;
+  const Vector solution = (sampled ? sample_factors : template_factors_).solve(rhs) * step_length;
+  const Twist xi = solution.head<6>() / state.step_gain;
+  if (!xi.allFinite()) return false;
+  state.current_from_template = state.current_from_template * Rigid3::exp(-xi);
+  state.brightness.gain += solution(kGain);
+  state.brightness.offset += solution(kOffset);
+  return true;
+}
+
+AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& prediction,
+                                   const BrightnessModel& brightness, std::uint64_t seed,
+                                   std::uint64_t draw) const {
+  SACCADE_CHECK(frame.width() == camera_.width && frame.height() == camera_.height);
+  AlignResult result;
+  State state;
+  state.current_from_template = prediction;
+  state.brightness = brightness;
+  if (options_.brightness == AlignOptions::Brightness::kNone) state.brightness = {1, 0};
+  // Not the gain under estimation: with few samples it may come near zero for an iteration.
+  state.step_gain = std::max(state.brightness.gain, kMinGain);
+  const Random random(seed);
+  while (result.iterations < options_.iterations && result.status == AlignStatus::kOk) {
+    const int i = result.iterations++;
+    const std::uint32_t key = random.bits(draw, static_cast<std::uint64_t>(i))[0];
+    const Means means = draw_means(frame, state, key);
+    result.visible_ratio = means.visible;
+    result.inlier_ratio = means.agreeing;
+    result.residual = std::sqrt(means.squared_residual);
+    const int averaged = std::max(0, i - options_.averaging_from);
+    if (means.visible < options_.min_visible || points_.size() < kUnknowns) {
+      result.status = AlignStatus::kTooFewVisible;
+    } else if (!step(means, prediction, 1.0 / (1 + averaged), state)) {
+      result.status = AlignStatus::kSingular;
+    }
+  }
+  result.current_from_template = state.current_from_template;
+  result.brightness = state.brightness;
+  return result;
+}
+
+}  // namespace saccade

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/cholesky.h"
+#include "estimator/tracking/edge_template.h"
+#include "estimator/tracking/event_frame.h"
+
+namespace saccade {
+
+/// How a template is aligned to an event frame.
+struct AlignOptions {
+  enum class Brightness { kNone, kGain, kAffine };
+  enum class Hessian { kSamples, kTemplate };
+
+  int samples = 500;
+  int iterations = 30;
+  Brightness brightness = Brightness::kAffine;  ///< solved with the pose: I = gain T + offset
+  Hessian hessian =
+      Hessian::kTemplate;  ///< sum of J^T J over this iteration's samples, or of the template
+  int averaging_from =
+      8;               ///< from this iteration on, steps shrink as 1/n: the pose becomes the mean
+  double damping = 0;  ///< weight of the prediction, share of the Hessian's diagonal
+  double min_visible =
+      0.3;  ///< share of samples inside the frame below which the result is kTooFewVisible
+};
+
+/// The frame as a function of the template: I = gain T + offset.
+struct BrightnessModel {
+  double gain = 0.5;
+  double offset = 0;
+};
+
+enum class AlignStatus { kOk, kTooFewVisible, kSingular };
+
+/// The outcome of one alignment with its evidence.
+struct AlignResult {
+  Rigid3 current_from_template;
+  AlignStatus status = AlignStatus::kOk;
+  int iterations = 0;
+  double visible_ratio = 0;  ///< samples inside the frame / samples
+  double inlier_ratio =
+      0;                ///< samples whose frame and template agree on being above or below the mean
+  double residual = 0;  ///< root mean square of I - gain T - offset, full event = 1
+  BrightnessModel brightness;
+};
+
+/// Inverse-compositional Lucas-Kanade on SE(3) (thesis 4.1-4.19; Baker & Matthews, IJCV 56(3),
+/// 2004):
+///   r(u) = I(W(u; current_from_template)) - gain T(u) - offset,   J(u) = grad T(u) dW/dxi at xi =
+///   0 xi = (sum J^T J)^-1 sum J^T r / gain,   current_from_template <- current_from_template *
+///   exp(xi)^-1
+/// Sums run over `samples` template points drawn afresh per iteration (random sparse, thesis 4.3).
+/// Deterministic in `seed`; align() is thread-safe.
+class TemplateAligner {
+ public:
+  TemplateAligner(const AlignOptions& options, const PinholeCamera& camera);
+
+  /// `points` must outlive the following calls of align().
+  void set_template(std::span<const TemplatePoint> points);
+
+  /// `frame`: of the camera's size. `prediction` is the first guess and what `damping` pulls
+  /// towards; `brightness` the first guess of the frame's brightness, whose gain also scales the
+  /// steps. `draw` names the alignment (the index of the frame): the samples depend on it and on
+  /// `seed`.
+  [[nodiscard]] AlignResult align(const EventFrame& frame, const Rigid3& prediction,
+                                  const BrightnessModel& brightness, std::uint64_t seed,
+                                  std::uint64_t draw) const;
+
+  /// The six unknowns of the pose, then gain and offset.
+  static constexpr int kUnknowns = 8;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+  /// Means over one draw of samples.
+  struct Means {
+    Vector rhs = Vector::Zero();     ///< of (J, T, 1)^T r
+    Matrix normal = Matrix::Zero();  ///< upper triangle of (J, T, 1)^T (J, T, 1)
+    double squared_residual = 0;
+    double agreeing = 0;
+    double visible = 0;  ///< share of the drawn samples; the others are means over these
+  };
+
+ private:
+  struct State;
+  [[nodiscard]] Means draw_means(const EventFrame& frame, const State& state,
+                                 std::uint32_t key) const;
+  [[nodiscard]] bool factor(Matrix normal, Cholesky<kUnknowns>& factors) const;
+  [[nodiscard]] bool step(const Means& means, const Rigid3& prediction, double step_length,
+                          State& state) const;
+
+  AlignOptions options_;
+  PinholeCamera camera_;
+  std::span<const TemplatePoint> points_;
+  Matrix template_normal_ = Matrix::Zero();  ///< mean over the template
+  Cholesky<kUnknowns> template_factors_;
+  bool template_is_regular_ = false;
+  float mean_value_ = 0;
+};
+
+}  // namespace saccade

@@ -1,0 +1,140 @@
+#include "estimator/tracking/track_config.h"
+
+namespace saccade {
+namespace {
+
+void describe_reference(config::Fields& fields, ReferenceOptions& options) {
+  fields
+      .value("frame", options.frame,
+             "index of the reference frame; ~ is the first at or after the start")
+      .at_least(0);
+  fields
+      .value("planar_depth_m", options.planar_depth_m,
+             "the map is a plane at this depth of the reference view; ~ takes the depth map")
+      .above(0);
+  fields
+      .value("time_offset_s", options.time_offset_s,
+             "the frame shows the scene this long after its time stamp (exposure, readout)")
+      .range(-1, 1);
+}
+
+void describe_map(config::Fields& fields, MapOptions& options) {
+  fields
+      .value("min_gradient", options.min_gradient,
+             "g_min: gradient magnitude of a map point, share of the largest")
+      .range(0, 1);
+  fields.value("thin", options.thin, "keep only the maxima across an edge");
+  fields.choice(
+      "value", options.value,
+      {{"binary", MapOptions::Value::kBinary}, {"gradient", MapOptions::Value::kGradient}},
+      "what a map point draws into the template");
+  fields.value("foreground_depth", options.foreground_depth,
+               "an edge between two depths belongs to the nearer one");
+}
+
+void describe_template(config::Fields& fields, TemplateOptions& options) {
+  fields.choice("splat", options.splat,
+                {{"nearest", TemplateOptions::Splat::kNearest},
+                 {"bilinear", TemplateOptions::Splat::kBilinear}},
+                "how a map point is drawn");
+  fields.value("blur_size_px", options.blur_size_px, "taps of the Gaussian, odd").range(1, 15);
+  fields.expect(options.blur_size_px % 2 == 1, "blur_size_px", "must be odd");
+  fields.value("blur_sigma_px", options.blur_sigma_px, "its standard deviation").range(0.1, 10);
+  fields.value("min_value", options.min_value, "pixels of the blurred template above it are used")
+      .range(1e-6, 1);
+  fields
+      .value("redraw_px", options.redraw_px,
+             "the template is kept until the view has moved this far; 0: drawn for every frame")
+      .range(0, 1000);
+}
+
+void describe_event_frame(config::Fields& fields, EventFrameOptions& options) {
+  fields.value("ratio", options.ratio, "events per frame and template pixel (4.21)")
+      .range(1e-4, 100);
+  fields.value("min_events", options.min_events, "of a frame, however little of the map is in view")
+      .range(1, 1e9);
+  fields.choice("drawing", options.drawing,
+                {{"nearest", EventFrameOptions::Drawing::kNearest},
+                 {"bilinear", EventFrameOptions::Drawing::kBilinear}},
+                "how an undistorted event is drawn");
+}
+
+void describe_align(config::Fields& fields, AlignOptions& options) {
+  fields.value("samples", options.samples, "template points drawn per iteration").range(16, 1e6);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
+      .range(1, 1000);
+  fields.choice("brightness", options.brightness,
+                {{"none", AlignOptions::Brightness::kNone},
+                 {"gain", AlignOptions::Brightness::kGain},
+                 {"affine", AlignOptions::Brightness::kAffine}},
+                "what is solved with the pose: I = gain T + offset");
+  fields.choice("hessian", options.hessian,
+                {{"samples", AlignOptions::Hessian::kSamples},
+                 {"template", AlignOptions::Hessian::kTemplate}},
+                "J^T J of the samples of each iteration, or of the template");
+  fields
+      .value("averaging_from", options.averaging_from,
+             "iteration from which steps shrink as 1/n, so that the samples average out")
+      .range(0, 1000);
+  fields
+      .value("damping", options.damping,
+             "weight of the predicted pose, share of the Hessian's diagonal")
+      .range(0, 100);
+  fields
+      .value("min_visible", options.min_visible,
+             "share of samples inside the frame below which the frame is lost")
+      .range(0, 1);
+}
+
+void describe_motion(config::Fields& fields, MotionOptions& options) {
+  fields.choice("prediction", options.prediction,
+                {{"none", MotionOptions::Prediction::kNone},
+                 {"constant_velocity", MotionOptions::Prediction::kConstantVelocity}},
+                "first guess of the next pose");
+  fields
+      .value("pose_gain", options.pose_gain,
+             "share of a deviation from the prediction that is believed")
+      .range(0, 1);
+  fields.value("velocity_gain", options.velocity_gain, "the same for the velocity").range(0, 1);
+}
+
+void describe_lost(config::Fields& fields, LostOptions& options) {
+  fields
+      .value("min_inlier_ratio", options.min_inlier_ratio,
+             "below it a frame is suspicious; 0.5 is chance")
+      .range(0, 1);
+  fields.value("frames", options.frames, "suspicious frames in a row that make a loss")
+      .range(1, 1e6);
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, TrackConfig& config) {
+  using config::Fields;
+  TrackerOptions& tracker = config.tracker;
+  fields.group(
+      "reference", [&](Fields& f) { describe_reference(f, config.reference); },
+      "where the map comes from");
+  fields.group(
+      "map", [&](Fields& f) { describe_map(f, config.map); },
+      "which pixels of the reference frame become map points (4.4)");
+  fields.group(
+      "template", [&](Fields& f) { describe_template(f, tracker.templates); },
+      "how the map is drawn into the current view (4.5)");
+  fields.group(
+      "event_frame", [&](Fields& f) { describe_event_frame(f, tracker.event_frame); },
+      "how events become an image (4.6)");
+  fields.group(
+      "align", [&](Fields& f) { describe_align(f, tracker.align); },
+      "Lucas-Kanade between the two (4.1-4.3)");
+  fields.group(
+      "motion", [&](Fields& f) { describe_motion(f, tracker.motion); },
+      "expectation of the next pose");
+  fields.group(
+      "lost", [&](Fields& f) { describe_lost(f, tracker.lost); }, "when a pose is called lost");
+  fields.value("initial_pose", config.initial_pose,
+               "tx ty tz qx qy qz qw at the start; ~ is the ground truth");
+  fields.value("seed", config.seed, "of the samples");
+}
+
+}  // namespace saccade

@@ -1,0 +1,191 @@
+#include "estimator/tracking/track_module.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/csv_file.h"
+#include "core/io/ply_file.h"
+#include "core/io/trajectory_file.h"
+#include "core/progress.h"
+#include "estimator/run_writer.h"
+#include "estimator/tracking/reference_view.h"
+#include "estimator/tracking/track_config.h"
+
+namespace saccade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Everything that tracking needs, read from the dataset.
+struct TrackInput {
+  Events events;
+  RunRecord::Window window;
+  ReferenceView reference;
+  Rigid3 initial_world_from_camera;
+};
+
+RunRecord::Window window_of(const RunRequest& request, const Events& events) {
+  RunRecord::Window window;
+  window.start_s = request.start_s.value_or(seconds_from_ns(events.front().t_ns));
+  window.end_s = request.duration_s ? window.start_s + *request.duration_s
+                                    : seconds_from_ns(events.back().t_ns);
+  return window;
+}
+
+Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double start_s) {
+  if (config.initial_pose) {
+    const auto& p = *config.initial_pose;
+    const Eigen::Quaterniond q(p[6], p[3], p[4], p[5]);
+    if (std::abs(q.norm() - 1) > 1e-3)
+      throw InputError("initial_pose",
+                       fmt::format("the quaternion has length {}, not 1", q.norm()));
+    return {q, {p[0], p[1], p[2]}};
+  }
+  if (dataset.groundtruth().empty())
+    throw InputError(dataset.folder().string(),
+                     "holds no groundtruth.txt to start from; state initial_pose");
+  return dataset.groundtruth().at_clamped(start_s);
+}
+
+Events load_window(const RunRequest& request, const Dataset& dataset) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double start_s = request.start_s.value_or(-infinity);
+  if (!request.duration_s) return dataset.load_events(start_s);
+  if (request.start_s) return dataset.load_events(start_s, start_s + *request.duration_s);
+  // The start is the first event, which only the file knows.
+  Events events = dataset.load_events();
+  if (events.empty()) return events;
+  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(*request.duration_s);
+  const auto end = std::find_if(events.begin(), events.end(),
+                                [end_ns](const Event& e) { return e.t_ns >= end_ns; });
+  events.erase(end, events.end());
+  return events;
+}
+
+TrackInput load_input(const RunRequest& request, const TrackConfig& config,
+                      const Dataset& dataset) {
+  TrackInput input;
+  input.events = load_window(request, dataset);
+  if (input.events.empty())
+    throw InputError(dataset.folder().string(), "holds no events in the window to be tracked");
+  input.window = window_of(request, input.events);
+  input.reference = load_reference(dataset, config.reference, input.window.start_s);
+  input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
+  return input;
+}
+
+struct TrackOutput {
+  MapPoints map;
+  std::vector<TrackedPose> poses;
+  RunTiming timing;
+};
+
+TrackOutput track_repeatedly(const TrackConfig& config, const PinholeCamera& camera,
+                             const TrackInput& input, int repeat) {
+  TrackOutput output;
+  const auto map_start = Clock::now();
+  output.map = extract_map(input.reference.log_intensity, input.reference.depth,
+                           camera.undistorted(), config.map);
+  const double map_s = seconds_since(map_start);
+  Tracker tracker(config.tracker, camera, output.map, input.reference.world_from_reference,
+                  config.seed);
+  Progress progress("track", input.events.size() * static_cast<std::size_t>(repeat), "events");
+  for (int i = 0; i < repeat; ++i) {
+    tracker.reset(input.events.front().t_ns, input.initial_world_from_camera);
+    const auto start = Clock::now();
+    output.poses = tracker.track(input.events, [&](std::size_t n) { progress.add(n); });
+    output.timing.wall_s.push_back(seconds_since(start));
+  }
+  const TrackTiming& stages = tracker.timing();
+  output.timing.stages_s = {{"map", map_s},
+                            {"template", stages.template_s},
+                            {"event_frame", stages.event_frame_s},
+                            {"align", stages.align_s}};
+  output.timing.events = input.events.size();
+  output.timing.poses = output.poses.size();
+  output.timing.sequence_s = input.window.end_s - input.window.start_s;
+  return output;
+}
+
+/// Poses of one trajectory have increasing times; two frames of a burst may share theirs.
+std::vector<StampedPose> stamped_poses(const std::vector<TrackedPose>& poses) {
+  std::vector<StampedPose> stamped;
+  for (const TrackedPose& pose : poses) {
+    const double t_s = seconds_from_ns(pose.t_ns);
+    if (stamped.empty() || t_s > stamped.back().t_s)
+      stamped.push_back({t_s, pose.world_from_camera});
+  }
+  return stamped;
+}
+
+void write_poses_csv(const std::filesystem::path& file, const std::vector<TrackedPose>& poses) {
+  CsvTable table(
+      {"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations", "residual"});
+  for (const TrackedPose& p : poses)
+    table.add({seconds_from_ns(p.t_ns), seconds_from_ns(p.first_ns), seconds_from_ns(p.last_ns),
+               std::string(p.status == TrackStatus::kOk ? "ok" : "lost"), p.inlier_ratio,
+               static_cast<long long>(p.iterations), p.residual});
+  table.save(file);
+}
+
+void write_map(const std::filesystem::path& file, const MapPoints& map,
+               const Rigid3& world_from_map) {
+  PointCloud cloud;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const Eigen::Vector3d point(map.x[i], map.y[i], map.z[i]);
+    cloud.positions.emplace_back((world_from_map * point).cast<float>());
+  }
+  write_ply(file, cloud);
+}
+
+}  // namespace
+
+RunSummary run_track(const RunRequest& request) {
+  TrackConfig config = config::read<TrackConfig>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
+  if (request.duration_s && !(*request.duration_s > 0))
+    throw InputError("--duration-s", "must be above 0");
+  RunWriter writer(request);
+
+  const auto read_start = Clock::now();
+  const Dataset dataset = Dataset::open(request.dataset);
+  const TrackInput input = load_input(request, config, dataset);
+  const double read_s = seconds_since(read_start);
+
+  TrackOutput output = track_repeatedly(config, dataset.camera(), input, request.repeat);
+
+  const auto write_start = Clock::now();
+  write_tum_trajectory(writer.path() / "trajectory.txt", stamped_poses(output.poses));
+  write_poses_csv(writer.path() / "poses.csv", output.poses);
+  write_map(writer.path() / "map.ply", output.map, input.reference.world_from_reference);
+  output.timing.io_s = read_s + seconds_since(write_start);
+  writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
+                output.timing);
+
+  RunSummary summary;
+  summary.events = input.events.size();
+  summary.poses = output.poses.size();
+  summary.lost_poses = static_cast<std::size_t>(
+      std::count_if(output.poses.begin(), output.poses.end(),
+                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; }));
+  summary.wall_s = median(output.timing.wall_s);
+  return summary;
+}
+
+std::string print_track_config(const config::Document& document) {
+  return config::print_documented(config::read<TrackConfig>(document));
+}
+
+}  // namespace saccade

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run track`: follows the camera against the map of one reference frame and writes
+/// trajectory.txt, poses.csv, map.ply, run.yaml and timing.json. One thread. Throws InputError for
+/// bad input; lost tracking is a status in poses.csv.
+RunSummary run_track(const RunRequest& request);
+
+/// The resolved configuration, documented.
+[[nodiscard]] std::string print_track_config(const config::Document& document);
+
+}  // namespace saccade

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/event.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/edge_template.h"
+#include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/map_extraction.h"
+#include "estimator/tracking/motion_model.h"
+#include "estimator/tracking/template_aligner.h"
+
+namespace saccade {
+
+/// When a pose is called lost.
+struct LostOptions {
+  double min_inlier_ratio = 0.55;  ///< 0.5 is what an unrelated template reaches
+  int frames = 3;                  ///< that many frames in a row below it
+};
+
+/// Everything of the tracker that does not depend on where its input comes from.
+struct TrackerOptions {
+  TemplateOptions templates;
+  EventFrameOptions event_frame;
+  AlignOptions align;
+  MotionOptions motion;
+  LostOptions lost;
+};
+
+enum class TrackStatus { kOk, kLost };
+
+/// One pose with its evidence.
+struct TrackedPose {
+  TimeNs t_ns = 0;      ///< mean time of the frame's events
+  TimeNs first_ns = 0;  ///< its first event
+  TimeNs last_ns = 0;   ///< its last event
+  Rigid3 world_from_camera;
+  TrackStatus status = TrackStatus::kOk;
+  int iterations = 0;
+  double inlier_ratio = 0;  ///< see AlignResult
+  double residual = 0;
+};
+
+/// Seconds that went into each stage since the last reset.
+struct TrackTiming {
+  double template_s = 0;
+  double event_frame_s = 0;
+  double align_s = 0;
+};
+
+/// 6-DoF pose of an event camera against a known map (thesis chapter 4): a pose for every
+/// ratio * template pixels events. Deterministic in `seed`; one thread.
+class Tracker {
+ public:
+  /// `camera` may be distorted: events are moved to the undistorted sensor, on which all else runs.
+  /// `map` lives in the frame of the reference view and outlives the tracker.
+  Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
+          const Rigid3& world_from_map, std::uint64_t seed);
+
+  /// Starts anew from a known pose.
+  void reset(TimeNs t_ns, const Rigid3& world_from_camera);
+
+  /// Tracks through `events` in order of time; a rest too short for a frame gives no pose.
+  /// `progress` is called with the number of events done since its last call.
+  [[nodiscard]] std::vector<TrackedPose> track(
+      std::span<const Event> events, const std::function<void(std::size_t)>& progress = {});
+
+  [[nodiscard]] std::size_t templates_drawn() const { return templates_drawn_; }
+  [[nodiscard]] const TrackTiming& timing() const { return timing_; }
+
+ private:
+  void prepare_template(const Rigid3& map_from_camera);
+  [[nodiscard]] bool template_fits(const Rigid3& map_from_camera) const;
+  [[nodiscard]] std::size_t events_per_frame() const;
+  void draw_frame(std::span<const Event> events, TrackedPose& pose);
+  [[nodiscard]] AlignResult align(TimeNs t_ns);
+  [[nodiscard]] TrackedPose track_frame(std::span<const Event> events);
+
+  TrackerOptions options_;
+  PinholeCamera camera_;  ///< undistorted
+  Rigid3 world_from_map_;
+  std::uint64_t seed_;
+  TemplateDrawer drawer_;
+  TemplateAligner aligner_;
+  EventFrame frame_;
+  MotionModel motion_;
+  Rigid3 map_from_template_;
+  std::span<const TemplatePoint> points_;
+  BrightnessModel brightness_;  ///< running mean over the frames, which resemble each other
+  std::uint64_t frame_index_ = 0;
+  std::size_t templates_drawn_ = 0;
+  int suspicious_frames_ = 0;
+  TrackTiming timing_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "core/image.h"
+#include "core/rigid3.h"
+
+namespace saccade::testing {
+
+/// A textured rectangle: corner + s * edge_u + t * edge_v, s and t in [0, 1]; the edges are
+/// orthogonal.
+struct TexturedPlane {
+  Eigen::Vector3d corner;  ///< [m]
+  Eigen::Vector3d edge_u;  ///< [m]
+  Eigen::Vector3d edge_v;  ///< [m]
+  ImageF log_intensity;    ///< bilinear in log intensity, first texel at the corner
+};
+
+using Motion = std::function<Rigid3(double t_s)>;  ///< world_from_camera
+
+/// Rectangles in front of a uniform background, seen by a point-sampling camera: the smallest world
+/// from which a tracker must recover its poses.
+class PlanarWorld {
+ public:
+  PlanarWorld(PinholeCamera camera, std::vector<TexturedPlane> planes);
+
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  /// ln(intensity) of every pixel.
+  [[nodiscard]] ImageF log_intensity(const Rigid3& world_from_camera) const;
+  /// z depth [m], 0 = background.
+  [[nodiscard]] ImageF depth(const Rigid3& world_from_camera) const;
+  /// Events of an ideal sensor over [start_s, end_s]: the signal is sampled every `step_s` and
+  /// linear in between; in EventOrder.
+  [[nodiscard]] Events simulate(const Motion& world_from_camera, double start_s, double end_s,
+                                double step_s, double contrast) const;
+
+ private:
+  struct View {
+    ImageF log_intensity;
+    ImageF depth;
+  };
+  [[nodiscard]] View view(const Rigid3& world_from_camera) const;
+
+  PinholeCamera camera_;
+  std::vector<TexturedPlane> planes_;
+};
+
+/// Random patches of several sizes and contrasts, slightly blurred; ln(intensity) in about [-3, 0].
+[[nodiscard]] ImageF patch_texture(int width, int height, std::uint64_t seed);
+
+/// A corner of two walls 2..3 m away with a smaller plane in front of it, at any sensor size;
+/// focal length = 0.83 width.
+[[nodiscard]] PlanarWorld corner_world(int width, int height);
+
+/// Smooth six-degree motion of decimetres and a few degrees within a second, for corner_world().
+[[nodiscard]] Rigid3 corner_motion(double t_s);
+
+}  // namespace saccade::testing
