@@ -122,7 +122,7 @@ struct Slopes {
 struct ExcursionSearch {
   /// A step is halved while an end lies nearer to a threshold than `reach` times the largest change
   /// of the signal over this step and, at their slopes, its neighbours.
-  double reach = 1;
+  double reach = 0.75;
   double shortest_s = 1e-6;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
 
@@ -22,60 +23,66 @@ constexpr double kTileRadius_px = 2.83;
 
 EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
                          const PinholeCamera& camera, const EventOptions& options)
-    : rays_(camera, options.samples_per_pixel),
-      world_{scene, world_from_camera, rays_, options},
+    : motion_(world_from_camera),
+      rays_(camera, options.samples_per_pixel),
+      world_{scene, rays_, options},
       speeds_(rays_.tile_count()) {
   tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
 }
 
 void EventCamera::record(double duration_s, const Sink& sink) {
-  parallel_for(
-      tiles_.size(), [&](std::size_t i) { tiles_[i]->start(0); }, kTilesPerTask);
+  SACCADE_CHECK(duration_s > 0);
   double t_s = 0;
+  const PoseTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
+  for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, t_s); });
   while (t_s < duration_s) {
     const double fastest = bound_speeds(t_s);
     const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
     // No sliver at the end: the rest is split evenly.
     const double slabs_left = std::ceil((duration_s - t_s) / slab_s);
     const double end_s = slabs_left <= 1 ? duration_s : t_s + (duration_s - t_s) / slabs_left;
-    parallel_for(
-        tiles_.size(),
-        [&](std::size_t i) {
-          const double steps = std::ceil(speeds_[i] * (end_s - t_s) / world_.options.max_step_px);
-          tiles_[i]->advance(end_s, std::max(1, static_cast<int>(steps)));
-        },
-        kTilesPerTask);
-    double complete_s = end_s;
-    for (const auto& tile : tiles_) complete_s = std::min(complete_s, tile->searched_s());
-    deliver(complete_s, end_s, sink);
+    const PoseTable poses(motion_, searched_s(), end_s);
+    for_each_tile([&](EventTile& tile, std::size_t i) {
+      const double steps = std::ceil(speeds_[i] * (end_s - t_s) / world_.options.max_step_px);
+      tile.advance(poses, end_s, std::max(1, static_cast<int>(steps)));
+    });
+    deliver(searched_s(), end_s, sink);
     t_s = end_s;
   }
-  parallel_for(
-      tiles_.size(), [&](std::size_t i) { tiles_[i]->finish(); }, kTilesPerTask);
+  const PoseTable poses(motion_, searched_s(), duration_s);
+  for_each_tile([&](EventTile& tile, std::size_t) { tile.finish(poses); });
   deliver(std::numeric_limits<double>::infinity(), duration_s, sink);
+}
+
+template <class Work>
+void EventCamera::for_each_tile(const Work& work) {
+  parallel_for(
+      tiles_.size(), [&](std::size_t i) { work(*tiles_[i], i); }, kTilesPerTask);
+}
+
+double EventCamera::searched_s() const {
+  double earliest = std::numeric_limits<double>::infinity();
+  for (const auto& tile : tiles_) earliest = std::min(earliest, tile->searched_s());
+  return earliest;
 }
 
 double EventCamera::bound_speeds(double t_s) {
   // The motion changes little within 10 ms; three looks bound it.
   std::array<Twist, 3> twists;
   for (std::size_t k = 0; k < twists.size(); ++k)
-    twists[k] = camera_twist(
-        world_.world_from_camera.state(t_s + 0.5 * static_cast<double>(k) * kLongestSlab_s));
+    twists[k] = camera_twist(motion_.state(t_s + 0.5 * static_cast<double>(k) * kLongestSlab_s));
   const PinholeCamera& camera = rays_.camera();
-  parallel_for(
-      tiles_.size(),
-      [&](std::size_t i) {
-        const Tile tile = rays_.tile(i);
-        const Eigen::Vector3d centre = camera.ray(
-            Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
-        const InverseDepthRange range = neighbourhood(i);
-        speeds_[i] = 0;
-        for (const Twist& twist : twists)
-          speeds_[i] =
-              std::max(speeds_[i], image_speed_bound(camera, centre, kTileRadius_px, twist, range));
-      },
-      kTilesPerTask);
+  for_each_tile([&](EventTile&, std::size_t i) {
+    const Tile tile = rays_.tile(i);
+    const Eigen::Vector3d centre = camera.ray(
+        Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
+    const InverseDepthRange range = neighbourhood(i);
+    speeds_[i] = 0;
+    for (const Twist& twist : twists)
+      speeds_[i] =
+          std::max(speeds_[i], image_speed_bound(camera, centre, kTileRadius_px, twist, range));
+  });
   return *std::max_element(speeds_.begin(), speeds_.end());
 }
 

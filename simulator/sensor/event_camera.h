@@ -31,18 +31,24 @@ class EventCamera {
   /// Receives the events up to a time [s], in EventOrder over all calls.
   using Sink = std::function<void(std::span<const Event> events, double t_s)>;
 
-  /// Records from time 0 to `duration_s`. Call once.
+  /// Records from time 0 to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
 
   [[nodiscard]] EventStatistics statistics() const;
 
  private:
+  /// work(tile, index) for all tiles, in parallel.
+  template <class Work>
+  void for_each_tile(const Work& work);
+  /// The time up to which all tiles' events are complete.
+  [[nodiscard]] double searched_s() const;
   /// Bound of the image speed of every tile over [t, t + longest slab], into speeds_; the largest.
   double bound_speeds(double t_s);
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
   /// Takes the tiles' events and hands out those before `complete_s`.
   void deliver(double complete_s, double t_s, const Sink& sink);
 
+  const Spline& motion_;
   PixelRays rays_;
   EventWorld world_;
   std::vector<std::unique_ptr<EventTile>> tiles_;

@@ -28,20 +28,23 @@ class LockstepTile final : public EventTile {
     search_.shortest_s = tolerance_s_;
   }
 
-  void start(double t_s) override {
+  void start(const PoseTable& poses, double t_s) override {
+    poses_ = &poses;
     trace(t_s);
     for (std::size_t i = 0; i < tile_.pixels(); ++i)
       pixels_[i] = EventPixel(next_[i].log_intensity, world_.options.contrast);
     from_ = to_ = next_;
   }
 
-  void advance(double t_s, int steps) override {
+  void advance(const PoseTable& poses, double t_s, int steps) override {
+    poses_ = &poses;
     const double from_s = to_[0].t_s;
     for (int k = 1; k < steps; ++k) step(from_s + (t_s - from_s) * k / steps);
     step(t_s);
   }
 
-  void finish() override {
+  void finish(const PoseTable& poses) override {
+    poses_ = &poses;
     search_step([this](std::size_t i) { return slope(from_[i], to_[i]); });
   }
 
@@ -89,13 +92,12 @@ class LockstepTile final : public EventTile {
 
   /// All rays of the tile at time `t_s`, into next_.
   void trace(double t_s) {
-    const Rigid3 pose = world_.world_from_camera.pose(t_s);
-    const Eigen::Matrix3d rotation = pose.rotation_matrix();
+    const CameraFrame camera = poses_->at(t_s);
     const std::size_t count = directions_.size();
     std::array<Ray, kTilePixels * kRays> rays;
     std::array<TriangleId, kTilePixels * kRays> triangles;
     for (std::size_t k = 0; k < count; ++k)
-      rays[k] = {pose.translation(), rotation * directions_[k]};
+      rays[k] = {camera.position, camera.rotation * directions_[k]};
     for (std::size_t k = 0; k < count; k += kTilePixels) {
       const std::size_t n = std::min(kTilePixels, count - k);
       world_.scene.visible({&rays[k], n}, {&triangles[k], n});
@@ -121,11 +123,11 @@ class LockstepTile final : public EventTile {
 
   /// Pixel `i` at a time between two samples.
   Sample look(std::size_t i, double t_s, const Sample& lo, const Sample& hi) {
-    const Rigid3 pose = world_.world_from_camera.pose(t_s);
+    const CameraFrame camera = poses_->at(t_s);
     Sample sample{t_s, 0, lo.triangles};
     std::array<Ray, kRays> rays;
     for (std::size_t s = 0; s < kRays; ++s)
-      rays[s] = {pose.translation(), pose.rotation() * directions_[i * kRays + s]};
+      rays[s] = {camera.position, camera.rotation * directions_[i * kRays + s]};
     if (lo.triangles != hi.triangles) {
       world_.scene.visible(rays, sample.triangles);
       statistics_.rays += kRays;
@@ -148,6 +150,7 @@ class LockstepTile final : public EventTile {
   std::span<const Eigen::Vector3d> directions_;
   double tolerance_s_;
   ExcursionSearch search_;
+  const PoseTable* poses_ = nullptr;  ///< of the call in progress
   InverseDepthRange inverse_depths_;
   std::array<EventPixel, kTilePixels> pixels_;
   /// The last three traced instants; the search is between the first two.

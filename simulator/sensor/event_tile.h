@@ -7,18 +7,17 @@
 #include <vector>
 
 #include "core/event.h"
-#include "core/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
+#include "simulator/sensor/pose_table.h"
 
 namespace saccade {
 
 /// What all tiles of an event camera share; outlives them.
 struct EventWorld {
   const Scene& scene;
-  const Spline& world_from_camera;
   const PixelRays& rays;
   EventOptions options;
 };
@@ -41,12 +40,12 @@ class EventTile {
  public:
   virtual ~EventTile() = default;
 
-  /// Takes the references at time `t_s`.
-  virtual void start(double t_s) = 0;
+  /// Takes the references at time `t_s`. Here and below the poses reach back to searched_s().
+  virtual void start(const PoseTable& poses, double t_s) = 0;
   /// Traces up to `t_s` in `steps` >= 1 equal steps and searches all but the last of them.
-  virtual void advance(double t_s, int steps) = 0;
+  virtual void advance(const PoseTable& poses, double t_s, int steps) = 0;
   /// Searches the last step.
-  virtual void finish() = 0;
+  virtual void finish(const PoseTable& poses) = 0;
 
   /// Events before this time are complete.
   [[nodiscard]] virtual double searched_s() const = 0;
