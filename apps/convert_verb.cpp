@@ -39,8 +39,7 @@ void convert(const ConvertOptions& options) {
   const std::unique_ptr<EventWriter> writer = make_event_writer(options.output, unit);
   writer->append(events);
   writer->close();
-  if (!options.common.quiet)
-    fmt::print("{}: {} events\n", options.output.string(), events.size());
+  if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), events.size());
 }
 
 }  // namespace

@@ -27,9 +27,8 @@ void show(const EvalOptions& options, const Metrics& metrics, const std::string&
 void evaluate_foreign(const EvalOptions& options) {
   if (!options.evaluate.dataset)
     throw InputError("--data", "a trajectory is scored against a dataset: --data DATASET");
-  const Metrics metrics =
-      evaluate_trajectory(options.trajectory, *options.evaluate.dataset, options.output,
-                          options.evaluate.mean_depth_m);
+  const Metrics metrics = evaluate_trajectory(options.trajectory, *options.evaluate.dataset,
+                                              options.output, options.evaluate.mean_depth_m);
   show(options, metrics, options.trajectory.string());
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "core/error.h"
@@ -25,7 +26,7 @@ void describe_command(CLI::App& command) {
       "  saccade eval runs/walls\n"
       "  saccade report runs/walls -o report.html\n\n"
       "Exit codes: 0 done, 1 failed, 2 bad usage or bad input.");
-  command.set_version_flag("--version", version_text());
+  command.set_version_flag("--version", fmt::format("saccade {} ({})", version(), git_commit()));
   command.require_subcommand(1);
   command.get_formatter()->column_width(32);
   add_simulate_verb(command);
@@ -38,6 +39,7 @@ void describe_command(CLI::App& command) {
 }
 
 int run_command(int argc, char** argv) {
+  set_command_line(argc, argv);
   CLI::App command;
   describe_command(command);
   try {

@@ -9,7 +9,7 @@ void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera) {
 }
 
 Rigid3 MotionModel::predict(TimeNs t_ns) const {
-  if (options_.prediction == MotionOptions::Prediction::kNone) return map_from_camera_;
+  if (options_.prediction == PredictionOptions::Prediction::kNone) return map_from_camera_;
   return map_from_camera_ * Rigid3::exp(velocity_ * seconds_from_ns(t_ns - t_ns_));
 }
 

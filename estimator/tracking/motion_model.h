@@ -6,7 +6,7 @@
 namespace saccade {
 
 /// What is expected of the motion between two poses.
-struct MotionOptions {
+struct PredictionOptions {
   enum class Prediction { kNone, kConstantVelocity };
 
   Prediction prediction = Prediction::kNone;
@@ -18,7 +18,7 @@ struct MotionOptions {
 /// Predicts the pose of the next frame; with constant velocity an alpha-beta filter on SE(3).
 class MotionModel {
  public:
-  explicit MotionModel(const MotionOptions& options) : options_(options) {}
+  explicit MotionModel(const PredictionOptions& options) : options_(options) {}
 
   void reset(TimeNs t_ns, const Rigid3& map_from_camera);
   [[nodiscard]] Rigid3 predict(TimeNs t_ns) const;
@@ -30,7 +30,7 @@ class MotionModel {
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
 
  private:
-  MotionOptions options_;
+  PredictionOptions options_;
   TimeNs t_ns_ = 0;
   Rigid3 map_from_camera_;
   Twist velocity_ = Twist::Zero();  ///< in the camera frame [m/s, rad/s]

@@ -86,10 +86,10 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
       .range(0, 1);
 }
 
-void describe_motion(config::Fields& fields, MotionOptions& options) {
+void describe_motion(config::Fields& fields, PredictionOptions& options) {
   fields.choice("prediction", options.prediction,
-                {{"none", MotionOptions::Prediction::kNone},
-                 {"constant_velocity", MotionOptions::Prediction::kConstantVelocity}},
+                {{"none", PredictionOptions::Prediction::kNone},
+                 {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity}},
                 "first guess of the next pose");
   fields
       .value("pose_gain", options.pose_gain,

@@ -27,7 +27,7 @@ struct TrackerOptions {
   TemplateOptions templates;
   EventFrameOptions event_frame;
   AlignOptions align;
-  MotionOptions motion;
+  PredictionOptions motion;
   LostOptions lost;
 };
 

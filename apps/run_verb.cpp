@@ -1,0 +1,84 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+
+#include "apps/command_line.h"
+#include "apps/common_options.h"
+#include "apps/verbs.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "estimator/registry.h"
+
+namespace saccade {
+namespace {
+
+struct RunVerbOptions {
+  std::string module;
+  std::string config;
+  RunRequest request;
+  CommonOptions common;
+};
+
+std::string module_list() {
+  std::string list;
+  for (const Module& module : modules())
+    list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", module.name, module.help);
+  return list;
+}
+
+void show(const RunVerbOptions& options, const RunSummary& summary) {
+  const double wall_s = summary.wall_s;
+  fmt::print("{}: {} poses ({} lost) from {:.3f} M events in {:.3f} s: {:.0f} poses/s\n",
+             options.request.output.string(), summary.poses, summary.lost_poses,
+             1e-6 * static_cast<double>(summary.events), wall_s,
+             wall_s > 0 ? static_cast<double>(summary.poses) / wall_s : 0);
+}
+
+void run(RunVerbOptions options) {
+  options.common.apply();
+  const Module& module = find_module(options.module);
+  options.request.config = options.common.load(options.config);
+  if (options.common.print_config) {
+    fmt::print("{}", module.print_config(options.request.config));
+    return;
+  }
+  if (options.request.dataset.empty())
+    throw InputError("--data", "name the dataset to run on: --data DATASET");
+  if (options.request.output.empty())
+    throw InputError("-o", "name the run folder to write: -o RUN");
+  options.request.threads = thread_count();
+  const RunSummary summary = module.run(options.request);
+  if (!options.common.quiet) show(options, summary);
+}
+
+}  // namespace
+
+void add_run_verb(CLI::App& command) {
+  const auto options = std::make_shared<RunVerbOptions>();
+  RunRequest& request = options->request;
+  CLI::App* verb = command.add_subcommand("run", "Run one estimator over a dataset");
+  verb->add_option("MODULE", options->module, module_list())->required();
+  verb->add_option("--data", request.dataset, "Dataset folder, simulated or recorded")
+      ->type_name("DATASET");
+  verb->add_option("-o,--output", request.output, "Run folder to write")->type_name("RUN");
+  verb->add_option("-c,--config", options->config, "Configuration of the module (YAML)")
+      ->type_name("CONFIG");
+  verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)");
+  verb->add_option("--duration-s", request.duration_s, "Length of the window")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--repeat", request.repeat, "Repeat the work, for timing")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  add_config_options(*verb, options->common);
+  add_common_options(*verb, options->common);
+  verb->footer(
+      "Example:\n"
+      "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls");
+  verb->callback([options] {
+    options->request.command = command_line();
+    run(*options);
+  });
+}
+
+}  // namespace saccade

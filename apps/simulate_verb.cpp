@@ -1,0 +1,65 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/common_options.h"
+#include "apps/verbs.h"
+#include "core/config/config.h"
+#include "core/error.h"
+#include "simulator/simulate.h"
+
+namespace saccade {
+namespace {
+
+struct SimulateVerbOptions {
+  std::string config;
+  std::filesystem::path output;
+  CommonOptions common;
+};
+
+void show(const SimulationReport& report, const std::filesystem::path& output) {
+  const DatasetRecord& record = report.record;
+  const double events = static_cast<double>(report.event_count());
+  fmt::print("{}: {:.4g} s, {:.3f} M events ({:.3f} M ON), mean depth {:.2f} m, path {:.2f} m\n",
+             output.string(), record.duration_s, events * 1e-6,
+             static_cast<double>(record.counts ? record.counts->events_on : 0) * 1e-6,
+             record.mean_scene_depth_m.value_or(0), report.path_length_m);
+  fmt::print(
+      "  {:.1f} M rays ({:.2f} per event), timestamps within {:.2g} us\n"
+      "  {:.1f} s: scene {:.1f}, images {:.1f}, events {:.1f} ({:.2f} M events/s)\n",
+      static_cast<double>(record.rays.value_or(0)) * 1e-6, record.rays_per_event.value_or(0),
+      1e6 * report.events.time_bound_s, report.total_s, report.load_s, report.images_s,
+      report.events_s, 1e-6 * events / report.events_s);
+}
+
+void simulate_config(const SimulateVerbOptions& options) {
+  options.common.apply();
+  const auto config = config::read<SimulationConfig>(options.common.load(options.config));
+  if (options.common.print_config) {
+    fmt::print("{}", config::print_documented(config));
+    return;
+  }
+  if (options.output.empty())
+    throw InputError("-o", "name the dataset folder to write: -o DATASET");
+  const SimulationReport report = simulate(config, options.output);
+  if (!options.common.quiet) show(report, options.output);
+}
+
+}  // namespace
+
+void add_simulate_verb(CLI::App& command) {
+  const auto options = std::make_shared<SimulateVerbOptions>();
+  CLI::App* verb = command.add_subcommand(
+      "simulate", "Render a scene along a trajectory into events, frames, depth, IMU and poses");
+  verb->add_option("CONFIG", options->config, "Simulation configuration (YAML)")->required();
+  verb->add_option("-o,--output", options->output, "Dataset folder to write")->type_name("DATASET");
+  add_config_options(*verb, options->common);
+  add_common_options(*verb, options->common);
+  verb->footer(
+      "Example:\n"
+      "  saccade simulate configs/simulation/walls.yaml -o data/walls --set duration_s=0.5");
+  verb->callback([options] { simulate_config(*options); });
+}
+
+}  // namespace saccade
