@@ -19,10 +19,10 @@ constexpr int kBarWidth = 24;
 
 std::atomic<bool> quiet{false};
 
-/// 1234567 -> "1.23 M".
+/// 1234567 -> "1.23 M ", to be followed by the unit.
 std::string with_prefix(double value) {
   for (const auto& [scale, prefix] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
-    if (value >= scale) return fmt::format("{:.3g} {}", value / scale, prefix);
+    if (value >= scale) return fmt::format("{:.3g} {} ", value / scale, prefix);
   return fmt::format("{:.3g} ", value);
 }
 

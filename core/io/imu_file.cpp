@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/io/text_table.h"
 
 namespace saccade {
+namespace {
+
+constexpr const char* kAcceleration[] = {"ax", "ay", "az"};
+constexpr const char* kRate[] = {"gx", "gy", "gz"};
+
+}  // namespace
 
 std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
   std::vector<ImuSample> samples;
@@ -16,8 +21,8 @@ std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
     if (!samples.empty() && sample.t_ns <= samples.back().t_ns)
       row.fail(fmt::format("times must increase: {:.9f} s after {:.9f} s",
                            seconds_from_ns(sample.t_ns), seconds_from_ns(samples.back().t_ns)));
-    for (int i = 0; i < 3; ++i) sample.specific_force[i] = row.number("a");
-    for (int i = 0; i < 3; ++i) sample.angular_velocity[i] = row.number("g");
+    for (int i = 0; i < 3; ++i) sample.specific_force[i] = row.number(kAcceleration[i]);
+    for (int i = 0; i < 3; ++i) sample.angular_velocity[i] = row.number(kRate[i]);
     row.expect_end("t ax ay az gx gy gz");
     samples.push_back(sample);
     return true;

@@ -14,9 +14,9 @@ namespace saccade::testing {
 
 }  // namespace saccade::testing
 
-/// Defines `path` as the recording `name`, or skips the test with a message that says where it was
-/// looked for.
-#define SACCADE_SHARED_DATA_OR_SKIP(path, name)                                  \
-  const std::filesystem::path path = ::saccade::testing::find_shared_data(name); \
-  if (path.empty())                                                              \
+/// Defines `variable` as the path of the recording `name`, or skips the test with a message that says
+/// where it was looked for.
+#define SACCADE_SHARED_DATA_OR_SKIP(variable, name)                                  \
+  const std::filesystem::path variable = ::saccade::testing::find_shared_data(name); \
+  if (variable.empty())                                                              \
   GTEST_SKIP() << "recording " << (name) << " is in neither $SACCADE_SHARED_DATA nor ../shared/data"

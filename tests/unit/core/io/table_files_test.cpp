@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/io/calibration_file.h"
+#include "core/io/csv_file.h"
+#include "core/io/file_list.h"
+#include "core/io/imu_file.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+
+namespace saccade {
+namespace {
+
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+class TableFiles : public ::testing::Test {
+ protected:
+  std::string calib_error(const std::string& text) {
+    return error_of([&] { return read_calib_txt(folder_.write("calib.txt", text)); });
+  }
+  std::string camera_error(const std::string& text) {
+    return error_of([&] { return read_camera_yaml(folder_.write("camera.yaml", text)); });
+  }
+  std::string list_error(const std::string& text) {
+    return error_of([&] { return read_file_list(folder_.write("images.txt", text)); });
+  }
+  std::string imu_error(const std::string& text) {
+    return error_of([&] { return read_imu(folder_.write("imu.txt", text)); });
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(TableFiles, CalibRoundTrip) {
+  const PinholeCamera camera{
+      0, 0, 335.419462958, 335.35, 129.9, 99.1, {-0.1, 0.09, -3e-4, 1e-4, 0.5}};
+  write_calib_txt(folder_.path() / "calib.txt", camera);
+  EXPECT_EQ(read_calib_txt(folder_.path() / "calib.txt"), camera);
+}
+
+TEST_F(TableFiles, CalibWithoutDistortion) {
+  const PinholeCamera camera = read_calib_txt(folder_.write("calib.txt", "200 201 120 90\n"));
+  EXPECT_EQ(camera.fy, 201);
+  EXPECT_FALSE(camera.is_distorted());
+}
+
+TEST_F(TableFiles, CalibErrors) {
+  EXPECT_THAT(calib_error("200 200 120\n"), HasSubstr("calib.txt:1: cy: expected a number"));
+  EXPECT_THAT(calib_error("200 200 120 90 0.1\n"), HasSubstr("calib.txt:1: k2: expected"));
+  EXPECT_THAT(calib_error("1 2 3 4 5 6 7 8 9 10\n"), HasSubstr("calib.txt:1: more fields"));
+  EXPECT_THAT(calib_error("1 2 3 4\n1 2 3 4\n"), HasSubstr("calib.txt:2: only one line"));
+  EXPECT_THAT(calib_error("1 2 3 nan\n"), HasSubstr("cy: expected a finite number"));
+  EXPECT_THAT(calib_error(""), HasSubstr("calib.txt: is empty"));
+}
+
+TEST_F(TableFiles, CameraYamlRoundTrip) {
+  PinholeCamera camera{240, 180, 335.419462958, 335.35, 129.9, 99.1, {-0.1, 0.09, -3e-4, 1e-4, 0}};
+  for (const double k3 : {0.0, 0.25}) {
+    camera.distortion[4] = k3;
+    write_camera_yaml(folder_.path() / "camera.yaml", camera);
+    EXPECT_EQ(read_camera_yaml(folder_.path() / "camera.yaml"), camera);
+  }
+}
+
+TEST_F(TableFiles, CameraYamlOfKalibrItself) {
+  const PinholeCamera camera = read_camera_yaml(folder_.write("camera.yaml", R"(cam0:
+  cam_overlaps: []
+  camera_model: pinhole
+  distortion_coeffs: [-0.28, 0.07, 0.0002, 1.7e-05]
+  distortion_model: radtan
+  intrinsics: [458.6, 457.3, 367.2, 248.4]
+  resolution: [752, 480]
+  rostopic: /cam0/image_raw
+)"));
+  EXPECT_EQ(camera.width, 752);
+  EXPECT_EQ(camera.distortion[3], 1.7e-05);
+}
+
+TEST_F(TableFiles, CameraYamlErrors) {
+  const std::string rest = "  intrinsics: [1, 1, 1, 1]\n  distortion_model: none\n";
+  EXPECT_THAT(camera_error("cam1: {}\n"), HasSubstr("key 'cam0' is missing"));
+  EXPECT_THAT(camera_error("cam0:\n  camera_model: omni\n"),
+              HasSubstr("camera.yaml:2: camera_model: 'omni' is not supported"));
+  EXPECT_THAT(camera_error("cam0:\n  camera_model: pinhole\n" + rest),
+              HasSubstr("key 'resolution' is missing"));
+  EXPECT_THAT(camera_error("cam0:\n  camera_model: pinhole\n  resolution: [0, 5]\n" + rest),
+              HasSubstr("camera has no area"));
+  EXPECT_THAT(camera_error("cam0:\n  camera_model: pinhole\n  resolution: [4]\n" + rest),
+              HasSubstr("camera.yaml:3"));
+}
+
+TEST_F(TableFiles, FileListRoundTripIsRelative) {
+  const std::filesystem::path root = folder_.path();
+  const std::vector<StampedFile> files{{0, root / "images/a.png"}, {0.038766001, root / "b.png"}};
+  write_file_list(root / "images.txt", files);
+  EXPECT_EQ(read_file(root / "images.txt"), "0.000000000 images/a.png\n0.038766001 b.png\n");
+  const std::vector<StampedFile> read = read_file_list(root / "images.txt");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].file, files[0].file);
+  EXPECT_EQ(read[1].t_s, 0.038766001);
+}
+
+TEST_F(TableFiles, FileListErrors) {
+  EXPECT_THAT(list_error("0 a.png\n0 b.png\n"), HasSubstr("images.txt:2: times must increase"));
+  EXPECT_THAT(list_error("0\n"), HasSubstr("images.txt:1: file: expected a word"));
+  EXPECT_THAT(list_error("a.png 0\n"), HasSubstr("images.txt:1: t: expected a number"));
+  EXPECT_THAT(list_error("0 a.png b\n"), HasSubstr("images.txt:1: more fields"));
+}
+
+TEST_F(TableFiles, ImuRoundTripIsExact) {
+  const std::vector<ImuSample> samples{{-1, {0.1, 0.2, 9.81}, {1e-9, -2, 3}},
+                                       {1'468'939'993'123'456'789, {1.0 / 3, 0, 0}, {0, 0, 0}}};
+  write_imu(folder_.path() / "imu.txt", samples);
+  const std::vector<ImuSample> read = read_imu(folder_.path() / "imu.txt");
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read[i].t_ns, samples[i].t_ns);
+    EXPECT_EQ(read[i].specific_force, samples[i].specific_force);
+    EXPECT_EQ(read[i].angular_velocity, samples[i].angular_velocity);
+  }
+}
+
+TEST_F(TableFiles, ImuErrors) {
+  EXPECT_THAT(imu_error("0 1 2 3 4 5\n"), HasSubstr("imu.txt:1: gz: expected a number"));
+  EXPECT_THAT(imu_error("1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"), HasSubstr("imu.txt:2: times must"));
+  EXPECT_THAT(imu_error("1 0 inf 0 0 0 0\n"), HasSubstr("ay: expected a finite"));
+}
+
+TEST_F(TableFiles, CsvQuotesAndLeavesNanEmpty) {
+  CsvTable table({"name", "value", "count"});
+  table.add({std::string("a,\"b\""), 0.1, 3LL});
+  table.add({std::string("c"), std::numeric_limits<double>::quiet_NaN(), -1LL});
+  table.save(folder_.path() / "t.csv");
+  EXPECT_EQ(read_file(folder_.path() / "t.csv"),
+            "name,value,count\n\"a,\"\"b\"\"\",0.1,3\nc,,-1\n");
+}
+
+}  // namespace
+}  // namespace saccade

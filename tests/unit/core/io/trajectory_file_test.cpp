@@ -1,0 +1,96 @@
+#include "core/io/trajectory_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/support/shared_data.h"
+
+namespace saccade {
+namespace {
+
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+Trajectory parse(const std::string& text) {
+  const TemporaryFolder folder;
+  return read_trajectory(folder.write("poses.txt", text));
+}
+
+std::string error(const std::string& text) {
+  return error_of([&] { return parse(text); });
+}
+
+TEST(TrajectoryFile, ReadsTum) {
+  const Trajectory t = parse("# t tx ty tz qx qy qz qw\n0.5 1 2 3 0 0 0 1\n1.5 4 5 6 1 0 0 0\n");
+  ASSERT_EQ(t.size(), 2U);
+  EXPECT_EQ(t.start_s(), 0.5);
+  EXPECT_EQ(t.poses()[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(t.poses()[1].world_from_camera.rotation().x(), 1);
+}
+
+TEST(TrajectoryFile, ReadsEsimCsvWithAnyHeader) {
+  for (const char* header : {"", "# timestamp, x, y, z, qx, qy, qz, qw\n", "timestamp,x,y,z\n"}) {
+    const Trajectory t = parse(std::string(header) + "500000000, 1,2, 3,0,0,0,1\n");
+    ASSERT_EQ(t.size(), 1U);
+    EXPECT_EQ(t.start_s(), 0.5);
+    EXPECT_EQ(t.poses()[0].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
+  }
+}
+
+TEST(TrajectoryFile, NormalisesSlightlyWrongQuaternions) {
+  const Trajectory t = parse("0 0 0 0 0 0 0 1.0009\n");
+  EXPECT_DOUBLE_EQ(t.poses()[0].world_from_camera.rotation().w(), 1);
+}
+
+TEST(TrajectoryFile, NamesTheLineOfWhatIsWrong) {
+  EXPECT_THAT(error("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 0\n"),
+              HasSubstr("poses.txt:2: the quaternion's length is 0; a rotation's is 1"));
+  EXPECT_THAT(error("0 0 0 0 0 0 0 1.01\n"), HasSubstr("poses.txt:1: the quaternion's length"));
+  EXPECT_THAT(error("0 0 nan 0 0 0 0 1\n"), HasSubstr("poses.txt:1: ty: expected a finite number"));
+  EXPECT_THAT(error("0 0 0 0 0 0 0 nan\n"), HasSubstr("qw: expected a finite number"));
+  EXPECT_THAT(error("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),
+              HasSubstr("poses.txt:2: times must increase: 1.000000000 s after"));
+  EXPECT_THAT(error("0 0 0 0 0 0 1\n"), HasSubstr("poses.txt:1: qw: expected a number"));
+  EXPECT_THAT(error("0 0 0 0 0 0 0 1 9\n"), HasSubstr("poses.txt:1: more fields"));
+  EXPECT_THAT(error("5,0,0,0,0,0,0,1\n4,0,0,0,0,0,0,1\n"), HasSubstr("poses.txt:2: times must"));
+  EXPECT_THAT(error("0.5,0,0,0,0,0,0,1\n"), HasSubstr("timestamp: expected a whole number"));
+  EXPECT_THAT(error(""), HasSubstr("poses.txt: holds no poses"));
+  EXPECT_THAT(error("# only a comment\n"), HasSubstr("holds no poses"));
+  EXPECT_THAT(error_of([] { return read_trajectory("/nowhere/x.txt"); }),
+              HasSubstr("no such file"));
+}
+
+TEST(TrajectoryFile, RoundTripIsExact) {
+  const Random random(5);
+  std::vector<StampedPose> poses;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const auto draw = [&](std::uint64_t stream) { return random.normal(stream, i); };
+    poses.push_back({1'468'939'993 + 0.001 * static_cast<double>(i),
+                     {so3_exp({draw(0), draw(1), draw(2)}), {draw(3), draw(4), draw(5)}}});
+  }
+  const TemporaryFolder folder;
+  write_tum_trajectory(folder.path() / "out.txt", poses);
+  const Trajectory read = read_tum_trajectory(folder.path() / "out.txt");
+  ASSERT_EQ(read.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_NEAR(read.poses()[i].t_s, poses[i].t_s, 5e-10);
+    const Rigid3& a = read.poses()[i].world_from_camera;
+    const Rigid3& b = poses[i].world_from_camera;
+    EXPECT_EQ(a.translation(), b.translation());
+    EXPECT_LT((a.rotation().coeffs() - b.rotation().coeffs()).norm(), 1e-15);
+  }
+}
+
+TEST(TrajectoryFile, ReadsHandHeldMotion) {
+  SACCADE_SHARED_DATA_OR_SKIP(file, "trajectories/poster_6dof_handheld.csv");
+  const Trajectory t = read_trajectory(file);
+  EXPECT_GT(t.size(), 10'000U);
+  EXPECT_NEAR(t.end_s() - t.start_s(), 59.8, 0.1);
+}
+
+}  // namespace
+}  // namespace saccade
