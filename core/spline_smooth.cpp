@@ -35,7 +35,7 @@ class Smoothing {
 
   [[nodiscard]] std::vector<Rigid3> solve() const {
     const Eigen::MatrixXd positions = solve_positions();
-    const std::vector<Eigen::Quaterniond> rotations = solve_rotations();
+    const Rotations rotations = solve_rotations();
     std::vector<Rigid3> controls;
     for (Index k = 0; k < controls_count(); ++k) {
       controls.emplace_back(rotations[static_cast<std::size_t>(k)], positions.row(k).transpose());
@@ -44,6 +44,8 @@ class Smoothing {
   }
 
  private:
+  using Rotations = std::vector<Eigen::Quaterniond>;
+
   [[nodiscard]] Index controls_count() const { return segments_ + 3; }
 
   /// Calls `visit(segment, basis value, pose)` for every sample.
@@ -76,19 +78,38 @@ class Smoothing {
     return *positions;
   }
 
-  /// Gauss-Newton over right perturbations of the control rotations.
-  [[nodiscard]] std::vector<Eigen::Quaterniond> solve_rotations() const {
-    constexpr int kMaxIterations = 50;
-    constexpr double kTolerance = 1e-9;
-    std::vector<Eigen::Quaterniond> controls = first_rotations();
+  /// The linearisation about some control rotations, and their squared error.
+  struct Linearised {
+    BandedLeastSquares system;
+    double cost;
+  };
+
+  /// Gauss-Newton over right perturbations of the control rotations; a step that would raise the
+  /// squared error (large residuals of coarse knots) is halved.
+  [[nodiscard]] Rotations solve_rotations() const {
+    constexpr int kMaxIterations = 200;
+    constexpr double kStepTolerance = 1e-9;
+    constexpr double kCostTolerance = 1e-12;
+    Rotations controls = first_rotations();
+    Linearised at = linearised(controls);
+    double length = 1;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      const std::optional<Eigen::MatrixXd> step = rotation_system(controls).solve();
+      const std::optional<Eigen::MatrixXd> step = at.system.solve();
       if (!step || !step->allFinite()) break;
-      for (std::size_t k = 0; k < controls.size(); ++k) {
-        const Eigen::Vector3d turn = step->middleRows<3>(3 * static_cast<Index>(k));
-        controls[k] = (controls[k] * so3_exp(turn)).normalized();
+      const double reach = step->cwiseAbs().maxCoeff();
+      length = std::min(1.0, 2 * length);
+      Rotations candidate = turned(controls, length * *step);
+      Linearised there = linearised(candidate);
+      while (there.cost > at.cost && length * reach > kStepTolerance) {
+        length /= 2;
+        candidate = turned(controls, length * *step);
+        there = linearised(candidate);
       }
-      if (step->cwiseAbs().maxCoeff() < kTolerance) return controls;
+      const bool done =
+          length * reach <= kStepTolerance || at.cost - there.cost <= kCostTolerance * at.cost;
+      controls = std::move(candidate);
+      at = std::move(there);
+      if (done) return controls;
     }
     throw InputError(
         {}, fmt::format("the smoothing spline with knots {} s apart does not converge on these "
@@ -96,10 +117,18 @@ class Smoothing {
                         spacing_s_));
   }
 
+  [[nodiscard]] static Rotations turned(Rotations controls, const Eigen::MatrixXd& step) {
+    for (std::size_t k = 0; k < controls.size(); ++k) {
+      const Eigen::Vector3d turn = step.middleRows<3>(3 * static_cast<Index>(k));
+      controls[k] = (controls[k] * so3_exp(turn)).normalized();
+    }
+    return controls;
+  }
+
   /// The samples' rotations at the times where control pose k has its greatest weight.
-  [[nodiscard]] std::vector<Eigen::Quaterniond> first_rotations() const {
+  [[nodiscard]] Rotations first_rotations() const {
     const Trajectory trajectory(std::vector<StampedPose>(poses_.begin(), poses_.end()));
-    std::vector<Eigen::Quaterniond> controls;
+    Rotations controls;
     for (Index k = 0; k < controls_count(); ++k) {
       const double t = start_s_ + static_cast<double>(k - 1) * spacing_s_;
       controls.push_back(trajectory.at_clamped(t).rotation());
@@ -107,22 +136,23 @@ class Smoothing {
     return controls;
   }
 
-  [[nodiscard]] BandedLeastSquares rotation_system(
-      const std::vector<Eigen::Quaterniond>& controls) const {
-    BandedLeastSquares system(3 * controls_count(), 11, 1);
+  [[nodiscard]] Linearised linearised(const Rotations& controls) const {
+    Linearised result{BandedLeastSquares(3 * controls_count(), 11, 1), 0};
     for_each_sample([&](Index segment, const Eigen::Array4d& b, const Rigid3& pose) {
       const auto k = static_cast<std::size_t>(segment);
       const auto at =
           rotation_between(b, {controls[k], controls[k + 1], controls[k + 2], controls[k + 3]});
       const Eigen::Vector3d residual = so3_log(at.rotation.conjugate() * pose.rotation());
-      system.add(3 * segment, at.jacobian, residual);
+      result.system.add(3 * segment, at.jacobian, residual);
+      result.cost += residual.squaredNorm();
     });
     const double weight = std::sqrt(evenness_);
     for (std::size_t k = 0; k + 2 < controls.size(); ++k) {
       const Unevenness u = unevenness(controls[k], controls[k + 1], controls[k + 2]);
-      system.add(3 * static_cast<Index>(k), weight * u.jacobian, -weight * u.value);
+      result.system.add(3 * static_cast<Index>(k), weight * u.jacobian, -weight * u.value);
+      result.cost += evenness_ * u.value.squaredNorm();
     }
-    return system;
+    return result;
   }
 
   std::span<const StampedPose> poses_;

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 
 namespace saccade {
 namespace {
 
-constexpr std::size_t kMany = 10'000'000;
 constexpr double kUnitTolerance = 1e-3;
 
 /// The keys stand beside those of the position, not in a section of their own.
@@ -19,7 +20,6 @@ void describe_orientation(config::Fields& fields, OrientationOptions& options) {
     fields.value("up", options.up, "direction that is up in the picture");
     fields.expect(options.up.norm() > 0, "up", "must not be zero");
     fields.expect(!fields.has("rotation_deg"), "rotation_deg", "cannot be combined with look_at");
-    if (fields.has("rotation_deg")) return;
   } else {
     fields.value("rotation_deg", options.rotation_deg,
                  "of the camera (z forward, y down): R = Rz Ry Rx");
@@ -102,6 +102,15 @@ std::string order_problem(double before, double t, std::size_t index) {
   return fmt::format("item {}: times must increase, {} s comes after {} s", index, t, before);
 }
 
+/// Control poses have knots of their own only at even times.
+std::string spacing_problem(const std::vector<std::vector<double>>& poses, std::size_t index) {
+  const double spacing = poses[1][0] - poses[0][0];
+  const double expected = poses[0][0] + static_cast<double>(index) * spacing;
+  if (std::abs(poses[index][0] - expected) <= 1e-3 * spacing) return {};
+  return fmt::format("item {}: control poses must be evenly spaced in time; {} s is expected",
+                     index, expected);
+}
+
 void expect_none(config::Fields& fields, const char* key, const std::string& problem) {
   fields.expect(problem.empty(), key, problem);
 }
@@ -111,7 +120,7 @@ void describe_control_poses(config::Fields& fields, MotionOptions& options) {
       .value("control_poses", options.control_poses,
              "each tx ty tz qx qy qz qw, or t and these at even times")
       .required()
-      .length(4, kMany)
+      .length(4, config::Rule::kAnyLength)
       .item_length(7, 8);
   const auto& poses = options.control_poses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -126,11 +135,7 @@ void describe_control_poses(config::Fields& fields, MotionOptions& options) {
   }
   for (std::size_t i = 1; i < poses.size(); ++i) {
     expect_none(fields, "control_poses", order_problem(poses[i - 1][0], poses[i][0], i));
-    const double spacing = poses[1][0] - poses[0][0];
-    const double expected = poses[0][0] + static_cast<double>(i) * spacing;
-    fields.expect(
-        std::abs(poses[i][0] - expected) <= 1e-3 * spacing, "control_poses",
-        fmt::format("item {}: must be evenly spaced in time; {} s is expected", i, expected));
+    expect_none(fields, "control_poses", spacing_problem(poses, i));
   }
 }
 
@@ -138,7 +143,7 @@ void describe_waypoints(config::Fields& fields, MotionOptions& options) {
   const bool views = fields.reading() ? fields.has("views") : !options.views.empty();
   if (views) {
     fields.list("views", options.views, "waypoints, each with t_s, position and orientation")
-        .length(2, kMany);
+        .length(2, config::Rule::kAnyLength);
     for (std::size_t i = 1; i < options.views.size(); ++i)
       expect_none(fields, "views",
                   order_problem(options.views[i - 1].t_s, options.views[i].t_s, i));
@@ -146,7 +151,7 @@ void describe_waypoints(config::Fields& fields, MotionOptions& options) {
   }
   fields.value("waypoints", options.waypoints, "each t tx ty tz qx qy qz qw [s, m]")
       .required()
-      .length(2, kMany)
+      .length(2, config::Rule::kAnyLength)
       .item_length(8, 8);
   const auto& poses = options.waypoints;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/io/trajectory_file.h"
 #include "core/random.h"
+#include "tests/support/shared_data.h"
 
 namespace saccade {
 namespace {
@@ -291,6 +293,43 @@ TEST(SplineSmooth, NeedsNoMoreThanTwoPoses) {
   EXPECT_LT((spline.pose(0.5).inverse() * Rigid3(so3_exp({0, 0, 0.5}), {0.5, 0, 0})).log().norm(),
             1e-4);
   expect_passes_through(Spline::smooth(poses, 7), poses, 1e-4);
+}
+
+TEST(SplineSmooth, FitsRecordedHandHeldMotion) {
+  SACCADE_SHARED_DATA_OR_SKIP(path, "trajectories/poster_6dof_handheld.csv");
+  const Trajectory recorded = read_esim_trajectory(path);
+  std::vector<StampedPose> poses;
+  for (const StampedPose& p : recorded.poses()) {
+    if (p.t_s <= recorded.start_s() + 20) poses.push_back(p);
+  }
+  const Spline spline = Spline::smooth(poses, 0.04);
+  double squares_m = 0, squares_rad = 0;
+  for (const StampedPose& p : poses) {
+    const Rigid3 pose = spline.pose(p.t_s);
+    squares_m += (pose.translation() - p.world_from_camera.translation()).squaredNorm();
+    squares_rad += std::pow(angle_between(pose.rotation(), p.world_from_camera.rotation()), 2);
+  }
+  const auto count = static_cast<double>(poses.size());
+  EXPECT_LT(std::sqrt(squares_m / count), 0.003);
+  EXPECT_LT(std::sqrt(squares_rad / count), 0.5 * kDegree);
+  double acceleration = 0;
+  for (double t = spline.start_s(); t < spline.end_s(); t += 0.005) {
+    acceleration = std::max(acceleration, spline.state(t).acceleration_in_world.norm());
+  }
+  EXPECT_LT(acceleration, 50);
+}
+
+TEST(SplineSmooth, ConvergesWithKnotsFarTooCoarseForTheMotion) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 1200; ++i) {
+    const double t = 0.005 * i;
+    const Vector3d turn(1.2 * std::sin(9 * t), std::cos(13 * t), 0.8 * std::sin(17 * t));
+    poses.push_back({t, {so3_exp(turn), turn}});
+  }
+  for (const double spacing : {0.1, 0.3, 1.0, 6.0}) {
+    const Spline spline = Spline::smooth(poses, spacing);
+    EXPECT_LT(spline.state(3).angular_velocity_in_body.norm(), 40) << spacing;
+  }
 }
 
 }  // namespace
