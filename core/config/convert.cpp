@@ -16,7 +16,7 @@ namespace {
 constexpr double kMaxExactWhole = 9007199254740992.0;
 
 [[noreturn]] void fail(const Node& node, const std::string& name, const std::string& problem) {
-  throw InputError(node.place.text(), name + ": " + problem);
+  throw error_at(node.place, name, ": ", problem);
 }
 
 [[noreturn]] void fail_expected(const Node& node, const std::string& name,

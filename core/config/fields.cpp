@@ -173,7 +173,7 @@ std::string Fields::choice_that_knows(const std::string& key, const Describe& de
 void Fields::fail(const Node& at, const std::string& name, const std::string& separator,
                   const std::string& problem) const {
   if (mode_ == Mode::kCheck) throw InputError(name, problem);
-  throw InputError(at.place.text(), name + separator + problem);
+  throw error_at(at.place, name, separator, problem);
 }
 
 }  // namespace saccade::config

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "core/error.h"
+
 namespace saccade::config {
 
 /// Where values come from: a file, or one `--set` of the command line.
@@ -19,10 +21,12 @@ struct Place {
   int line = 0;  ///< 1-based; 0 where a line means nothing
 
   /// "walls.yaml:12", "--set events.contrast_on", or "" without a source.
-  [[nodiscard]] std::string text() const {
-    if (!source) return {};
-    return line > 0 ? source->name + ":" + std::to_string(line) : source->name;
-  }
+  [[nodiscard]] std::string text() const;
 };
+
+/// "walls.yaml:12: events.log_eps = 2 is above 1" with the separator " = "; where the place is a
+/// `--set` of this very key, it names the key already: "--set events.log_eps: 2 is above 1".
+[[nodiscard]] InputError error_at(const Place& place, const std::string& name,
+                                  const std::string& separator, const std::string& problem);
 
 }  // namespace saccade::config

@@ -6,7 +6,6 @@
 #include "core/config/convert.h"
 #include "core/config/fields.h"
 #include "core/config/suggest.h"
-#include "core/error.h"
 
 namespace saccade::config {
 namespace {

@@ -150,7 +150,8 @@ TEST(Read, Ranges) {
             "a.yaml:1: words: expected a list of 0 to 2 values, got 3");
   EXPECT_EQ(read_error("control_poses:\n  - [0, 1]\n"),
             "a.yaml:2: control_poses[0]: expected a list of 7 to 8 values, got 2");
-  EXPECT_EQ(read_error("", {"samples=3"}).find("--set samples: samples = 3 is below 6"), 0U);
+  EXPECT_EQ(read_error("", {"samples=3"}), "--set samples: 3 is below 6 (allowed: 6 to 1000000)");
+  EXPECT_EQ(read_error("", {"blur={sigma_px: 0}"}), "--set blur: blur.sigma_px = 0 is not above 0");
 }
 
 TEST(Read, ConditionsBetweenKeys) {
