@@ -1,6 +1,7 @@
 #include "simulator/scene/ray_caster.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -18,12 +19,12 @@ constexpr std::size_t kPacket = 16;
 /// Beyond this many triangles Embree's coherent traversal loses against the incoherent one.
 constexpr std::size_t kCoherentTriangles = 500'000;
 
-/// One thread builds the tree, so that it is the same on every machine. Without -march=native the
-/// build promises equal results everywhere, and Embree must not pick what this processor has.
+/// Without -march=native the build promises equal results everywhere, and Embree must not pick what
+/// this processor has. Its option "threads" would hold back every other use of TBB in the process.
 #ifdef __AVX2__
-constexpr const char* kDeviceOptions = "threads=1";
+constexpr const char* kDeviceOptions = "";
 #else
-constexpr const char* kDeviceOptions = "threads=1,isa=sse4.2";
+constexpr const char* kDeviceOptions = "isa=sse4.2";
 #endif
 
 struct ReleaseDevice {
@@ -129,7 +130,8 @@ RayCaster::RayCaster(std::span<const Corners> corners, std::size_t opaque, IsOpa
                 state_.get());
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(scene);
+  // One thread builds the tree, so that it is the same on every machine.
+  tbb::task_arena(1).execute([scene] { rtcCommitScene(scene); });
   SACCADE_CHECK(rtcGetDeviceError(state_->device.get()) == RTC_ERROR_NONE);
 }
 
