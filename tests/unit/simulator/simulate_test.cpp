@@ -1,0 +1,182 @@
+#include "simulator/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/dataset.h"
+#include "core/io/events_h5.h"
+#include "core/io/image_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/srgb.h"
+#include "tests/support/closed_form_plane.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ClosedFormPlane;
+
+/// A folder with a plane's files, and the configuration that simulates it.
+class SimulatePlane : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    set_progress_quiet(true);
+    folder_ = fs::path(::testing::TempDir()) /
+              ("simulate_" +
+               std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    plane_.duration_s = 0.25;
+    mesh_ = plane_.write_mesh(folder_);
+  }
+
+  void TearDown() override {
+    set_thread_count(0);
+    set_progress_quiet(false);
+    fs::remove_all(folder_);
+  }
+
+  /// The configuration as a user writes it, with `more` lines.
+  [[nodiscard]] SimulationConfig config(const std::string& more = "") const {
+    const Eigen::Vector2d end = plane_.start + plane_.duration_s * plane_.velocity;
+    std::ostringstream yaml;
+    yaml << "scene: {meshes: [{file: " << mesh_ << "}]}\n"
+         << "trajectory:\n  source: waypoints\n  waypoints:\n"
+         << "    - [5, " << plane_.start.x() << ", " << plane_.start.y() << ", 0, 0, 0, 0, 1]\n"
+         << "    - [" << 5 + plane_.duration_s << ", " << end.x() << ", " << end.y()
+         << ", 0, 0, 0, 0, 1]\n"
+         << "camera: {width: 61, height: 46, fx: 100, fy: 100}\n"
+         << more;
+    return config::read<SimulationConfig>(config::parse(yaml.str(), "test.yaml", folder_));
+  }
+
+  [[nodiscard]] fs::path output(const std::string& name = "out") const { return folder_ / name; }
+
+  ClosedFormPlane plane_ = ClosedFormPlane::smooth(61, 46);
+  fs::path folder_, mesh_;
+};
+
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      std::ostringstream bytes;
+      bytes << file.rdbuf();
+      files[entry.path().lexically_relative(folder).string()] = bytes.str();
+    }
+  return files;
+}
+
+TEST_F(SimulatePlane, WritesADatasetThatAgreesWithTheClosedForm) {
+  const SimulationReport report =
+      simulate(config("events: {timestamp_unit: ns}\ngroundtruth: {flow_rate_hz: 20}\n"), output());
+  const Dataset dataset = Dataset::open(output());
+  EXPECT_EQ(dataset.camera().cx, 30);
+  const Events events = dataset.load_events();
+  const auto match = testing::match_exact(plane_.events(0.15, 0.15, 1e-3), events, 61, 46);
+  EXPECT_EQ(match.found, match.expected);
+  EXPECT_EQ(match.wrong_pixels, 0U);
+  EXPECT_LE(match.median_us, 0.1);
+  EXPECT_LE(match.p99_us, 1);
+  EXPECT_EQ(report.event_count(), static_cast<std::int64_t>(events.size()));
+  EXPECT_NEAR(report.path_length_m, 0.25 * plane_.velocity.norm(), 1e-9);
+
+  EXPECT_EQ(dataset.groundtruth().start_s(), 0);
+  EXPECT_EQ(dataset.groundtruth().end_s(), 0.25);
+  EXPECT_EQ(dataset.groundtruth().size(), 251U);
+  ASSERT_EQ(dataset.frames().size(), 7U);      // 24 Hz: 0 .. 6 / 24
+  ASSERT_EQ(dataset.depth_maps().size(), 9U);  // and 10 Hz: 0.1, 0.2
+  EXPECT_NEAR(*dataset.facts().mean_depth_m, plane_.distance_m, 1e-6);
+  EXPECT_EQ(report.record.counts->flow_maps, 6);
+  EXPECT_EQ(report.record.counts->imu_samples, 251);
+  EXPECT_TRUE(verify_hashes(output()).empty());
+}
+
+TEST_F(SimulatePlane, FramesShowTheRadianceAtTheirTime) {
+  simulate(config(), output());
+  const Dataset dataset = Dataset::open(output());
+  const ImageF frame = dataset.load_frame(3);
+  const ImageU8 picture = read_image_grey(output() / "images" / "frame_00000003.png");
+  for (int y = 0; y < 46; y += 5)
+    for (int x = 0; x < 61; x += 5) {
+      const Eigen::Vector2d texel = plane_.texel(x, y, 3 / 24.0);
+      const double radiance = sample(plane_.texture, texel.x(), texel.y());
+      EXPECT_NEAR(frame(x, y), radiance, 1e-5 * radiance);
+      EXPECT_EQ(picture(x, y), srgb8_from_linear(static_cast<float>(radiance)));
+    }
+}
+
+TEST_F(SimulatePlane, ExposureAveragesLinearRadiance) {
+  simulate(config("frames: {rate_hz: 10, exposure_s: 0.05}\n"), output());
+  const ImageF frame = Dataset::open(output()).load_frame(1);
+  for (int y = 0; y < 46; y += 5)
+    for (int x = 0; x < 61; x += 5) {
+      double mean = 0;
+      constexpr int kParts = 2000;
+      for (int k = 0; k < kParts; ++k) {
+        const Eigen::Vector2d texel = plane_.texel(x, y, 0.075 + 0.05 * (k + 0.5) / kParts);
+        mean += sample(plane_.texture, texel.x(), texel.y()) / kParts;
+      }
+      EXPECT_NEAR(frame(x, y), mean, 0.01 * mean);
+    }
+}
+
+TEST_F(SimulatePlane, BytesDoNotDependOnTheThreads) {
+  std::map<std::string, std::string> first;
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    simulate(config("imu: {rate_hz: 200}\n"), output());
+    const auto files = contents(output());
+    if (first.empty()) first = files;
+    ASSERT_EQ(files.size(), first.size());
+    for (const auto& [name, bytes] : files) EXPECT_TRUE(bytes == first[name]) << name;
+  }
+}
+
+TEST_F(SimulatePlane, CutsThePieceThatIsAskedFor) {
+  simulate(config("start_s: 0.05\nduration_s: 0.1\nframes: {rate_hz: 0}\nimu: {rate_hz: 0}\n"),
+           output());
+  const Dataset dataset = Dataset::open(output());
+  EXPECT_EQ(dataset.groundtruth().start_s(), 0);
+  EXPECT_NEAR(dataset.groundtruth().end_s(), 0.1, 1e-12);
+  EXPECT_TRUE(dataset.frames().empty());
+  EXPECT_EQ(dataset.depth_maps().size(), 2U);
+  EXPECT_FALSE(fs::exists(output() / "imu.txt"));
+}
+
+TEST_F(SimulatePlane, LeavesAForeignFolderAlone) {
+  fs::create_directories(output());
+  std::ofstream(output() / "thesis.txt") << "mine";
+  EXPECT_THROW(simulate(config(), output()), InputError);
+  EXPECT_TRUE(fs::exists(output() / "thesis.txt"));
+}
+
+TEST_F(SimulatePlane, RefusesWhatCannotBeSimulated) {
+  for (const char* bad :
+       {"start_s: 0.3\n", "start_s: 0.2\nduration_s: 0.1\n", "events: {samples_per_pixel: 3}\n",
+        "events: {contrast_on: 0}\n", "events: {preset: perfect}\n",
+        "events: {timestamp_unit: ms}\n", "frames: {rate_hz: -1}\n",
+        "groundtruth: {pose_rate_hz: 0}\n", "seeds: 3\n", "duration_s: 0\n"})
+    EXPECT_THROW(simulate(config(bad), output()), InputError) << bad;
+  EXPECT_FALSE(fs::exists(output()));
+}
+
+TEST_F(SimulatePlane, ConfigurationPrintsAndReadsBackTheSame) {
+  const std::string text =
+      config::print(config("duration_s: 0.1\nevents: {samples_per_pixel: 4}\n"));
+  const auto again = config::read<SimulationConfig>(config::parse(text, "printed"));
+  EXPECT_EQ(config::print(again), text);
+  EXPECT_EQ(again.events.samples_per_pixel, 4);
+  EXPECT_EQ(again.camera.cy, 22.5);
+}
+
+}  // namespace
+}  // namespace saccade
