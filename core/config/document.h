@@ -27,8 +27,9 @@ class Document {
 /// ones: maps are merged key by key, everything else is replaced, and `key: ~` takes an included
 /// key back. `overrides` are "key.path=value" (value in YAML, list items by index:
 /// "scene.meshes.0.file=a.obj"; relative paths in them are relative to the working directory),
-/// applied in order by the same rules. Throws InputError with file:line or `--set key.path` for all
-/// that is no valid YAML, duplicate keys, missing files and include cycles.
+/// applied in order: the value replaces what was there, whole maps too, and `~` removes the key.
+/// Throws InputError with file:line or `--set key.path` for all that is no valid YAML, duplicate
+/// keys, missing files and include cycles.
 [[nodiscard]] Document load(const std::filesystem::path& file,
                             std::span<const std::string> overrides = {});
 

@@ -57,9 +57,15 @@ class Override {
   }
 
   void set(Node& node, const std::string& key, Node value) {
-    if (node.kind == Node::Kind::kList) return merge(item(node, key), std::move(value));
+    if (node.kind == Node::Kind::kList) {
+      item(node, key) = std::move(value);
+      return;
+    }
     if (node.kind == Node::Kind::kNull) make_map(node);
     require_map(node, key);
+    Entry* entry = node.find(key);
+    // A map given here replaces the one before: its keys may belong to another choice.
+    if (entry != nullptr && value.kind == Node::Kind::kMap) entry->value = Node{};
     merge_entry(node, {key, place_, std::move(value), {}});
   }
 

@@ -9,7 +9,8 @@ namespace saccade::config {
 /// a misspelt key is still found).
 void merge(Node& base, Node over);
 
-/// Applies one "key.path=value" to a tree. Throws InputError with the place `--set key.path`.
+/// Applies one "key.path=value" to a tree; the value replaces what was there, a null removes it.
+/// Throws InputError with the place `--set key.path`.
 void apply_override(Node& root, const std::string& assignment);
 
 }  // namespace saccade::config

@@ -99,7 +99,7 @@ TEST(Overrides, SetKeysAlongTheirPath) {
   EXPECT_EQ(overridden("v: [1, 2]\n", {"v.0=7"}), "v: [7, 2]\n");
   EXPECT_EQ(overridden("a: 1\n", {"a=2", "a=3"}), "a: 3\n");
   EXPECT_EQ(overridden("a: 1\nb: 2\n", {"a=~"}), "b: 2\n");
-  EXPECT_EQ(overridden("a: {b: 1}\n", {"a={c: 2}"}), "a:\n  b: 1\n  c: 2\n");
+  EXPECT_EQ(overridden("a: {b: 1}\n", {"a={c: 2}"}), "a:\n  c: 2\n");
   EXPECT_EQ(overridden("", {"a=x=y"}), "a: \"x=y\"\n");
   EXPECT_EQ(to_yaml(Document::empty(std::vector<std::string>{"seed=3"}).root()), "seed: 3\n");
 }
