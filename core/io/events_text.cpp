@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -16,6 +18,7 @@ namespace saccade {
 namespace {
 
 constexpr const char* kColumns = "t x y p";
+constexpr std::size_t kTypicalLineBytes = 20;
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 
 /// Column or row of an event; `limit` 0 = unknown.
@@ -43,10 +46,20 @@ TimeNs read_time(TextRow& row, TimeNs previous) {
   return t_ns;
 }
 
+void append_field(std::uint16_t value, std::string& text) {
+  std::array<char, 8> digits;
+  const auto [end, error] = std::to_chars(digits.begin(), digits.end(), value);
+  text += ' ';
+  text.append(digits.begin(), end);
+}
+
 }  // namespace
 
 Events read_events_text(const std::filesystem::path& file, SensorSize size, TimeWindow window) {
   Events events;
+  const bool whole = window.start_ns == TimeWindow().start_ns;
+  if (whole && std::filesystem::is_regular_file(file))
+    events.reserve(std::filesystem::file_size(file) / kTypicalLineBytes);
   TimeNs previous = std::numeric_limits<TimeNs>::min();
   for_each_row(file, [&](TextRow& row) {
     Event event;
@@ -90,7 +103,7 @@ struct EventTextWriter::State {
 
   AtomicFile target;
   std::ofstream stream;
-  fmt::memory_buffer buffer;
+  std::string buffer;
   TimeNs last = std::numeric_limits<TimeNs>::min();
   std::uint64_t count = 0;
 };
@@ -104,8 +117,10 @@ void EventTextWriter::append(std::span<const Event> events) {
   for (const Event& event : events) {
     SACCADE_CHECK(event.t_ns >= state_->last);
     state_->last = event.t_ns;
-    fmt::format_to(std::back_inserter(state_->buffer), "{} {} {} {}\n", decimal_seconds(event.t_ns),
-                   event.x, event.y, event.polarity > 0 ? 1 : 0);
+    append_decimal_seconds(event.t_ns, state_->buffer);
+    append_field(event.x, state_->buffer);
+    append_field(event.y, state_->buffer);
+    state_->buffer += event.polarity > 0 ? " 1\n" : " 0\n";
     if (state_->buffer.size() > kFlushBytes) state_->flush();
   }
   state_->count += events.size();

@@ -1,9 +1,9 @@
 #include "core/io/text_table.h"
 
 #include <fast_float/fast_float.h>
-#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -17,9 +17,21 @@ namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool ends_field(const char* p, const char* end) { return p == end || is_space(*p) || *p == ','; }
+
+constexpr std::array<std::int64_t, 10> kPowersOfTen{
+    1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+
+/// Up to nine digits; returns how many there were.
+std::ptrdiff_t parse_digits(const char*& p, const char* end, std::int64_t& value) {
+  const char* begin = p;
+  if (end - p >= 8 && fast_float::is_made_of_eight_digits_fast(p)) {
+    value = fast_float::parse_eight_digits_unrolled(p);
+    p += 8;
+  }
+  for (; p != end && is_digit(*p) && p - begin < 9; ++p) value = value * 10 + (*p - '0');
+  return p - begin;
+}
 
 /// A plain decimal number in units of 1e-9, rounded to the nearest; nullopt when it is no such
 /// number or beyond int64. `p` moves behind it.
@@ -27,20 +39,18 @@ std::optional<TimeNs> parse_nano(const char*& p, const char* end) {
   const bool negative = p != end && *p == '-';
   if (p != end && (*p == '-' || *p == '+')) ++p;
   constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;
+  const char* begin = p;
   std::int64_t seconds = 0;
-  const char* digits = p;
   for (; p != end && is_digit(*p); ++p)
     if ((seconds = seconds * 10 + (*p - '0')) > kMaxSeconds) return std::nullopt;
-  std::ptrdiff_t count = p - digits;
+  std::ptrdiff_t count = p - begin;
   std::int64_t nanos = 0;
   if (p != end && *p == '.') {
-    digits = ++p;
-    std::int64_t unit = 1'000'000'000;
-    for (; p != end && is_digit(*p) && unit > 1; ++p) nanos = nanos * 10 + (*p - '0'), unit /= 10;
-    nanos *= unit;
+    const std::ptrdiff_t digits = parse_digits(++p, end, nanos);
+    nanos *= kPowersOfTen[static_cast<std::size_t>(9 - digits)];
     if (p != end && is_digit(*p) && *p >= '5') ++nanos;
     while (p != end && is_digit(*p)) ++p;
-    count += p - digits;
+    count += digits;
   }
   if (count == 0) return std::nullopt;
   const std::int64_t value = seconds * 1'000'000'000 + nanos;
@@ -75,20 +85,10 @@ std::optional<std::string> without_exponent(std::string_view text) {
 
 }  // namespace
 
-void TextRow::skip_separator() {
-  while (rest_ != end_ && is_space(*rest_)) ++rest_;
-  if (!first_ && rest_ != end_ && *rest_ == ',') {
-    ++rest_;
-    while (rest_ != end_ && is_space(*rest_)) ++rest_;
-    if (rest_ == end_ || *rest_ == ',') fail("a field is empty");
-  }
-  first_ = false;
-}
-
-bool TextRow::at_end() {
-  const char* p = rest_;
-  while (p != end_ && is_space(*p)) ++p;
-  return p == end_;
+void TextRow::skip_comma() {
+  const bool empty_before = first_;
+  ++rest_;
+  if (empty_before || at_end() || *rest_ == ',') fail("a field is empty");
 }
 
 double TextRow::number(const char* name) {
@@ -97,21 +97,20 @@ double TextRow::number(const char* name) {
   if (begin != end_ && *begin == '+') ++begin;  // from_chars takes no plus
   double value = 0;
   const auto [rest, error] = fast_float::from_chars(begin, end_, value);
-  if (error != std::errc() || !ends_field(rest, end_)) fail_field(name, "a number");
+  if (error != std::errc() || !ends_field(rest)) fail_field(name, "a number");
   if (!std::isfinite(value)) fail_field(name, "a finite number");
   rest_ = rest;
   return value;
 }
 
-std::int64_t TextRow::integer(const char* name) {
-  skip_separator();
+std::int64_t TextRow::long_integer(const char* name) {
   const bool negative = rest_ != end_ && *rest_ == '-';
-  const char* p = negative ? rest_ + 1 : rest_;
+  const char* p = rest_ + static_cast<int>(negative);
   const char* digits = p;
   std::int64_t value = 0;
-  constexpr std::int64_t kLimit = std::numeric_limits<std::int64_t>::max() / 10 - 1;
-  for (; p != end_ && is_digit(*p) && value < kLimit; ++p) value = value * 10 + (*p - '0');
-  if (p == digits || !ends_field(p, end_)) fail_field(name, "a whole number");
+  constexpr std::ptrdiff_t kMaxDigits = 18;  // these always fit
+  for (; p != end_ && is_digit(*p) && p - digits < kMaxDigits; ++p) value = value * 10 + (*p - '0');
+  if (p == digits || !ends_field(p)) fail_field(name, "a whole number");
   rest_ = p;
   return negative ? -value : value;
 }
@@ -121,13 +120,13 @@ TimeNs TextRow::seconds(const char* name) {
   const char* p = rest_;
   std::optional<TimeNs> value = parse_nano(p, end_);
   if (value && p != end_ && (*p == 'e' || *p == 'E')) {
-    while (!ends_field(p, end_)) ++p;
+    while (!ends_field(p)) ++p;
     const std::optional<std::string> plain =
         without_exponent({rest_, static_cast<std::size_t>(p - rest_)});
     const char* digits = plain ? plain->data() : nullptr;
     value = plain ? parse_nano(digits, plain->data() + plain->size()) : std::nullopt;
   }
-  if (!value || !ends_field(p, end_)) fail_field(name, "a time in seconds");
+  if (!value || !ends_field(p)) fail_field(name, "a time in seconds");
   rest_ = p;
   return *value;
 }
@@ -135,13 +134,13 @@ TimeNs TextRow::seconds(const char* name) {
 std::string_view TextRow::word(const char* name) {
   skip_separator();
   const char* begin = rest_;
-  while (!ends_field(rest_, end_)) ++rest_;
+  while (!ends_field(rest_)) ++rest_;
   if (begin == rest_) fail_field(name, "a word");
   return {begin, static_cast<std::size_t>(rest_ - begin)};
 }
 
-void TextRow::expect_end(const char* columns) {
-  if (!at_end()) fail(std::string("more fields than expected; a line holds `") + columns + "`");
+void TextRow::fail_end(const char* columns) const {
+  fail(std::string("more fields than expected; a line holds `") + columns + "`");
 }
 
 void TextRow::fail(const std::string& problem) const {
@@ -150,7 +149,7 @@ void TextRow::fail(const std::string& problem) const {
 
 void TextRow::fail_field(const char* name, const char* expected) const {
   const char* p = rest_;
-  while (!ends_field(p, end_) && p - rest_ < 40) ++p;
+  while (!ends_field(p) && p - rest_ < 40) ++p;
   const std::string found(rest_, p);
   fail(std::string(name) + ": expected " + expected + ", found " +
        (found.empty() ? "the end of the line" : "'" + found + "'"));
@@ -196,10 +195,23 @@ bool TextReader::next(std::string_view& line) {
   }
 }
 
-std::string decimal_seconds(TimeNs t_ns) {
+void append_decimal_seconds(TimeNs t_ns, std::string& text) {
   const std::uint64_t t =
       t_ns < 0 ? 0 - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
-  return fmt::format("{}{}.{:09}", t_ns < 0 ? "-" : "", t / 1'000'000'000, t % 1'000'000'000);
+  std::array<char, 24> digits;
+  if (t_ns < 0) text += '-';
+  const auto [end, error] = std::to_chars(digits.begin(), digits.end(), t / 1'000'000'000);
+  text.append(digits.begin(), end);
+  // The fraction with a one before it, which keeps its leading zeros and then becomes the point.
+  std::to_chars(digits.begin(), digits.end(), 1'000'000'000 + t % 1'000'000'000);
+  digits[0] = '.';
+  text.append(digits.data(), 10);
+}
+
+std::string decimal_seconds(TimeNs t_ns) {
+  std::string text;
+  append_decimal_seconds(t_ns, text);
+  return text;
 }
 
 NumberTable read_number_table(const std::filesystem::path& file, const char* header) {
