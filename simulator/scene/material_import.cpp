@@ -45,10 +45,11 @@ std::optional<TextureReference> find_texture(const aiMaterial& material, aiTextu
   return reference;
 }
 
-/// Texture names are relative to the mesh file and may come from Windows.
+/// Texture names are relative to the mesh file and may come from Windows, with blanks behind them.
 fs::path texture_file(const TextureReference& reference, const MaterialContext& context) {
   std::string name = reference.name;
   std::ranges::replace(name, '\\', '/');
+  name.erase(name.find_last_not_of(" \t\r") + 1);
   return (context.mesh_file.parent_path() / name).lexically_normal();
 }
 

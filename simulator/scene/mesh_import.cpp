@@ -93,10 +93,9 @@ class Flattener {
  private:
   void add(const aiMesh& part, const Eigen::Affine3d& file_from_node) {
     const ImportedMaterial& imported = materials_[part.mMaterialIndex];
-    if (imported.invisible) return;
     const Material& material = imported.material;
     const bool textured = material.texture != nullptr || material.opacity != nullptr;
-    if (textured && !part.HasTextureCoords(imported.uv_channel))
+    if (!imported.invisible && textured && !part.HasTextureCoords(imported.uv_channel))
       throw InputError(place_, fmt::format("material '{}' has a texture, but its faces have no "
                                            "texture coordinates",
                                            material_name(part)));
@@ -109,7 +108,8 @@ class Flattener {
       mesh_.uvs.push_back(uv_of(part, i, imported.uv_channel));
       mesh_.colours.push_back(colour_of(part, i, material));
     }
-    add_faces(part, static_cast<std::uint32_t>(first));
+    // Vertices stay in any case: a model's size is that of all its parts.
+    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
   }
 
   void add_faces(const aiMesh& part, std::uint32_t first) {

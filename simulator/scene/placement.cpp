@@ -5,11 +5,9 @@
 namespace saccade {
 namespace {
 
-/// Of the vertices that triangles use, after a linear map.
 Eigen::AlignedBox3d bounding_box(const Mesh& mesh, const Eigen::Matrix3d& linear) {
   Eigen::AlignedBox3d box;
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle.corners) box.extend(linear * mesh.vertices[corner]);
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(linear * vertex);
   return box;
 }
 
