@@ -112,7 +112,7 @@ EventStatistics write_events(const Take& take) {
 }
 
 DatasetRecord facts(const Take& take, const std::filesystem::path& output,
-                    const EventStatistics& events) {
+                    const SimulationReport& report) {
   DatasetRecord record;
   record.name = output.filename().string();
   record.seed = take.config.seed;
@@ -121,7 +121,9 @@ DatasetRecord facts(const Take& take, const std::filesystem::path& output,
   record.contrast_on = take.config.events.contrast.on;
   record.contrast_off = take.config.events.contrast.off;
   record.log_eps = take.config.events.log_eps;
-  record.rays = static_cast<std::int64_t>(events.rays);
+  record.rays = static_cast<std::int64_t>(report.events.rays);
+  record.time_bound_us = 1e6 * report.events.time_bound_s;
+  record.path_length_m = report.path_length_m;
   return record;
 }
 
@@ -150,7 +152,7 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   report.images_s = watch.lap();
   report.events = write_events(take);
   report.events_s = watch.lap();
-  report.record = writer.finish(facts(take, output, report.events));
+  report.record = writer.finish(facts(take, output, report));
   report.total_s = whole.lap();
   return report;
 }

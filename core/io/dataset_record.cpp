@@ -53,6 +53,11 @@ void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("log_eps", record.log_eps, "eps of L = ln(eps + I)").above(0);
   fields.value("rays", record.rays, "cast in all").at_least(0);
   fields.value("rays_per_event", record.rays_per_event, "[-]").at_least(0);
+  fields
+      .value("time_bound_us", record.time_bound_us,
+             "of every event's time, before rounding to the unit [us]")
+      .at_least(0);
+  fields.value("path_length_m", record.path_length_m, "of the camera [m]").at_least(0);
   fields.embed("config", record.config_yaml, "the resolved configuration");
   fields.value("sha256", record.sha256, "of every other file");
 }

@@ -87,7 +87,8 @@ TEST_F(SimulatePlane, WritesADatasetThatAgreesWithTheClosedForm) {
   EXPECT_LE(match.median_us, 0.1);
   EXPECT_LE(match.p99_us, 1);
   EXPECT_EQ(report.event_count(), static_cast<std::int64_t>(events.size()));
-  EXPECT_NEAR(report.path_length_m, 0.25 * plane_.velocity.norm(), 1e-9);
+  EXPECT_NEAR(*report.record.path_length_m, 0.25 * plane_.velocity.norm(), 1e-9);
+  EXPECT_LE(*report.record.time_bound_us, 1);
 
   EXPECT_EQ(dataset.groundtruth().start_s(), 0);
   EXPECT_EQ(dataset.groundtruth().end_s(), 0.25);
