@@ -18,12 +18,13 @@ namespace saccade {
 namespace fs = std::filesystem;
 namespace {
 
-/// Absolute, without dots and without a slash at the end.
+/// Absolute, without dots and without a slash at the end; what a link points to, so that the link
+/// stays.
 fs::path final_name(const fs::path& path) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   const fs::path name = whole.has_filename() ? whole : whole.parent_path();
   if (name.filename().empty()) throw InputError(path.string(), "is no name to write to");
-  return name;
+  return fs::is_symlink(name) && fs::exists(name) ? fs::canonical(name) : name;
 }
 
 /// A hidden name in the same folder, so that renaming stays within one file system; unique among
@@ -54,6 +55,8 @@ AtomicFile::AtomicFile(const fs::path& file)
     : target_(final_name(file)), temporary_(sibling_of(target_, "partial")) {
   create_parent_of(target_);
   if (fs::is_directory(target_)) throw InputError(file.string(), "is a folder, not a file");
+  if (fs::exists(target_) && !fs::is_regular_file(target_))
+    throw InputError(file.string(), "is a device or the like, which cannot be replaced by a file");
   // Fails here rather than after the work when the place is not writable.
   if (!std::ofstream(temporary_))
     throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));

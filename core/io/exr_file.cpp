@@ -44,6 +44,27 @@ class MemoryStream final : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
+/// Written to memory first, because OpenEXR does not report what fails when it closes a file.
+class MemorySink final : public Imf::OStream {
+ public:
+  MemorySink() : OStream("memory") {}
+
+  void write(const char c[], int n) override {
+    const std::size_t end = position_ + static_cast<std::size_t>(n);
+    if (end > bytes_.size()) bytes_.resize(end);
+    bytes_.replace(position_, static_cast<std::size_t>(n), c, static_cast<std::size_t>(n));
+    position_ = end;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t position_ = 0;
+};
+
 std::vector<ExrChannel> decode_channels(Imf::InputFile& file) {
   const Imath::Box2i window = file.header().dataWindow();
   const int width = window.max.x - window.min.x + 1;
@@ -151,15 +172,13 @@ void write_exr(const std::filesystem::path& file, std::span<const ExrChannel> ch
                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(image.data())),
                              sizeof(float), sizeof(float) * static_cast<std::size_t>(width)));
   }
-  AtomicFile target(file);
-  try {
-    Imf::OutputFile output(target.path().c_str(), header, 0);
+  MemorySink sink;
+  {
+    Imf::OutputFile output(sink, header, 0);
     output.setFrameBuffer(buffer);
     output.writePixels(height);
-  } catch (const std::exception& error) {
-    throw InputError(file.string(), std::string("cannot be written: ") + error.what());
   }
-  target.commit();
+  write_atomically(file, sink.bytes());
 }
 
 void write_exr(const std::filesystem::path& file, const ImageF& image, const std::string& channel) {
