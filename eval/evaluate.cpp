@@ -2,10 +2,8 @@
 
 #include "core/error.h"
 #include "core/io/atomic_file.h"
-#include "core/io/dataset.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/trajectory_metrics.h"
-#include "eval/run_folder.h"
 
 namespace saccade {
 namespace {
@@ -20,20 +18,25 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
 
 }  // namespace
 
+Metrics score_run(const RunFolder& run, const Dataset& dataset,
+                  const std::optional<double>& mean_depth_m) {
+  Metrics metrics;
+  merge(metrics, run.timing, "speed.");
+  if (!run.trajectory) return metrics;
+  TrajectoryScoreInput input = score_input(run, dataset);
+  input.mean_depth_m = mean_depth_m;
+  merge(metrics, score_trajectory(input), "");
+  set_reprojection(metrics, reproject(run.load_map().positions, scored_samples(input),
+                                      dataset.camera().undistorted()));
+  return metrics;
+}
+
 Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options) {
   check_depth(options.mean_depth_m);
   const RunFolder run = RunFolder::open(run_folder);
-  Metrics metrics;
-  merge(metrics, run.timing, "speed.");
-  if (run.trajectory) {
-    const Dataset dataset = run.open_dataset(options.dataset);
-    TrajectoryScoreInput input = score_input(run, dataset);
-    if (options.mean_depth_m) input.mean_depth_m = options.mean_depth_m;
-    merge(metrics, score_trajectory(input), "");
-    const PointCloud map = run.load_map();
-    set_reprojection(
-        metrics, reproject(map.positions, scored_samples(input), dataset.camera().undistorted()));
-  }
+  const Dataset dataset = run.open_dataset(options.dataset);
+  const Metrics metrics = score_run(
+      run, dataset, options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m);
   write_atomically(run_folder / "metrics.json", to_json(metrics));
   return metrics;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "eval/metrics/metrics.h"
+#include "eval/run_folder.h"
 
 namespace saccade {
 
@@ -19,6 +20,10 @@ struct EvaluateOptions {
 /// (docs/metrics.md). What cannot be measured is null: a dataset without ground truth still gives
 /// the speed. Throws InputError for a folder that is no run, a missing dataset, malformed files.
 Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options = {});
+
+/// The same without reading and writing folders; `mean_depth_m` is d of dt_rel, nullopt: unknown.
+[[nodiscard]] Metrics score_run(const RunFolder& run, const Dataset& dataset,
+                                const std::optional<double>& mean_depth_m);
 
 /// Scores a trajectory of any program (TUM text) against a dataset's whole ground truth. Writes the
 /// scores to `output` where one is given.

@@ -72,14 +72,15 @@ ImageRgb8 draw_map_over_events(std::span<const Event> events,
   const bool dark = is_dark(theme);
   ImageRgb8 picture =
       upscale(draw_events(events, camera.width, camera.height, theme), upscale_factor);
+  const int size = std::max(1, upscale_factor - 1);
   Image<std::uint8_t> covered(picture.width(), picture.height());
   for (const Eigen::Vector2d& pixel : map_pixels) {
-    // The square of one sensor pixel around the point; sensor pixel (0, 0) starts at screen pixel
-    // 0.
+    // A little less than a sensor pixel, so that single points and the events between them show;
+    // sensor pixel (0, 0) starts at screen pixel 0.
     const auto left = static_cast<int>(std::lround(pixel.x() * upscale_factor));
     const auto top = static_cast<int>(std::lround(pixel.y() * upscale_factor));
-    for (int y = std::max(0, top); y < std::min(picture.height(), top + upscale_factor); ++y)
-      for (int x = std::max(0, left); x < std::min(picture.width(), left + upscale_factor); ++x)
+    for (int y = std::max(0, top); y < std::min(picture.height(), top + size); ++y)
+      for (int x = std::max(0, left); x < std::min(picture.width(), left + size); ++x)
         covered(x, y) = 1;
   }
   for (std::size_t i = 0; i < covered.size(); ++i)

@@ -7,7 +7,6 @@
 #include "core/io/event_file.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/event_picture.h"
-#include "eval/picture/image_picture.h"
 #include "eval/picture/map_overlay.h"
 
 namespace saccade {
@@ -80,10 +79,16 @@ std::optional<ImageRgb8> SensorView::frame(double t_s) const {
 }
 
 std::optional<ImageRgb8> SensorView::depth(double t_s) const {
+  std::optional<DepthPicture> plain = plain_depth(t_s);
+  if (!plain) return std::nullopt;
+  return with_colour_bar(upscale(plain->image, style_.upscale), plain->range);
+}
+
+std::optional<DepthPicture> SensorView::plain_depth(double t_s) const {
   if (dataset_.depth_maps().empty()) return std::nullopt;
   const ImageF depth = dataset_.load_depth(current_file(dataset_.depth_maps(), t_s));
   const DepthRange range = depth_range(depth);
-  return with_colour_bar(upscale(draw_depth(depth, range, style_.theme), style_.upscale), range);
+  return DepthPicture{draw_depth(depth, range, style_.theme), range};
 }
 
 TimeSpan time_span(const Dataset& dataset) {

@@ -7,6 +7,7 @@
 #include "core/io/dataset.h"
 #include "core/trajectory.h"
 #include "eval/picture/colour.h"
+#include "eval/picture/image_picture.h"
 
 namespace saccade {
 
@@ -15,6 +16,11 @@ struct SensorViewStyle {
   int upscale = 3;         ///< screen pixels per sensor pixel
   std::size_t events = 0;  ///< per picture; 0: 15 % of the number of pixels
   Theme theme = kDarkTheme;
+};
+
+struct DepthPicture {
+  ImageRgb8 image;
+  DepthRange range;
 };
 
 /// Draws what a dataset's sensor saw at a moment; all pictures have the same size, width x upscale
@@ -38,7 +44,9 @@ class SensorView {
   /// The latest grey frame and depth map at `t_s` (the first one before it); nullopt when the
   /// dataset has none.
   [[nodiscard]] std::optional<ImageRgb8> frame(double t_s) const;
-  [[nodiscard]] std::optional<ImageRgb8> depth(double t_s) const;
+  [[nodiscard]] std::optional<ImageRgb8> depth(double t_s) const;  ///< with a colour bar
+  /// The same without the bar, one pixel per sensor pixel.
+  [[nodiscard]] std::optional<DepthPicture> plain_depth(double t_s) const;
 
  private:
   [[nodiscard]] std::span<const Event> around(double t_s) const;

@@ -7,7 +7,7 @@
 namespace saccade {
 
 struct ReportOptions {
-  std::string title = "saccade";
+  std::string title = "saccade report";
 };
 
 /// Writes one HTML page about the runs that needs nothing beside it: tables against the thesis,

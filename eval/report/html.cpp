@@ -1,0 +1,103 @@
+#include "eval/report/html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/io/image_file.h"
+
+namespace saccade {
+namespace {
+
+constexpr const char* kNothing = "–";
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string figure(const ImageRgb8& picture, std::string_view caption, std::string_view alt) {
+  return fmt::format(
+      "<figure><img src=\"data:image/png;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
+      "<figcaption>{}</figcaption></figure>\n",
+      base64(encode_png(picture)), picture.width(), picture.height(), escape_html(alt), caption);
+}
+
+std::string fill_page(std::string_view page, const std::map<std::string, std::string>& values) {
+  std::string result;
+  for (;;) {
+    const std::size_t open = page.find("{{");
+    result += page.substr(0, open);
+    if (open == std::string_view::npos) return result;
+    const std::size_t close = page.find("}}", open);
+    SACCADE_CHECK(close != std::string_view::npos);
+    const auto value = values.find(std::string(page.substr(open + 2, close - open - 2)));
+    SACCADE_CHECK(value != values.end());
+    result += value->second;
+    page.remove_prefix(close + 2);
+  }
+}
+
+std::string significant(const std::optional<double>& value, int digits) {
+  if (!value) return kNothing;
+  if (*value == 0) return "0";
+  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(*value))));
+  const int decimals = digits - 1 - magnitude;
+  if (decimals >= 0) return fmt::format("{:.{}f}", *value, std::min(decimals, 12));
+  const double unit = std::pow(10, -decimals);
+  return fmt::format("{:.0f}", std::round(*value / unit) * unit);
+}
+
+std::string fixed(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
+}
+
+std::string grouped(const std::optional<double>& value) {
+  if (!value) return kNothing;
+  std::string digits = fmt::format("{:.0f}", *value);
+  for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), 1, ',');
+  return digits;
+}
+
+}  // namespace saccade

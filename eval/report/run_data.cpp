@@ -1,0 +1,59 @@
+#include "eval/report/run_data.h"
+
+#include "core/error.h"
+#include "core/io/event_file.h"
+#include "eval/evaluate.h"
+
+namespace saccade {
+namespace {
+
+void score(RunData& data) {
+  data.input = score_input(data.run, *data.data);
+  // Where the dataset states no depth, the one that `eval` was given holds here as well.
+  if (!data.input.mean_depth_m)
+    data.input.mean_depth_m = data.run.metrics.get("trajectory.mean_depth_m");
+  data.samples = scored_samples(data.input);
+  data.errors = errors_over_time(data.input);
+  data.map = data.run.load_map().positions;
+  data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
+  data.metrics = score_run(data.run, *data.data, data.input.mean_depth_m);
+}
+
+}  // namespace
+
+DatasetNumbers numbers_of(const Dataset& dataset) {
+  DatasetNumbers numbers;
+  if (!dataset.events_file().empty()) {
+    const EventFileInfo info = read_event_file_info(dataset.events_file());
+    numbers.events = static_cast<double>(info.count);
+    numbers.duration_s = seconds_from_ns(info.last_ns - info.first_ns);
+  }
+  numbers.mean_depth_m = dataset.facts().mean_depth_m;
+  if (!dataset.groundtruth().empty()) {
+    numbers.path_m = dataset.groundtruth().path_length();
+    // The last event of a simulation comes a little before its end.
+    if (dataset.record())
+      numbers.duration_s = dataset.groundtruth().end_s() - dataset.groundtruth().start_s();
+  }
+  return numbers;
+}
+
+RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
+  RunData data;
+  data.id = "run" + std::to_string(index);
+  data.run = RunFolder::open(folder);
+  data.fast = data.run.name().find("fast") != std::string::npos;
+  data.metrics = data.run.metrics;
+  data.dataset = data.run.record.dataset.filename().string();
+  if (!std::filesystem::is_directory(data.run.record.dataset)) {
+    data.missing = data.run.record.dataset.string() + " is not there";
+    return data;
+  }
+  data.data = data.run.open_dataset();
+  data.dataset = data.data->facts().name;
+  data.numbers = numbers_of(*data.data);
+  score(data);
+  return data;
+}
+
+}  // namespace saccade

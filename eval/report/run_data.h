@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/io/dataset.h"
+#include "eval/metrics/reprojection.h"
+#include "eval/run_folder.h"
+
+namespace saccade {
+
+/// What table 8.1 says about a dataset.
+struct DatasetNumbers {
+  std::optional<double> events;
+  std::optional<double> duration_s;
+  std::optional<double> mean_depth_m;
+  std::optional<double> path_m;
+};
+
+/// A run with everything that the page says about it, scored anew where its dataset is there.
+struct RunData {
+  std::string id;       ///< unique on the page, an HTML id
+  std::string dataset;  ///< name
+  bool fast = false;    ///< its name says it used the thesis's fast setting
+  RunFolder run;
+  std::optional<Dataset> data;  ///< nullopt: the folder is gone, `missing` says why
+  std::string missing;
+  DatasetNumbers numbers;
+  Metrics metrics;
+  TrajectoryScoreInput input;
+  ScoredSamples samples;
+  ErrorSeries errors;
+  ReprojectionSeries reprojection;
+  std::vector<Eigen::Vector3f> map;
+};
+
+/// Reads and scores the run folder; `index` is its place on the page.
+[[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
+
+[[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);
+
+}  // namespace saccade

@@ -1,0 +1,221 @@
+#include "eval/report/run_section.h"
+
+#include <fmt/format.h>
+
+#include "core/io/event_file.h"
+#include "eval/evaluate.h"
+#include "eval/picture/sensor_view.h"
+#include "eval/report/html.h"
+
+namespace saccade {
+namespace {
+
+std::string key_number(const std::string& value, const std::string& unit,
+                       const std::string& label) {
+  return fmt::format("<li><b>{}<small>{}</small></b><span>{}</span></li>", value, unit, label);
+}
+
+std::string key_numbers(const RunData& data) {
+  const Metrics& m = data.metrics;
+  std::optional<double> coverage = m.get("trajectory.coverage");
+  if (coverage) *coverage *= 100;
+  std::string html = "<ul class=\"keys\">";
+  html += key_number(significant(m.get("trajectory.dt_rel_percent.mean")), "%",
+                     "mean &Delta;t<sub>rel</sub>");
+  html +=
+      key_number(significant(m.get("trajectory.dtheta_deg.mean")), "deg", "mean &Delta;&theta;");
+  html += key_number(significant(m.get("trajectory.reprojection_px.rms")), "px",
+                     "map in the image, RMS");
+  html += key_number(fixed(coverage, 1), "%", "of the time covered");
+  html += key_number(grouped(m.get("trajectory.poses")), "", "poses");
+  html += key_number(grouped(speed_value(m, "speed.poses_per_s")), "/s", "poses");
+  return html + "</ul>\n";
+}
+
+std::string views(const RunData& data) {
+  if (data.samples.t_s.empty()) return "";
+  const auto plot = [&](const char* name, const char* title) {
+    return fmt::format("<div><h4>{}</h4><div class=\"plot\" data-plot=\"{}/{}\"></div></div>\n",
+                       title, data.id, name);
+  };
+  std::string html = fmt::format(
+      "<div class=\"grid\"><figure class=\"space3d\" data-space=\"{}\">"
+      "<canvas role=\"img\" aria-label=\"Trajectory in 3-D\"></canvas>"
+      "<label><output></output><input type=\"range\" min=\"0\" max=\"6\" value=\"0\" "
+      "aria-label=\"Exaggerate the deviation\"></label>"
+      "<figcaption>Drag to turn.<i class=\"swatch\" style=\"background:var(--truth)\"></i>truth"
+      "<i class=\"swatch\" style=\"background:var(--estimate)\"></i>estimate. The slider "
+      "multiplies the "
+      "deviation from the truth; dots mark the starts.</figcaption></figure>\n<div "
+      "class=\"plots\">",
+      data.id);
+  if (!data.errors.dt_rel_percent.empty())
+    html += plot("dt_rel", "&Delta;t<sub>rel</sub> [% of the mean scene depth]");
+  else
+    html += plot("dt", "&Delta;t [mm]");
+  html += plot("dtheta", "&Delta;&theta; [deg]");
+  if (!data.reprojection.t_s.empty())
+    html += plot("reprojection", "map reprojected by the estimate, RMS [px]");
+  return html +
+         "<p class=\"note\">Dashed: the mean. Shaded: no pose within 20 ms; the last one is "
+         "held.</p>"
+         "</div></div>\n";
+}
+
+std::string swatch(const Rgb8& colour, const char* name) {
+  return fmt::format("<i class=\"swatch\" style=\"background:rgb({},{},{})\"></i>{}", colour[0],
+                     colour[1], colour[2], name);
+}
+
+std::string map_pictures(const RunData& data) {
+  if (data.map.empty() || data.input.estimate.empty() || data.samples.t_s.empty()) return "";
+  constexpr double kMoments[] = {0.1, 0.5, 0.9};
+  const double start_s = data.samples.t_s.front();
+  const double length_s = data.samples.t_s.back() - start_s;
+  const SensorView view(*data.data, start_s, start_s + length_s, {});
+  std::string html =
+      "<h4>Map projected with the estimated pose, over the events</h4>"
+      "<div class=\"grid three\">";
+  for (const double share : kMoments) {
+    const double t_s = start_s + share * length_s;
+    html += figure(view.map_over_events(t_s, data.map, held_pose(data.input.estimate, t_s)),
+                   fmt::format("{:.3f} s", t_s) + swatch(kDarkTheme.map, "map") +
+                       swatch(kDarkTheme.on, "ON") + swatch(kDarkTheme.off, "OFF"),
+                   fmt::format("map over events at {:.3f} s", t_s));
+  }
+  return html + "</div>\n";
+}
+
+std::string alignment_table(const Metrics& metrics) {
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>alignment</th><th>ATE RMSE [mm]</th>"
+      "<th>rotation RMSE [deg]</th><th>scale</th></tr></thead><tbody>\n";
+  for (const auto& [key, name] :
+       {std::pair{"none", "none"}, {"se3", "SE(3)"}, {"sim3", "Sim(3)"}}) {
+    const std::string prefix = std::string("trajectory.") + key;
+    std::optional<double> ate_mm = metrics.get(prefix + ".ate_rmse_m");
+    if (ate_mm) *ate_mm *= 1000;
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", name,
+                        significant(ate_mm), significant(metrics.get(prefix + ".rot_rmse_deg")),
+                        fixed(metrics.get(prefix + ".scale"), 4));
+  }
+  return html + "</tbody></table></div>";
+}
+
+std::string relative_table(const Metrics& metrics) {
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>share of the path</th><th>translation [%]</th>"
+      "<th>rotation [deg/m]</th></tr></thead><tbody>\n";
+  for (int percent = 10; percent <= 50; percent += 10) {
+    const std::string key = fmt::format("trajectory.rpe.length_{}_percent", percent);
+    html += fmt::format("<tr><td>{} %</td><td>{}</td><td>{}</td></tr>\n", percent,
+                        significant(metrics.get(key + ".trans_percent")),
+                        significant(metrics.get(key + ".rot_deg_per_m")));
+  }
+  return html + "</tbody></table></div>";
+}
+
+std::string accuracy_details(const RunData& data) {
+  if (!data.metrics.get("trajectory.poses")) return "";
+  const Metrics& m = data.metrics;
+  return "<div class=\"grid\"><div><h4>All poses, after alignment</h4>" + alignment_table(m) +
+         fmt::format(
+             "<p class=\"note\">Drift at the end {} % of the path. Lost for {} s by the truth, "
+             "{} s by its own report. Worst instant of the map in the image: {} px RMS.</p>",
+             significant(m.get("trajectory.drift_percent")),
+             significant(m.get("trajectory.lost_s")),
+             significant(m.get("trajectory.reported_lost_s")),
+             significant(m.get("trajectory.reprojection_px.rms_max"))) +
+         "</div><div><h4>Relative errors over parts of the path</h4>" + relative_table(m) +
+         "</div></div>\n";
+}
+
+std::string stages(const RunData& data) {
+  const std::string prefix = "speed.stages_s.";
+  std::vector<std::pair<std::string, double>> parts;
+  double total = 0;
+  for (const auto& [key, value] : data.metrics.values())
+    if (key.starts_with(prefix) && value) {
+      parts.emplace_back(key.substr(prefix.size()), *value);
+      total += *value;
+    }
+  if (!(total > 0)) return "";
+  std::string bar, legend;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double share = 100 * parts[i].second / total;
+    bar += fmt::format("<i class=\"c{}\" style=\"width:{:.2f}%\"></i>", i % 6, share);
+    legend += fmt::format("<li><i class=\"c{}\"></i>{} {} ms ({:.0f} %)</li>", i % 6,
+                          escape_html(parts[i].first), significant(1e3 * parts[i].second), share);
+  }
+  const auto ms = [&](const char* key) {
+    std::optional<double> v = speed_value(data.metrics, std::string("speed.") + key);
+    if (v) *v *= 1e3;
+    return significant(v);
+  };
+  return fmt::format(
+      "<h4>Time per stage</h4><div class=\"stages\">{}</div><ul class=\"legend\">{}</ul>"
+      "<p class=\"note\">{} ms in all (fastest {}, slowest {}; {} repetitions), reading and "
+      "writing "
+      "{} ms more, peak memory {} MB.</p>\n",
+      bar, legend, ms("wall_s"), ms("wall_s.min"), ms("wall_s.max"),
+      grouped(data.metrics.get("speed.repetitions")), ms("io_s"),
+      significant(data.metrics.get("speed.peak_memory_mb")));
+}
+
+std::string provenance(const RunData& data) {
+  const RunRecord& r = data.run.record;
+  std::string list;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) list += fmt::format("<dt>{}</dt><dd>{}</dd>", name, escape_html(value));
+  };
+  add("command", r.command);
+  add("module", r.module);
+  add("dataset", r.dataset.string());
+  add("dataset hash", r.dataset_sha256);
+  if (r.window)
+    add("window", fmt::format("{:.6f} .. {:.6f} s", r.window->start_s, r.window->end_s));
+  add("seed", std::to_string(r.seed));
+  add("threads", r.threads > 0 ? std::to_string(r.threads) : "");
+  add("version", r.tool_version);
+  add("machine", r.machine);
+  std::string html =
+      "<details><summary>Provenance and configuration</summary><dl>" + list + "</dl>";
+  if (!r.config_yaml.empty()) html += "<pre>" + escape_html(r.config_yaml) + "</pre>";
+  return html + "</details>\n";
+}
+
+}  // namespace
+
+std::string dataset_pictures(const RunData& data) {
+  if (!data.data || data.data->events_file().empty()) return "";
+  const TimeSpan span = time_span(*data.data);
+  const double t_s = (span.start_s + span.end_s) / 2;
+  const SensorView view(*data.data, t_s, t_s, {});
+  // Only the events need hard pixels; pictures are interpolated by the browser.
+  const SensorView plain(*data.data, t_s, t_s, {.upscale = 1});
+  std::string html = "<div class=\"grid three\">";
+  html += figure(view.events(t_s),
+                 fmt::format("Events around {:.3f} s", t_s) + swatch(kDarkTheme.on, "ON") +
+                     swatch(kDarkTheme.off, "OFF"),
+                 "events");
+  if (const auto frame = plain.frame(t_s)) html += figure(*frame, "Grey frame", "grey frame");
+  if (const auto depth = view.plain_depth(t_s))
+    html += figure(depth->image,
+                   fmt::format("Depth, {} m (bright) to {} m (dark)",
+                               significant(depth->range.near_m), significant(depth->range.far_m)),
+                   "depth map");
+  return html + "</div>\n";
+}
+
+std::string run_section(const RunData& data) {
+  std::string html =
+      fmt::format("<section id=\"{}\"><h3>{}</h3>\n", data.id, escape_html(data.run.name()));
+  if (!data.data)
+    html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
+                        escape_html(data.missing));
+  html += key_numbers(data) + views(data);
+  if (data.data) html += map_pictures(data);
+  return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
+}
+
+}  // namespace saccade

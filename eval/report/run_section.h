@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "eval/report/run_data.h"
+
+namespace saccade {
+
+/// Everything about one run below its heading, as HTML: key numbers, 3-D view, plots, pictures,
+/// alignments, stages, provenance. The views are filled by the page's script from run_series().
+[[nodiscard]] std::string run_section(const RunData& data);
+
+/// Pictures of a dataset: events, frame and depth at its middle. Empty without events.
+[[nodiscard]] std::string dataset_pictures(const RunData& data);
+
+}  // namespace saccade

@@ -1,0 +1,125 @@
+#include "eval/report/run_series.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "eval/metrics/statistics.h"
+
+namespace saccade {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMaxCurvePoints = 1600;
+constexpr std::size_t kMaxPathPoints = 800;
+
+/// Five significant digits are more than a screen shows.
+double rounded(double value) {
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 4);
+  return std::round(value / unit) * unit;
+}
+
+double to_tenth_ms(double t_s) { return std::round(t_s * 1e4) / 1e4; }
+
+/// Indices of the smallest and largest value of each of at most kMaxCurvePoints / 2 stretches.
+std::vector<std::size_t> peaks(std::span<const double> values) {
+  std::vector<std::size_t> kept;
+  const std::size_t stretch =
+      std::max<std::size_t>(1, (2 * values.size() + kMaxCurvePoints - 1) / kMaxCurvePoints);
+  for (std::size_t begin = 0; begin < values.size(); begin += stretch) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last =
+        values.begin() + static_cast<std::ptrdiff_t>(std::min(begin + stretch, values.size()));
+    const auto [low, high] = std::minmax_element(first, last);
+    auto a = static_cast<std::size_t>(low - values.begin());
+    auto b = static_cast<std::size_t>(high - values.begin());
+    if (a > b) std::swap(a, b);
+    kept.push_back(a);
+    if (b != a) kept.push_back(b);
+  }
+  return kept;
+}
+
+Json series(const char* label, const char* unit, std::span<const double> t_s,
+            std::span<const double> values) {
+  Json t = Json::array(), v = Json::array();
+  const auto keep = [&](std::size_t i) {
+    t.push_back(to_tenth_ms(t_s[i]));
+    v.push_back(rounded(values[i]));
+  };
+  if (values.size() <= kMaxCurvePoints)
+    for (std::size_t i = 0; i < values.size(); ++i) keep(i);
+  else
+    for (const std::size_t i : peaks(values)) keep(i);
+  const Statistics s = statistics_of(values);
+  return {{"label", label},          {"unit", unit},         {"t", t}, {"v", v},
+          {"mean", rounded(s.mean)}, {"max", rounded(s.max)}};
+}
+
+Json position(const Rigid3& pose) {
+  const Eigen::Vector3d& p = pose.translation();
+  const auto micrometre = [](double v) { return std::round(v * 1e6) / 1e6; };
+  return {micrometre(p.x()), micrometre(p.y()), micrometre(p.z())};
+}
+
+/// Stretches of the scored interval without a pose that is at most 20 ms old.
+Json gaps(const RunData& data) {
+  Json result = Json::array();
+  const double end_s = data.samples.t_s.back();
+  double covered_until = data.samples.t_s.front();
+  const auto add = [&](double until) {
+    if (until > covered_until + kScoreStepS)
+      result.push_back({to_tenth_ms(covered_until), to_tenth_ms(std::min(until, end_s))});
+  };
+  for (const StampedPose& pose : data.input.estimate.poses()) {
+    if (pose.t_s > end_s) break;
+    add(pose.t_s);
+    covered_until = std::max(covered_until, pose.t_s + kMaxPoseAgeS);
+  }
+  add(end_s);
+  return result;
+}
+
+Json run_json(const RunData& data) {
+  const ScoredSamples& s = data.samples;
+  Json run{{"id", data.id}, {"span", {to_tenth_ms(s.t_s.front()), to_tenth_ms(s.t_s.back())}}};
+  const std::size_t stride = (s.t_s.size() + kMaxPathPoints - 1) / kMaxPathPoints;
+  for (const char* name : {"times", "truth", "estimate"}) run[name] = Json::array();
+  for (std::size_t i = 0; i < s.t_s.size(); i += stride) {
+    run["times"].push_back(to_tenth_ms(s.t_s[i]));
+    run["truth"].push_back(position(s.truth[i]));
+    run["estimate"].push_back(position(s.estimated[i]));
+  }
+  run["gaps"] = gaps(data);
+  Json& all = run["series"] = Json::object();
+  const ErrorSeries& e = data.errors;
+  if (!e.dt_rel_percent.empty()) {
+    all["dt_rel"] = series("relative position error", "%", e.t_s, e.dt_rel_percent);
+  } else {
+    std::vector<double> dt_mm = e.dt_m;
+    for (double& value : dt_mm) value *= 1000;
+    all["dt"] = series("position error", "mm", e.t_s, dt_mm);
+  }
+  all["dtheta"] = series("rotation error", "deg", e.t_s, e.dtheta_deg);
+  if (const ReprojectionSeries& r = data.reprojection; !r.t_s.empty())
+    all["reprojection"] = series("reprojection error", "px", r.t_s, r.rms_px);
+  return run;
+}
+
+}  // namespace
+
+std::string run_series(std::span<const RunData> runs) {
+  Json root{{"runs", Json::array()}};
+  for (const RunData& data : runs)
+    if (!data.samples.t_s.empty()) root["runs"].push_back(run_json(data));
+  std::string text = root.dump();
+  // A script element ends at its first "</", wherever that stands.
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
+    text.insert(at + 1, 1, '\\');
+  return text;
+}
+
+}  // namespace saccade

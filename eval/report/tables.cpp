@@ -1,0 +1,185 @@
+#include "eval/report/tables.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "eval/evaluate.h"
+#include "eval/report/html.h"
+#include "eval/report/thesis.h"
+
+namespace saccade {
+namespace {
+
+/// Ours above the thesis's.
+std::string cell(const std::string& ours, const std::string& theirs, bool starts_group = false) {
+  return fmt::format("<td{}>{}<span class=\"ref\">{}</span></td>",
+                     starts_group ? " class=\"space\"" : "", ours, theirs);
+}
+
+std::string printed(const std::optional<double>& thesis) {
+  return thesis ? fmt::format("{:.{}f}", *thesis, *thesis < 10 ? 1 : 0) : "–";
+}
+
+/// "3.4×", green above 1 and red below.
+std::string factor_cell(const std::optional<double>& factor) {
+  if (!factor) return "<td class=\"space\">–</td>";
+  return fmt::format("<td class=\"space\"><span class=\"{}\">{}×</span></td>",
+                     *factor >= 1 ? "better" : "worse", significant(factor, 2));
+}
+
+std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
+  if (!a || !b || *b == 0) return std::nullopt;
+  return *a / *b;
+}
+
+std::string name_cell(const RunData& data) {
+  return fmt::format("<td class=\"name\"><a href=\"#{}\">{}</a><span class=\"ref\">{}</span></td>",
+                     data.id, escape_html(data.run.name()),
+                     escape_html(data.run.record.module + " on " + data.dataset));
+}
+
+std::string error_cells(const Metrics& metrics, const std::string& key, int decimals,
+                        const thesis::Errors* thesis) {
+  std::string cells;
+  const auto add = [&](const char* name, double thesis::Errors::*member) {
+    std::optional<double> theirs;
+    if (thesis != nullptr) theirs = thesis->*member;
+    cells += cell(fixed(metrics.get(key + "." + name), decimals), printed(theirs),
+                  std::string_view(name) == "mean");
+  };
+  add("mean", &thesis::Errors::mean);
+  add("sigma", &thesis::Errors::sigma);
+  add("max", &thesis::Errors::max);
+  add("rmse", &thesis::Errors::rmse);
+  std::optional<double> theirs;
+  if (thesis != nullptr) theirs = thesis->mean;
+  return cells + factor_cell(ratio(theirs, metrics.get(key + ".mean")));
+}
+
+std::string accuracy_row(const RunData& data) {
+  const thesis::Tracking* thesis = thesis::find_tracking(data.dataset, data.fast);
+  const auto errors = [&](const char* key, thesis::Errors thesis::Tracking::*member) {
+    return error_cells(data.metrics, std::string("trajectory.") + key, 2,
+                       thesis == nullptr ? nullptr : &(thesis->*member));
+  };
+  std::optional<double> coverage = data.metrics.get("trajectory.coverage");
+  if (coverage) *coverage *= 100;
+  return "<tr>" + name_cell(data) + errors("dt_rel_percent", &thesis::Tracking::dt_rel_percent) +
+         errors("dtheta_deg", &thesis::Tracking::dtheta_deg) +
+         fmt::format("<td class=\"space\">{} %</td></tr>\n", fixed(coverage, 1));
+}
+
+std::string deviation_cell(const std::optional<double>& ours, const std::optional<double>& theirs,
+                           const std::string& shown) {
+  std::string reference = printed(theirs);
+  if (const std::optional<double> share = ratio(ours, theirs))
+    reference += fmt::format(" ({:+.0f} %)", 100 * (*share - 1));
+  return cell(shown, reference);
+}
+
+std::string dataset_row(const RunData& data) {
+  const thesis::Sequence* thesis = thesis::find_sequence(data.dataset);
+  const auto theirs = [&](double thesis::Sequence::*member) -> std::optional<double> {
+    if (thesis == nullptr) return std::nullopt;
+    return thesis->*member;
+  };
+  const DatasetNumbers& n = data.numbers;
+  std::optional<double> millions = n.events;
+  if (millions) *millions /= 1e6;
+  return fmt::format(
+      "<tr><td>{}</td>{}{}{}{}</tr>\n", escape_html(data.dataset),
+      deviation_cell(millions, theirs(&thesis::Sequence::events_millions), significant(millions)),
+      deviation_cell(n.duration_s, theirs(&thesis::Sequence::duration_s),
+                     significant(n.duration_s)),
+      deviation_cell(n.mean_depth_m, theirs(&thesis::Sequence::mean_depth_m),
+                     significant(n.mean_depth_m)),
+      deviation_cell(n.path_m, theirs(&thesis::Sequence::path_m), significant(n.path_m)));
+}
+
+std::string speed_row(const RunData& data) {
+  const thesis::Tracking* thesis = thesis::find_tracking(data.dataset, data.fast);
+  const auto value = [&](const char* key, double scale) {
+    std::optional<double> v = speed_value(data.metrics, std::string("speed.") + key);
+    if (v) *v *= scale;
+    return v;
+  };
+  const auto theirs = [&](double thesis::Tracking::*member) -> std::optional<double> {
+    if (thesis == nullptr) return std::nullopt;
+    return thesis->*member;
+  };
+  const std::optional<double> rate = value("events_per_s", 1e-6);
+  const std::optional<double> poses = value("poses_per_s", 1);
+  return "<tr>" + name_cell(data) +
+         cell(significant(value("wall_s", 1e3)), printed(theirs(&thesis::Tracking::time_ms)),
+              true) +
+         cell(significant(rate), printed(theirs(&thesis::Tracking::events_per_s_millions)), true) +
+         factor_cell(ratio(rate, theirs(&thesis::Tracking::events_per_s_millions))) +
+         cell(grouped(poses), grouped(theirs(&thesis::Tracking::poses_per_s)), true) +
+         factor_cell(ratio(poses, theirs(&thesis::Tracking::poses_per_s))) +
+         fmt::format("<td class=\"space\">{}</td><td class=\"space\">{}</td></tr>\n",
+                     significant(value("realtime_factor", 1)),
+                     data.run.record.threads > 0 ? std::to_string(data.run.record.threads) : "–");
+}
+
+bool has_any(std::span<const RunData> runs, std::string_view prefix) {
+  for (const RunData& data : runs)
+    for (const auto& [key, value] : data.metrics.values())
+      if (key.starts_with(prefix) && value) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string accuracy_table(std::span<const RunData> runs) {
+  if (!has_any(runs, "trajectory.")) return "";
+  std::string html =
+      "<section id=\"accuracy\"><h2>Tracking accuracy</h2>\n"
+      "<p>Without alignment, over a uniform 1 ms grid. &Delta;t<sub>rel</sub> is the position "
+      "error "
+      "relative to the mean scene depth. The smaller number below is the thesis's (table 8.2); the "
+      "factor compares the means.</p>\n<div class=\"scroll\"><table class=\"wide\"><thead>\n"
+      "<tr><th></th><th class=\"group space\" colspan=\"5\">&Delta;t<sub>rel</sub> [%]</th>"
+      "<th class=\"group space\" colspan=\"5\">&Delta;&theta; [deg]</th><th></th></tr>\n"
+      "<tr><th>run</th>";
+  for (int i = 0; i < 2; ++i)
+    html +=
+        "<th class=\"space\">mean</th><th>&sigma;</th><th>max</th><th>RMSE</th>"
+        "<th class=\"space\">better by</th>";
+  html += "<th class=\"space\">coverage</th></tr></thead><tbody>\n";
+  for (const RunData& data : runs)
+    if (data.metrics.get("trajectory.poses")) html += accuracy_row(data);
+  return html + "</tbody></table></div></section>\n";
+}
+
+std::string dataset_table(std::span<const RunData> runs) {
+  std::string html =
+      "<section id=\"datasets\"><h2>Datasets</h2>\n<p>Below each number the thesis's (table 8.1) "
+      "and "
+      "the deviation from it.</p>\n<div class=\"scroll\"><table class=\"wide\"><thead><tr>"
+      "<th>dataset</th><th>events [M]</th><th>duration [s]</th><th>mean depth [m]</th>"
+      "<th>path length [m]</th></tr></thead><tbody>\n";
+  std::set<std::string> shown;
+  for (const RunData& data : runs)
+    if (shown.insert(data.dataset).second) html += dataset_row(data);
+  return html + "</tbody></table></div></section>\n";
+}
+
+std::string speed_table(std::span<const RunData> runs) {
+  if (!has_any(runs, "speed.")) return "";
+  std::string html =
+      "<section id=\"speed\"><h2>Speed</h2>\n<p>Without reading and writing files; medians where a "
+      "run was repeated. The smaller number below is the thesis's (table 8.3).</p>\n"
+      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>run</th>"
+      "<th class=\"space\">time [ms]</th><th class=\"space\">events/s [M]</th>"
+      "<th class=\"space\">faster by</th><th class=\"space\">poses/s</th>"
+      "<th class=\"space\">faster by</th><th class=\"space\">&times; real time</th>"
+      "<th class=\"space\">threads</th></tr></thead><tbody>\n";
+  for (const RunData& data : runs)
+    if (speed_value(data.metrics, "speed.wall_s")) html += speed_row(data);
+  return html + "</tbody></table></div>\n<p class=\"note\">" + escape_html(thesis::kSpeedErratum) +
+         "</p></section>\n";
+}
+
+}  // namespace saccade
