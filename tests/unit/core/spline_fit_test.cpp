@@ -4,6 +4,7 @@
 #include "core/banded.h"
 #include "core/rigid3.h"
 #include "core/spline_rotation.h"
+#include "tests/support/jacobian_check.h"
 
 namespace saccade {
 namespace {
@@ -11,14 +12,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kStep = 1e-5;
-
-/// Central difference of Log(f(0)^-1 f(d)) by d.
-template <class Function>
-Vector3d difference(const Function& f) {
-  const Quaterniond at = f(0.0);
-  return (so3_log(at.conjugate() * f(kStep)) - so3_log(at.conjugate() * f(-kStep))) / (2 * kStep);
-}
+template <int Size>
+using Vector = Eigen::Matrix<double, Size, 1>;
 
 CumulativeBasis uneven_basis() {
   const double knots[6] = {-0.5, 0.1, 0.4, 1.5, 1.7, 3.0};
@@ -56,19 +51,16 @@ TEST(CumulativeBasis, IsTwiceContinuousAcrossUnevenKnots) {
 }
 
 TEST(SplineRotation, TurnOverSegmentHasItsDerivative) {
-  Eigen::Matrix3d increments;
-  increments.col(0) = Vector3d(0.3, -1.2, 0.4);
-  increments.col(1) = Vector3d(-0.8, 0.5, 2.0);
-  increments.col(2) = Vector3d(1.1, 0.2, -0.7);
-  const auto turn = turn_over_segment(uneven_basis(), increments);
-  for (int i = 0; i < 9; ++i) {
-    const Vector3d expected = difference([&](double d) {
-      Eigen::Matrix3d moved = increments;
-      moved(i % 3, i / 3) += d;
-      return turn_over_segment(uneven_basis(), moved).rotation;
-    });
-    EXPECT_LT((turn.jacobian.col(i) - expected).norm(), 1e-8) << "parameter " << i;
-  }
+  Vector<9> increments;
+  increments << 0.3, -1.2, 0.4, -0.8, 0.5, 2.0, 1.1, 0.2, -0.7;
+  const auto turn_of = [](const Vector<9>& w) {
+    return turn_over_segment(uneven_basis(), Eigen::Map<const Eigen::Matrix3d>(w.data()));
+  };
+  const auto turn = turn_of(increments);
+  const auto change = [&](const Vector<9>& w) -> Vector3d {
+    return so3_log(turn.rotation.conjugate() * turn_of(w).rotation);
+  };
+  testing::expect_jacobian<3, 9>(turn.jacobian, change, increments);
 }
 
 std::array<Quaterniond, 4> some_rotations() {
@@ -76,34 +68,33 @@ std::array<Quaterniond, 4> some_rotations() {
           so3_exp({0.0, 0.4, 2.2})};
 }
 
-TEST(SplineRotation, RotationBetweenControlsHasItsDerivative) {
-  const auto controls = some_rotations();
-  const Eigen::Array4d b = uneven_basis().value(0.37);
-  const auto at = rotation_between(b, controls);
-  for (int i = 0; i < 12; ++i) {
-    const Vector3d expected = difference([&](double d) {
-      auto moved = controls;
-      auto& control = moved[static_cast<std::size_t>(i / 3)];
-      control = control * so3_exp(d * Vector3d::Unit(i % 3));
-      return rotation_between(b, moved).rotation;
-    });
-    EXPECT_LT((at.jacobian.col(i) - expected).norm(), 1e-8) << "parameter " << i;
+/// some_rotations() after right perturbations.
+std::array<Quaterniond, 4> perturbed(const Vector<12>& d) {
+  auto controls = some_rotations();
+  for (int k = 0; k < 4; ++k) {
+    auto& control = controls[static_cast<std::size_t>(k)];
+    control = control * so3_exp(d.segment<3>(3 * k));
   }
+  return controls;
+}
+
+TEST(SplineRotation, RotationBetweenControlsHasItsDerivative) {
+  const Eigen::Array4d b = uneven_basis().value(0.37);
+  const auto at = rotation_between(b, some_rotations());
+  const auto change = [&](const Vector<12>& d) -> Vector3d {
+    return so3_log(at.rotation.conjugate() * rotation_between(b, perturbed(d)).rotation);
+  };
+  testing::expect_jacobian<3, 12>(at.jacobian, change, Vector<12>::Zero());
 }
 
 TEST(SplineRotation, UnevennessHasItsDerivativeAndVanishesOnEvenRotation) {
   const auto controls = some_rotations();
+  const auto value = [](const Vector<9>& d) -> Vector3d {
+    const auto moved = perturbed((Vector<12>() << d, 0, 0, 0).finished());
+    return unevenness(moved[0], moved[1], moved[2]).value;
+  };
   const Unevenness at = unevenness(controls[0], controls[1], controls[2]);
-  for (int i = 0; i < 9; ++i) {
-    const auto value = [&](double d) {
-      auto moved = controls;
-      auto& control = moved[static_cast<std::size_t>(i / 3)];
-      control = control * so3_exp(d * Vector3d::Unit(i % 3));
-      return unevenness(moved[0], moved[1], moved[2]).value;
-    };
-    const Vector3d expected = (value(kStep) - value(-kStep)) / (2 * kStep);
-    EXPECT_LT((at.jacobian.col(i) - expected).norm(), 1e-8) << "parameter " << i;
-  }
+  testing::expect_jacobian<3, 9>(at.jacobian, value, Vector<9>::Zero());
   const Quaterniond turn = so3_exp({0.2, 0.5, -0.1});
   EXPECT_LT(unevenness(controls[0], controls[0] * turn, controls[0] * turn * turn).value.norm(),
             1e-15);

@@ -321,14 +321,14 @@ TEST(SplineSmooth, FitsRecordedHandHeldMotion) {
 
 TEST(SplineSmooth, ConvergesWithKnotsFarTooCoarseForTheMotion) {
   std::vector<StampedPose> poses;
-  for (int i = 0; i < 1200; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const double t = 0.005 * i;
     const Vector3d turn(1.2 * std::sin(9 * t), std::cos(13 * t), 0.8 * std::sin(17 * t));
     poses.push_back({t, {so3_exp(turn), turn}});
   }
-  for (const double spacing : {0.1, 0.3, 1.0, 6.0}) {
+  for (const double spacing : {0.1, 0.5, 3.0}) {
     const Spline spline = Spline::smooth(poses, spacing);
-    EXPECT_LT(spline.state(3).angular_velocity_in_body.norm(), 40) << spacing;
+    EXPECT_LT(spline.state(1.5).angular_velocity_in_body.norm(), 40) << spacing;
   }
 }
 
