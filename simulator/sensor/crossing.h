@@ -126,6 +126,17 @@ struct ExcursionSearch {
   double shortest_s = 1e-6;
 };
 
+/// Whether the signal, `a` and `b` at the ends of a step, may have left the pixel's band in
+/// between.
+[[nodiscard]] inline bool may_exit(const EventPixel& pixel, double a, double b, double step_s,
+                                   const Slopes& slopes, const ExcursionSearch& search) {
+  const double low = std::min(a, b);
+  const double high = std::max(a, b);
+  const double margin = std::min(pixel.upper() - high, low - pixel.lower());
+  const double change = std::max(high - low, std::max(slopes.before, slopes.after) * step_s);
+  return !(margin > search.reach * change);
+}
+
 /// The first part of (a, b] at whose end the signal is outside the pixel's band, if there is one.
 template <class Sample, class Evaluate>
 [[nodiscard]] std::optional<Bracket<Sample>> find_exit(const EventPixel& pixel, const Sample& a,
@@ -134,11 +145,9 @@ template <class Sample, class Evaluate>
                                                        const Evaluate& evaluate) {
   if (!pixel.holds(b.log_intensity)) return Bracket<Sample>{a, b};
   const double step_s = b.t_s - a.t_s;
-  const double low = std::min(a.log_intensity, b.log_intensity);
-  const double high = std::max(a.log_intensity, b.log_intensity);
-  const double margin = std::min(pixel.upper() - high, low - pixel.lower());
-  const double change = std::max({high - low, slopes.before * step_s, slopes.after * step_s});
-  if (margin >= search.reach * change || step_s < search.shortest_s) return std::nullopt;
+  if (step_s < search.shortest_s ||
+      !may_exit(pixel, a.log_intensity, b.log_intensity, step_s, slopes, search))
+    return std::nullopt;
   const Sample middle = evaluate(0.5 * (a.t_s + b.t_s), a, b);
   const double first = 2 * std::abs(middle.log_intensity - a.log_intensity) / step_s;
   const double second = 2 * std::abs(b.log_intensity - middle.log_intensity) / step_s;

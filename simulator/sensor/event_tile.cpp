@@ -17,6 +17,30 @@ struct PixelSample {
   std::array<TriangleId, kRays> triangles{};
 };
 
+/// What all pixels of a tile see at one instant.
+template <std::size_t kRays>
+struct TileSample {
+  double t_s = 0;
+  std::array<double, kTilePixels> log_intensity{};
+  std::array<std::array<TriangleId, kRays>, kTilePixels> triangles{};
+
+  [[nodiscard]] PixelSample<kRays> pixel(std::size_t i) const {
+    return {t_s, log_intensity[i], triangles[i]};
+  }
+};
+
+using TileSlopes = std::array<double, kTilePixels>;
+
+/// |dL/dt| of every pixel between two instants; 0 when they are one.
+template <std::size_t kRays>
+TileSlopes slopes_between(const TileSample<kRays>& a, const TileSample<kRays>& b) {
+  const double per_s = b.t_s > a.t_s ? 1 / (b.t_s - a.t_s) : 0;
+  TileSlopes slopes;
+  for (std::size_t i = 0; i < kTilePixels; ++i)
+    slopes[i] = std::abs(b.log_intensity[i] - a.log_intensity[i]) * per_s;
+  return slopes;
+}
+
 template <std::size_t kRays>
 class LockstepTile final : public EventTile {
  public:
@@ -32,54 +56,57 @@ class LockstepTile final : public EventTile {
     poses_ = &poses;
     trace(t_s);
     for (std::size_t i = 0; i < tile_.pixels(); ++i)
-      pixels_[i] = EventPixel(next_[i].log_intensity, world_.options.contrast);
+      pixels_[i] = EventPixel(next_.log_intensity[i], world_.options.contrast);
     from_ = to_ = next_;
   }
 
   void advance(const PoseTable& poses, double t_s, int steps) override {
     poses_ = &poses;
-    const double from_s = to_[0].t_s;
+    const double from_s = to_.t_s;
     for (int k = 1; k < steps; ++k) step(from_s + (t_s - from_s) * k / steps);
     step(t_s);
   }
 
   void finish(const PoseTable& poses) override {
     poses_ = &poses;
-    search_step([this](std::size_t i) { return slope(from_[i], to_[i]); });
+    search_step(slopes_);
   }
 
-  [[nodiscard]] double searched_s() const override { return from_[0].t_s; }
+  [[nodiscard]] double searched_s() const override { return from_.t_s; }
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
 
  private:
   using Sample = PixelSample<kRays>;
 
-  /// |dL/dt| between two samples; 0 when they are one.
-  static double slope(const Sample& a, const Sample& b) {
-    return b.t_s > a.t_s ? std::abs(b.log_intensity - a.log_intensity) / (b.t_s - a.t_s) : 0;
-  }
-
   void step(double t_s) {
     trace(t_s);
-    search_step([this](std::size_t i) { return slope(to_[i], next_[i]); });
+    const TileSlopes slopes_after = slopes_between(to_, next_);
+    search_step(slopes_after);
+    slopes_before_ = slopes_;
+    slopes_ = slopes_after;
     from_ = to_;
     to_ = next_;
   }
 
-  /// All pixels' crossings between from_ and to_; `slope_after(pixel)`.
-  template <class SlopeAfter>
-  void search_step(const SlopeAfter& slope_after) {
+  /// All pixels' crossings between from_ and to_.
+  void search_step(const TileSlopes& slopes_after) {
+    const double step_s = to_.t_s - from_.t_s;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
-        return look(i, t, lo, hi);
-      };
-      const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
-      const double width_s =
-          walk_step(pixels_[i], world_.options.contrast, from_[i], to_[i],
-                    {slopes_before_[i], slope_after(i)}, tolerance_s_, search_, evaluate, emit);
-      statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
-      slopes_before_[i] = slope(from_[i], to_[i]);
+      const Slopes slopes{slopes_before_[i], slopes_after[i]};
+      if (may_exit(pixels_[i], from_.log_intensity[i], to_.log_intensity[i], step_s, slopes,
+                   search_))
+        walk(i, slopes);
     }
+  }
+
+  void walk(std::size_t i, const Slopes& slopes) {
+    const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
+      return look(i, t, lo, hi);
+    };
+    const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
+    const double width_s = walk_step(pixels_[i], world_.options.contrast, from_.pixel(i),
+                                     to_.pixel(i), slopes, tolerance_s_, search_, evaluate, emit);
+    statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
   void record(std::size_t i, double t_s, int polarity) {
@@ -103,22 +130,24 @@ class LockstepTile final : public EventTile {
       world_.scene.visible({&rays[k], n}, {&triangles[k], n});
     }
     statistics_.rays += count;
-    inverse_depths_ = {std::numeric_limits<double>::infinity(), 0};
+    next_.t_s = t_s;
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = 0;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      Sample& sample = next_[i];
-      sample.t_s = t_s;
       double sum = 0;
       for (std::size_t s = 0; s < kRays; ++s) {
         const std::size_t k = i * kRays + s;
-        sample.triangles[s] = triangles[k];
+        next_.triangles[i][s] = triangles[k];
         const Shade shade = world_.scene.shade(rays[k], triangles[k]);
         sum += shade.radiance;
-        const double inverse = shade.distance > 0 ? 1 / shade.distance : 0;
-        inverse_depths_.low = std::min(inverse_depths_.low, inverse);
-        inverse_depths_.high = std::max(inverse_depths_.high, inverse);
+        const double distance =
+            shade.distance > 0 ? shade.distance : std::numeric_limits<double>::infinity();
+        nearest = std::min(nearest, distance);
+        farthest = std::max(farthest, distance);
       }
-      sample.log_intensity = log_intensity(sum);
+      next_.log_intensity[i] = log_intensity(sum);
     }
+    inverse_depths_ = {1 / farthest, 1 / nearest};
   }
 
   /// Pixel `i` at a time between two samples.
@@ -154,8 +183,9 @@ class LockstepTile final : public EventTile {
   InverseDepthRange inverse_depths_;
   std::array<EventPixel, kTilePixels> pixels_;
   /// The last three traced instants; the search is between the first two.
-  std::array<Sample, kTilePixels> from_, to_, next_;
-  std::array<double, kTilePixels> slopes_before_{};
+  TileSample<kRays> from_, to_, next_;
+  TileSlopes slopes_before_{};  ///< of the step before from_
+  TileSlopes slopes_{};         ///< of the step from from_ to to_
 };
 
 }  // namespace

@@ -1,0 +1,66 @@
+#include "simulator/sensor/event_camera.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "simulator/sensor/view.h"
+#include "tests/support/closed_form_plane.h"
+#include "tests/unit/simulator/plane_scene.h"
+
+namespace saccade {
+namespace {
+
+using testing::ClosedFormPlane;
+
+/// Events per second, and rays and surface looks per event, at a contrast of range(0) / 100.
+void record_events(benchmark::State& state) {
+  ClosedFormPlane plane = ClosedFormPlane::smooth(240, 180);
+  plane.duration_s = 0.2;
+  plane.camera.fx = plane.camera.fy = 200;
+  const Scene scene = testing::scene_of(plane);
+  const Spline motion = plane.motion();
+  EventOptions options;
+  options.contrast.on = options.contrast.off = 0.01 * static_cast<double>(state.range(0));
+  std::int64_t events = 0;
+  EventStatistics statistics;
+  for (auto _ : state) {
+    EventCamera camera(scene, motion, plane.camera, options);
+    camera.record(plane.duration_s, [&](std::span<const Event> some, double) {
+      events += static_cast<std::int64_t>(some.size());
+    });
+    statistics.add(camera.statistics());
+  }
+  const auto per_event = [&](std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(events);
+  };
+  state.SetItemsProcessed(events);
+  state.counters["rays_per_event"] = per_event(statistics.rays);
+  state.counters["looks_per_event"] = per_event(statistics.surface_looks);
+}
+BENCHMARK(record_events)->Arg(15)->Arg(50)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A grey frame of 240 x 180 px, pixels per second.
+void render_frame(benchmark::State& state) {
+  const ClosedFormPlane plane = ClosedFormPlane::smooth(240, 180);
+  const Scene scene = testing::scene_of(plane);
+  const ViewRenderer renderer(scene, plane.camera, static_cast<int>(state.range(0)));
+  const std::vector<Rigid3> pose{plane.motion().pose(0.1)};
+  for (auto _ : state) benchmark::DoNotOptimize(renderer.radiance(pose));
+  state.SetItemsProcessed(state.iterations() * 240 * 180);
+}
+BENCHMARK(render_frame)->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void evaluate_pose(benchmark::State& state) {
+  const Spline motion = ClosedFormPlane::smooth(8, 8).motion();
+  const PoseTable table(motion, 0, 0.02);
+  double t = 0;
+  for (auto _ : state) {
+    t = t < 0.0199 ? t + 1e-7 : 0;
+    benchmark::DoNotOptimize(table.at(t));
+  }
+}
+BENCHMARK(evaluate_pose);
+
+}  // namespace
+}  // namespace saccade
