@@ -3,141 +3,198 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <string>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/io/dataset.h"
-#include "core/io/dataset_record.h"
 #include "core/io/event_file.h"
 #include "eval/evaluate.h"
+#include "eval/number_text.h"
+#include "eval/picture/sensor_view.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
+namespace fs = std::filesystem;
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr TimeNs kRateWindowNs = 1'000'000;
-
-/// Largest number of events within one millisecond, as a rate [1/s].
-double peak_rate(const Events& events) {
-  std::size_t most = 0;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end < events.size(); ++end) {
-    while (events[end].t_ns - events[begin].t_ns >= kRateWindowNs) ++begin;
-    most = std::max(most, end + 1 - begin);
-  }
-  return static_cast<double>(most) / seconds_from_ns(kRateWindowNs);
+std::string line(const std::string& label, const std::string& text) {
+  return fmt::format("  {:<13}{}\n", label, text);
 }
 
-std::string describe_events(const Events& events) {
-  if (events.empty()) return "  events      none\n";
-  const auto on =
-      std::count_if(events.begin(), events.end(), [](const Event& e) { return e.polarity > 0; });
+/// Most events within any of the consecutive 10 ms of a stream, per second.
+double peak_rate(const Events& events) {
+  constexpr TimeNs kBinNs = 10'000'000;
+  std::size_t most = 0;
+  for (std::size_t begin = 0; begin < events.size();) {
+    const TimeNs bin = (events[begin].t_ns - events.front().t_ns) / kBinNs;
+    std::size_t end = begin;
+    while (end < events.size() && (events[end].t_ns - events.front().t_ns) / kBinNs == bin) ++end;
+    most = std::max(most, end - begin);
+    begin = end;
+  }
+  return static_cast<double>(most) / seconds_from_ns(kBinNs);
+}
+
+std::string event_lines(const Events& events, TimestampUnit unit) {
+  if (events.empty()) return line("events", "none");
+  const auto on = static_cast<double>(
+      std::count_if(events.begin(), events.end(), [](const Event& e) { return e.polarity > 0; }));
+  const auto all = static_cast<double>(events.size());
   const double first_s = seconds_from_ns(events.front().t_ns);
   const double last_s = seconds_from_ns(events.back().t_ns);
-  const auto count = static_cast<double>(events.size());
-  std::string text =
-      fmt::format("  events      {} ({:.1f} % ON), {:.6f} to {:.6f} s\n", events.size(),
-                  100 * static_cast<double>(on) / count, first_s, last_s);
+  std::string text = line("events", fmt::format("{} ({} ON, {} OFF: {:.1f} % ON)", grouped(all),
+                                                grouped(on), grouped(all - on), 100 * on / all)) +
+                     line("time", fmt::format("{:.6f} .. {:.6f} s ({:.6f} s), stamps in {}",
+                                              first_s, last_s, last_s - first_s,
+                                              unit == TimestampUnit::kNanoseconds ? "ns" : "us"));
   if (last_s > first_s)
-    text += fmt::format("  rate        {:.3f} M/s, at most {:.3f} M/s over 1 ms\n",
-                        1e-6 * count / (last_s - first_s), 1e-6 * peak_rate(events));
-  return text;
-}
-
-std::string describe_camera(const PinholeCamera& camera) {
-  const auto& k = camera.distortion;
-  std::string text =
-      fmt::format("  sensor      {} x {} px, fx {:.6g} fy {:.6g} cx {:.6g} cy {:.6g}\n",
-                  camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
-  if (camera.is_distorted())
-    text += fmt::format("  distortion  k1 {:.6g} k2 {:.6g} p1 {:.6g} p2 {:.6g} k3 {:.6g}\n", k[0],
-                        k[1], k[2], k[3], k[4]);
-  return text;
-}
-
-std::string describe_poses(const std::string& label, const Trajectory& trajectory) {
-  if (trajectory.empty()) return fmt::format("  {:<11} none\n", label);
-  return fmt::format("  {:<11} {} poses, {:.6f} to {:.6f} s, path {:.4g} m\n", label,
-                     trajectory.size(), trajectory.start_s(), trajectory.end_s(),
-                     trajectory.path_length());
-}
-
-std::string describe_files(const std::string& label, const std::vector<StampedFile>& files) {
-  if (files.empty()) return {};
-  const auto there = std::count_if(files.begin(), files.end(),
-                                   [](const StampedFile& f) { return fs::exists(f.file); });
-  std::string text = fmt::format("  {:<11} {}, {:.6f} to {:.6f} s", label, files.size(),
-                                 files.front().t_s, files.back().t_s);
-  if (there != static_cast<std::ptrdiff_t>(files.size()))
-    text += fmt::format(", only {} of them there", there);
-  return text + "\n";
-}
-
-std::string describe_record(const DatasetRecord& record) {
-  std::string text;
-  if (record.contrast_on && record.contrast_off)
-    text += fmt::format("  contrast    ON {:.4g}, OFF {:.4g}, eps {:.4g}\n", *record.contrast_on,
-                        *record.contrast_off, record.log_eps);
-  if (record.mean_scene_depth_m)
-    text += fmt::format("  depth       {:.4g} m on average\n", *record.mean_scene_depth_m);
-  if (record.rays && record.rays_per_event)
     text +=
-        fmt::format("  rays        {} ({:.3g} per event)\n", *record.rays, *record.rays_per_event);
-  if (!record.tool_version.empty())
-    text += fmt::format("  written by  saccade {}, seed {}\n", record.tool_version, record.seed);
+        line("rate", fmt::format("{} events/s mean, {} events/s in the busiest 10 ms",
+                                 grouped(all / (last_s - first_s)), grouped(peak_rate(events))));
   return text;
 }
 
-PathDescription describe_dataset(const fs::path& folder, bool verify) {
-  const Dataset dataset = Dataset::open(folder);
-  PathDescription description;
-  std::string& text = description.text;
-  text = fmt::format("{}: dataset\n", folder.string()) + describe_camera(dataset.camera());
-  text += dataset.events_file().empty() ? "  events      none\n"
-                                        : describe_events(dataset.load_events());
-  text += describe_poses("truth", dataset.groundtruth());
-  text += describe_files("frames", dataset.frames());
-  text += describe_files("depth maps", dataset.depth_maps());
-  text += describe_files("flow maps", dataset.flow_maps());
-  if (dataset.has_imu())
-    text += fmt::format("  imu         {} samples\n", dataset.load_imu().size());
-  if (dataset.record()) text += describe_record(*dataset.record());
-  if (!verify) return description;
-  description.problems = verify_hashes(folder);
-  if (description.problems.empty()) text += "  hashes      all files match dataset.yaml\n";
-  return description;
+std::string camera_lines(const PinholeCamera& camera) {
+  std::string text = line(
+      "sensor", fmt::format("{} x {} px, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px", camera.width,
+                            camera.height, camera.fx, camera.fy, camera.cx, camera.cy));
+  const auto& d = camera.distortion;
+  return text +
+         line("distortion", camera.is_distorted()
+                                ? fmt::format("k1 {:.4g} k2 {:.4g} p1 {:.4g} p2 {:.4g} k3 {:.4g}",
+                                              d[0], d[1], d[2], d[3], d[4])
+                                : "none");
 }
 
-PathDescription describe_run(const fs::path& folder, bool verify) {
-  if (verify) throw InputError(folder.string(), "a run has no hashes; --verify is for datasets");
+/// "87, 0.000 .. 3.334 s, 25.8 Hz".
+std::string stamped_text(std::size_t count, double start_s, double end_s) {
+  if (count == 0) return "none";
+  std::string text =
+      fmt::format("{}, {:.3f} .. {:.3f} s", grouped(static_cast<double>(count)), start_s, end_s);
+  if (count > 1 && end_s > start_s)
+    text += fmt::format(", {} Hz", significant(static_cast<double>(count - 1) / (end_s - start_s)));
+  return text;
+}
+
+std::string files_text(const std::vector<StampedFile>& files) {
+  return files.empty() ? "none" : stamped_text(files.size(), files.front().t_s, files.back().t_s);
+}
+
+std::string poses_text(const Trajectory& poses) {
+  return poses.empty() ? "none" : stamped_text(poses.size(), poses.start_s(), poses.end_s());
+}
+
+std::string groundtruth_text(const Trajectory& truth) {
+  if (truth.empty()) return "none";
+  return poses_text(truth) + fmt::format(", path {} m", significant(truth.path_length()));
+}
+
+std::string imu_text(const Dataset& dataset) {
+  if (!dataset.has_imu()) return "none";
+  const std::vector<ImuSample> samples = dataset.load_imu();
+  if (samples.empty()) return "none";
+  return stamped_text(samples.size(), seconds_from_ns(samples.front().t_ns),
+                      seconds_from_ns(samples.back().t_ns));
+}
+
+std::string record_lines(const Dataset& dataset) {
+  const DatasetFacts& facts = dataset.facts();
+  std::string text;
+  if (facts.mean_depth_m) text += line("mean depth", significant(facts.mean_depth_m, 4) + " m");
+  if (facts.contrast_on && facts.contrast_off)
+    text += line("contrast", fmt::format("ON {} OFF {}", *facts.contrast_on, *facts.contrast_off));
+  if (!dataset.record()) return text;
+  const DatasetRecord& record = *dataset.record();
+  text += line("seed", std::to_string(record.seed));
+  if (record.rays_per_event)
+    text += line("rays", fmt::format("{} per event", significant(record.rays_per_event)));
+  if (!record.tool_version.empty()) text += line("written by", record.tool_version);
+  return text;
+}
+
+std::string describe_dataset(const fs::path& folder) {
+  const Dataset dataset = Dataset::open(folder);
+  std::string text = fmt::format("dataset {} ({})\n", dataset.facts().name, folder.string());
+  text += camera_lines(dataset.camera());
+  if (dataset.events_file().empty())
+    text += line("events", "none");
+  else
+    text += event_lines(dataset.load_events(), read_event_file_info(dataset.events_file()).unit);
+  text += line("poses", groundtruth_text(dataset.groundtruth()));
+  text += line("frames", files_text(dataset.frames()));
+  text += line("depth maps", files_text(dataset.depth_maps()));
+  text += line("IMU", imu_text(dataset));
+  return text + record_lines(dataset);
+}
+
+std::string indented(const std::string& text) {
+  std::string result;
+  std::istringstream lines(text);
+  for (std::string one; std::getline(lines, one);) result += "  " + one + "\n";
+  return result;
+}
+
+std::string describe_run(const fs::path& folder) {
   const RunFolder run = RunFolder::open(folder);
-  const RunRecord& record = run.record;
-  std::string text = fmt::format("{}: run of {}\n", folder.string(), record.module);
-  text += fmt::format("  dataset     {}\n", record.dataset.string());
-  if (record.window)
-    text += fmt::format("  window      {:.6f} to {:.6f} s\n", record.window->start_s,
-                        record.window->end_s);
-  if (run.trajectory) text += describe_poses("estimate", *run.trajectory);
-  text += fmt::format("  written by  saccade {}, seed {}, {} threads\n", record.tool_version,
-                      record.seed, record.threads);
-  if (!record.command.empty()) text += fmt::format("  command     {}\n", record.command);
-  text += run.metrics.empty() ? "  not scored yet: saccade eval " + folder.string() + "\n"
-                              : format_metrics(run.metrics, "scores");
-  return {text + "configuration:\n" + record.config_yaml, {}};
+  const RunRecord& r = run.record;
+  std::string text = fmt::format("run {} ({})\n", run.name(), folder.string());
+  text += line("module", r.module);
+  text += line("dataset",
+               r.dataset.string() + (fs::is_directory(r.dataset) ? "" : " (not there any more)"));
+  if (r.window)
+    text += line("window", fmt::format("{:.6f} .. {:.6f} s", r.window->start_s, r.window->end_s));
+  text += line("seed", std::to_string(r.seed));
+  if (r.threads > 0) text += line("threads", std::to_string(r.threads));
+  if (!r.command.empty()) text += line("command", r.command);
+  if (!r.tool_version.empty()) text += line("written by", r.tool_version);
+  if (!r.machine.empty()) text += line("machine", r.machine);
+  if (run.trajectory) text += line("poses", poses_text(*run.trajectory));
+  if (run.poses)
+    text += line("lost poses",
+                 fmt::format("{}, by their own report",
+                             std::count_if(run.poses->begin(), run.poses->end(),
+                                           [](const PoseRow& p) { return p.status == "lost"; })));
+  if (!run.metrics.empty())
+    text += format_metrics(run.metrics, "scores");
+  else
+    text += line("scores", "none yet; `saccade eval` writes them");
+  if (!r.config_yaml.empty()) text += "configuration\n" + indented(r.config_yaml);
+  return text;
+}
+
+std::string describe_event_file(const fs::path& file) {
+  const EventFileInfo info = read_event_file_info(file);
+  const Events events = read_events(file, {});
+  std::string text = fmt::format("event file {}\n", file.string());
+  text += event_lines(events, info.unit);
+  int columns = 0;
+  int rows = 0;
+  for (const Event& event : events) {
+    columns = std::max(columns, event.x + 1);
+    rows = std::max(rows, event.y + 1);
+  }
+  return text + line("sensor", fmt::format("at least {} x {} px", columns, rows));
 }
 
 }  // namespace
 
 PathDescription describe_path(const fs::path& path, bool verify) {
-  if (!fs::exists(path)) throw InputError(path.string(), "no such file or folder");
-  if (fs::is_directory(path))
-    return fs::exists(path / "run.yaml") ? describe_run(path, verify)
-                                         : describe_dataset(path, verify);
-  if (verify) throw InputError(path.string(), "a file has no hashes; --verify is for datasets");
-  return {fmt::format("{}: events\n", path.string()) + describe_events(read_events(path, {})), {}};
+  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::is_directory(path)) {
+    if (verify) throw InputError(path.string(), "only a dataset folder states hashes to verify");
+    return {describe_event_file(path), {}};
+  }
+  if (fs::exists(path / "run.yaml")) {
+    if (verify) throw InputError(path.string(), "a run folder states no hashes to verify");
+    return {describe_run(path), {}};
+  }
+  PathDescription description{describe_dataset(path), {}};
+  if (!verify) return description;
+  if (!fs::exists(path / "dataset.yaml"))
+    throw InputError(path.string(), "has no dataset.yaml, which states the hashes to verify");
+  description.problems = verify_hashes(path);
+  if (description.problems.empty()) description.text += line("hashes", "all files match");
+  return description;
 }
 
 }  // namespace saccade

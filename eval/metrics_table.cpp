@@ -1,31 +1,17 @@
 #include <fmt/format.h>
 
 #include "eval/evaluate.h"
+#include "eval/number_text.h"
 
 namespace saccade {
 namespace {
-
-constexpr const char* kNothing = "-";
-
-std::string shown(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
-}
-
-/// A count with separators: 1,800,000.
-std::string counted(const std::optional<double>& value) {
-  if (!value) return kNothing;
-  std::string digits = fmt::format("{:.0f}", *value);
-  for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), 1, ',');
-  return digits;
-}
 
 void add_errors(std::string& text, const Metrics& metrics) {
   text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "sigma", "max", "RMSE");
   const auto row = [&](const char* label, const std::string& key, int decimals) {
     text += fmt::format("  {:<14}", label);
     for (const char* name : {".mean", ".sigma", ".max", ".rmse"})
-      text += fmt::format("{:>10}", shown(metrics.get("trajectory." + key + name), decimals));
+      text += fmt::format("{:>10}", fixed(metrics.get("trajectory." + key + name), decimals));
     text += "\n";
   };
   row("dt_rel [%]", "dt_rel_percent", 3);
@@ -40,9 +26,9 @@ void add_alignments(std::string& text, const Metrics& metrics) {
     const std::string key = std::string("trajectory.") + name;
     std::optional<double> ate_mm = metrics.get(key + ".ate_rmse_m");
     if (ate_mm) *ate_mm *= 1000;
-    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", name, shown(ate_mm, 2),
-                        shown(metrics.get(key + ".rot_rmse_deg"), 3),
-                        shown(metrics.get(key + ".scale"), 5));
+    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", name, fixed(ate_mm, 2),
+                        fixed(metrics.get(key + ".rot_rmse_deg"), 3),
+                        fixed(metrics.get(key + ".scale"), 5));
   }
 }
 
@@ -51,17 +37,17 @@ void add_tracking(std::string& text, const Metrics& metrics) {
   std::optional<double> coverage = get("coverage");
   if (coverage) *coverage *= 100;
   text += fmt::format("  {} poses over {} s, coverage {} %, lost {} s (reported {} s)\n",
-                      counted(get("poses")), shown(get("duration_s"), 3), shown(coverage, 2),
-                      shown(get("lost_s"), 3), shown(get("reported_lost_s"), 3));
+                      grouped(get("poses")), fixed(get("duration_s"), 3), fixed(coverage, 2),
+                      fixed(get("lost_s"), 3), fixed(get("reported_lost_s"), 3));
   text += fmt::format("  path {} m, end drift {} %, per second {} m and {} deg\n",
-                      shown(get("path_length_m"), 3), shown(get("drift_percent"), 3),
-                      shown(get("rpe.per_second.trans_rmse_m"), 4),
-                      shown(get("rpe.per_second.rot_rmse_deg"), 3));
+                      fixed(get("path_length_m"), 3), fixed(get("drift_percent"), 3),
+                      fixed(get("rpe.per_second.trans_rmse_m"), 4),
+                      fixed(get("rpe.per_second.rot_rmse_deg"), 3));
   if (metrics.values().contains("trajectory.reprojection_px.rms"))
     text +=
         fmt::format("  reprojection {} px RMS, worst instant {} px RMS, worst point {} px\n",
-                    shown(get("reprojection_px.rms"), 3), shown(get("reprojection_px.rms_max"), 3),
-                    shown(get("reprojection_px.max"), 2));
+                    fixed(get("reprojection_px.rms"), 3), fixed(get("reprojection_px.rms_max"), 3),
+                    fixed(get("reprojection_px.max"), 2));
 }
 
 void add_speed(std::string& text, const Metrics& metrics) {
@@ -70,9 +56,9 @@ void add_speed(std::string& text, const Metrics& metrics) {
   };
   std::optional<double> wall_ms = get("wall_s");
   if (wall_ms) *wall_ms *= 1000;
-  text += fmt::format("  {} ms, {} events/s, {} poses/s, {} x real time\n", shown(wall_ms, 1),
-                      counted(get("events_per_s")), counted(get("poses_per_s")),
-                      shown(get("realtime_factor"), 2));
+  text += fmt::format("  {} ms, {} events/s, {} poses/s, {} x real time\n", fixed(wall_ms, 1),
+                      grouped(get("events_per_s")), grouped(get("poses_per_s")),
+                      fixed(get("realtime_factor"), 2));
 }
 
 }  // namespace

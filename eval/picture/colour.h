@@ -19,7 +19,7 @@ struct Theme {
 constexpr Theme kLightTheme{{255, 255, 255}, {28, 32, 38},    {214, 218, 224}, {0, 128, 96},
                             {214, 58, 48},   {118, 164, 255}, {120, 126, 134}, {214, 84, 20}};
 constexpr Theme kDarkTheme{{12, 15, 20},  {226, 230, 236}, {52, 58, 68},    {70, 225, 110},
-                           {240, 62, 52}, {28, 70, 205},   {150, 157, 168}, {255, 140, 60}};
+                           {240, 62, 52}, {36, 84, 230},   {150, 157, 168}, {255, 140, 60}};
 
 /// Perceptual colour map for ordered quantities: 0 is dark violet, 1 a light yellow, lightness
 /// grows evenly from one to the other (a path through OKLCh). `value` is clamped to [0, 1]; NaN is

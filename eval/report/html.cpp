@@ -2,19 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/check.h"
 #include "core/io/image_file.h"
 
 namespace saccade {
-namespace {
-
-constexpr const char* kNothing = "–";
-
-}  // namespace
-
 std::string escape_html(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -76,28 +67,6 @@ std::string fill_page(std::string_view page, const std::map<std::string, std::st
     result += value->second;
     page.remove_prefix(close + 2);
   }
-}
-
-std::string significant(const std::optional<double>& value, int digits) {
-  if (!value) return kNothing;
-  if (*value == 0) return "0";
-  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(*value))));
-  const int decimals = digits - 1 - magnitude;
-  if (decimals >= 0) return fmt::format("{:.{}f}", *value, std::min(decimals, 12));
-  const double unit = std::pow(10, -decimals);
-  return fmt::format("{:.0f}", std::round(*value / unit) * unit);
-}
-
-std::string fixed(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
-}
-
-std::string grouped(const std::optional<double>& value) {
-  if (!value) return kNothing;
-  std::string digits = fmt::format("{:.0f}", *value);
-  for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), 1, ',');
-  return digits;
 }
 
 }  // namespace saccade

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,15 +23,5 @@ namespace saccade {
 /// (contract).
 [[nodiscard]] std::string fill_page(std::string_view page,
                                     const std::map<std::string, std::string>& values);
-
-/// `value` with `digits` significant digits but no exponent ("0.0123", "12300"); a dash for
-/// nothing.
-[[nodiscard]] std::string significant(const std::optional<double>& value, int digits = 3);
-
-/// With `decimals` decimals; a dash for nothing.
-[[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
-
-/// 1,234,567; a dash for nothing.
-[[nodiscard]] std::string grouped(const std::optional<double>& value);
 
 }  // namespace saccade

@@ -4,6 +4,7 @@
 
 #include "core/io/event_file.h"
 #include "eval/evaluate.h"
+#include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/report/html.h"
 

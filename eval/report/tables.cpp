@@ -6,6 +6,7 @@
 #include <set>
 
 #include "eval/evaluate.h"
+#include "eval/number_text.h"
 #include "eval/report/html.h"
 #include "eval/report/thesis.h"
 

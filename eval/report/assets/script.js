@@ -144,7 +144,8 @@
           const rank = k === 2 ? -m[0] : m[1];
           if (!best || rank > best.rank) best = { rank, m };
         }
-        g.fillText(`${"xyz"[k]}  ${(high[k] - low[k]).toPrecision(3)} m`, best.m[0] + (k === 2 ? -8 : 0), best.m[1] + (k === 2 ? 0 : 16));
+        const label = `${"xyz"[k]}  ${(high[k] - low[k]).toPrecision(3)} m`, half = g.measureText(label).width / 2 + 6;
+        g.fillText(label, Math.min(width - half, Math.max(half, best.m[0] - (k === 2 ? half : 0))), best.m[1] + (k === 2 ? 0 : 16));
       }
       const curve = (points, name, line) => {
         if (!points.length) return;

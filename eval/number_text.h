@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace saccade {
+
+/// `value` with `digits` significant digits but no exponent ("0.0123", "12300"); a dash for
+/// nothing.
+[[nodiscard]] std::string significant(const std::optional<double>& value, int digits = 3);
+
+/// With `decimals` decimals; a dash for nothing.
+[[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
+
+/// 1,234,567; a dash for nothing.
+[[nodiscard]] std::string grouped(const std::optional<double>& value);
+
+}  // namespace saccade
