@@ -92,8 +92,11 @@ struct EventH5Writer::State {
   }
 
   void check(bool success) const {
-    if (!success)
-      throw InputError(target.target().string(), "cannot be written (HDF5: " + h5_reason() + ")");
+    if (success) return;
+    const std::string reason = h5_reason();
+    throw InputError(
+        target.target().string(),
+        "cannot be written" + (reason.empty() ? "; is the disk full?" : " (HDF5: " + reason + ")"));
   }
 
   H5Handle create(hid_t parent, const char* name, hid_t type, hsize_t chunk) const {
