@@ -5,7 +5,7 @@
 
 #include "core/config/yaml_emit.h"
 #include "tests/support/command.h"
-#include "tests/unit/core/config/expect_error.h"
+#include "tests/support/error_of.h"
 
 namespace saccade::config {
 namespace {

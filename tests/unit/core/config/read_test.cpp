@@ -4,7 +4,7 @@
 #include "core/config/config.h"
 #include "tests/support/command.h"
 #include "tests/unit/core/config/example_options.h"
-#include "tests/unit/core/config/expect_error.h"
+#include "tests/support/error_of.h"
 
 namespace saccade::config {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "tests/unit/core/config/expect_error.h"
+#include "tests/support/error_of.h"
 
 namespace saccade::config {
 namespace {
