@@ -11,7 +11,7 @@ namespace saccade::config {
 namespace {
 
 using saccade::testing::TemporaryFolder;
-using testing::error_of;
+using saccade::testing::error_of;
 using ::testing::HasSubstr;
 
 const Node& at(const Node& map, const std::string& key) { return map.find(key)->value; }

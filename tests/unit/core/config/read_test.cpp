@@ -10,7 +10,7 @@ namespace saccade::config {
 namespace {
 
 using saccade::testing::TemporaryFolder;
-using testing::error_of;
+using saccade::testing::error_of;
 using testing::Options;
 
 Options read_text(const std::string& text, const std::vector<std::string>& overrides = {}) {

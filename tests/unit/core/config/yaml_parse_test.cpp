@@ -10,7 +10,7 @@
 namespace saccade::config {
 namespace {
 
-using testing::error_of;
+using saccade::testing::error_of;
 
 Node parse_text(const std::string& text) {
   return parse_yaml(text, std::make_shared<const Source>(Source{"a.yaml", {}}));
