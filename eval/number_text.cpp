@@ -29,7 +29,8 @@ std::string fixed(const std::optional<double>& value, int decimals) {
 std::string grouped(const std::optional<double>& value) {
   if (!value) return kNothing;
   std::string digits = fmt::format("{:.0f}", *value);
-  for (auto at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+  const int first = digits.front() == '-' ? 1 : 0;
+  for (auto at = static_cast<int>(digits.size()) - 3; at > first; at -= 3)
     digits.insert(static_cast<std::size_t>(at), 1, ',');
   return digits;
 }

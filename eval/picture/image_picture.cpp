@@ -17,13 +17,16 @@ float percentile(std::vector<float>& values, double share) {
   return *at;
 }
 
+/// A frame darker than this is left dark instead of showing its noise.
+constexpr float kDarkest = 0.02F;
+
 bool is_depth(float depth) { return depth > 0 && std::isfinite(depth); }
 
 }  // namespace
 
 ImageRgb8 draw_radiance(const ImageF& radiance) {
   std::vector<float> values(radiance.pixels().begin(), radiance.pixels().end());
-  const float white = values.empty() ? 1 : std::max(1.0F, percentile(values, 0.995));
+  const float white = values.empty() ? 1 : std::max(kDarkest, percentile(values, 0.995));
   ImageRgb8 picture(radiance.width(), radiance.height());
   for (std::size_t i = 0; i < radiance.size(); ++i) {
     const std::uint8_t code = srgb8_from_linear(radiance.pixels()[i] / white);

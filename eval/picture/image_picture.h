@@ -6,8 +6,7 @@
 
 namespace saccade {
 
-/// Linear radiance as a grey picture; light that exceeds 1 is brought down so that its 99.5th
-/// percentile is white.
+/// Linear radiance as a grey picture, exposed so that its 99.5th percentile is white.
 [[nodiscard]] ImageRgb8 draw_radiance(const ImageF& radiance);
 
 /// Depths that a picture's colours span [m], 0 < near < far.

@@ -8,14 +8,14 @@ namespace saccade {
 
 struct RenderOptions {
   /// A picture of this moment instead of the contact sheet [s]; a video ignores it.
-  std::optional<double> time_s;
+  std::optional<double> time_s = std::nullopt;
   /// Part of the time that a sheet or a video shows [s].
-  std::optional<double> start_s;
-  std::optional<double> duration_s;
+  std::optional<double> start_s = std::nullopt;
+  std::optional<double> duration_s = std::nullopt;
   /// Dataset of a run, instead of the one in its run.yaml.
-  std::optional<std::filesystem::path> dataset;
+  std::optional<std::filesystem::path> dataset = std::nullopt;
   /// Events drawn per picture, those nearest in time; nullopt: 15 % of the number of pixels.
-  std::optional<std::size_t> events;
+  std::optional<std::size_t> events = std::nullopt;
   int upscale = 3;          ///< screen pixels per sensor pixel, 1..8
   double fps = 30;          ///< of a video, 1..240
   double slow_motion = 10;  ///< seconds of video per second of recording, > 0

@@ -32,7 +32,11 @@ Eigen::AlignedBox3d box_around(std::span<const Eigen::Vector3d> a,
   for (const Eigen::Vector3d& p : a) box.extend(p);
   for (const Eigen::Vector3d& p : b) box.extend(p);
   if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
-  // A straight or resting trajectory still gets a box that can be seen.
+  return box;
+}
+
+/// A straight or resting trajectory still gets a box that can be seen.
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box) {
   const double least = std::max(1e-3, 0.1 * box.sizes().maxCoeff());
   const Eigen::Vector3d missing = (Eigen::Vector3d::Constant(least) - box.sizes()).cwiseMax(0);
   return {box.min() - missing / 2, box.max() + missing / 2};
@@ -64,8 +68,9 @@ class View {
   double scale_ = 1;
 };
 
+/// `extent`: true side lengths, 0 where the box was widened to be seen.
 void draw_box(Canvas& canvas, const View& view, const Eigen::AlignedBox3d& box,
-              const Theme& theme) {
+              const Eigen::Vector3d& extent, const Theme& theme) {
   for (int corner = 0; corner < 8; ++corner)
     for (int axis = 0; axis < 3; ++axis) {
       if ((corner >> axis & 1) != 0) continue;
@@ -74,17 +79,18 @@ void draw_box(Canvas& canvas, const View& view, const Eigen::AlignedBox3d& box,
       };
       canvas.line(at(corner), at(corner | 1 << axis), theme.faint);
     }
-  const Eigen::Vector3d& low = box.min();
   const char* names = "xyz";
   for (int axis = 0; axis < 3; ++axis) {
+    if (!(extent[axis] > 0)) continue;
     // x and y are written along the front edges of the floor, z along the left upright.
-    Eigen::Vector3d middle = low;
+    Eigen::Vector3d middle = box.min();
     middle[axis] = box.center()[axis];
     if (axis == 1) middle.x() = box.max().x();
-    const std::string label = fmt::format("{} {:.3g} m", names[axis], box.sizes()[axis]);
-    const Eigen::Vector2d offset =
-        axis == 2 ? Eigen::Vector2d(4, 4) : Eigen::Vector2d(axis == 0 ? -60 : 6, 16);
-    canvas.text(label, view(middle) + offset, mix(theme.faint, theme.text, 0.6), 8);
+    const std::string label = fmt::format("{} {:.3g} m", names[axis], extent[axis]);
+    const double shift = axis == 2 ? -70 : axis == 0 ? -60 : 6;
+    Eigen::Vector2d at = view(middle) + Eigen::Vector2d(shift, axis == 2 ? 4 : 16);
+    at.x() = std::clamp(at.x(), 4.0, canvas.width() - 4.0 - Canvas::text_width(label, 8));
+    canvas.text(label, at, mix(theme.faint, theme.text, 0.6), 8);
   }
 }
 
@@ -94,9 +100,12 @@ ImageRgb8 draw_trajectory(std::span<const Eigen::Vector3d> truth,
                           std::span<const Eigen::Vector3d> estimate, int width, int height,
                           const Theme& theme) {
   Canvas canvas(width, height, theme.background);
-  const Eigen::AlignedBox3d box = box_around(truth, estimate);
+  const Eigen::AlignedBox3d tight = box_around(truth, estimate);
+  const Eigen::AlignedBox3d box = widened(tight);
   const View view(box, width, height);
-  draw_box(canvas, view, box, theme);
+  const Eigen::Vector3d extent =
+      (tight.sizes().array() < box.sizes().array()).select(0, tight.sizes());
+  draw_box(canvas, view, box, extent, theme);
   const auto draw = [&](std::span<const Eigen::Vector3d> points, const Rgb8& colour,
                         int thickness) {
     std::vector<Eigen::Vector2d> pixels;

@@ -18,7 +18,7 @@
   const ticks = (low, high, count) => {
     const rough = (high - low) / count;
     const power = Math.pow(10, Math.floor(Math.log10(rough)));
-    const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= rough);
+    const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= rough * 0.8);
     const values = [];
     for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; ++i) values.push(i * step);
     return { values, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
@@ -96,6 +96,7 @@
     const low = [0, 1, 2].map((k) => Math.min(...all.map((p) => p[k])));
     const high = [0, 1, 2].map((k) => Math.max(...all.map((p) => p[k])));
     const longest = Math.max(...low.map((v, k) => high[k] - v), 1e-3);
+    const padded = low.map((v, k) => high[k] - v < longest * 0.1);  // a side without extent says nothing
     for (let k = 0; k < 3; ++k) {
       const missing = Math.max(0, longest * 0.1 - (high[k] - low[k]));
       low[k] -= missing / 2;
@@ -136,6 +137,7 @@
       g.font = "12px system-ui, sans-serif";
       g.textAlign = "center";
       for (let k = 0; k < 3; ++k) {
+        if (padded[k]) continue;
         // Of the four edges along an axis, the one that lies outermost on the screen carries the label.
         let best = null;
         for (let i = 0; i < 8; ++i) {
@@ -145,7 +147,9 @@
           if (!best || rank > best.rank) best = { rank, m };
         }
         const label = `${"xyz"[k]}  ${(high[k] - low[k]).toPrecision(3)} m`, half = g.measureText(label).width / 2 + 6;
-        g.fillText(label, Math.min(width - half, Math.max(half, best.m[0] - (k === 2 ? half : 0))), best.m[1] + (k === 2 ? 0 : 16));
+        const away = [best.m[0] - width / 2, best.m[1] - height / 2], far = Math.hypot(...away) || 1;
+        const at = [best.m[0] + away[0] / far * (k === 2 ? half : 22), best.m[1] + away[1] / far * 22];
+        g.fillText(label, Math.min(width - half, Math.max(half, at[0])), Math.min(height - 6, at[1]));
       }
       const curve = (points, name, line) => {
         if (!points.length) return;

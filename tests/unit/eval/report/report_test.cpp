@@ -1,0 +1,106 @@
+#include "eval/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "eval/evaluate.h"
+#include "eval/report/run_series.h"
+#include "tests/unit/eval/fake_folders.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TemporaryFolder;
+
+class Report : public testing::FakeFolders {
+ protected:
+  [[nodiscard]] std::string written(const std::vector<fs::path>& runs) {
+    write_report(runs, folder.path() / "report.html");
+    return testing::read_file(folder.path() / "report.html");
+  }
+
+  TemporaryFolder folder;
+};
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++n;
+  return n;
+}
+
+TEST_F(Report, NeedsNothingBesideIt) {
+  const std::string page = written({run()});
+  EXPECT_EQ(count(page, "src=\""), count(page, "src=\"data:image/png;base64,"));
+  EXPECT_GT(count(page, "src=\""), 3U);
+  for (const char* outside : {"<link", "@import", "url(", "src=\"http", "href=\"http", "fetch("})
+    EXPECT_EQ(count(page, outside), 0U) << outside;
+  EXPECT_EQ(count(page, "{{"), 0U);
+}
+
+TEST_F(Report, ShowsTheRunBesideTheThesis) {
+  const std::string page = written({run()});
+  for (const char* text : {"walls_accurate", "better by", "1.3", "Table 8.3 prints 204 M",
+                           "saccade run track --data corner", "event_map_ratio: 0.4"})
+    EXPECT_GE(count(page, text), 1U) << text;
+}
+
+TEST_F(Report, EveryLinkLeadsToASection) {
+  const std::string page = written({run(), run()});
+  for (std::size_t at = 0; (at = page.find("href=\"#", at)) != std::string::npos; ++at) {
+    const std::size_t begin = at + 7;
+    const std::string id = page.substr(begin, page.find('"', begin) - begin);
+    EXPECT_EQ(count(page, "id=\"" + id + "\""), 1U) << id;
+  }
+}
+
+TEST_F(Report, IsTheSameEveryTime) { EXPECT_EQ(written({run()}), written({run()})); }
+
+TEST_F(Report, WithoutTheDatasetTheStoredScoresRemain) {
+  (void)evaluate_run(run());
+  const fs::path copy = folder.path() / "walls_copy";
+  fs::copy(run(), copy, fs::copy_options::recursive);
+  std::string record = testing::read_file(copy / "run.yaml");
+  const std::size_t at = record.find(dataset().string());
+  ASSERT_NE(at, std::string::npos);
+  record.replace(at, dataset().string().size(), "/gone/walls");
+  folder.write("walls_copy/run.yaml", record);
+  const std::string page = written({copy});
+  EXPECT_EQ(count(page, "/gone/walls is not there"), 1U);
+  EXPECT_EQ(count(page, "src=\""), 0U);
+  EXPECT_GE(count(page, "3,030"), 1U);
+}
+
+TEST_F(Report, RefusesWhatIsNoRun) {
+  EXPECT_THROW(write_report({}, folder.path() / "r.html"), InputError);
+  const std::vector<fs::path> none{folder.path()};
+  EXPECT_THROW(write_report(none, folder.path() / "r.html"), InputError);
+  EXPECT_FALSE(fs::exists(folder.path() / "r.html"));
+}
+
+TEST_F(Report, LongSeriesKeepTheirPeaks) {
+  RunData data;
+  data.id = "run1";
+  for (int i = 0; i < 20000; ++i) {
+    data.samples.t_s.push_back(i * 1e-3);
+    data.samples.estimated.emplace_back();
+    data.samples.truth.emplace_back();
+    data.errors.dt_m.push_back(i == 12345 ? 7.0 : 0.001);
+    data.errors.dtheta_deg.push_back(1);
+  }
+  data.errors.t_s = data.samples.t_s;
+  const auto json = nlohmann::json::parse(run_series(std::span(&data, 1)));
+  const auto& dt = json["runs"][0]["series"]["dt"];
+  EXPECT_LE(dt["v"].size(), 1700U);
+  EXPECT_EQ(dt["max"], 7000);
+  const std::vector<double> values = dt["v"];
+  const auto peak = std::find(values.begin(), values.end(), 7000.0);
+  ASSERT_NE(peak, values.end());
+  EXPECT_EQ(dt["t"][static_cast<std::size_t>(peak - values.begin())], 12.345);
+  EXPECT_EQ(json["runs"][0]["gaps"].size(), 1U);
+}
+
+}  // namespace
+}  // namespace saccade
