@@ -1,5 +1,6 @@
 #include "apps/common_options.h"
 
+#include "apps/option_checks.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 
@@ -19,7 +20,7 @@ config::Document CommonOptions::load(const std::string& config_file) const {
 void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--threads", options.threads, "Number of threads (default: all cores)")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, 4096));
   command.add_flag("-q,--quiet", options.quiet, "No progress, no tables: errors only");
 }
 
@@ -30,7 +31,9 @@ void add_config_options(CLI::App& command, CommonOptions& options) {
       ->type_name("KEY.PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--seed", options.seed, "The same as --set seed=N")->type_name("N");
+  command.add_option("--seed", options.seed, "The same as --set seed=N")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   command.add_flag("--print-config", options.print_config,
                    "Print every key with its value, help and range, and stop");
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/common_options.h"
+#include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "eval/evaluate.h"
@@ -55,7 +56,7 @@ void add_eval_verb(CLI::App& command) {
                    "Dataset to score against (default: the one the run used)");
   verb->add_option("--mean-depth-m", options->evaluate.mean_depth_m,
                    "d of dt_rel, where the dataset states none")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   verb->add_option("-o,--output", options->output, "Where the scores of --trajectory go (JSON)");
   add_common_options(*verb, options->common);
   verb->footer(

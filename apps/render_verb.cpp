@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/common_options.h"
+#include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "eval/picture/render.h"
 
@@ -36,21 +37,24 @@ void add_render_verb(CLI::App& command) {
   verb->add_option("-o,--output", options->output, "Picture (.png) or video (.mp4, by ffmpeg)")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--time", render.time_s, "One moment instead of a contact sheet [s]");
-  verb->add_option("--start-s", render.start_s, "Begin of the part that is shown [s]");
+  verb->add_option("--time", render.time_s, "One moment instead of a contact sheet [s]")
+      ->check(finite_number());
+  verb->add_option("--start-s", render.start_s, "Begin of the part that is shown [s]")
+      ->check(finite_number());
   verb->add_option("--duration-s", render.duration_s, "Length of the part that is shown [s]")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   verb->add_option("--data", render.dataset, "Dataset of a run, instead of the one it names");
   verb->add_option("--events", render.events, "Events per picture (default: 15 % of the pixels)")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(whole_number(1));
   verb->add_option("--upscale", render.upscale, "Screen pixels per sensor pixel")
-      ->check(CLI::Range(1, 8))
+      ->check(whole_number(1, 8))
       ->capture_default_str();
   verb->add_option("--fps", render.fps, "Frame rate of a video")
-      ->check(CLI::Range(1.0, 240.0))
+      ->check(number_between(1, 240))
       ->capture_default_str();
   verb->add_option("--slow-motion", render.slow_motion, "Seconds of video per second recorded")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   verb->add_flag("--light", options->light, "On a light background");
   add_common_options(*verb, options->common);

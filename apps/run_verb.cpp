@@ -5,6 +5,7 @@
 
 #include "apps/command_line.h"
 #include "apps/common_options.h"
+#include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -64,11 +65,12 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("-o,--output", request.output, "Run folder to write")->type_name("RUN");
   verb->add_option("-c,--config", options->config, "Configuration of the module (YAML)")
       ->type_name("CONFIG");
-  verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)");
+  verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)")
+      ->check(finite_number());
   verb->add_option("--duration-s", request.duration_s, "Length of the window")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   verb->add_option("--repeat", request.repeat, "Repeat the work, for timing")
-      ->check(CLI::Range(1, 100000))
+      ->check(whole_number(1, 100000))
       ->capture_default_str();
   add_config_options(*verb, options->common);
   add_common_options(*verb, options->common);

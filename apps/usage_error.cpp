@@ -7,11 +7,11 @@
 namespace saccade {
 namespace {
 
-/// The verb that the command line names, or the command itself.
+/// The verb that the command line names, or the command itself. Further on the name of a verb is a
+/// file or a value.
 const CLI::App& stated_verb(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (const CLI::App* verb : command.get_subcommands({}))
-    if (std::find(arguments.begin(), arguments.end(), verb->get_name()) != arguments.end())
-      return *verb;
+    if (!arguments.empty() && arguments[0] == verb->get_name()) return *verb;
   return command;
 }
 
@@ -37,13 +37,13 @@ std::string explain_usage_error(const CLI::App& command, const CLI::ParseError& 
   const std::string help =
       has_verb ? "\nTry: saccade " + verb.get_name() + " --help" : "\nTry: saccade --help";
   if (!has_verb && !arguments.empty() && arguments[0][0] != '-')
-    return "unknown verb '" + arguments[0] + "'" +
+    return "unknown verb '" + arguments[0] + "'; " +
            config::suggestion(arguments[0], verb_names(command), "verbs") + help;
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));
     const std::vector<std::string> names = option_names(verb);
     if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end())
-      return "unknown option '" + name + "'" + config::suggestion(name, names, "options") + help;
+      return "unknown option '" + name + "'; " + config::suggestion(name, names, "options") + help;
   }
   return error.what() + help;
 }

@@ -1,5 +1,5 @@
-// What users get wrong, one case each: the command must end with exit code 2 and say where the fault
-// is and what would be right, and must leave nothing under the output's name.
+// What users get wrong, one case each: the command must end with exit code 2 and say where the
+// fault is and what would be right, and must leave nothing under the output's name.
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/image_file.h"
 #include "tests/support/command.h"
 
 namespace saccade::testing {
@@ -51,6 +52,8 @@ struct Case {
   std::vector<std::string> says;                      ///< all of it, somewhere in the output
 };
 
+void PrintTo(const Case& wrong, std::ostream* stream) { *stream << wrong.name; }
+
 std::string at(std::string argument, const fs::path& folder) {
   for (std::size_t i = 0; (i = argument.find('@', i)) != std::string::npos;)
     argument.replace(i, 1, folder.string());
@@ -64,8 +67,8 @@ std::vector<std::string> simulate(std::vector<std::string> more = {}) {
 }
 
 std::vector<std::string> track(std::vector<std::string> more = {}) {
-  std::vector<std::string> arguments = {"run",   "track", "--data", "@/data", "-o", "@/out",
-                                        "--set", "reference.planar_depth_m=1"};
+  std::vector<std::string> arguments = {"run", "track", "--data", "@/data",
+                                        "-o",  "@/out", "--set",  "reference.planar_depth_m=1"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -85,23 +88,36 @@ const std::vector<Case>& cases() {
       {"UnknownVerb", nothing, {"simulat"}, {"simulat", "simulate"}},
       {"UnknownOption", nothing, simulate({"--thread", "2"}), {"--thread", "--threads"}},
       {"NoConfigFile", nothing, {"simulate", "@/none.yaml", "-o", "@/out"}, {"none.yaml"}},
-      {"UnknownKey", config_line("evnts: {}"), simulate(), {"simulation.yaml:8", "evnts", "events"}},
-      {"UnknownNestedKey", config_line("events:\n  contrast_no: 0.2"), simulate(),
+      {"UnknownKey",
+       config_line("evnts: {}"),
+       simulate(),
+       {"simulation.yaml:8", "evnts", "events"}},
+      {"UnknownNestedKey",
+       config_line("events:\n  contrast_no: 0.2"),
+       simulate(),
        {"simulation.yaml:9", "contrast_no", "contrast_on"}},
       {"WrongType", config_line("seed: abc"), simulate(), {"simulation.yaml:8", "seed", "abc"}},
-      {"OutOfRange", config_line("events: {contrast_on: -1}"), simulate(),
+      {"OutOfRange",
+       config_line("events: {contrast_on: -1}"),
+       simulate(),
        {"simulation.yaml:8", "contrast_on", "-1"}},
       {"NotYaml", config_line("events: {contrast_on: 1"), simulate(), {"simulation.yaml"}},
-      {"DuplicateKey", config_line("camera: {width: 10}"), simulate(),
+      {"DuplicateKey",
+       config_line("camera: {width: 10}"),
+       simulate(),
        {"simulation.yaml:8", "camera"}},
       {"BadOverride", nothing, simulate({"--set", "camera.widht=3"}), {"camera.widht", "width"}},
       {"ZeroAreaCamera", nothing, simulate({"--set", "camera.width=0"}), {"width"}},
       {"MissingMesh", nothing, simulate({"--set", "scene.meshes.0.file=none.obj"}), {"none.obj"}},
       {"EmptyMesh", file("scene.obj", "v 0 0 1\n"), simulate(), {"scene.obj"}},
-      {"DegenerateMesh", file("scene.obj", "v 0 0 1\nv 0 0 1\nv 0 0 1\nf 1 2 3\n"), simulate(),
+      {"DegenerateMesh",
+       file("scene.obj", "v 0 0 1\nv 0 0 1\nv 0 0 1\nf 1 2 3\n"),
+       simulate(),
        {"scene.obj"}},
-      {"NotANumberInMesh", file("scene.obj", "v nan -1 2\nv 1 -1 2\nv 0 1 2\nf 1 2 3\n"),
-       simulate(), {"scene.obj"}},
+      {"NotANumberInMesh",
+       file("scene.obj", "v nan -1 2\nv 1 -1 2\nv 0 1 2\nf 1 2 3\n"),
+       simulate(),
+       {"scene.obj"}},
       {"MissingTexture",
        [](const TemporaryFolder& folder) {
          folder.write("scene.obj",
@@ -109,51 +125,118 @@ const std::vector<Case>& cases() {
                       "usemtl m\nf 1/1 2/2 3/3\n");
          folder.write("scene.mtl", "newmtl m\nmap_Kd none.png\n");
        },
-       simulate(), {"none.png"}},
-      {"MissingArchiveMember", nothing,
-       simulate({"--set", "scene.meshes.0.file=@/furniture.sh3f!/desk.obj"}), {"furniture.sh3f"}},
-      {"OneWaypoint", nothing,
-       simulate({"--set", "trajectory.waypoints=[[0, 0, 0, 0, 0, 0, 0, 1]]"}), {"waypoints"}},
-      {"NotANumberInPose", nothing,
+       simulate(),
+       {"none.png"}},
+      {"MissingArchiveMember",
+       nothing,
+       simulate({"--set", "scene.meshes.0.file=@/furniture.sh3f!/desk.obj"}),
+       {"furniture.sh3f"}},
+      {"OneWaypoint",
+       nothing,
+       simulate({"--set", "trajectory.waypoints=[[0, 0, 0, 0, 0, 0, 0, 1]]"}),
+       {"waypoints"}},
+      {"NotANumberInPose",
+       nothing,
        simulate({"--set",
                  "trajectory.waypoints=[[0, .nan, 0, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 0, 0, 1]]"}),
        {"waypoints"}},
       {"TrajectoryFileWithNan",
        file("poses.txt", "0 0 0 0 0 0 0 1\n0.1 nan 0 0 0 0 0 1\n"),
-       simulate({"--set", "trajectory={source: file, file: @/poses.txt}"}), {"poses.txt:2"}},
+       simulate({"--set", "trajectory={source: file, file: @/poses.txt}"}),
+       {"poses.txt:2"}},
       {"DurationBeyondTrajectory", nothing, simulate({"--set", "duration_s=9"}), {"duration_s"}},
       {"NoDataset", nothing, {"info", "@/nowhere"}, {"nowhere"}},
-      {"NoEvents", [](const TemporaryFolder& f) { fs::remove(f.path() / "data/events.txt"); },
-       track(), {"events"}},
-      {"WrongColumnCount", file("data/events.txt", "0.001 1 2 1\n0.002 3 4\n"), {"info", "@/data"},
+      {"NoEvents",
+       [](const TemporaryFolder& f) { fs::remove(f.path() / "data/events.txt"); },
+       track(),
+       {"events"}},
+      {"WrongColumnCount",
+       file("data/events.txt", "0.001 1 2 1\n0.002 3 4\n"),
+       {"info", "@/data"},
        {"events.txt:2"}},
-      {"EventsGoBackInTime", file("data/events.txt", "0.002 1 2 1\n0.001 3 4 0\n"),
-       {"info", "@/data"}, {"events.txt:2"}},
-      {"EventOutsideSensor", file("data/events.txt", "0.001 1 2 1\n0.002 99 4 0\n"),
-       {"info", "@/data"}, {"events.txt:2", "99"}},
-      {"PolarityNeitherOnNorOff", file("data/events.txt", "0.001 1 2 7\n"), {"info", "@/data"},
+      {"EventsGoBackInTime",
+       file("data/events.txt", "0.002 1 2 1\n0.001 3 4 0\n"),
+       {"info", "@/data"},
+       {"events.txt:2"}},
+      {"EventOutsideSensor",
+       file("data/events.txt", "0.001 1 2 1\n0.002 99 4 0\n"),
+       {"info", "@/data"},
+       {"events.txt:2", "99"}},
+      {"PolarityNeitherOnNorOff",
+       file("data/events.txt", "0.001 1 2 7\n"),
+       {"info", "@/data"},
        {"events.txt:1"}},
-      {"NanPose", file("data/groundtruth.txt", "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n"),
-       {"info", "@/data"}, {"groundtruth.txt:2"}},
-      {"QuaternionOfNoLength", file("data/groundtruth.txt", "0 0 0 0 0 0 0 0\n"),
-       {"info", "@/data"}, {"groundtruth.txt:1"}},
-      {"PosesGoBackInTime", file("data/groundtruth.txt", "1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
-       {"info", "@/data"}, {"groundtruth.txt:2"}},
-      {"BadCalibration", file("data/calib.txt", "200 200 15.5\n"), {"info", "@/data"},
+      {"NanPose",
+       file("data/groundtruth.txt", "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n"),
+       {"info", "@/data"},
+       {"groundtruth.txt:2"}},
+      {"QuaternionOfNoLength",
+       file("data/groundtruth.txt", "0 0 0 0 0 0 0 0\n"),
+       {"info", "@/data"},
+       {"groundtruth.txt:1"}},
+      {"PosesGoBackInTime",
+       file("data/groundtruth.txt", "1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
+       {"info", "@/data"},
+       {"groundtruth.txt:2"}},
+      {"BadCalibration",
+       file("data/calib.txt", "200 200 15.5\n"),
+       {"info", "@/data"},
        {"calib.txt:1"}},
-      {"NegativeFocalLength", file("data/calib.txt", "-200 200 15.5 11.5 0 0 0 0 0\n"),
-       {"info", "@/data"}, {"calib.txt"}},
-      {"TruncatedHdf5", file("data/events.h5", "\x89HDF\r\n\x1a\n and no more"), {"info", "@/data"},
+      {"NegativeFocalLength",
+       file("data/calib.txt", "-200 200 15.5 11.5 0 0 0 0 0\n"),
+       {"info", "@/data"},
+       {"calib.txt"}},
+      {"TruncatedHdf5",
+       file("data/events.h5", "\x89HDF\r\n\x1a\n and no more"),
+       {"info", "@/data"},
        {"events.h5"}},
-      {"MissingFrame", file("data/images.txt", "0.0 images/frame_00000000.png\n"), track(),
+      {"MissingFrame",
+       file("data/images.txt", "0.002 images/frame_00000000.png\n"),
+       track(),
        {"frame_00000000.png"}},
-      {"UnknownModule", nothing, {"run", "trak", "--data", "@/data", "-o", "@/out"},
+      {"UnknownModule",
+       nothing,
+       {"run", "trak", "--data", "@/data", "-o", "@/out"},
        {"trak", "track"}},
-      {"UnknownTrackingKey", nothing, track({"--set", "sampels=3"}), {"sampels", "samples"}},
-      {"TooFewSamples", nothing, track({"--set", "samples=0"}), {"samples"}},
+      {"BrokenFrame",
+       [](const TemporaryFolder& folder) {
+         folder.write("data/images.txt", "0.002 images/frame.png\n");
+         folder.write("data/images/frame.png", "no picture");
+       },
+       track(),
+       {"frame.png"}},
+      {"NoDepthToTrackOn",
+       [](const TemporaryFolder& folder) {
+         folder.write("data/images.txt", "0.002 images/frame.png\n");
+         write_png(folder.path() / "data/images/frame.png", ImageU8(32, 24, 128));
+       },
+       {"run", "track", "--data", "@/data", "-o", "@/out"},
+       {"data", "depth"}},
+      {"FrameOfAnotherSize",
+       [](const TemporaryFolder& folder) {
+         folder.write("data/images.txt", "0.002 images/frame.png\n");
+         write_png(folder.path() / "data/images/frame.png", ImageU8(30, 24, 128));
+       },
+       track(),
+       {"frame", "30", "32"}},
+      {"WindowWithoutEvents", nothing, track({"--start-s", "0.5"}), {"data", "no events"}},
+      {"UnknownTrackingKey",
+       nothing,
+       track({"--set", "align.sampels=3"}),
+       {"align.sampels", "did you mean 'samples'"}},
+      {"NoSamples", nothing, track({"--set", "align.samples=0"}), {"--set align.samples", "0"}},
+      {"NegativeSeed", nothing, simulate({"--seed", "-1"}), {"--seed", "-1", "whole number"}},
+      {"NotANumberOption", nothing, track({"--duration-s", "nan"}), {"--duration-s", "nan"}},
+      {"ConfigIncludesItself",
+       config_line("include: simulation.yaml"),
+       simulate(),
+       {"simulation.yaml:8", "include"}},
+      {"ConfigIsAFolder", nothing, {"simulate", "@/data", "-o", "@/out"}, {"data", "folder"}},
       {"EvalOfNoRun", nothing, {"eval", "@/data"}, {"run.yaml"}},
-      {"BrokenTrajectory", file("est.txt", "0 0 0 0 0 0 0 1\n0.5 0 0 zero 0 0 0 1\n"),
-       {"eval", "--trajectory", "@/est.txt", "--data", "@/data"}, {"est.txt:2", "zero"}},
+      {"BrokenTrajectory",
+       file("est.txt", "0 0 0 0 0 0 0 1\n0.5 0 0 zero 0 0 0 1\n"),
+       {"eval", "--trajectory", "@/est.txt", "--data", "@/data"},
+       {"est.txt:2", "zero"}},
       {"ReportOfNoRun", nothing, {"report", "@/nowhere", "-o", "@/out"}, {"nowhere"}},
       {"RenderToUnknownFormat", nothing, {"render", "@/data", "-o", "@/out.xyz"}, {"out.xyz"}},
   };

@@ -1,0 +1,67 @@
+// Real input: a recorded sensor, and a recorded hand that moves the simulated one.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/support/shared_data.h"
+#include "tests/system/saccade_command.h"
+
+namespace saccade::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// Several depths and a narrow field of view: translation and yaw look alike, so the scores are
+/// those in the image.
+TEST(RealData, SliderIsTrackedFromItsOwnFrame) {
+  SACCADE_SHARED_DATA_OR_SKIP(recording, "slider_depth");
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "slider").string();
+  const std::string description = saccade_ok({"info", recording.string()});
+  for (const char* fact : {"50,000", "240", "180", "339"})
+    EXPECT_THAT(description, HasSubstr(fact));
+  saccade_ok({"render", recording.string(), "-o", run + "_data.png"});
+  EXPECT_TRUE(fs::exists(run + "_data.png"));
+
+  saccade_ok({"run", "track", "--data", recording.string(), "-c",
+              shipped_config("tracking/slider_depth.yaml"), "-o", run, "--threads", "1"});
+  saccade_ok({"eval", run});
+  const Metrics metrics = read_json_metrics(run + "/metrics.json");
+  EXPECT_GT(score(metrics, "trajectory.poses"), 10);
+  EXPECT_LE(score(metrics, "trajectory.reprojection_px.rms_max"), 3);
+  EXPECT_GE(score(metrics, "trajectory.coverage"), 0.9);
+  EXPECT_FALSE(metrics.get("trajectory.dt_rel_percent.mean")) << "no depth map gives d";
+
+  saccade_ok({"render", run, "-o", run + ".png"});
+  EXPECT_TRUE(fs::exists(run + ".png"));
+  saccade_ok({"report", run, "-o", run + ".html"});
+  EXPECT_TRUE(fs::exists(run + ".html"));
+}
+
+/// Interpolating the jitter of motion capture would give accelerations of hundreds of m/s^2: the
+/// smoothing spline must leave a motion that can be tracked.
+TEST(RealData, HandHeldMotionIsNeverLost) {
+  SACCADE_SHARED_DATA_OR_SKIP(motion, "trajectories/poster_6dof_handheld.csv");
+  const TemporaryFolder folder;
+  const std::string data = (folder.path() / "handheld").string();
+  const std::string run = (folder.path() / "run").string();
+  saccade_ok({"simulate", shipped_config("simulation/walls_handheld.yaml"), "-o", data, "--set",
+              "trajectory.file=" + motion.string(), "--set", "duration_s=5", "--set",
+              "camera={width: 120, height: 90, fx: 100, fy: 100, cx: 59.5, cy: 44.5}"});
+  saccade_ok({"run", "track", "--data", data, "-c", shipped_config("tracking/accurate.yaml"), "-o",
+              run, "--threads", "1"});
+  saccade_ok({"eval", run});
+  const Metrics metrics = read_json_metrics(run + "/metrics.json");
+  EXPECT_EQ(score(metrics, "trajectory.lost_s"), 0);
+  EXPECT_EQ(score(metrics, "trajectory.reported_lost_s"), 0);
+  EXPECT_GE(score(metrics, "trajectory.coverage"), 0.99);
+  EXPECT_LE(score(metrics, "trajectory.dt_rel_percent.mean"), 2);
+  EXPECT_LE(score(metrics, "trajectory.dtheta_deg.mean"), 1);
+}
+
+}  // namespace
+}  // namespace saccade::testing
