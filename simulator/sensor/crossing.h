@@ -2,16 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
 namespace saccade {
 
+constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
+
 /// Contrast thresholds of the ideal pixel [log units], both > 0.
 struct Contrast {
   double on = 0.15;
   double off = 0.15;
+};
+
+/// Log intensities between which a pixel stays silent.
+struct Band {
+  double lower = 0;  ///< fires OFF when L falls to it
+  double upper = 0;  ///< fires ON when L rises to it
+
+  [[nodiscard]] bool holds(double log_intensity) const {
+    return log_intensity < upper && log_intensity > lower;
+  }
 };
 
 /// The ideal event pixel's memory. The reference is rebuilt from two counters, so it has no drift:
@@ -24,11 +36,7 @@ class EventPixel {
     update(contrast);
   }
 
-  [[nodiscard]] double upper() const { return upper_; }  ///< fires ON when L rises to it
-  [[nodiscard]] double lower() const { return lower_; }  ///< fires OFF when L falls to it
-  [[nodiscard]] bool holds(double log_intensity) const {
-    return log_intensity < upper_ && log_intensity > lower_;
-  }
+  [[nodiscard]] const Band& band() const { return band_; }
 
   void fire(int polarity, const Contrast& contrast) {
     (polarity > 0 ? ons_ : offs_) += 1;
@@ -37,8 +45,8 @@ class EventPixel {
 
  private:
   void update(const Contrast& contrast) {
-    upper_ = level(ons_ + 1, offs_, contrast);
-    lower_ = level(ons_, offs_ + 1, contrast);
+    band_.upper = level(ons_ + 1, offs_, contrast);
+    band_.lower = level(ons_, offs_ + 1, contrast);
   }
 
   /// Pairs of ON and OFF cancel before anything is rounded.
@@ -49,8 +57,7 @@ class EventPixel {
   }
 
   double initial_ = 0;
-  double upper_ = 0;
-  double lower_ = 0;
+  Band band_;
   double ons_ = 0;  ///< whole numbers
   double offs_ = 0;
 };
@@ -128,32 +135,47 @@ struct ExcursionSearch {
 
 /// Whether the signal, `a` and `b` at the ends of a step, may have left the pixel's band in
 /// between.
-[[nodiscard]] inline bool may_exit(const EventPixel& pixel, double a, double b, double step_s,
+[[nodiscard]] inline bool may_exit(const Band& band, double a, double b, double step_s,
                                    const Slopes& slopes, const ExcursionSearch& search) {
   const double low = std::min(a, b);
   const double high = std::max(a, b);
-  const double margin = std::min(pixel.upper() - high, low - pixel.lower());
+  const double margin = std::min(band.upper - high, low - band.lower);
   const double change = std::max(high - low, std::max(slopes.before, slopes.after) * step_s);
   return !(margin > search.reach * change);
 }
 
-/// The first part of (a, b] at whose end the signal is outside the pixel's band, if there is one.
+/// The first part of (a, b] at whose end the signal is outside the band, if there is one.
 template <class Sample, class Evaluate>
-[[nodiscard]] std::optional<Bracket<Sample>> find_exit(const EventPixel& pixel, const Sample& a,
+[[nodiscard]] std::optional<Bracket<Sample>> find_exit(const Band& band, const Sample& a,
                                                        const Sample& b, const Slopes& slopes,
                                                        const ExcursionSearch& search,
                                                        const Evaluate& evaluate) {
-  if (!pixel.holds(b.log_intensity)) return Bracket<Sample>{a, b};
+  if (!band.holds(b.log_intensity)) return Bracket<Sample>{a, b};
   const double step_s = b.t_s - a.t_s;
   if (step_s < search.shortest_s ||
-      !may_exit(pixel, a.log_intensity, b.log_intensity, step_s, slopes, search))
+      !may_exit(band, a.log_intensity, b.log_intensity, step_s, slopes, search))
     return std::nullopt;
   const Sample middle = evaluate(0.5 * (a.t_s + b.t_s), a, b);
   const double first = 2 * std::abs(middle.log_intensity - a.log_intensity) / step_s;
   const double second = 2 * std::abs(b.log_intensity - middle.log_intensity) / step_s;
-  if (auto exit = find_exit(pixel, a, middle, {slopes.before, second}, search, evaluate))
+  if (auto exit = find_exit(band, a, middle, {slopes.before, second}, search, evaluate))
     return exit;
-  return find_exit(pixel, middle, b, {first, slopes.after}, search, evaluate);
+  return find_exit(band, middle, b, {first, slopes.after}, search, evaluate);
+}
+
+/// An exit of [a, crossing.lo], which a later crossing in the other direction may hide: a signal
+/// that rises out of the band before an occluding edge throws it below. A smooth crossing comes
+/// close to its own threshold in any case, so there only the other one is looked at.
+template <class Sample, class Evaluate>
+[[nodiscard]] std::optional<Bracket<Sample>> find_earlier_exit(
+    const Band& band, const Contrast& contrast, const Sample& a, const Bracket<Sample>& crossing,
+    double slope_before, const ExcursionSearch& search, const Evaluate& evaluate) {
+  constexpr double kJump = 0.1;  // of a threshold, within the time tolerance
+  const double change = crossing.hi.log_intensity - crossing.lo.log_intensity;
+  Band open = band;
+  if (std::abs(change) < kJump * std::min(contrast.on, contrast.off))
+    (change > 0 ? open.upper : open.lower) = std::copysign(kNoThreshold, change);
+  return find_exit(open, a, crossing.lo, {slope_before, 0}, search, evaluate);
 }
 
 /// All crossings within the step (a, b], one after the other; `emit(t_s, polarity)`. Thresholds
@@ -165,15 +187,22 @@ double walk_step(EventPixel& pixel, const Contrast& contrast, Sample a, const Sa
                  const Evaluate& evaluate, const Emit& emit) {
   double widest_s = 0;
   while (a.t_s < b.t_s) {
-    const auto exit = find_exit(pixel, a, b, slopes, search, evaluate);
+    const Band band = pixel.band();
+    auto exit = find_exit(band, a, b, slopes, search, evaluate);
     if (!exit) break;
-    const int polarity = exit->hi.log_intensity >= pixel.upper() ? 1 : -1;
-    const double level = polarity > 0 ? pixel.upper() : pixel.lower();
-    const Bracket<Sample> bracket = refine(*exit, level, tolerance_s, evaluate);
+    Bracket<Sample> bracket;
+    int polarity = 0;
+    double level = 0;
+    for (; exit;
+         exit = find_earlier_exit(band, contrast, a, bracket, slopes.before, search, evaluate)) {
+      polarity = exit->hi.log_intensity >= band.upper ? 1 : -1;
+      level = polarity > 0 ? band.upper : band.lower;
+      bracket = refine(*exit, level, tolerance_s, evaluate);
+    }
     widest_s = std::max(widest_s, bracket.width_s());
     const double t = bracket.crossing_s(level);
-    while (polarity > 0 ? bracket.hi.log_intensity >= pixel.upper()
-                        : bracket.hi.log_intensity <= pixel.lower()) {
+    while (polarity > 0 ? bracket.hi.log_intensity >= pixel.band().upper
+                        : bracket.hi.log_intensity <= pixel.band().lower) {
       pixel.fire(polarity, contrast);
       emit(t, polarity);
     }

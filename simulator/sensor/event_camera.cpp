@@ -15,6 +15,10 @@ namespace {
 constexpr double kLongestSlab_s = 0.010;
 constexpr double kShortestSlab_s = 1e-4;
 constexpr double kSlabMotion_px = kTileSize;
+/// Where surfaces slide over one another, at more than this share of their motion, one can show for
+/// less than a step behind another's edge; the steps there are shorter.
+constexpr double kOccluding = 0.15;
+constexpr double kOccludedRefinement = 2;
 constexpr std::size_t kTilesPerTask = 16;
 /// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
 constexpr double kTileRadius_px = 2.83;
@@ -26,7 +30,8 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
     : motion_(world_from_camera),
       rays_(camera, options.samples_per_pixel),
       world_{scene, rays_, options},
-      speeds_(rays_.tile_count()) {
+      speeds_(rays_.tile_count()),
+      refinements_(rays_.tile_count(), 1) {
   tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
 }
@@ -44,7 +49,8 @@ void EventCamera::record(double duration_s, const Sink& sink) {
     const double end_s = slabs_left <= 1 ? duration_s : t_s + (duration_s - t_s) / slabs_left;
     const PoseTable poses(motion_, searched_s(), end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
-      const double steps = std::ceil(speeds_[i] * (end_s - t_s) / world_.options.max_step_px);
+      const double motion_px = speeds_[i] * (end_s - t_s);
+      const double steps = std::ceil(refinements_[i] * motion_px / world_.options.max_step_px);
       tile.advance(poses, end_s, std::max(1, static_cast<int>(steps)));
     });
     deliver(searched_s(), end_s, sink);
@@ -78,10 +84,14 @@ double EventCamera::bound_speeds(double t_s) {
     const Eigen::Vector3d centre = camera.ray(
         Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
     const InverseDepthRange range = neighbourhood(i);
-    speeds_[i] = 0;
-    for (const Twist& twist : twists)
-      speeds_[i] =
-          std::max(speeds_[i], image_speed_bound(camera, centre, kTileRadius_px, twist, range));
+    ImageSpeed speed;
+    for (const Twist& twist : twists) {
+      const ImageSpeed now = image_speed_bound(camera, centre, kTileRadius_px, twist, range);
+      speed.fastest = std::max(speed.fastest, now.fastest);
+      speed.parallax = std::max(speed.parallax, now.parallax);
+    }
+    speeds_[i] = speed.fastest;
+    refinements_[i] = speed.parallax > kOccluding * speed.fastest ? kOccludedRefinement : 1;
   });
   return *std::max_element(speeds_.begin(), speeds_.end());
 }

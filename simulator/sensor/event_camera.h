@@ -52,7 +52,8 @@ class EventCamera {
   PixelRays rays_;
   EventWorld world_;
   std::vector<std::unique_ptr<EventTile>> tiles_;
-  std::vector<double> speeds_;  ///< per tile [px/s]
+  std::vector<double> speeds_;       ///< per tile [px/s]
+  std::vector<double> refinements_;  ///< per tile; max_step_px is divided by it
   Events pending_;
 };
 

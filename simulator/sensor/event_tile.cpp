@@ -93,7 +93,7 @@ class LockstepTile final : public EventTile {
     const double step_s = to_.t_s - from_.t_s;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       const Slopes slopes{slopes_before_[i], slopes_after[i]};
-      if (may_exit(pixels_[i], from_.log_intensity[i], to_.log_intensity[i], step_s, slopes,
+      if (may_exit(pixels_[i].band(), from_.log_intensity[i], to_.log_intensity[i], step_s, slopes,
                    search_))
         walk(i, slopes);
     }

@@ -12,8 +12,8 @@ Twist camera_twist(const SplineState& state) {
   return twist;
 }
 
-double image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray, double radius_px,
-                         const Twist& twist, const InverseDepthRange& range) {
+ImageSpeed image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,
+                             double radius_px, const Twist& twist, const InverseDepthRange& range) {
   const Eigen::Vector3d v = twist.head<3>();
   const Eigen::Vector3d w = twist.tail<3>();
   const double x = ray.x();
@@ -26,7 +26,9 @@ double image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray
   const double low = (rotation + range.low * translation).norm();
   const double high = (rotation + range.high * translation).norm();
   const double growth = w.norm() * (1 + 2 * ray.head<2>().norm()) + range.high * std::abs(v.z());
-  return std::max(low, high) + radius_px * growth;
+  const double parallax =
+      (range.high - range.low) * (translation.norm() + radius_px * std::abs(v.z()));
+  return {std::max(low, high) + radius_px * growth, parallax};
 }
 
 }  // namespace saccade

@@ -17,12 +17,18 @@ struct InverseDepthRange {
   double high = 0;
 };
 
-/// Upper bound of the image speed [px/s] of static points with inverse depth in `range`, seen
-/// within `radius_px` of the direction `ray` = (x, y, 1). The motion field is affine in 1/z, so its
-/// norm is largest at an end of the range; away from `ray` it grows no faster than |w| and |v|/z,
-/// the terms of its gradient (to first order in the radius).
-[[nodiscard]] double image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,
-                                       double radius_px, const Twist& twist,
-                                       const InverseDepthRange& range);
+/// Upper bounds of the image motion of static points around a direction [px/s].
+struct ImageSpeed {
+  double fastest = 0;
+  double parallax = 0;  ///< of the nearest against the farthest of them
+};
+
+/// Bounds for points with inverse depth in `range`, seen within `radius_px` of the direction `ray`
+/// = (x, y, 1). The motion field is affine in 1/z, so its norm is largest at an end of the range;
+/// away from `ray` it grows no faster than |w| and |v|/z, the terms of its gradient (to first order
+/// in the radius).
+[[nodiscard]] ImageSpeed image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,
+                                           double radius_px, const Twist& twist,
+                                           const InverseDepthRange& range);
 
 }  // namespace saccade

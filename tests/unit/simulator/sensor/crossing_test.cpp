@@ -125,6 +125,19 @@ TEST(Crossing, ThresholdsMetByAJumpShareItsTime) {
   EXPECT_LE(walk.evaluations, 40);
 }
 
+// The signal rises through its threshold and is then thrown far below, all within one step.
+TEST(Crossing, RiseHiddenByALaterFallIsFound) {
+  const auto signal = [](double t) { return t < 0.5 ? 0.4 * t : -0.4; };
+  const Walk walk(signal, {0.15, 0.15}, 1, 1, 1e-7);
+  ASSERT_EQ(walk.events.size(), 4U);  // up at 0.15, down at 0, -0.15, -0.3
+  EXPECT_EQ(walk.events[0].polarity, 1);
+  EXPECT_NEAR(walk.events[0].t_s, 0.375, 1e-7);
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_EQ(walk.events[k].polarity, -1);
+    EXPECT_NEAR(walk.events[k].t_s, 0.5, 1e-7);
+  }
+}
+
 TEST(Crossing, FlatLevelReachedAgainMeetsTheSameThresholds) {
   // Two flat levels exactly three thresholds apart: each jump fires three events, for ever.
   const double contrast = 0.1;

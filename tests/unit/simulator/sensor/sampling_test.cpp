@@ -87,7 +87,8 @@ TEST(ImageMotion, BoundHoldsForEveryPointNearTheRay) {
     const InverseDepthRange range{low, low + uniform(0, 1)};
     const Eigen::Vector2d centre(uniform(0, 239), uniform(0, 179));
     constexpr double kRadius_px = 2.83;
-    const double bound = image_speed_bound(camera, camera.ray(centre), kRadius_px, twist, range);
+    const double bound =
+        image_speed_bound(camera, camera.ray(centre), kRadius_px, twist, range).fastest;
     for (int k = 0; k < 20; ++k) {
       const double angle = uniform(0, 2 * std::numbers::pi);
       const Eigen::Vector2d pixel =
