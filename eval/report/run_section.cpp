@@ -73,12 +73,12 @@ std::string map_pictures(const RunData& data) {
   constexpr double kMoments[] = {0.1, 0.5, 0.9};
   const double start_s = data.samples.t_s.front();
   const double length_s = data.samples.t_s.back() - start_s;
-  const SensorView view(*data.data, start_s, start_s + length_s, {});
   std::string html =
       "<h4>Map projected with the estimated pose, over the events</h4>"
       "<div class=\"grid three\">";
   for (const double share : kMoments) {
     const double t_s = start_s + share * length_s;
+    const SensorView view(*data.data, t_s, t_s, {});
     html += figure(view.map_over_events(t_s, data.map, held_pose(data.input.estimate, t_s)),
                    fmt::format("{:.3f} s", t_s) + swatch(kDarkTheme.map, "map") +
                        swatch(kDarkTheme.on, "ON") + swatch(kDarkTheme.off, "OFF"),

@@ -76,7 +76,7 @@ std::string deviation_cell(const std::optional<double>& ours, const std::optiona
                            const std::string& shown) {
   std::string reference = printed(theirs);
   if (const std::optional<double> share = ratio(ours, theirs))
-    reference += fmt::format(" ({:+.0f} %)", 100 * (*share - 1));
+    reference += fmt::format(" ({:+.0f} %)", std::round(100 * (*share - 1)) + 0.0);
   return cell(shown, reference);
 }
 
@@ -89,14 +89,17 @@ std::string dataset_row(const RunData& data) {
   const DatasetNumbers& n = data.numbers;
   std::optional<double> millions = n.events;
   if (millions) *millions /= 1e6;
-  return fmt::format(
-      "<tr><td>{}</td>{}{}{}{}</tr>\n", escape_html(data.dataset),
-      deviation_cell(millions, theirs(&thesis::Sequence::events_millions), significant(millions)),
-      deviation_cell(n.duration_s, theirs(&thesis::Sequence::duration_s),
-                     significant(n.duration_s)),
-      deviation_cell(n.mean_depth_m, theirs(&thesis::Sequence::mean_depth_m),
-                     significant(n.mean_depth_m)),
-      deviation_cell(n.path_m, theirs(&thesis::Sequence::path_m), significant(n.path_m)));
+  const std::optional<double> thesis_ratio =
+      ratio(theirs(&thesis::Sequence::path_m), theirs(&thesis::Sequence::mean_depth_m));
+  const auto row_cell = [&](const std::optional<double>& ours, double thesis::Sequence::*member) {
+    return deviation_cell(ours, theirs(member), significant(ours));
+  };
+  return fmt::format("<tr><td>{}</td>", escape_html(data.dataset)) +
+         row_cell(millions, &thesis::Sequence::events_millions) +
+         row_cell(n.duration_s, &thesis::Sequence::duration_s) +
+         row_cell(n.mean_depth_m, &thesis::Sequence::mean_depth_m) +
+         row_cell(n.path_m, &thesis::Sequence::path_m) +
+         cell(fixed(ratio(n.path_m, n.mean_depth_m), 2), fixed(thesis_ratio, 2)) + "</tr>\n";
 }
 
 std::string speed_row(const RunData& data) {
@@ -160,7 +163,8 @@ std::string dataset_table(std::span<const RunData> runs) {
       "and "
       "the deviation from it.</p>\n<div class=\"scroll\"><table class=\"wide\"><thead><tr>"
       "<th>dataset</th><th>events [M]</th><th>duration [s]</th><th>mean depth [m]</th>"
-      "<th>path length [m]</th></tr></thead><tbody>\n";
+      "<th>path length [m]</th>"
+      "<th>path / depth</th></tr></thead><tbody>\n";
   std::set<std::string> shown;
   for (const RunData& data : runs)
     if (shown.insert(data.dataset).second) html += dataset_row(data);

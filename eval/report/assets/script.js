@@ -148,7 +148,8 @@
         }
         const label = `${"xyz"[k]}  ${(high[k] - low[k]).toPrecision(3)} m`, half = g.measureText(label).width / 2 + 6;
         const away = [best.m[0] - width / 2, best.m[1] - height / 2], far = Math.hypot(...away) || 1;
-        const at = [best.m[0] + away[0] / far * (k === 2 ? half : 22), best.m[1] + away[1] / far * 22];
+        const reach = Math.abs(away[0]) / far * half + 14;
+        const at = [best.m[0] + away[0] / far * reach, best.m[1] + away[1] / far * reach + 4];
         g.fillText(label, Math.min(width - half, Math.max(half, at[0])), Math.min(height - 6, at[1]));
       }
       const curve = (points, name, line) => {
