@@ -75,7 +75,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
     add_alignments(text, metrics);
     add_tracking(text, metrics);
   }
-  add_speed(text, metrics);
+  if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;
 }
 

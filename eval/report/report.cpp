@@ -43,10 +43,13 @@ std::string sections(const std::vector<RunData>& runs) {
   return html;
 }
 
-std::string contents(const std::vector<RunData>& runs) {
-  std::string html =
-      "<a href=\"#accuracy\">Accuracy</a><a href=\"#datasets\">Datasets</a>"
-      "<a href=\"#speed\">Speed</a>";
+/// Links to the tables that are there and to every run.
+std::string contents(const std::vector<RunData>& runs, const std::string& tables) {
+  std::string html;
+  for (const auto& [id, name] :
+       {std::pair{"accuracy", "Accuracy"}, {"datasets", "Datasets"}, {"speed", "Speed"}})
+    if (tables.find(fmt::format("id=\"{}\"", id)) != std::string::npos)
+      html += fmt::format("<a href=\"#{}\">{}</a>", id, name);
   for (const RunData& data : runs)
     html += fmt::format("<a href=\"#{}\">{}</a>", data.id, escape_html(data.run.name()));
   return html;
@@ -60,6 +63,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   std::vector<RunData> runs;
   for (const std::filesystem::path& folder : run_folders)
     runs.push_back(gather_run(folder, runs.size() + 1));
+  const std::string tables = accuracy_table(runs) + dataset_table(runs) + speed_table(runs);
   const std::string page = fill_page(
       assets::page_html,
       {{"title", escape_html(options.title)},
@@ -67,9 +71,9 @@ void write_report(std::span<const std::filesystem::path> run_folders,
         fmt::format("{} {} scored against ground truth, beside the numbers of the thesis "
                     "(T. Horstschaefer, University of Zurich, 2016).",
                     runs.size(), runs.size() == 1 ? "run" : "runs")},
-       {"contents", contents(runs)},
+       {"contents", contents(runs, tables)},
        {"style", std::string(assets::style_css)},
-       {"body", accuracy_table(runs) + dataset_table(runs) + speed_table(runs) + sections(runs)},
+       {"body", tables + sections(runs)},
        {"data", run_series(runs)},
        {"script", std::string(assets::script_js)},
        {"footer",

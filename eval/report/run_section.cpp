@@ -11,26 +11,31 @@
 namespace saccade {
 namespace {
 
-std::string key_number(const std::string& value, const std::string& unit,
-                       const std::string& label) {
-  return fmt::format("<li><b>{}<small>{}</small></b><span>{}</span></li>", value, unit, label);
-}
-
 std::string key_numbers(const RunData& data) {
   const Metrics& m = data.metrics;
+  std::string html;
+  const auto add = [&](const std::optional<double>& value, const std::string& shown,
+                       const char* unit, const char* label) {
+    if (value)
+      html += fmt::format("<li><b>{}<small>{}</small></b><span>{}</span></li>", shown, unit, label);
+  };
+  const auto score = [&](const char* key, double scale, const char* unit, const char* label) {
+    std::optional<double> value = m.get(std::string("trajectory.") + key);
+    if (value) *value *= scale;
+    add(value, significant(value), unit, label);
+  };
+  score("dt_rel_percent.mean", 1, "%", "mean &Delta;t<sub>rel</sub>");
+  if (!m.get("trajectory.dt_rel_percent.mean")) score("dt_m.mean", 1e3, "mm", "mean &Delta;t");
+  score("dtheta_deg.mean", 1, "deg", "mean &Delta;&theta;");
+  score("reprojection_px.rms", 1, "px", "map in the image, RMS");
   std::optional<double> coverage = m.get("trajectory.coverage");
   if (coverage) *coverage *= 100;
-  std::string html = "<ul class=\"keys\">";
-  html += key_number(significant(m.get("trajectory.dt_rel_percent.mean")), "%",
-                     "mean &Delta;t<sub>rel</sub>");
-  html +=
-      key_number(significant(m.get("trajectory.dtheta_deg.mean")), "deg", "mean &Delta;&theta;");
-  html += key_number(significant(m.get("trajectory.reprojection_px.rms")), "px",
-                     "map in the image, RMS");
-  html += key_number(fixed(coverage, 1), "%", "of the time covered");
-  html += key_number(grouped(m.get("trajectory.poses")), "", "poses");
-  html += key_number(grouped(speed_value(m, "speed.poses_per_s")), "/s", "poses");
-  return html + "</ul>\n";
+  add(coverage, fixed(coverage, 1), "%", "of the time covered");
+  const std::optional<double> poses = m.get("trajectory.poses");
+  add(poses, grouped(poses), "", "poses");
+  const std::optional<double> rate = speed_value(m, "speed.poses_per_s");
+  add(rate, grouped(rate), "/s", "poses");
+  return html.empty() ? "" : "<ul class=\"keys\">" + html + "</ul>\n";
 }
 
 std::string views(const RunData& data) {

@@ -13,8 +13,10 @@
 namespace saccade {
 namespace {
 
-/// Ours above the thesis's.
+/// Ours above the thesis's, which is left out where there is none.
 std::string cell(const std::string& ours, const std::string& theirs, bool starts_group = false) {
+  if (theirs == fixed(std::nullopt, 0))
+    return fmt::format("<td{}>{}</td>", starts_group ? " class=\"space\"" : "", ours);
   return fmt::format("<td{}>{}<span class=\"ref\">{}</span></td>",
                      starts_group ? " class=\"space\"" : "", ours, theirs);
 }

@@ -39,7 +39,7 @@
     const width = Math.max(260, box.clientWidth), height = 170;
     const left = 46, right = 8, top = 8, bottom = 34;
     const [t0, t1] = run.span;
-    const high = Math.max(series.max * 1.06, 1e-9);
+    const high = Math.max(series.max * 1.06, 1e-3);
     const x = (t) => left + (t - t0) / (t1 - t0 || 1) * (width - left - right);
     const y = (v) => height - bottom - v / high * (height - top - bottom);
     box.textContent = "";

@@ -47,13 +47,27 @@ TEST_F(Report, ShowsTheRunBesideTheThesis) {
     EXPECT_GE(count(page, text), 1U) << text;
 }
 
-TEST_F(Report, EveryLinkLeadsToASection) {
-  const std::string page = written({run(), run()});
+void expect_links_lead_somewhere(const std::string& page) {
   for (std::size_t at = 0; (at = page.find("href=\"#", at)) != std::string::npos; ++at) {
     const std::size_t begin = at + 7;
     const std::string id = page.substr(begin, page.find('"', begin) - begin);
     EXPECT_EQ(count(page, "id=\"" + id + "\""), 1U) << id;
   }
+}
+
+TEST_F(Report, EveryLinkLeadsToASection) { expect_links_lead_somewhere(written({run(), run()})); }
+
+TEST_F(Report, LeavesOutWhatTheRunLacks) {
+  const fs::path bare = folder.path() / "bare";
+  fs::copy(run(), bare, fs::copy_options::recursive);
+  for (const char* file : {"timing.json", "poses.csv", "map.ply", "trajectory.txt"})
+    fs::remove(bare / file);
+  fs::remove(bare / "metrics.json");
+  const std::string page = written({bare});
+  expect_links_lead_somewhere(page);
+  EXPECT_EQ(count(page, "id=\"speed\""), 0U);
+  EXPECT_EQ(count(page, "id=\"accuracy\""), 0U);
+  EXPECT_EQ(count(page, ">nan"), 0U);
 }
 
 TEST_F(Report, IsTheSameEveryTime) { EXPECT_EQ(written({run()}), written({run()})); }
