@@ -131,7 +131,10 @@ void TemplateDrawer::splat_bilinear() {
 
 void TemplateDrawer::collect() {
   points_.clear();
+  lit_pixels_ = 0;
   const auto threshold = static_cast<float>(options_.min_value);
+  const auto squared_gradient =
+      static_cast<float>(4 * options_.min_gradient_px * options_.min_gradient_px);
   const auto half_fx = static_cast<float>(camera_.fx / 2);
   const auto half_fy = static_cast<float>(camera_.fy / 2);
   for (int y = 1; y + 1 < camera_.height; ++y) {
@@ -141,10 +144,17 @@ void TemplateDrawer::collect() {
     const float* depth = blurred_depth_.row(y);
     const auto ray_y = static_cast<float>((y - camera_.cy) / camera_.fy);
     std::size_t count = 0;
+    std::size_t lit = 0;
     for (int x = 1; x + 1 < camera_.width; ++x) {
+      const float gx = row[x + 1] - row[x - 1];
+      const float gy = below[x] - above[x];
+      const bool is_lit = row[x] > threshold;
       columns_[count] = x;
-      count += row[x] > threshold;  // without a branch: which pixels are above is hard to predict
+      // Without a branch: which pixels pass is hard to predict.
+      count += is_lit & (gx * gx + gy * gy >= squared_gradient);
+      lit += is_lit;
     }
+    lit_pixels_ += lit;
     for (std::size_t i = 0; i < count; ++i) {
       const int x = columns_[i];
       points_.push_back({{ray_x_[static_cast<std::size_t>(x)], ray_y},

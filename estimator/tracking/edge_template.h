@@ -18,6 +18,7 @@ struct TemplateOptions {
   int blur_size_px = 5;  ///< odd, 1..15
   double blur_sigma_px = 1.1;
   double min_value = 0.01;  ///< pixels of the blurred template above it are template points
+  double min_gradient_px = 0.15;  ///< of a template point [1/px]: flat pixels say nothing about the pose
   double redraw_px =
       0;  ///< the template is kept while the view moved less; 0: drawn for every frame
 };
@@ -40,6 +41,9 @@ class TemplateDrawer {
   /// mask and mask * depth, and divides (4.20). The points come in row-major order; those on the
   /// border, whose gradient is unknown, are left out. Valid until the next draw.
   [[nodiscard]] const std::vector<TemplatePoint>& draw(const Rigid3& camera_from_map);
+
+  /// n_map: pixels of the last draw's template above min_value, whatever their gradient.
+  [[nodiscard]] std::size_t lit_pixels() const { return lit_pixels_; }
 
   /// The blurred template T of the last draw, for pictures.
   [[nodiscard]] const PaddedImage& image() const { return blurred_mask_; }
@@ -65,6 +69,7 @@ class TemplateDrawer {
   std::vector<float> ray_x_;  ///< x of K^-1 u for every column
   std::vector<int> columns_;  ///< template points of one row
   std::vector<TemplatePoint> points_;
+  std::size_t lit_pixels_ = 0;
 };
 
 }  // namespace saccade

@@ -1,26 +1,73 @@
 #include "estimator/tracking/motion_model.h"
 
+
+#include "estimator/tracking/cholesky.h"
+
 namespace saccade {
+namespace {
+
+/// Standard deviations at the start, as image motion: the first pose is given to about a pixel, of the
+/// velocity nothing is known.
+constexpr double kInitialPose_px = 0.2;
+constexpr double kInitialVelocity_px_s = 300;
+
+}  // namespace
+
+MotionModel::MotionModel(const PredictionOptions& options, double focal_px)
+    : options_(options), focal_px_(focal_px) {}
 
 void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera) {
   t_ns_ = t_ns;
   map_from_camera_ = map_from_camera;
+  stop();
+}
+
+void MotionModel::stop() {
   velocity_.setZero();
+  velocity_known_ = false;
 }
 
-Rigid3 MotionModel::predict(TimeNs t_ns) const {
-  if (options_.prediction == PredictionOptions::Prediction::kNone) return map_from_camera_;
-  return map_from_camera_ * Rigid3::exp(velocity_ * seconds_from_ns(t_ns - t_ns_));
+Eigen::Array<double, 6, 1> MotionModel::twist_of_px(double px, double depth_m) const {
+  const double angle = px / focal_px_;
+  Eigen::Array<double, 6, 1> twist;
+  twist << depth_m * angle, depth_m * angle, depth_m * angle, angle, angle, angle;
+  return twist;
 }
 
-Rigid3 MotionModel::update(TimeNs t_ns, const Rigid3& measured_map_from_camera) {
-  const double dt_s = seconds_from_ns(t_ns - t_ns_);
-  const Rigid3 predicted = predict(t_ns);
-  const Twist deviation = (predicted.inverse() * measured_map_from_camera).log();
-  map_from_camera_ = predicted * Rigid3::exp(options_.pose_gain * deviation);
-  if (dt_s > 0) velocity_ += options_.velocity_gain / dt_s * deviation;
+PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
+  const double dt = seconds_from_ns(t_ns - t_ns_);
   t_ns_ = t_ns;
-  return map_from_camera_;
+  if (options_.prediction == PredictionOptions::Prediction::kNone) return {map_from_camera_, Matrix6::Zero()};
+  if (!velocity_known_) {
+    velocity_known_ = true;
+    pose_covariance_ = twist_of_px(kInitialPose_px, depth_m).square().matrix().asDiagonal();
+    velocity_covariance_ = twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
+    cross_covariance_.setZero();
+  }
+  map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);
+  const Twist drift = twist_of_px(options_.agility_px, depth_m).square();
+  pose_covariance_ += dt * (cross_covariance_ + cross_covariance_.transpose()) +
+                      dt * dt * velocity_covariance_;
+  pose_covariance_.diagonal() += dt * dt * dt / 3 * drift;
+  cross_covariance_ += dt * velocity_covariance_;
+  cross_covariance_.diagonal() += dt * dt / 2 * drift;
+  velocity_covariance_.diagonal() += dt * drift;
+  pose_precision_ = inverse_symmetric(pose_covariance_);
+  return {map_from_camera_, pose_precision_};
+}
+
+void MotionModel::update(const Rigid3& map_from_camera, const Matrix6& information) {
+  if (options_.prediction == PredictionOptions::Prediction::kConstantVelocity) {
+    // Given the pose, the velocity is independent of the measurement: it follows the pose by regression.
+    const Matrix6 regression = cross_covariance_ * pose_precision_;
+    const Twist deviation = (map_from_camera_.inverse() * map_from_camera).log();
+    velocity_ += regression * deviation;
+    const Matrix6 posterior = inverse_symmetric<6>(pose_precision_ + information);
+    velocity_covariance_ -= regression * (pose_covariance_ - posterior) * regression.transpose();
+    cross_covariance_ = regression * posterior;
+    pose_covariance_ = posterior;
+  }
+  map_from_camera_ = map_from_camera;
 }
 
 }  // namespace saccade

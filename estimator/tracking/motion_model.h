@@ -5,35 +5,57 @@
 
 namespace saccade {
 
-/// What is expected of the motion between two poses.
+/// What is expected of the motion between two frames.
 struct PredictionOptions {
   enum class Prediction { kNone, kConstantVelocity };
 
   Prediction prediction = Prediction::kNone;
-  double pose_gain =
-      1;  ///< share of a measured deviation from the prediction that is believed, 0..1
-  double velocity_gain = 0.3;  ///< the same for the velocity, 0..1
+  /// How fast the velocity drifts, as image motion: px/s of change within a second (a random walk).
+  double agility_px = 500;
 };
 
-/// Predicts the pose of the next frame; with constant velocity an alpha-beta filter on SE(3).
+/// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).
+struct PosePrediction {
+  Rigid3 map_from_camera;
+  Matrix6 precision = Matrix6::Zero();  ///< zero: nothing is known
+};
+
+/// Kalman filter on SE(3) with constant velocity: the error of pose and velocity is Gaussian in the
+/// camera frame, the velocity does a random walk. The measurement is a pose that the aligner has
+/// already pulled towards the prediction by its precision (a maximum a posteriori estimate).
 class MotionModel {
  public:
-  explicit MotionModel(const PredictionOptions& options) : options_(options) {}
+  /// `focal_px` turns image motion into angles.
+  MotionModel(const PredictionOptions& options, double focal_px);
 
   void reset(TimeNs t_ns, const Rigid3& map_from_camera);
-  [[nodiscard]] Rigid3 predict(TimeNs t_ns) const;
-  /// Takes in a measured pose at a later time; returns the filtered one.
-  Rigid3 update(TimeNs t_ns, const Rigid3& measured_map_from_camera);
-  /// Forgets the velocity.
-  void stop() { velocity_.setZero(); }
+
+  /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the filter to
+  /// `t_ns`, not before its last time.
+  [[nodiscard]] PosePrediction predict(TimeNs t_ns, double depth_m);
+
+  /// Takes in the estimate for the time of the last predict() and what the data alone said about it
+  /// (inverse covariance, camera frame).
+  void update(const Rigid3& map_from_camera, const Matrix6& information);
+
+  /// Keeps the pose, forgets the velocity: after a frame that told nothing.
+  void stop();
 
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
 
  private:
+  [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;
+
   PredictionOptions options_;
+  double focal_px_;
   TimeNs t_ns_ = 0;
   Rigid3 map_from_camera_;
-  Twist velocity_ = Twist::Zero();  ///< in the camera frame [m/s, rad/s]
+  Twist velocity_ = Twist::Zero();  ///< camera frame [m/s, rad/s]
+  bool velocity_known_ = false;
+  Matrix6 pose_covariance_ = Matrix6::Zero();
+  Matrix6 cross_covariance_ = Matrix6::Zero();  ///< velocity x pose
+  Matrix6 velocity_covariance_ = Matrix6::Zero();
+  Matrix6 pose_precision_ = Matrix6::Zero();
 };
 
 }  // namespace saccade

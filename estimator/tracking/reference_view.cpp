@@ -58,6 +58,13 @@ void check_size(const ImageF& image, const PinholeCamera& camera, const std::str
                                         image.height(), camera.width, camera.height));
 }
 
+/// Outside the region no depth is known, so that no map point arises there.
+void keep_region(const std::array<double, 4>& region, ImageF& depth) {
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x)
+      if (x < region[0] || y < region[1] || x > region[2] || y > region[3]) depth(x, y) = 0;
+}
+
 }  // namespace
 
 ImageF undistort_bilinear(const ImageF& image, const PinholeCamera& camera, float outside) {
@@ -94,6 +101,7 @@ ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& opt
     check_size(depth, camera, dataset.folder().string() + ": depth map");
     view.depth = undistort_nearest(depth, camera, 0);
   }
+  if (options.region_px) keep_region(*options.region_px, view.depth);
   if (!dataset.groundtruth().empty())
     view.world_from_reference = dataset.groundtruth().at_clamped(frame.t_s + options.time_offset_s);
   return view;

@@ -45,6 +45,9 @@ struct TemplateAligner::State {
   Rigid3 current_from_template;
   BrightnessModel brightness;
   double step_gain = 1;  ///< gain that turns a solution of the equations into a twist
+  Matrix6 prior = Matrix6::Zero();        ///< precision of the prediction, in units of the normal matrix
+  Twist deviation = Twist::Zero();        ///< from the prediction, in the template's frame
+  Cholesky<kUnknowns> factors;
 };
 
 TemplateAligner::TemplateAligner(const AlignOptions& options, const PinholeCamera& camera)
@@ -53,7 +56,7 @@ TemplateAligner::TemplateAligner(const AlignOptions& options, const PinholeCamer
 void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
   points_ = points;
   template_normal_.setZero();
-  template_is_regular_ = false;
+  pose_normal_.setZero();
   if (points.empty()) return;
   const int total = std::min(kHessianSamples, static_cast<int>(points.size()));
   SampleChunk chunk;
@@ -65,7 +68,29 @@ void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
   });
   template_normal_ /= total;
   mean_value_ = static_cast<float>(template_normal_(kGain, kOffset));
-  template_is_regular_ = factor(template_normal_, template_factors_);
+  eliminate_brightness();
+}
+
+void TemplateAligner::eliminate_brightness() {
+  // Schur complement; with gain or offset fixed the pose would be known a little better.
+  const Eigen::Matrix<double, 6, 2> mixed = template_normal_.topRightCorner<6, 2>();
+  const double tt = template_normal_(kGain, kGain);
+  const double t1 = template_normal_(kGain, kOffset);
+  const double determinant = tt - t1 * t1;
+  pose_normal_ = template_normal_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
+  if (!(determinant > 0)) return;
+  Eigen::Matrix2d inverse;
+  inverse << 1, -t1, -t1, tt;
+  pose_normal_ -= mixed * (inverse / determinant) * mixed.transpose();
+}
+
+double TemplateAligner::effective_samples() const {
+  // Neighbouring samples see the same events: beyond a third of the points nothing new is learnt.
+  constexpr double kCorrelated = 3;
+  const double points = static_cast<double>(points_.size());
+  const double drawn = std::min(static_cast<double>(options_.samples), points) *
+                       std::max(1, options_.iterations - options_.averaging_from);
+  return drawn / (1 + kCorrelated * drawn / std::max(points, 1.0));
 }
 
 Means TemplateAligner::draw_means(const EventFrame& frame, const State& state,
@@ -95,39 +120,33 @@ Means TemplateAligner::draw_means(const EventFrame& frame, const State& state,
   return means;
 }
 
-bool TemplateAligner::factor(Matrix normal, Cholesky<kUnknowns>& factors) const {
-  normal.diagonal().head<6>() *= 1 + options_.damping;
+bool TemplateAligner::factor(Matrix normal, State& state) const {
+  normal.topLeftCorner<6, 6>() += state.prior;
   if (options_.brightness != AlignOptions::Brightness::kAffine) fix_unknown(kOffset, normal);
   if (options_.brightness == AlignOptions::Brightness::kNone) fix_unknown(kGain, normal);
-  return factors.factor(normal);
+  return state.factors.factor(normal);
 }
 
-bool TemplateAligner::step(const Means& means, const Rigid3& prediction, double step_length,
-                           State& state) const {
-  const bool sampled = options_.hessian == AlignOptions::Hessian::kSamples;
-  Cholesky<kUnknowns> sample_factors;
-  if (!(sampled ? factor(means.normal, sample_factors) : template_is_regular_)) return false;
+bool TemplateAligner::step(const Means& means, double step_length, State& state) const {
+  if (options_.hessian == AlignOptions::Hessian::kSamples && !factor(means.normal, state))
+    return false;
   Vector rhs = means.rhs;
-  if (options_.damping > 0) {
-    const Matrix& normal = sampled ? means.normal : template_normal_;
-    const Twist offset = (prediction.inverse() * state.current_from_template).log();
-    rhs.head<6>() +=
-        state.step_gain * options_.damping * normal.diagonal().head<6>().cwiseProduct(offset);
-  }
+  rhs.head<6>() -= state.step_gain * (state.prior * state.deviation);
   if (options_.brightness != AlignOptions::Brightness::kAffine) rhs(kOffset) = 0;
   if (options_.brightness == AlignOptions::Brightness::kNone) rhs(kGain) = 0;
-  const Vector solution = (sampled ? sample_factors : template_factors_).solve(rhs) * step_length;
+  const Vector solution = state.factors.solve(rhs) * step_length;
   const Twist xi = solution.head<6>() / state.step_gain;
   if (!xi.allFinite()) return false;
   state.current_from_template = state.current_from_template * Rigid3::exp(-xi);
+  state.deviation += xi;
   state.brightness.gain += solution(kGain);
   state.brightness.offset += solution(kOffset);
   return true;
 }
 
 AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& prediction,
-                                   const BrightnessModel& brightness, std::uint64_t seed,
-                                   std::uint64_t draw) const {
+                                   const Matrix6& precision, const BrightnessModel& brightness,
+                                   std::uint64_t seed, std::uint64_t draw) const {
   SACCADE_CHECK(frame.width() == camera_.width && frame.height() == camera_.height);
   AlignResult result;
   State state;
@@ -136,6 +155,11 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
   if (options_.brightness == AlignOptions::Brightness::kNone) state.brightness = {1, 0};
   // Not the gain under estimation: with few samples it may come near zero for an iteration.
   state.step_gain = std::max(state.brightness.gain, kMinGain);
+  const double weight =
+      effective_samples() * state.step_gain * state.step_gain / brightness.variance;
+  if (weight > 0) state.prior = precision / weight;
+  if (options_.hessian == AlignOptions::Hessian::kTemplate && !factor(template_normal_, state))
+    result.status = AlignStatus::kSingular;
   const Random random(seed);
   while (result.iterations < options_.iterations && result.status == AlignStatus::kOk) {
     const int i = result.iterations++;
@@ -147,12 +171,14 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
     const int averaged = std::max(0, i - options_.averaging_from);
     if (means.visible < options_.min_visible || points_.size() < kUnknowns) {
       result.status = AlignStatus::kTooFewVisible;
-    } else if (!step(means, prediction, 1.0 / (1 + averaged), state)) {
+    } else if (!step(means, 1.0 / (1 + averaged), state)) {
       result.status = AlignStatus::kSingular;
     }
   }
   result.current_from_template = state.current_from_template;
   result.brightness = state.brightness;
+  result.brightness.variance = result.residual * result.residual;
+  result.information = weight * pose_normal_;
   return result;
 }
 

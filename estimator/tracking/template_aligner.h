@@ -25,15 +25,15 @@ struct AlignOptions {
       Hessian::kTemplate;  ///< sum of J^T J over this iteration's samples, or of the template
   int averaging_from =
       8;               ///< from this iteration on, steps shrink as 1/n: the pose becomes the mean
-  double damping = 0;  ///< weight of the prediction, share of the Hessian's diagonal
   double min_visible =
       0.3;  ///< share of samples inside the frame below which the result is kTooFewVisible
 };
 
-/// The frame as a function of the template: I = gain T + offset.
+/// The frame as a function of the template: I = gain T + offset + noise.
 struct BrightnessModel {
   double gain = 0.5;
   double offset = 0;
+  double variance = 0.15;  ///< of the noise, full event = 1
 };
 
 enum class AlignStatus { kOk, kTooFewVisible, kSingular };
@@ -48,6 +48,7 @@ struct AlignResult {
       0;                ///< samples whose frame and template agree on being above or below the mean
   double residual = 0;  ///< root mean square of I - gain T - offset, full event = 1
   BrightnessModel brightness;
+  Matrix6 information = Matrix6::Zero();  ///< inverse covariance of the pose by the data alone
 };
 
 /// Inverse-compositional Lucas-Kanade on SE(3) (thesis 4.1-4.19; Baker & Matthews, IJCV 56(3),
@@ -69,8 +70,8 @@ class TemplateAligner {
   /// steps. `draw` names the alignment (the index of the frame): the samples depend on it and on
   /// `seed`.
   [[nodiscard]] AlignResult align(const EventFrame& frame, const Rigid3& prediction,
-                                  const BrightnessModel& brightness, std::uint64_t seed,
-                                  std::uint64_t draw) const;
+                                  const Matrix6& precision, const BrightnessModel& brightness,
+                                  std::uint64_t seed, std::uint64_t draw) const;
 
   /// The six unknowns of the pose, then gain and offset.
   static constexpr int kUnknowns = 8;
@@ -90,16 +91,16 @@ class TemplateAligner {
   struct State;
   [[nodiscard]] Means draw_means(const EventFrame& frame, const State& state,
                                  std::uint32_t key) const;
-  [[nodiscard]] bool factor(Matrix normal, Cholesky<kUnknowns>& factors) const;
-  [[nodiscard]] bool step(const Means& means, const Rigid3& prediction, double step_length,
-                          State& state) const;
+  void eliminate_brightness();
+  [[nodiscard]] double effective_samples() const;
+  [[nodiscard]] bool factor(Matrix normal, State& state) const;
+  [[nodiscard]] bool step(const Means& means, double step_length, State& state) const;
 
   AlignOptions options_;
   PinholeCamera camera_;
   std::span<const TemplatePoint> points_;
   Matrix template_normal_ = Matrix::Zero();  ///< mean over the template
-  Cholesky<kUnknowns> template_factors_;
-  bool template_is_regular_ = false;
+  Matrix6 pose_normal_ = Matrix6::Zero();    ///< its pose part with the brightness eliminated
   float mean_value_ = 0;
 };
 

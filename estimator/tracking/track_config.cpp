@@ -12,6 +12,8 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
       .value("planar_depth_m", options.planar_depth_m,
              "the map is a plane at this depth of the reference view; ~ takes the depth map")
       .above(0);
+  fields.value("region_px", options.region_px,
+               "left, top, right, bottom of the part of the frame that becomes the map; ~ is all");
   fields
       .value("time_offset_s", options.time_offset_s,
              "the frame shows the scene this long after its time stamp (exposure, readout)")
@@ -42,6 +44,10 @@ void describe_template(config::Fields& fields, TemplateOptions& options) {
   fields.value("blur_sigma_px", options.blur_sigma_px, "its standard deviation").range(0.1, 10);
   fields.value("min_value", options.min_value, "pixels of the blurred template above it are used")
       .range(1e-6, 1);
+  fields
+      .value("min_gradient_px", options.min_gradient_px,
+             "gradient of the blurred template [1/px] below which a pixel is not used")
+      .range(0, 1);
   fields
       .value("redraw_px", options.redraw_px,
              "the template is kept until the view has moved this far; 0: drawn for every frame")
@@ -77,10 +83,6 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
              "iteration from which steps shrink as 1/n, so that the samples average out")
       .range(0, 1000);
   fields
-      .value("damping", options.damping,
-             "weight of the predicted pose, share of the Hessian's diagonal")
-      .range(0, 100);
-  fields
       .value("min_visible", options.min_visible,
              "share of samples inside the frame below which the frame is lost")
       .range(0, 1);
@@ -91,11 +93,11 @@ void describe_motion(config::Fields& fields, PredictionOptions& options) {
                 {{"none", PredictionOptions::Prediction::kNone},
                  {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity}},
                 "first guess of the next pose");
-  fields
-      .value("pose_gain", options.pose_gain,
-             "share of a deviation from the prediction that is believed")
-      .range(0, 1);
-  fields.value("velocity_gain", options.velocity_gain, "the same for the velocity").range(0, 1);
+  if (options.prediction == PredictionOptions::Prediction::kConstantVelocity)
+    fields
+        .value("agility_px", options.agility_px,
+               "change of the image velocity within a second [px/s] that is expected")
+        .range(1, 1e6);
 }
 
 void describe_lost(config::Fields& fields, LostOptions& options) {

@@ -21,6 +21,17 @@ class StageClock {
   Clock::time_point start_;
 };
 
+/// Harmonic mean of the depths [m], by a few points spread over the template; 1 for none.
+double typical_depth(std::span<const TemplatePoint> points) {
+  constexpr std::size_t kProbes = 64;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kProbes);
+  double sum = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < points.size(); i += step, ++count)
+    sum += static_cast<double>(points[i].inverse_depth);
+  return sum > 0 ? count / sum : 1;
+}
+
 }  // namespace
 
 Tracker::Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
@@ -32,7 +43,7 @@ Tracker::Tracker(const TrackerOptions& options, const PinholeCamera& camera, con
       drawer_(camera_, options.templates, map),
       aligner_(options.align, camera_),
       frame_(camera, options.event_frame.drawing),
-      motion_(options.motion) {}
+      motion_(options.motion, camera.fx) {}
 
 void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);
@@ -63,6 +74,7 @@ void Tracker::prepare_template(const Rigid3& map_from_camera) {
   map_from_template_ = map_from_camera;
   points_ = drawer_.draw(map_from_template_.inverse());
   aligner_.set_template(points_);
+  typical_depth_m_ = typical_depth(points_);
   ++templates_drawn_;
 }
 
@@ -84,7 +96,7 @@ bool Tracker::template_fits(const Rigid3& map_from_camera) const {
 }
 
 std::size_t Tracker::events_per_frame() const {
-  const double count = options_.event_frame.ratio * static_cast<double>(points_.size());
+  const double count = options_.event_frame.ratio * static_cast<double>(drawer_.lit_pixels());
   return std::max(static_cast<std::size_t>(options_.event_frame.min_events),
                   static_cast<std::size_t>(count));
 }
@@ -100,39 +112,42 @@ void Tracker::draw_frame(std::span<const Event> events, TrackedPose& pose) {
 
 AlignResult Tracker::align(TimeNs t_ns) {
   const StageClock clock(timing_.align_s);
-  const Rigid3 predicted = motion_.predict(t_ns);
-  return aligner_.align(frame_, predicted.inverse() * map_from_template_, brightness_, seed_,
-                        frame_index_++);
+  const PosePrediction predicted = motion_.predict(t_ns, typical_depth_m_);
+  return aligner_.align(frame_, predicted.map_from_camera.inverse() * map_from_template_,
+                        predicted.precision, brightness_, seed_, frame_index_++);
 }
 
 TrackedPose Tracker::track_frame(std::span<const Event> events) {
   TrackedPose pose;
-  pose.t_ns = mean_time(events);
-  frame_.clear();
-  frame_.draw(events);
-
-  const Rigid3 predicted = motion_.predict(pose.t_ns);
-  const AlignResult aligned = aligner_.align(frame_, predicted.inverse() * map_from_template_,
-                                             brightness_, seed_, frame_index_++);
+  draw_frame(events, pose);
+  const AlignResult aligned = align(pose.t_ns);
   pose.iterations = aligned.iterations;
   pose.inlier_ratio = aligned.inlier_ratio;
   pose.residual = aligned.residual;
-
   if (aligned.status == AlignStatus::kOk) {
-    motion_.update(pose.t_ns, map_from_template_ * aligned.current_from_template.inverse());
-    constexpr double kForget = 0.1;
-    brightness_.gain += kForget * (aligned.brightness.gain - brightness_.gain);
-    brightness_.offset += kForget * (aligned.brightness.offset - brightness_.offset);
+    motion_.update(map_from_template_ * aligned.current_from_template.inverse(),
+                   aligned.information);
+    learn(aligned.brightness);
   } else {
     motion_.stop();
   }
-  const bool good =
-      aligned.status == AlignStatus::kOk && aligned.inlier_ratio >= options_.lost.min_inlier_ratio;
-  suspicious_frames_ = good ? 0 : suspicious_frames_ + 1;
-  if (aligned.status != AlignStatus::kOk || suspicious_frames_ >= options_.lost.frames)
-    pose.status = TrackStatus::kLost;
+  pose.status = judge(aligned);
   pose.world_from_camera = world_from_map_ * motion_.pose();
   return pose;
+}
+
+void Tracker::learn(const BrightnessModel& measured) {
+  constexpr double kForget = 0.1;
+  brightness_.gain += kForget * (measured.gain - brightness_.gain);
+  brightness_.offset += kForget * (measured.offset - brightness_.offset);
+  brightness_.variance += kForget * (measured.variance - brightness_.variance);
+}
+
+TrackStatus Tracker::judge(const AlignResult& aligned) {
+  if (aligned.status != AlignStatus::kOk) return TrackStatus::kLost;
+  const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio;
+  suspicious_frames_ = suspicious ? suspicious_frames_ + 1 : 0;
+  return suspicious_frames_ >= options_.lost.frames ? TrackStatus::kLost : TrackStatus::kOk;
 }
 
 }  // namespace saccade

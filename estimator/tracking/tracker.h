@@ -78,6 +78,8 @@ class Tracker {
   [[nodiscard]] std::size_t events_per_frame() const;
   void draw_frame(std::span<const Event> events, TrackedPose& pose);
   [[nodiscard]] AlignResult align(TimeNs t_ns);
+  void learn(const BrightnessModel& measured);
+  [[nodiscard]] TrackStatus judge(const AlignResult& aligned);
   [[nodiscard]] TrackedPose track_frame(std::span<const Event> events);
 
   TrackerOptions options_;
@@ -90,6 +92,7 @@ class Tracker {
   MotionModel motion_;
   Rigid3 map_from_template_;
   std::span<const TemplatePoint> points_;
+  double typical_depth_m_ = 1;
   BrightnessModel brightness_;  ///< running mean over the frames, which resemble each other
   std::uint64_t frame_index_ = 0;
   std::size_t templates_drawn_ = 0;
