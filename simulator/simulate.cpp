@@ -111,10 +111,8 @@ EventStatistics write_events(const Take& take) {
   return camera.statistics();
 }
 
-DatasetRecord facts(const Take& take, const std::filesystem::path& output,
-                    const SimulationReport& report) {
+DatasetRecord facts(const Take& take, const SimulationReport& report) {
   DatasetRecord record;
-  record.name = output.filename().string();
   record.seed = take.config.seed;
   record.config_yaml = config::print(take.config);
   record.duration_s = take.duration_s();
@@ -152,7 +150,7 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   report.images_s = watch.lap();
   report.events = write_events(take);
   report.events_s = watch.lap();
-  report.record = writer.finish(facts(take, output, report));
+  report.record = writer.finish(facts(take, report));
   report.total_s = whole.lap();
   return report;
 }

@@ -112,6 +112,7 @@ DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   counts_.depth_maps = static_cast<std::int64_t>(depth_maps_.size());
   counts_.flow_maps = static_cast<std::int64_t>(flow_maps_.size());
   record.format_version = 1;
+  if (record.name.empty()) record.name = target_.target().filename().string();
   record.tool_version = fmt::format("saccade {} ({})", version(), git_commit());
   record.width = camera_.width;
   record.height = camera_.height;

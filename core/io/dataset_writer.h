@@ -52,8 +52,9 @@ class DatasetWriter {
   void write_imu(std::span<const ImuSample> samples);
 
   /// Writes the lists, calib.txt, camera.yaml and dataset.yaml and gives the folder its name. Fills
-  /// in the record's size, unit, counts, mean depth (unless no depth map was written), rays per
-  /// event, hashes and tool version; the rest is the caller's.
+  /// in the record's size, its name where none is stated (the folder's), unit, counts, mean depth
+  /// (unless no depth map was written), rays per event, hashes and tool version; the rest is the
+  /// caller's.
   DatasetRecord finish(DatasetRecord record);
 
  private:

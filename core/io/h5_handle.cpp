@@ -21,7 +21,8 @@ H5Lock::H5Lock() : lock_(h5_mutex()) {
 H5Lock::~H5Lock() { H5Eset_auto2(H5E_DEFAULT, handler_, handler_data_); }
 
 std::string h5_reason() {
-  const H5Lock lock;
+  // No H5Lock: setting the error handler clears the error stack.
+  const std::scoped_lock lock(h5_mutex());
   std::string reason;
   // The last entry on the way up is the deepest call, which knows most.
   const auto keep = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {

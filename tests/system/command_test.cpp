@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/io/dataset_record.h"
 #include "core/random.h"
 #include "tests/system/saccade_command.h"
 
@@ -133,6 +134,13 @@ TEST(Command, ConvertsTextToHdf5AndBackWithoutLosingANanosecond) {
   saccade_ok({"convert", binary, back});
   EXPECT_TRUE(read_file(text) == read_file(back));
   EXPECT_THAT(saccade_ok({"info", binary}), HasSubstr("20,000"));
+}
+
+TEST(Command, NamesADatasetAfterItsFolderHoweverThatIsWritten) {
+  const TemporaryFolder folder;
+  saccade_ok({"simulate", shipped_config("simulation/walls.yaml"), "-o",
+              (folder.path() / "mine").string() + "/", "--set", "duration_s=0.02"});
+  EXPECT_EQ(read_dataset_record(folder.path() / "mine" / "dataset.yaml").name, "mine");
 }
 
 /// Ends a simulation without warning as soon as its hidden folder holds something.
