@@ -13,8 +13,6 @@ function(saccade_add_room room)
     add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:${ARG_HEADER_ONLY}>)
     saccade_set_warnings(${target})
-    saccade_precompile(${target} <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <optional> <span> <string>
-                       <string_view> <vector> <Eigen/Core> <Eigen/Geometry>)
     set(visibility PUBLIC)
   else()
     add_library(${target} INTERFACE)
