@@ -15,8 +15,8 @@ struct TemplateOptions {
 
   Splat splat =
       Splat::kBilinear;  ///< nearest is the thesis's; it rounds every point by up to half a pixel
-  int blur_size_px = 5;  ///< odd, 1..15
-  double blur_sigma_px = 1.1;
+  int blur_size_px = 3;  ///< odd, 1..15
+  double blur_sigma_px = 0.8;
   double min_value = 0.01;  ///< pixels of the blurred template above it are template points
   double min_gradient_px = 0.15;  ///< of a template point [1/px]: flat pixels say nothing about the pose
   double redraw_px =

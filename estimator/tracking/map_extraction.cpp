@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/check.h"
 
@@ -37,6 +38,19 @@ float foreground_depth(const ImageF& depth, int x, int y) {
   return own > 0 && nearest > kStep * own ? own : nearest;
 }
 
+/// g_min as a gradient [1/px]: raised, where it must be, until `max_share` of the pixels lie above
+/// it.
+float gradient_threshold(const ImageF& magnitude, float largest, const MapOptions& options) {
+  const float threshold = static_cast<float>(options.min_gradient) * largest;
+  const auto most =
+      static_cast<std::size_t>(options.max_share * static_cast<double>(magnitude.size()));
+  if (most >= magnitude.size()) return threshold;
+  std::vector<float> sorted(magnitude.pixels().begin(), magnitude.pixels().end());
+  const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(sorted.begin(), last, sorted.end(), std::greater<>());
+  return std::max(threshold, *last);
+}
+
 }  // namespace
 
 ImageF gradient_magnitude(const ImageF& image) {
@@ -57,7 +71,7 @@ MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const Pi
   const ImageF magnitude = gradient_magnitude(log_intensity);
   float largest = 0;
   for (const float g : magnitude.pixels()) largest = std::max(largest, g);
-  const float threshold = static_cast<float>(options.min_gradient) * largest;
+  const float threshold = gradient_threshold(magnitude, largest, options);
   MapPoints map;
   for (int y = 1; y + 1 < depth.height(); ++y)
     for (int x = 1; x + 1 < depth.width(); ++x) {

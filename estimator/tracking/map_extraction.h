@@ -12,7 +12,10 @@ namespace saccade {
 struct MapOptions {
   enum class Value { kBinary, kGradient };
 
-  double min_gradient = 0.12;    ///< g_min, share of the largest gradient magnitude, 0..1
+  double min_gradient = 0.1;  ///< g_min, share of the largest gradient magnitude, 0..1
+  /// At most this share of the pixels, the steepest ones: a map that covers the whole view leaves
+  /// no contrast between edge and surface, and its template costs more than the alignment. 1: all.
+  double max_share = 0.12;
   bool thin = false;             ///< keep only maxima across the edge (non-maximum suppression)
   Value value = Value::kBinary;  ///< what a point draws into the template: 1, or its gradient
   bool foreground_depth = true;  ///< an edge between two depths belongs to the nearer one

@@ -165,19 +165,22 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
     const int i = result.iterations++;
     const std::uint32_t key = random.bits(draw, static_cast<std::uint64_t>(i))[0];
     const Means means = draw_means(frame, state, key);
-    result.visible_ratio = means.visible;
-    result.inlier_ratio = means.agreeing;
-    result.residual = std::sqrt(means.squared_residual);
     const int averaged = std::max(0, i - options_.averaging_from);
+    // The evidence is the mean over the same iterations as the pose.
+    const double share = 1.0 / (1 + averaged);
+    result.visible_ratio += share * (means.visible - result.visible_ratio);
+    result.inlier_ratio += share * (means.agreeing - result.inlier_ratio);
+    result.brightness.variance += share * (means.squared_residual - result.brightness.variance);
     if (means.visible < options_.min_visible || points_.size() < kUnknowns) {
       result.status = AlignStatus::kTooFewVisible;
-    } else if (!step(means, 1.0 / (1 + averaged), state)) {
+    } else if (!step(means, share, state)) {
       result.status = AlignStatus::kSingular;
     }
   }
   result.current_from_template = state.current_from_template;
-  result.brightness = state.brightness;
-  result.brightness.variance = result.residual * result.residual;
+  result.brightness.gain = state.brightness.gain;
+  result.brightness.offset = state.brightness.offset;
+  result.residual = std::sqrt(result.brightness.variance);
   result.information = weight * pose_normal_;
   return result;
 }
