@@ -7,9 +7,7 @@ foreach(room IN LISTS SACCADE_ROOMS)
   install(TARGETS saccade_${room} EXPORT saccadeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade FILES_MATCHING PATTERN *.h)
 endforeach()
-if(TARGET saccade)
-  install(TARGETS saccade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
+install(TARGETS saccade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 install(EXPORT saccadeTargets NAMESPACE saccade:: DESTINATION ${package_dir})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/saccadeConfig.cmake.in ${PROJECT_BINARY_DIR}/saccadeConfig.cmake

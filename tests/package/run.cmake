@@ -8,6 +8,4 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/package -B ${out
   -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}" COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${outside} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${outside}/outside COMMAND_ERROR_IS_FATAL ANY)
-if(HAS_COMMAND)
-  execute_process(COMMAND ${prefix}/bin/saccade --version COMMAND_ERROR_IS_FATAL ANY)
-endif()
+execute_process(COMMAND ${prefix}/bin/saccade --version COMMAND_ERROR_IS_FATAL ANY)
