@@ -1,0 +1,176 @@
+#include "estimator/tracking/map_extraction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace saccade {
+namespace {
+
+constexpr int kWidth = 40;
+constexpr int kHeight = 30;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+PinholeCamera camera() {
+  PinholeCamera camera;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.fx = 50;
+  camera.fy = 60;
+  camera.cx = 18.5;
+  camera.cy = 14.25;
+  return camera;
+}
+
+ImageF step_at(int column, float height = 1) {
+  ImageF image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = column; x < kWidth; ++x) image(x, y) = height;
+  return image;
+}
+
+std::set<std::pair<int, int>> pixels_of(const MapPoints& map) {
+  std::set<std::pair<int, int>> pixels;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const Eigen::Vector2d u = camera().project({map.x[i], map.y[i], map.z[i]});
+    pixels.emplace(static_cast<int>(std::lround(u.x())), static_cast<int>(std::lround(u.y())));
+  }
+  return pixels;
+}
+
+std::set<int> columns_of(const MapPoints& map) {
+  std::set<int> columns;
+  for (const auto& [x, y] : pixels_of(map)) columns.insert(x);
+  return columns;
+}
+
+TEST(GradientMagnitude, IsTheSlopeOfARamp) {
+  ImageF image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      image(x, y) = 0.3F * static_cast<float>(x) - 0.4F * static_cast<float>(y);
+  image(20, 10) = kNaN;
+  const ImageF magnitude = gradient_magnitude(image);
+  EXPECT_NEAR(magnitude(5, 5), 0.5, 1e-5);
+  EXPECT_EQ(magnitude(0, 5), 0);
+  EXPECT_EQ(magnitude(5, kHeight - 1), 0);
+  for (const auto& [x, y] : {std::pair{19, 10}, {21, 10}, {20, 9}, {20, 11}})
+    EXPECT_EQ(magnitude(x, y), 0) << "beside NaN";
+}
+
+TEST(ExtractMap, BackProjectsExactly) {
+  ImageF depth(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) depth(x, y) = 2.0F + 0.001F * static_cast<float>(y);
+  const MapPoints map = extract_map(step_at(20), depth, camera(), {});
+  ASSERT_EQ(map.size(), 2 * (kHeight - 2)) << "two columns per step";
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const Eigen::Vector2d u = camera().project({map.x[i], map.y[i], map.z[i]});
+    const Eigen::Vector2d pixel(std::round(u.x()), std::round(u.y()));
+    EXPECT_LT((u - pixel).norm(), 1e-4);
+    EXPECT_EQ(map.z[i], depth(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())));
+    EXPECT_EQ(map.value[i], 1);
+  }
+  EXPECT_EQ(columns_of(map), (std::set{19, 20}));
+}
+
+TEST(ExtractMap, ThresholdIsAShareOfTheLargestGradient) {
+  ImageF image = step_at(30);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 10; x < kWidth; ++x) image(x, y) += 0.2F;
+  const ImageF depth(kWidth, kHeight, 2.0F);
+  MapOptions options;
+  options.min_gradient = 0.19;
+  EXPECT_EQ(columns_of(extract_map(image, depth, camera(), options)), (std::set{9, 10, 29, 30}));
+  options.min_gradient = 0.21;
+  EXPECT_EQ(columns_of(extract_map(image, depth, camera(), options)), (std::set{29, 30}));
+}
+
+TEST(ExtractMap, GradientValuesAreNormalised) {
+  ImageF image = step_at(30, 4);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 10; x < kWidth; ++x) image(x, y) += 1;
+  MapOptions options;
+  options.value = MapOptions::Value::kGradient;
+  const MapPoints map = extract_map(image, ImageF(kWidth, kHeight, 2.0F), camera(), options);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double column = camera().project({map.x[i], map.y[i], map.z[i]}).x();
+    EXPECT_NEAR(map.value[i], column < 20 ? 0.25 : 1, 1e-5);
+  }
+}
+
+TEST(ExtractMap, ThinKeepsOnePixelAcrossAnEdge) {
+  // A smooth edge: ten columns of gradient, steepest between 19 and 20, on 20.
+  ImageF image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      image(x, y) = std::tanh((static_cast<float>(x) - 20.0F) / 3.0F);
+  const ImageF depth(kWidth, kHeight, 2.0F);
+  MapOptions options;
+  EXPECT_GT(columns_of(extract_map(image, depth, camera(), options)).size(), 4U);
+  options.thin = true;
+  EXPECT_EQ(columns_of(extract_map(image, depth, camera(), options)), (std::set{20}));
+  EXPECT_EQ(columns_of(extract_map(step_at(20), depth, camera(), options)).size(), 1U)
+      << "two equally steep columns";
+}
+
+TEST(ExtractMap, UnknownDepthGivesNoPoint) {
+  MapOptions options;
+  options.foreground_depth = false;
+  ImageF depth(kWidth, kHeight, 2.0F);
+  for (int x = 0; x < kWidth; ++x) {
+    depth(x, 10) = 0;
+    depth(x, 12) = kNaN;
+  }
+  const auto pixels = pixels_of(extract_map(step_at(20), depth, camera(), options));
+  EXPECT_FALSE(pixels.contains({20, 10}));
+  EXPECT_FALSE(pixels.contains({20, 12}));
+  EXPECT_TRUE(pixels.contains({20, 11}));
+  for (const float unknown : {0.0F, kNaN}) {
+    options.foreground_depth = true;
+    EXPECT_EQ(extract_map(step_at(20), ImageF(kWidth, kHeight, unknown), camera(), options).size(),
+              0U);
+  }
+}
+
+TEST(ExtractMap, EdgeBetweenTwoDepthsBelongsToTheNearerOne) {
+  ImageF depth(kWidth, kHeight, 4.0F);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 20; x < kWidth; ++x) depth(x, y) = 1.5F;
+  MapOptions options;
+  for (const float z : extract_map(step_at(20), depth, camera(), options).z) EXPECT_EQ(z, 1.5F);
+  options.foreground_depth = false;
+  std::set<float> depths;
+  for (const float z : extract_map(step_at(20), depth, camera(), options).z) depths.insert(z);
+  EXPECT_EQ(depths, (std::set{1.5F, 4.0F}));
+}
+
+TEST(ExtractMap, SlantedSurfaceKeepsItsOwnDepth) {
+  ImageF depth(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) depth(x, y) = 2.0F - 0.02F * static_cast<float>(x);
+  const MapPoints map = extract_map(step_at(20), depth, camera(), {});
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const int x =
+        static_cast<int>(std::lround(camera().project({map.x[i], map.y[i], map.z[i]}).x()));
+    EXPECT_EQ(map.z[i], depth(x, 5));
+  }
+}
+
+TEST(ExtractMap, NoGradientNoMap) {
+  EXPECT_EQ(
+      extract_map(ImageF(kWidth, kHeight, 1), ImageF(kWidth, kHeight, 2), camera(), {}).size(), 0U);
+}
+
+TEST(ExtractMap, PixelsThatTheLensDoesNotShowAreIgnored) {
+  ImageF image = step_at(20);
+  for (int y = 0; y < kHeight; ++y) image(5, y) = kNaN;
+  EXPECT_EQ(columns_of(extract_map(image, ImageF(kWidth, kHeight, 2), camera(), {})),
+            (std::set{19, 20}));
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,173 @@
+#include "estimator/tracking/sample_chunk.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/tracking/synthetic_template.h"
+
+namespace saccade {
+namespace {
+
+using testing::expect_jacobian;
+using testing::small_camera;
+
+TemplatePoint random_point(std::uint64_t index) {
+  const Random random(17);
+  TemplatePoint p;
+  p.ray = {static_cast<float>(random.uniform(0, index) - 0.5),
+           static_cast<float>(random.uniform(1, index) - 0.5)};
+  p.inverse_depth = static_cast<float>(0.3 + random.uniform(2, index));
+  p.value = static_cast<float>(random.uniform(3, index));
+  p.slope = {static_cast<float>(10 * random.normal(4, index)),
+             static_cast<float>(10 * random.normal(5, index))};
+  return p;
+}
+
+/// J of one template point, as the normal equations get it.
+Eigen::Matrix<double, 1, 6> jacobian_of(const TemplatePoint& point) {
+  SampleChunk chunk;
+  chunk.load(std::span(&point, 1), 0, 1, 1, 0);
+  chunk.show_all();
+  chunk.differentiate();
+  Eigen::Matrix<double, 1, 6> jacobian;
+  for (int c = 0; c < 6; ++c) jacobian(c) = chunk.column_dot_column(c, 7);
+  return jacobian;
+}
+
+TEST(SampleChunk, JacobianIsTheDerivativeOfTheWarpedTemplate) {
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const TemplatePoint p = random_point(i);
+    const Eigen::Vector3d point =
+        Eigen::Vector3d(p.ray.x(), p.ray.y(), 1) / static_cast<double>(p.inverse_depth);
+    // To first order T changes by slope times the way of the ray: dT/dxi at xi = 0 (4.15).
+    const auto value = [&](const Twist& xi) {
+      const Eigen::Vector3d moved = Rigid3::exp(xi) * point;
+      return Eigen::Matrix<double, 1, 1>(p.slope.cast<double>().dot(moved.hnormalized()));
+    };
+    expect_jacobian<1, 6>(jacobian_of(p), value, Twist::Zero(), 2e-6);
+  }
+}
+
+TEST(SampleChunk, JacobianIsGradientTimesInteractionMatrix) {
+  const PinholeCamera camera = small_camera();
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const TemplatePoint p = random_point(i);
+    const Eigen::RowVector2d gradient(p.slope.x() / camera.fx, p.slope.y() / camera.fy);
+    const Eigen::Matrix<double, 1, 6> expected =
+        gradient * interaction_matrix(camera, {p.ray.x(), p.ray.y(), 1},
+                                      1 / static_cast<double>(p.inverse_depth));
+    EXPECT_LT((jacobian_of(p) - expected).norm(), 2e-6 * (1 + expected.norm()));
+  }
+}
+
+TEST(SampleChunk, AsManySamplesAsPointsTakeEachOnce) {
+  std::vector<TemplatePoint> points(200);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = random_point(i);
+    points[i].value = 1 + static_cast<float>(i);
+  }
+  SampleChunk chunk;
+  chunk.load(points, 0, 200, 200, 12345);
+  chunk.show_all();
+  chunk.differentiate();
+  EXPECT_NEAR(chunk.column_dot_column(6, 7), 200 * 201 / 2, 1e-2);
+  EXPECT_NEAR(chunk.column_dot_column(6, 6) / (200.0 * 201 * 401 / 6), 1, 1e-5);
+}
+
+TEST(SampleChunk, SamplesAreUniformOverThePoints) {
+  // 50 of 1000 points, drawn 2000 times: every point about 100 times. The count of one is binomial
+  // with sigma 10; the largest of 1000 stays below 5 sigma.
+  std::vector<TemplatePoint> points(1000);
+  std::vector<double> hits(1000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = random_point(i);
+    points[i].value = 0;
+  }
+  const Random random(1);
+  for (std::size_t probe = 0; probe < points.size(); probe += 37) {
+    points[probe].value = 1;
+    SampleChunk chunk;
+    for (std::uint64_t draw = 0; draw < 2000; ++draw) {
+      chunk.load(points, 0, 50, 50, random.bits(draw, 0)[0]);
+      chunk.show_all();
+      chunk.differentiate();
+      hits[probe] += chunk.column_dot_column(6, 7);
+    }
+    points[probe].value = 0;
+    EXPECT_NEAR(hits[probe], 100, 50) << probe;
+  }
+}
+
+/// Template points on a row of small_camera() at 2 m.
+std::vector<TemplatePoint> row_of_points(double x0, int count, double y) {
+  std::vector<TemplatePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d ray = small_camera().ray({x0 + i, y});
+    points.push_back({ray.head<2>().cast<float>(), 0.5F, 1, {1, 0}});
+  }
+  return points;
+}
+
+TEST(SampleChunk, ReadsTheFrameWhereTheWarpSays) {
+  // An event at (50, 40); points around it, moved by 0.25 px to the right.
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  frame.draw(Events{{0, 50, 40, 1}});
+  const Rigid3 shift({1, 0, 0, 0}, {0.25 * 2 / small_camera().fx, 0, 0});
+  const std::vector<double> expected{0, 0.25, 0.75, 0};  // columns 48.25, 49.25, 50.25, 51.25
+  const auto points = row_of_points(48, 4, 40);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SampleChunk chunk;
+    chunk.load(std::span(points).subspan(i, 1), 0, 1, 1, 0);
+    chunk.warp(small_camera(), frame, shift);
+    chunk.compare(frame, 0.5F, 0.125F);
+    EXPECT_EQ(chunk.visible(), 1);
+    const double residual = expected[i] - 0.5 - 0.125;  // I - gain T - offset
+    EXPECT_NEAR(chunk.squared_residual(), residual * residual, 1e-4) << i;
+    chunk.differentiate();
+    EXPECT_NEAR(chunk.column_dot_residual(7), residual, 1e-4) << i;
+  }
+}
+
+TEST(SampleChunk, SamplesOutsideTheFrameCountForNothing) {
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  for (const Rigid3& away :
+       {Rigid3({1, 0, 0, 0}, {100, 0, 0}), Rigid3({1, 0, 0, 0}, {0, -100, 0}),
+        Rigid3({1, 0, 0, 0}, {0, 0, -5}), Rigid3(so3_exp({0, 3, 0}), {0, 0, 0}),
+        Rigid3({1, 0, 0, 0}, {0, 0, -2})}) {
+    const auto points = row_of_points(60, 40, 50);
+    SampleChunk chunk;
+    chunk.load(points, 0, 40, 40, 0);
+    chunk.warp(small_camera(), frame, away);
+    chunk.compare(frame, 1, 0);
+    chunk.differentiate();
+    EXPECT_EQ(chunk.visible(), 0);
+    EXPECT_EQ(chunk.squared_residual(), 0);
+    EXPECT_EQ(chunk.agreeing(0.5F, 0.5F), 0);
+    for (int c = 0; c < SampleChunk::kColumns; ++c) {
+      EXPECT_EQ(chunk.column_dot_residual(c), 0);
+      EXPECT_EQ(chunk.column_dot_column(c, c), 0);
+    }
+  }
+}
+
+TEST(SampleChunk, AgreementCountsSamplesOnTheSameSideOfTheMeans) {
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  frame.draw(Events{{0, 60, 50, 1}, {0, 61, 50, 1}});
+  auto points = row_of_points(60, 4, 50);
+  for (TemplatePoint& p : points) p.ray.y() += 1e-5F;  // not on the seam between two rows
+  points[1].value = 0;                                 // full frame, dark template
+  points[3].value = 0;                                 // dark both
+  SampleChunk chunk;
+  chunk.load(points, 0, 4, 4, 0);
+  chunk.warp(small_camera(), frame, Rigid3({1, 0, 0, 0}, {1e-4, 0, 0}));
+  chunk.compare(frame, 1, 0);
+  EXPECT_EQ(chunk.agreeing(0.5F, 0.5F), 2);
+}
+
+}  // namespace
+}  // namespace saccade

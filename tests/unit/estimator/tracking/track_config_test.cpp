@@ -1,0 +1,108 @@
+#include "estimator/tracking/track_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+#include "tests/support/error_of.h"
+
+namespace saccade {
+namespace {
+
+using testing::error_of;
+using ::testing::HasSubstr;
+
+TrackConfig parse(const std::string& yaml) {
+  return config::read<TrackConfig>(config::parse(yaml, "t.yaml"));
+}
+
+TEST(TrackConfig, DefaultsAreTheAccurateSetting) {
+  const TrackConfig config = parse("{}");
+  EXPECT_EQ(config.tracker.align.samples, 500);
+  EXPECT_EQ(config.tracker.align.iterations, 30);
+  EXPECT_EQ(config.tracker.event_frame.ratio, 0.4);
+  EXPECT_FALSE(config.initial_pose);
+}
+
+TEST(TrackConfig, FilesOfTheSettingsAreValid) {
+  const std::string folder = std::string(SACCADE_SOURCE_DIR) + "/configs/tracking/";
+  const auto accurate = config::read<TrackConfig>(config::load(folder + "accurate.yaml"));
+  EXPECT_EQ(accurate.tracker.align.samples, 500);
+  EXPECT_EQ(accurate.tracker.align.iterations, 30);
+  EXPECT_EQ(accurate.tracker.event_frame.ratio, 0.4);
+  const auto fast = config::read<TrackConfig>(config::load(folder + "fast.yaml"));
+  EXPECT_EQ(fast.tracker.align.samples, 50);
+  EXPECT_EQ(fast.tracker.align.iterations, 5);
+  EXPECT_EQ(fast.tracker.event_frame.ratio, 0.15);
+}
+
+TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
+  const TrackConfig config = parse(
+      "{reference: {planar_depth_m: 0.7, region_px: [1, 2, 30, 40]}, map: {thin: true, value: "
+      "gradient}, template: {splat: nearest, blur_size_px: 7}, align: {brightness: gain, hessian: "
+      "samples}, motion: {prediction: constant_velocity, agility_px: 123}, initial_pose: [1, 2, 3, "
+      "0, 0, 0, 1], seed: 9}");
+  const std::string printed = config::print(config);
+  EXPECT_EQ(config::print(parse(printed)), printed);
+  const TrackConfig again = parse(printed);
+  EXPECT_EQ(again.tracker.motion.agility_px, 123);
+  EXPECT_EQ(again.initial_pose, config.initial_pose);
+  EXPECT_EQ(again.reference.region_px, config.reference.region_px);
+  EXPECT_EQ(again.tracker.templates.splat, TemplateOptions::Splat::kNearest);
+}
+
+struct Fault {
+  std::string yaml;
+  std::string place;
+};
+
+TEST(TrackConfig, FaultsNameTheirPlace) {
+  const std::vector<Fault> faults{
+      {"{sampels: 3}", "sampels"},
+      {"{align: {sampels: 50}}", "did you mean 'samples'"},
+      {"{align: {samples: 3}}", "align.samples"},
+      {"{align: {iterations: 0}}", "align.iterations"},
+      {"{align: {iterations: 2.5}}", "align.iterations"},
+      {"{align: {brightness: linear}}", "align.brightness"},
+      {"{align: {min_visible: 1.5}}", "align.min_visible"},
+      {"{map: {min_gradient: -0.1}}", "map.min_gradient"},
+      {"{map: {thin: 3}}", "map.thin"},
+      {"{template: {blur_size_px: 4}}", "template.blur_size_px"},
+      {"{template: {blur_size_px: 17}}", "template.blur_size_px"},
+      {"{template: {blur_sigma_px: 0}}", "template.blur_sigma_px"},
+      {"{template: {min_value: 0}}", "template.min_value"},
+      {"{event_frame: {ratio: 0}}", "event_frame.ratio"},
+      {"{event_frame: {min_events: 0}}", "event_frame.min_events"},
+      {"{reference: {planar_depth_m: 0}}", "reference.planar_depth_m"},
+      {"{reference: {frame: -1}}", "reference.frame"},
+      {"{reference: {region_px: [1, 2, 3]}}", "reference.region_px"},
+      {"{motion: {prediction: none, agility_px: 100}}", "agility_px"},
+      {"{lost: {frames: 0}}", "lost.frames"},
+      {"{initial_pose: [0, 0, 0]}", "initial_pose"},
+      {"{seed: -1}", "seed"},
+  };
+  for (const Fault& fault : faults) {
+    const std::string error = error_of([&] { return parse(fault.yaml); });
+    EXPECT_THAT(error, HasSubstr("t.yaml")) << fault.yaml;
+    EXPECT_THAT(error, HasSubstr(fault.place)) << fault.yaml;
+  }
+}
+
+TEST(TrackConfig, EveryKeyHasHelp) {
+  const std::string printed = config::print_documented(TrackConfig{});
+  std::size_t begin = 0;
+  while (begin < printed.size()) {
+    const std::size_t end = printed.find('\n', begin);
+    const std::string line = printed.substr(begin, end - begin);
+    if (!line.empty()) {
+      EXPECT_THAT(line, HasSubstr("  # "));
+    }
+    begin = end == std::string::npos ? printed.size() : end + 1;
+  }
+}
+
+}  // namespace
+}  // namespace saccade
