@@ -89,6 +89,21 @@ TEST(ExtractMap, ThresholdIsAShareOfTheLargestGradient) {
   EXPECT_EQ(columns_of(extract_map(image, depth, camera(), options)), (std::set{29, 30}));
 }
 
+TEST(ExtractMap, MaxShareKeepsTheSteepestPixels) {
+  // A parabola: the gradient grows from left to right.
+  ImageF image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) image(x, y) = static_cast<float>(x * x);
+  MapOptions options;
+  options.min_gradient = 0;
+  options.max_share = 0.25;
+  const MapPoints map = extract_map(image, ImageF(kWidth, kHeight, 2.0F), camera(), options);
+  EXPECT_LE(map.size(), kWidth * kHeight / 4U);
+  EXPECT_GE(map.size(), kWidth * kHeight / 5U);
+  EXPECT_EQ(*columns_of(map).rbegin(), kWidth - 2);
+  EXPECT_GE(*columns_of(map).begin(), 27);
+}
+
 TEST(ExtractMap, GradientValuesAreNormalised) {
   ImageF image = step_at(30, 4);
   for (int y = 0; y < kHeight; ++y)

@@ -1,0 +1,144 @@
+#include "estimator/tracking/motion_model.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+namespace saccade {
+namespace {
+
+constexpr double kFocal = 200;
+constexpr double kDepth = 2;
+constexpr TimeNs kStep = 10'000'000;  // 10 ms
+
+PredictionOptions constant_velocity() {
+  PredictionOptions options;
+  options.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  return options;
+}
+
+/// Some 40 px/s in every degree of freedom.
+Twist velocity() {
+  Twist twist;
+  twist << 0.4, -0.3, 0.5, 0.2, -0.1, 0.25;
+  return twist;
+}
+
+Rigid3 pose_at(TimeNs t_ns) { return Rigid3::exp(velocity() * seconds_from_ns(t_ns)); }
+
+/// Follows the constant velocity with nearly exact poses for `frames` frames.
+MotionModel trained(int frames) {
+  MotionModel model(constant_velocity(), kFocal);
+  model.reset(0, {});
+  for (int i = 1; i <= frames; ++i) {
+    static_cast<void>(model.predict(i * kStep, kDepth));
+    model.update(pose_at(i * kStep), 1e12 * Matrix6::Identity());
+  }
+  return model;
+}
+
+double distance(const Rigid3& a, const Rigid3& b) { return (a.inverse() * b).log().norm(); }
+
+TEST(MotionModel, NoPredictionStaysAndSaysNothing) {
+  MotionModel model({}, kFocal);
+  model.reset(0, pose_at(7));
+  model.update(pose_at(kStep), Matrix6::Identity());
+  const PosePrediction prediction = model.predict(100 * kStep, kDepth);
+  EXPECT_LT(distance(prediction.map_from_camera, pose_at(kStep)), 1e-15);
+  EXPECT_EQ(prediction.precision, Matrix6::Zero());
+}
+
+TEST(MotionModel, PredictsConstantVelocity) {
+  MotionModel model = trained(10);
+  for (const int ahead : {1, 2, 5}) {
+    MotionModel copy = model;
+    const TimeNs t_ns = (10 + ahead) * kStep;
+    const double error = distance(copy.predict(t_ns, kDepth).map_from_camera, pose_at(t_ns));
+    const double moved = distance(pose_at(10 * kStep), pose_at(t_ns));
+    EXPECT_LT(error, 0.02 * moved) << ahead;
+  }
+}
+
+TEST(MotionModel, TurnsTowardsTheMotionInTheCameraFrame) {
+  // A velocity along x of a camera that looks elsewhere: the prediction goes along ITS x.
+  const Rigid3 turned(so3_exp({0, 1.5, 0}), {1, 2, 3});
+  Twist along_x = Twist::Zero();
+  along_x(0) = 0.5;
+  MotionModel model(constant_velocity(), kFocal);
+  model.reset(0, turned);
+  for (int i = 1; i <= 10; ++i) {
+    static_cast<void>(model.predict(i * kStep, kDepth));
+    model.update(turned * Rigid3::exp(along_x * seconds_from_ns(i * kStep)),
+                 1e12 * Matrix6::Identity());
+  }
+  const Rigid3 predicted = model.predict(11 * kStep, kDepth).map_from_camera;
+  EXPECT_LT(distance(predicted, turned * Rigid3::exp(along_x * 0.11)), 1e-4);
+}
+
+TEST(MotionModel, KnowsLessTheFurtherItLooksAhead) {
+  double last = 1e300;
+  for (const int ahead : {1, 2, 4, 8}) {
+    MotionModel model = trained(10);
+    const Matrix6 precision = model.predict((10 + ahead) * kStep, kDepth).precision;
+    const double strongest =
+        Eigen::SelfAdjointEigenSolver<Matrix6>(precision).eigenvalues().maxCoeff();
+    EXPECT_LT(strongest, last);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6>(precision).eigenvalues().minCoeff(), 0);
+    last = strongest;
+  }
+}
+
+TEST(MotionModel, MoreAgilityMeansLessTrust) {
+  const auto precision_of = [](double agility) {
+    PredictionOptions options = constant_velocity();
+    options.agility_px = agility;
+    MotionModel model(options, kFocal);
+    model.reset(0, {});
+    for (int i = 1; i <= 10; ++i) {
+      static_cast<void>(model.predict(i * kStep, kDepth));
+      model.update({}, 1e6 * Matrix6::Identity());
+    }
+    return model.predict(11 * kStep, kDepth).precision.trace();
+  };
+  EXPECT_GT(precision_of(50), precision_of(500));
+  EXPECT_GT(precision_of(500), precision_of(5000));
+}
+
+TEST(MotionModel, AnUninformativeFrameLeavesThePredictedVelocity) {
+  MotionModel model = trained(10);
+  const Rigid3 predicted = model.predict(11 * kStep, kDepth).map_from_camera;
+  model.update(predicted, Matrix6::Zero());
+  EXPECT_LT(distance(model.predict(12 * kStep, kDepth).map_from_camera, pose_at(12 * kStep)), 1e-3);
+}
+
+TEST(MotionModel, StopKeepsThePoseAndForgetsTheVelocity) {
+  MotionModel model = trained(10);
+  model.stop();
+  EXPECT_LT(distance(model.pose(), pose_at(10 * kStep)), 1e-12);
+  EXPECT_LT(distance(model.predict(11 * kStep, kDepth).map_from_camera, pose_at(10 * kStep)),
+            1e-12);
+}
+
+TEST(MotionModel, ResetForgetsEverything) {
+  MotionModel used = trained(10);
+  MotionModel fresh(constant_velocity(), kFocal);
+  for (MotionModel* model : {&used, &fresh}) model->reset(kStep, pose_at(3 * kStep));
+  for (int i = 2; i < 5; ++i) {
+    const PosePrediction a = used.predict(i * kStep, kDepth);
+    const PosePrediction b = fresh.predict(i * kStep, kDepth);
+    EXPECT_LT(distance(a.map_from_camera, b.map_from_camera), 1e-15);
+    EXPECT_EQ(a.precision, b.precision);
+    used.update(pose_at(i * kStep), 1e8 * Matrix6::Identity());
+    fresh.update(pose_at(i * kStep), 1e8 * Matrix6::Identity());
+  }
+}
+
+TEST(MotionModel, TwoFramesAtTheSameTime) {
+  MotionModel model = trained(10);
+  const PosePrediction prediction = model.predict(10 * kStep, kDepth);
+  EXPECT_LT(distance(prediction.map_from_camera, pose_at(10 * kStep)), 1e-12);
+  EXPECT_TRUE(prediction.precision.allFinite());
+}
+
+}  // namespace
+}  // namespace saccade

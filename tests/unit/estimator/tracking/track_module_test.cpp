@@ -1,0 +1,267 @@
+#include "estimator/tracking/track_module.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/config/document.h"
+#include "core/io/csv_reader.h"
+#include "core/io/image_file.h"
+#include "core/io/ply_file.h"
+#include "core/io/trajectory_file.h"
+#include "core/srgb.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::PlanarWorld;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+constexpr double kDepth_m = 1.5;
+constexpr double kEnd_s = 0.4;
+
+/// One textured wall at kDepth_m that fills the view of a small camera.
+PlanarWorld wall() {
+  PinholeCamera camera;
+  camera.width = 80;
+  camera.height = 60;
+  camera.fx = camera.fy = 66;
+  camera.cx = 39.5;
+  camera.cy = 29.5;
+  return {
+      camera,
+      {{{-2.4, -1.8, kDepth_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(210, 158, 4)}}};
+}
+
+Rigid3 motion(double t_s) {
+  return {so3_exp({0, 0, 0.15 * t_s}), {0.3 * t_s, 0.1 * std::sin(8 * t_s), 0.05 * t_s}};
+}
+
+ImageU8 picture_of(const PlanarWorld& world, const Rigid3& pose) {
+  ImageF radiance = world.log_intensity(pose);
+  for (float& value : radiance.pixels()) value = std::exp(value) - 1e-3F;
+  return srgb8_from_linear(radiance);
+}
+
+/// Writes a recording in the layout of the Event Camera Dataset.
+void write_recording(const fs::path& folder) {
+  const PlanarWorld world = wall();
+  fs::create_directories(folder / "images");
+  std::ofstream events(folder / "events.txt");
+  events.precision(9);
+  events << std::fixed;
+  for (const Event& e : world.simulate(motion, 0, kEnd_s, 2e-3, 0.12))
+    events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0 ? 1 : 0)
+           << '\n';
+  std::ofstream(folder / "calib.txt") << "66 66 39.5 29.5 0 0 0 0 0\n";
+  std::ofstream(folder / "images.txt") << "0 images/a.png\n0.2 images/b.png\n";
+  write_png(folder / "images/a.png", picture_of(world, motion(0)));
+  write_png(folder / "images/b.png", picture_of(world, motion(0.2)));
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 400; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
+  write_tum_trajectory(folder / "groundtruth.txt", poses);
+}
+
+/// RMS distance of points of the wall all over the view between a pose and the true one [px].
+double error_px(const Rigid3& world_from_camera, double t_s) {
+  const PinholeCamera camera = wall().camera();
+  double squared = 0;
+  double count = 0;
+  for (int y = 5; y < camera.height; y += 10)
+    for (int x = 5; x < camera.width; x += 10, ++count) {
+      const Eigen::Vector3d point = kDepth_m * camera.ray({x, y});
+      squared += (camera.project(world_from_camera.inverse() * point) -
+                  camera.project(motion(t_s).inverse() * point))
+                     .squaredNorm();
+    }
+  return std::sqrt(squared / count);
+}
+
+class TrackModule : public ::testing::Test {
+ protected:
+  TrackModule() { write_recording(dataset_); }
+
+  [[nodiscard]] RunRequest request(const std::string& name,
+                                   const std::string& yaml = "reference: {planar_depth_m: 1.5}") {
+    RunRequest request;
+    request.dataset = dataset_;
+    request.output = folder_.path() / name;
+    request.config = config::parse(yaml, "t.yaml");
+    return request;
+  }
+
+  [[nodiscard]] std::string error(const RunRequest& request) {
+    const std::string message = error_of([&] { return run_track(request); });
+    EXPECT_FALSE(fs::exists(request.output)) << "a failed run leaves nothing";
+    return message;
+  }
+
+  void remove(const std::string& name) { fs::remove_all(dataset_ / name); }
+
+  TemporaryFolder folder_;
+  const fs::path dataset_ = folder_.path() / "wall";
+};
+
+TEST_F(TrackModule, WritesACompleteRunFolder) {
+  const RunSummary summary = run_track(request("run"));
+  const fs::path run = folder_.path() / "run";
+  for (const char* name : {"trajectory.txt", "poses.csv", "map.ply", "run.yaml", "timing.json"})
+    EXPECT_TRUE(fs::is_regular_file(run / name)) << name;
+  EXPECT_GT(summary.events, 1000U);
+  EXPECT_GT(summary.poses, 10U);
+  EXPECT_EQ(summary.lost_poses, 0U);
+  const CsvColumns poses(run / "poses.csv");
+  ASSERT_EQ(poses.rows(), summary.poses);
+  for (std::size_t i = 0; i < poses.rows(); ++i) {
+    EXPECT_EQ(poses.text(i, poses.require("status")), "ok");
+    EXPECT_LE(poses.number(i, poses.require("first_event_s")),
+              poses.number(i, poses.require("t_s")));
+    EXPECT_LE(poses.number(i, poses.require("t_s")),
+              poses.number(i, poses.require("last_event_s")));
+    EXPECT_GT(poses.number(i, poses.require("inlier_ratio")), 0.5);
+  }
+  EXPECT_THAT(read_file(run / "run.yaml"), HasSubstr("track"));
+  EXPECT_THAT(read_file(run / "run.yaml"), HasSubstr("planar_depth_m: 1.5"));
+  EXPECT_THAT(read_file(run / "timing.json"), HasSubstr("align"));
+}
+
+TEST_F(TrackModule, FollowsTheTrueMotion) {
+  static_cast<void>(run_track(request("run")));
+  const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  ASSERT_GT(trajectory.size(), 10U);
+  EXPECT_GT(error_px({}, kEnd_s), 4) << "the camera must move";
+  for (const StampedPose& pose : trajectory.poses())
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 1.5) << pose.t_s;
+}
+
+TEST_F(TrackModule, MapLiesOnTheWallInWorldCoordinates) {
+  static_cast<void>(run_track(request("run", "reference: {planar_depth_m: 1.5, frame: 1}")));
+  const PointCloud map = read_ply(folder_.path() / "run/map.ply");
+  ASSERT_GT(map.positions.size(), 100U);
+  const Rigid3 camera_from_world = motion(0.2).inverse();
+  for (const Eigen::Vector3f& point : map.positions)
+    EXPECT_NEAR((camera_from_world * point.cast<double>()).z(), kDepth_m, 1e-4);
+}
+
+TEST_F(TrackModule, RegionLimitsTheMap) {
+  static_cast<void>(run_track(
+      request("run", "reference: {planar_depth_m: 1.5, frame: 0, region_px: [10, 5, 60, 50]}")));
+  const PointCloud map = read_ply(folder_.path() / "run/map.ply");
+  ASSERT_GT(map.positions.size(), 50U);
+  for (const Eigen::Vector3f& point : map.positions) {
+    const Eigen::Vector2d u = wall().camera().project(point.cast<double>());
+    EXPECT_TRUE(u.x() > 9 && u.x() < 61 && u.y() > 4 && u.y() < 51) << u.transpose();
+  }
+}
+
+TEST_F(TrackModule, OutputDependsOnTheSeedAlone) {
+  RunRequest again = request("b");
+  again.threads = 4;
+  again.repeat = 2;
+  RunRequest other = request("c");
+  other.seed = 99;
+  static_cast<void>(run_track(request("a")));
+  static_cast<void>(run_track(again));
+  static_cast<void>(run_track(other));
+  for (const char* name : {"trajectory.txt", "poses.csv", "map.ply"})
+    EXPECT_EQ(read_file(folder_.path() / "a" / name), read_file(folder_.path() / "b" / name))
+        << name;
+  EXPECT_NE(read_file(folder_.path() / "a/trajectory.txt"),
+            read_file(folder_.path() / "c/trajectory.txt"));
+  EXPECT_THAT(read_file(folder_.path() / "c/run.yaml"), HasSubstr("seed: 99"));
+}
+
+TEST_F(TrackModule, TracksTheWindowThatIsAskedFor) {
+  RunRequest part = request("run");
+  part.start_s = 0.1;
+  part.duration_s = 0.15;
+  static_cast<void>(run_track(part));
+  const CsvColumns poses(folder_.path() / "run/poses.csv");
+  ASSERT_GT(poses.rows(), 3U);
+  EXPECT_GE(poses.number(0, poses.require("first_event_s")), 0.1);
+  EXPECT_LT(poses.number(poses.rows() - 1, poses.require("last_event_s")), 0.25);
+}
+
+TEST_F(TrackModule, InitialPoseReplacesTheTruth) {
+  remove("groundtruth.txt");
+  static_cast<void>(run_track(
+      request("run", "{reference: {planar_depth_m: 1.5}, initial_pose: [0, 0, 0, 0, 0, 0, 1]}")));
+  EXPECT_EQ(read_tum_trajectory(folder_.path() / "run/trajectory.txt").size(),
+            CsvColumns(folder_.path() / "run/poses.csv").rows());
+}
+
+TEST_F(TrackModule, WithoutDepthNamesTheCure) {
+  EXPECT_THAT(error(request("run", "{}")), HasSubstr("reference.planar_depth_m"));
+}
+
+TEST_F(TrackModule, WithoutTruthNamesTheCure) {
+  remove("groundtruth.txt");
+  EXPECT_THAT(error(request("run")), HasSubstr("initial_pose"));
+}
+
+TEST_F(TrackModule, InitialPoseMustHoldAUnitQuaternion) {
+  EXPECT_THAT(error(request("run",
+                            "{reference: {planar_depth_m: 1.5}, initial_pose: [0, 0, 0, 0, "
+                            "0, 0, 2]}")),
+              HasSubstr("initial_pose"));
+}
+
+TEST_F(TrackModule, WithoutFramesNamesTheCure) {
+  remove("images.txt");
+  folder_.write("wall/camera.yaml",
+                "cam0:\n  resolution: [80, 60]\n  intrinsics: [66, 66, 39.5, 29.5]\n"
+                "  camera_model: pinhole\n  distortion_model: radtan\n"
+                "  distortion_coeffs: [0, 0, 0, 0]\n");
+  EXPECT_THAT(error(request("run")), HasSubstr("images.txt"));
+}
+
+TEST_F(TrackModule, AFrameThatIsNotThere) {
+  EXPECT_THAT(error(request("run", "reference: {planar_depth_m: 1.5, frame: 7}")),
+              HasSubstr("reference.frame"));
+  RunRequest late = request("run");
+  late.start_s = 0.3;
+  EXPECT_THAT(error(late), HasSubstr("no frame at or after the start"));
+  remove("images/a.png");
+  EXPECT_THAT(error(request("run", "reference: {planar_depth_m: 1.5, frame: 0}")),
+              HasSubstr("a.png"));
+}
+
+TEST_F(TrackModule, AWindowWithoutEvents) {
+  RunRequest late = request("run");
+  late.start_s = 5;
+  EXPECT_THAT(error(late), HasSubstr("no events in the window"));
+  folder_.write("wall/events.txt", "");
+  EXPECT_THAT(error(request("run")), HasSubstr("event"));
+}
+
+TEST_F(TrackModule, AnEmptyMapIsLostTracking) {
+  // A frame without texture is input that can be read: the poses say that it did not work.
+  write_png(dataset_ / "images/a.png", ImageU8(80, 60, 128));
+  const RunSummary summary =
+      run_track(request("run", "{reference: {planar_depth_m: 1.5, frame: 0}}"));
+  EXPECT_GT(summary.poses, 0U);
+  EXPECT_EQ(summary.lost_poses, summary.poses);
+}
+
+TEST_F(TrackModule, TooFewEventsForAFrameStillMakeARun) {
+  RunRequest part = request("run",
+                            "{reference: {planar_depth_m: 1.5}, event_frame: {min_events: "
+                            "100000000}}");
+  const RunSummary summary = run_track(part);
+  EXPECT_EQ(summary.poses, 0U);
+  EXPECT_TRUE(fs::exists(folder_.path() / "run/run.yaml"));
+}
+
+}  // namespace
+}  // namespace saccade

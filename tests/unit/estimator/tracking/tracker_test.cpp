@@ -1,0 +1,277 @@
+#include "estimator/tracking/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/config/config.h"
+#include "core/random.h"
+#include "estimator/tracking/track_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_motion;
+using testing::corner_world;
+using testing::PlanarWorld;
+
+constexpr double kEnd_s = 0.25;  ///< some 60 px of image motion
+
+/// The map of the first view and the events since then; made once.
+struct Recording {
+  PlanarWorld world = corner_world(160, 120);
+  MapPoints map = extract_map(world.log_intensity(corner_motion(0)), world.depth(corner_motion(0)),
+                              world.camera(), {});
+  Events events = world.simulate(corner_motion, 0, kEnd_s, 1e-3, 0.15);
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+TrackerOptions setting(const std::string& name) {
+  const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/" + name + ".yaml";
+  return config::read<TrackConfig>(config::load(file)).tracker;
+}
+
+TrackerOptions accurate() { return setting("accurate"); }
+TrackerOptions fast() { return setting("fast"); }
+
+Tracker tracker_from(const TrackerOptions& options, std::uint64_t seed = 1) {
+  Tracker tracker(options, recording().world.camera(), recording().map, corner_motion(0), seed);
+  tracker.reset(0, corner_motion(0));
+  return tracker;
+}
+
+std::vector<TrackedPose> track(const TrackerOptions& options, std::uint64_t seed = 1) {
+  return tracker_from(options, seed).track(recording().events);
+}
+
+/// RMS distance of the map's points in the view between a pose and the true one [px].
+double error_px(const TrackedPose& pose) {
+  const PinholeCamera& camera = recording().world.camera();
+  const MapPoints& map = recording().map;
+  const Rigid3 truth = corner_motion(seconds_from_ns(pose.t_ns)).inverse() * corner_motion(0);
+  const Rigid3 estimate = pose.world_from_camera.inverse() * corner_motion(0);
+  double squared = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < map.size(); i += 7) {
+    const Eigen::Vector3d point(map.x[i], map.y[i], map.z[i]);
+    const Eigen::Vector2d u = camera.project(truth * point);
+    if (!camera.contains(u)) continue;
+    squared += (u - camera.project(estimate * point)).squaredNorm();
+    ++count;
+  }
+  return std::sqrt(squared / count);
+}
+
+struct Errors {
+  double mean = 0;
+  double largest = 0;
+};
+
+Errors errors_of(const std::vector<TrackedPose>& poses) {
+  Errors errors;
+  for (const TrackedPose& pose : poses) {
+    const double error = error_px(pose);
+    errors.mean += error / static_cast<double>(poses.size());
+    errors.largest = std::max(errors.largest, error);
+  }
+  return errors;
+}
+
+void expect_within(const std::vector<TrackedPose>& poses, double mean_px, double largest_px) {
+  ASSERT_GT(poses.size(), 30U);
+  const Errors errors = errors_of(poses);
+  EXPECT_LT(errors.mean, mean_px);
+  EXPECT_LT(errors.largest, largest_px);
+  for (const TrackedPose& pose : poses) EXPECT_EQ(pose.status, TrackStatus::kOk);
+}
+
+/// An untracked camera would be this far off in the end.
+TEST(Tracker, TheTestMovesFurtherThanItsBounds) {
+  TrackedPose still;
+  still.t_ns = ns_from_seconds(kEnd_s);
+  still.world_from_camera = corner_motion(0);
+  EXPECT_GT(error_px(still), 10);
+}
+
+TEST(Tracker, AccurateSettingRecoversEveryPose) { expect_within(track(accurate()), 0.6, 1.5); }
+
+TEST(Tracker, FastSettingRecoversEveryPose) { expect_within(track(fast()), 1.0, 3.0); }
+
+TEST(Tracker, TheThesisVariantStaysOnTheMap) {
+  TrackerOptions options;
+  options.templates.splat = TemplateOptions::Splat::kNearest;
+  options.align.brightness = AlignOptions::Brightness::kGain;
+  options.align.hessian = AlignOptions::Hessian::kSamples;
+  options.align.averaging_from = options.align.iterations;
+  expect_within(track(options), 1.5, 4.0);
+}
+
+TEST(Tracker, PosesFollowOneAnotherInTime) {
+  TimeNs last = -1;
+  for (const TrackedPose& pose : track(accurate())) {
+    EXPECT_GE(pose.first_ns, last);
+    EXPECT_LE(pose.first_ns, pose.t_ns);
+    EXPECT_LE(pose.t_ns, pose.last_ns);
+    last = pose.last_ns;
+    EXPECT_EQ(pose.iterations, accurate().align.iterations);
+    EXPECT_GT(pose.residual, 0);
+    EXPECT_LT(pose.residual, 1);
+  }
+}
+
+TEST(Tracker, EventsPerFrameFollowTheRatio) {
+  TrackerOptions half = accurate();
+  half.event_frame.ratio = accurate().event_frame.ratio / 2;
+  const double ratio =
+      static_cast<double>(track(half).size()) / static_cast<double>(track(accurate()).size());
+  EXPECT_NEAR(ratio, 2, 0.2);
+}
+
+TEST(Tracker, TooFewEventsGiveNoPose) {
+  const Events& events = recording().events;
+  Tracker tracker = tracker_from(accurate());
+  EXPECT_TRUE(tracker.track({}).empty());
+  const auto needed = static_cast<std::size_t>(accurate().event_frame.min_events);
+  EXPECT_TRUE(tracker.track(std::span(events).first(needed - 1)).empty());
+}
+
+TEST(Tracker, MinEventsHoldWhereNoMapIsInView) {
+  TrackerOptions options = accurate();
+  options.event_frame.min_events = 150;
+  const MapPoints nothing;
+  Tracker tracker(options, recording().world.camera(), nothing, {}, 1);
+  tracker.reset(0, {});
+  const auto poses = tracker.track(std::span(recording().events).first(1000));
+  ASSERT_EQ(poses.size(), 1000U / 150);
+  for (const TrackedPose& pose : poses) {
+    EXPECT_EQ(pose.status, TrackStatus::kLost);
+    EXPECT_EQ(pose.world_from_camera.translation(), Eigen::Vector3d::Zero());
+  }
+}
+
+TEST(Tracker, ProgressCountsTheEventsOfWholeFrames) {
+  Tracker tracker = tracker_from(accurate());
+  std::size_t done = 0;
+  const auto poses = tracker.track(recording().events, [&](std::size_t n) { done += n; });
+  EXPECT_LE(done, recording().events.size());
+  EXPECT_GT(done, recording().events.size() * 9 / 10);
+}
+
+/// Events at random pixels, as many per second as in the recording, after it.
+Events uniform_noise(TimeNs start_ns, std::size_t count) {
+  const Random random(23);
+  const PinholeCamera& camera = recording().world.camera();
+  const auto step =
+      static_cast<TimeNs>(kEnd_s * 1e9) / static_cast<TimeNs>(recording().events.size());
+  Events events;
+  for (std::size_t i = 0; i < count; ++i)
+    events.push_back(
+        {start_ns + step * static_cast<TimeNs>(i),
+         static_cast<std::uint16_t>(random.below(static_cast<std::uint64_t>(camera.width), 0, i)),
+         static_cast<std::uint16_t>(random.below(static_cast<std::uint64_t>(camera.height), 1, i)),
+         static_cast<std::int8_t>(i % 2 == 0 ? 1 : -1)});
+  return events;
+}
+
+/// Share of lost poses after the events have turned into noise.
+double lost_in_noise(const TrackerOptions& options) {
+  Tracker tracker = tracker_from(options);
+  const Events& events = recording().events;
+  static_cast<void>(tracker.track(std::span(events).first(events.size() / 2)));
+  const auto poses =
+      tracker.track(uniform_noise(events[events.size() / 2].t_ns, events.size() / 2));
+  EXPECT_GT(poses.size(), 20U);
+  double lost = 0;
+  for (const TrackedPose& pose : poses) {
+    lost += pose.status == TrackStatus::kLost ? 1 : 0;
+    EXPECT_TRUE(pose.world_from_camera.translation().allFinite());
+  }
+  return lost / static_cast<double>(poses.size());
+}
+
+TEST(Tracker, UniformNoiseIsReportedAsLost) { EXPECT_GT(lost_in_noise(accurate()), 0.5); }
+
+// So few samples follow single events of the noise: the ratio of inliers is only now and then as
+// low as chance.
+TEST(Tracker, FastSettingReportsUniformNoiseNowAndThen) { EXPECT_GT(lost_in_noise(fast()), 0); }
+
+TEST(Tracker, OneBadFrameIsNotALoss) {
+  TrackerOptions options = accurate();
+  options.lost.min_inlier_ratio = 1;  // every frame is suspicious
+  const auto poses = track(options);
+  ASSERT_GT(poses.size(), 5U);
+  for (int i = 0; i < options.lost.frames - 1; ++i)
+    EXPECT_EQ(poses[static_cast<std::size_t>(i)].status, TrackStatus::kOk);
+  for (std::size_t i = static_cast<std::size_t>(options.lost.frames) - 1; i < poses.size(); ++i)
+    EXPECT_EQ(poses[i].status, TrackStatus::kLost);
+}
+
+void expect_equal(const std::vector<TrackedPose>& a, const std::vector<TrackedPose>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t_ns, b[i].t_ns);
+    EXPECT_EQ(a[i].world_from_camera.translation(), b[i].world_from_camera.translation());
+    EXPECT_EQ(a[i].world_from_camera.rotation().coeffs(),
+              b[i].world_from_camera.rotation().coeffs());
+    EXPECT_EQ(a[i].inlier_ratio, b[i].inlier_ratio);
+  }
+}
+
+TEST(Tracker, TheSeedRepeatsTheRun) {
+  for (const TrackerOptions& options : {accurate(), fast()}) {
+    const auto first = track(options, 5);
+    expect_equal(first, track(options, 5));
+    const auto other = track(options, 6);
+    EXPECT_NE(first.back().world_from_camera.translation(),
+              other.back().world_from_camera.translation());
+    EXPECT_LT(errors_of(other).largest, 3);
+  }
+}
+
+TEST(Tracker, ResetStartsAnew) {
+  for (const TrackerOptions& options : {accurate(), fast()}) {
+    Tracker tracker = tracker_from(options);
+    const auto first = tracker.track(recording().events);
+    tracker.reset(0, corner_motion(0));
+    expect_equal(first, tracker.track(recording().events));
+  }
+}
+
+TEST(Tracker, DoesNotDependOnWhereTheWorldBegins) {
+  const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
+  Tracker tracker(accurate(), recording().world.camera(), recording().map,
+                  elsewhere * corner_motion(0), 1);
+  tracker.reset(0, elsewhere * corner_motion(0));
+  const auto moved = tracker.track(recording().events);
+  const auto poses = track(accurate());
+  ASSERT_EQ(moved.size(), poses.size());
+  // Rounding of a position of 100 m may tip single samples over pixel borders.
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    EXPECT_LT((moved[i].world_from_camera.inverse() * (elsewhere * poses[i].world_from_camera))
+                  .translation()
+                  .norm(),
+              0.02);
+}
+
+TEST(Tracker, KeptTemplatesAreDrawnLessOften) {
+  TrackerOptions always = accurate();
+  always.templates.redraw_px = 0;
+  TrackerOptions kept = accurate();
+  kept.templates.redraw_px = 4;
+  Tracker often = tracker_from(always);
+  Tracker seldom = tracker_from(kept);
+  const auto poses = often.track(recording().events);
+  EXPECT_EQ(often.templates_drawn(), poses.size() + 1) << "one more to know when a frame is full";
+  expect_within(seldom.track(recording().events), 1.0, 2.0);
+  EXPECT_LT(seldom.templates_drawn(), often.templates_drawn());
+}
+
+}  // namespace
+}  // namespace saccade
