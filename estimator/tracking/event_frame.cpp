@@ -8,8 +8,8 @@
 namespace saccade {
 namespace {
 
-/// The aligner reads pairs of pixels, and vector code up to three bytes more.
-constexpr int kRowPadding = 4;
+/// Behind each row: two bytes right of it, two left of the next one, and one that nobody reads.
+constexpr int kRowPadding = 5;
 
 }  // namespace
 
@@ -17,11 +17,12 @@ EventFrame::EventFrame(const PinholeCamera& camera, EventFrameOptions::Drawing d
     : width_(camera.width),
       height_(camera.height),
       stride_(camera.width + kRowPadding),
+      origin_(stride_ + 2),
       drawing_(drawing),
-      pixels_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 1)) {
+      pixels_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 3)) {
   if (!camera.is_distorted()) return;
   const UndistortionTable& table = undistortion_.emplace(camera);
-  const std::int32_t nowhere = stride_ * height_ + stride_ - 1;
+  const std::int32_t nowhere = width_ + 2;
   target_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
@@ -42,7 +43,7 @@ void EventFrame::draw(std::span<const Event> events) {
 }
 
 void EventFrame::draw_nearest(std::span<const Event> events) {
-  std::uint8_t* pixels = pixels_.data();
+  std::uint8_t* pixels = pixels_.data() + origin_;
   if (target_.empty()) {
     for (const Event& e : events) pixels[e.y * stride_ + e.x] = kFull;
   } else {
@@ -62,7 +63,7 @@ void EventFrame::draw_bilinear(std::span<const Event> events) {
     const int y0 = static_cast<int>(p.y());
     const float fx = p.x() - static_cast<float>(x0);
     const float fy = p.y() - static_cast<float>(y0);
-    std::uint8_t* corner = &pixels_[static_cast<std::size_t>(y0 * stride_ + x0)];
+    std::uint8_t* corner = &pixels_[static_cast<std::size_t>(origin_ + y0 * stride_ + x0)];
     const auto add = [](std::uint8_t& pixel, float weight) {
       const int sum = pixel + static_cast<int>(weight * kFull + 0.5F);
       pixel = static_cast<std::uint8_t>(std::min<int>(sum, kFull));

@@ -31,11 +31,12 @@ class EventFrame {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  /// Bytes from one row to the next; a row has at least 3 readable bytes behind its last pixel.
+  /// Bytes from one row to the next. One row above, one below, and two pixels left and right of the
+  /// image may be read; they are empty.
   [[nodiscard]] int stride() const { return stride_; }
-  [[nodiscard]] const std::uint8_t* data() const { return pixels_.data(); }
+  [[nodiscard]] const std::uint8_t* data() const { return pixels_.data() + origin_; }
   [[nodiscard]] std::uint8_t operator()(int x, int y) const {
-    return pixels_[static_cast<std::size_t>(y * stride_ + x)];
+    return data()[y * stride_ + x];
   }
 
   /// Adds events; their coordinates lie on the sensor (contract of every event reader).
@@ -50,9 +51,10 @@ class EventFrame {
   int width_;
   int height_;
   int stride_;
+  int origin_;  ///< offset of pixel (0, 0)
   EventFrameOptions::Drawing drawing_;
   std::vector<std::uint8_t> pixels_;
-  /// Where each sensor pixel is drawn, as an offset into pixels_; pixels that leave the undistorted
+  /// Where each sensor pixel is drawn, as an offset from (0, 0); pixels that leave the undistorted
   /// sensor go to a byte that nobody reads. Empty without distortion.
   std::vector<std::int32_t> target_;
   std::optional<UndistortionTable> undistortion_;

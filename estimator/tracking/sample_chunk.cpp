@@ -90,7 +90,41 @@ void SampleChunk::show_all() {
   std::fill_n(visible_.begin(), count_, 1.0F);
 }
 
-void SampleChunk::compare(const EventFrame& frame, float gain, float offset) {
+void SampleChunk::compare(const EventFrame& frame, bool smooth, float gain, float offset) {
+  if (smooth) {
+    read_smooth(frame);
+  } else {
+    read_bilinear(frame);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i)
+    residual_[i] = visible_[i] * (frame_value_[i] - gain * value_[i] - offset);
+}
+
+void SampleChunk::read_smooth(const EventFrame& frame) {
+  const std::uint8_t* pixels = frame.data();
+  const int stride = frame.stride();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+    std::uint32_t rows[4];
+    for (int k = 0; k < 4; ++k)
+      std::memcpy(&rows[k], pixels + pixel_[i] + (k - 1) * stride - 1, sizeof rows[k]);
+    for (std::size_t k = 0; k < 4; ++k) windows_[k][i] = rows[k];
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+    const float fx = fraction_x_[i];
+    const float fy = fraction_y_[i];
+    const auto line = [&](std::size_t k) {
+      const std::uint32_t n = windows_[k][i];
+      const auto byte = [n](int j) {
+        return static_cast<float>(static_cast<int>(n >> (8 * j) & 255U));
+      };
+      return (1 - fx) * byte(0) + byte(1) + byte(2) + fx * byte(3);
+    };
+    constexpr float kScale = 1.0F / (9 * EventFrame::kFull);
+    frame_value_[i] = kScale * ((1 - fy) * line(0) + line(1) + line(2) + fy * line(3));
+  }
+}
+
+void SampleChunk::read_bilinear(const EventFrame& frame) {
   const std::uint8_t* pixels = frame.data();
   const int stride = frame.stride();
   for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
@@ -108,9 +142,7 @@ void SampleChunk::compare(const EventFrame& frame, float gain, float offset) {
     };
     const float top = byte(0) + fraction_x_[i] * (byte(1) - byte(0));
     const float low = byte(2) + fraction_x_[i] * (byte(3) - byte(2));
-    const float value = kScale * (top + fraction_y_[i] * (low - top));
-    frame_value_[i] = value;
-    residual_[i] = visible_[i] * (value - gain * value_[i] - offset);
+    frame_value_[i] = kScale * (top + fraction_y_[i] * (low - top));
   }
 }
 

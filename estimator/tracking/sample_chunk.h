@@ -32,8 +32,9 @@ class SampleChunk {
   /// In place of warp(): all samples are visible.
   void show_all();
 
-  /// Bilinear value of the frame (full event = 1) and the residual I - gain T - offset.
-  void compare(const EventFrame& frame, float gain, float offset);
+  /// Bilinear value of the frame (full event = 1), or with `smooth` of its 3 x 3 means, and the residual
+  /// I - gain T - offset.
+  void compare(const EventFrame& frame, bool smooth, float gain, float offset);
 
   /// The columns J, T, 1 of the normal equations, with
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
@@ -49,6 +50,8 @@ class SampleChunk {
 
  private:
   using Floats = std::array<float, kCapacity>;
+  void read_bilinear(const EventFrame& frame);
+  void read_smooth(const EventFrame& frame);
   [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
 
   int count_ = 0;
@@ -59,6 +62,7 @@ class SampleChunk {
   alignas(64) std::array<std::int32_t, kCapacity> pixel_;  ///< offset of the upper left neighbour
   alignas(
       64) std::array<std::uint32_t, kCapacity> neighbours_;  ///< the four bytes around the sample
+  alignas(64) std::array<std::array<std::uint32_t, kCapacity>, 4> windows_;  ///< 4 x 4 bytes
   alignas(64) Floats frame_value_, residual_;
   alignas(64) std::array<Floats, kColumns> columns_;
 };

@@ -16,9 +16,10 @@ using Means = TemplateAligner::Means;
 
 constexpr int kGain = 6;
 constexpr int kOffset = 7;
-/// Enough for a Hessian within a few percent, which only scales the steps.
-constexpr int kHessianSamples = 2048;
+/// Enough for means over the whole template within a few percent.
+constexpr int kManySamples = 2048;
 constexpr double kMinGain = 0.05;
+constexpr double kMinVariance = 1e-3;
 
 template <class Body>
 void for_each_chunk(int total, const Body& body) {
@@ -58,7 +59,7 @@ void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
   template_normal_.setZero();
   pose_normal_.setZero();
   if (points.empty()) return;
-  const int total = std::min(kHessianSamples, static_cast<int>(points.size()));
+  const int total = std::min(kManySamples, static_cast<int>(points.size()));
   SampleChunk chunk;
   for_each_chunk(total, [&](int first, int count) {
     chunk.load(points, first, count, total, 0);
@@ -93,9 +94,9 @@ double TemplateAligner::effective_samples() const {
   return drawn / (1 + kCorrelated * drawn / std::max(points, 1.0));
 }
 
-Means TemplateAligner::draw_means(const EventFrame& frame, const State& state,
+Means TemplateAligner::draw_means(const EventFrame& frame, const State& state, int samples,
                                   std::uint32_t key) const {
-  const int total = std::min(options_.samples, static_cast<int>(points_.size()));
+  const int total = std::min(samples, static_cast<int>(points_.size()));
   const auto gain = static_cast<float>(state.brightness.gain);
   const auto offset = static_cast<float>(state.brightness.offset);
   Means means;
@@ -103,7 +104,7 @@ Means TemplateAligner::draw_means(const EventFrame& frame, const State& state,
   for_each_chunk(total, [&](int first, int count) {
     chunk.load(points_, first, count, total, key);
     chunk.warp(camera_, frame, state.current_from_template);
-    chunk.compare(frame, gain, offset);
+    chunk.compare(frame, options_.smooth, gain, offset);
     chunk.differentiate();
     for (int i = 0; i < kUnknowns; ++i) means.rhs(i) += chunk.column_dot_residual(i);
     if (options_.hessian == AlignOptions::Hessian::kSamples) add_normal(chunk, means.normal);
@@ -144,6 +145,25 @@ bool TemplateAligner::step(const Means& means, double step_length, State& state)
   return true;
 }
 
+BrightnessModel TemplateAligner::measure_brightness(const EventFrame& frame,
+                                                    const Rigid3& current_from_template) const {
+  State state;
+  state.current_from_template = current_from_template;
+  state.brightness = {0, 0, 0};  // the residual is the frame itself
+  const Means means = draw_means(frame, state, kManySamples, 0);
+  const double mean_t = template_normal_(kGain, kOffset);
+  const double mean_i = means.rhs(kOffset);
+  const double variance_t = template_normal_(kGain, kGain) - mean_t * mean_t;
+  BrightnessModel model;
+  if (!(variance_t > 0) || !(means.visible > 0)) return model;
+  const double covariance = means.rhs(kGain) - mean_t * mean_i;
+  model.gain = std::max(covariance / variance_t, kMinGain);
+  model.offset = mean_i - model.gain * mean_t;
+  model.variance = std::max(means.squared_residual - mean_i * mean_i - model.gain * covariance,
+                            kMinVariance);
+  return model;
+}
+
 AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& prediction,
                                    const Matrix6& precision, const BrightnessModel& brightness,
                                    std::uint64_t seed, std::uint64_t draw) const {
@@ -156,7 +176,8 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
   // Not the gain under estimation: with few samples it may come near zero for an iteration.
   state.step_gain = std::max(state.brightness.gain, kMinGain);
   const double weight =
-      effective_samples() * state.step_gain * state.step_gain / brightness.variance;
+      effective_samples() * state.step_gain * state.step_gain /
+                        std::max(brightness.variance, kMinVariance);
   if (weight > 0) state.prior = precision / weight;
   if (options_.hessian == AlignOptions::Hessian::kTemplate && !factor(template_normal_, state))
     result.status = AlignStatus::kSingular;
@@ -164,7 +185,7 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
   while (result.iterations < options_.iterations && result.status == AlignStatus::kOk) {
     const int i = result.iterations++;
     const std::uint32_t key = random.bits(draw, static_cast<std::uint64_t>(i))[0];
-    const Means means = draw_means(frame, state, key);
+    const Means means = draw_means(frame, state, options_.samples, key);
     const int averaged = std::max(0, i - options_.averaging_from);
     // The evidence is the mean over the same iterations as the pose.
     const double share = 1.0 / (1 + averaged);

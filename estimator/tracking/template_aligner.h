@@ -25,6 +25,7 @@ struct AlignOptions {
       Hessian::kTemplate;  ///< sum of J^T J over this iteration's samples, or of the template
   int averaging_from =
       8;               ///< from this iteration on, steps shrink as 1/n: the pose becomes the mean
+  bool smooth = false;  ///< read 3 x 3 means of the frame: every sample then hears of more events
   double min_visible =
       0.3;  ///< share of samples inside the frame below which the result is kTooFewVisible
 };
@@ -73,6 +74,10 @@ class TemplateAligner {
                                   const Matrix6& precision, const BrightnessModel& brightness,
                                   std::uint64_t seed, std::uint64_t draw) const;
 
+  /// The brightness of a frame whose pose is known, from many samples; for the first frame.
+  [[nodiscard]] BrightnessModel measure_brightness(const EventFrame& frame,
+                                                   const Rigid3& current_from_template) const;
+
   /// The six unknowns of the pose, then gain and offset.
   static constexpr int kUnknowns = 8;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
@@ -89,7 +94,7 @@ class TemplateAligner {
 
  private:
   struct State;
-  [[nodiscard]] Means draw_means(const EventFrame& frame, const State& state,
+  [[nodiscard]] Means draw_means(const EventFrame& frame, const State& state, int samples,
                                  std::uint32_t key) const;
   void eliminate_brightness();
   [[nodiscard]] double effective_samples() const;

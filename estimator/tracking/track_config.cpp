@@ -86,6 +86,7 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
       .value("averaging_from", options.averaging_from,
              "iteration from which steps shrink as 1/n, so that the samples average out")
       .range(0, 1000);
+  fields.value("smooth", options.smooth, "samples read 3 x 3 means of the event frame");
   fields
       .value("min_visible", options.min_visible,
              "share of samples inside the frame below which the frame is lost")

@@ -113,8 +113,11 @@ void Tracker::draw_frame(std::span<const Event> events, TrackedPose& pose) {
 AlignResult Tracker::align(TimeNs t_ns) {
   const StageClock clock(timing_.align_s);
   const PosePrediction predicted = motion_.predict(t_ns, typical_depth_m_);
-  return aligner_.align(frame_, predicted.map_from_camera.inverse() * map_from_template_,
-                        predicted.precision, brightness_, seed_, frame_index_++);
+  const Rigid3 current_from_template = predicted.map_from_camera.inverse() * map_from_template_;
+  if (frame_index_ == 0)
+    brightness_ = aligner_.measure_brightness(frame_, current_from_template);
+  return aligner_.align(frame_, current_from_template, predicted.precision, brightness_, seed_,
+                        frame_index_++);
 }
 
 TrackedPose Tracker::track_frame(std::span<const Event> events) {
