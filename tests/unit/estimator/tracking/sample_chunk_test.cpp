@@ -124,13 +124,51 @@ TEST(SampleChunk, ReadsTheFrameWhereTheWarpSays) {
     SampleChunk chunk;
     chunk.load(std::span(points).subspan(i, 1), 0, 1, 1, 0);
     chunk.warp(small_camera(), frame, shift);
-    chunk.compare(frame, 0.5F, 0.125F);
+    chunk.compare(frame, false, 0.5F, 0.125F);
     EXPECT_EQ(chunk.visible(), 1);
     const double residual = expected[i] - 0.5 - 0.125;  // I - gain T - offset
     EXPECT_NEAR(chunk.squared_residual(), residual * residual, 1e-4) << i;
     chunk.differentiate();
     EXPECT_NEAR(chunk.column_dot_residual(7), residual, 1e-4) << i;
   }
+}
+
+TEST(SampleChunk, SmoothReadsTheMeanOfThreeByThreePixels) {
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  frame.draw(Events{{0, 50, 40, 1}, {0, 51, 41, 1}});
+  const auto read = [&](double x, double y) {
+    const auto points = row_of_points(x, 1, y);
+    SampleChunk chunk;
+    chunk.load(points, 0, 1, 1, 0);
+    chunk.warp(small_camera(), frame, Rigid3{});
+    chunk.compare(frame, true, 0, 0);
+    chunk.differentiate();
+    return chunk.column_dot_residual(7);
+  };
+  EXPECT_NEAR(read(50, 40), 2.0 / 9, 1e-4);
+  EXPECT_NEAR(read(49, 39), 1.0 / 9, 1e-4);
+  EXPECT_NEAR(read(48.5, 40), 0.5 / 9, 1e-3);
+  EXPECT_NEAR(read(52.25, 41.5), 0.75 / 9, 1e-3);
+  EXPECT_NEAR(read(53.5, 40), 0, 1e-4);
+}
+
+TEST(SampleChunk, SmoothReadsStayInsideTheMemoryOfTheFrame) {
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  Events corners;
+  for (const int x : {0, small_camera().width - 1})
+    for (const int y : {0, small_camera().height - 1})
+      corners.push_back({0, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 1});
+  frame.draw(corners);
+  for (const double x : {0.0, small_camera().width - 1.001})
+    for (const double y : {0.0, small_camera().height - 1.001}) {
+      const auto points = row_of_points(x, 1, y);
+      SampleChunk chunk;
+      chunk.load(points, 0, 1, 1, 0);
+      chunk.warp(small_camera(), frame, Rigid3{});
+      chunk.compare(frame, true, 0, 0);
+      chunk.differentiate();
+      EXPECT_NEAR(chunk.column_dot_residual(7), 1.0 / 9, 2e-3) << x << ", " << y;
+    }
 }
 
 TEST(SampleChunk, SamplesOutsideTheFrameCountForNothing) {
@@ -143,7 +181,7 @@ TEST(SampleChunk, SamplesOutsideTheFrameCountForNothing) {
     SampleChunk chunk;
     chunk.load(points, 0, 40, 40, 0);
     chunk.warp(small_camera(), frame, away);
-    chunk.compare(frame, 1, 0);
+    chunk.compare(frame, false, 1, 0);
     chunk.differentiate();
     EXPECT_EQ(chunk.visible(), 0);
     EXPECT_EQ(chunk.squared_residual(), 0);
@@ -165,7 +203,7 @@ TEST(SampleChunk, AgreementCountsSamplesOnTheSameSideOfTheMeans) {
   SampleChunk chunk;
   chunk.load(points, 0, 4, 4, 0);
   chunk.warp(small_camera(), frame, Rigid3({1, 0, 0, 0}, {1e-4, 0, 0}));
-  chunk.compare(frame, 1, 0);
+  chunk.compare(frame, false, 1, 0);
   EXPECT_EQ(chunk.agreeing(0.5F, 0.5F), 2);
 }
 
