@@ -130,10 +130,12 @@ TEST(Command, ConvertsTextToHdf5AndBackWithoutLosingANanosecond) {
   const fs::path text = folder.write("events.txt", text_events(20'000));
   const std::string binary = folder.path() / "events.h5";
   const std::string back = folder.path() / "back.txt";
-  saccade_ok({"convert", text.string(), binary, "--unit", "ns"});
+  saccade_ok({"convert", text.string(), binary});
   saccade_ok({"convert", binary, back});
   EXPECT_TRUE(read_file(text) == read_file(back));
   EXPECT_THAT(saccade_ok({"info", binary}), HasSubstr("20,000"));
+  saccade_ok({"convert", text.string(), binary, "--unit", "us"});
+  EXPECT_THAT(saccade_ok({"info", binary}), HasSubstr("stamps in us"));
 }
 
 TEST(Command, NamesADatasetAfterItsFolderHoweverThatIsWritten) {
