@@ -73,7 +73,8 @@ void PinholeCamera::check(const std::string& place) const {
     throw InputError(place, "camera has no area: " + std::to_string(width) + " x " +
                                 std::to_string(height) + " px; both sides must be positive");
   if (width > 65535 || height > 65535)
-    throw InputError(place, "camera is wider or higher than 65535 px, the limit of event coordinates");
+    throw InputError(place,
+                     "camera is wider or higher than 65535 px, the limit of event coordinates");
   if (!(fx > 0) || !(fy > 0) || !std::isfinite(fx) || !std::isfinite(fy))
     throw InputError(place, "focal lengths fx and fy must be positive and finite");
   bool finite = std::isfinite(cx) && std::isfinite(cy);

@@ -12,10 +12,10 @@ namespace saccade {
 /// Pinhole camera with radial-tangential distortion (Brown; OpenCV's k1 k2 p1 p2 k3).
 /// Pixel centres lie at integer coordinates: pixel (0, 0) covers [-0.5, 0.5]^2. Looks along +z.
 struct PinholeCamera {
-  int width = 0;   ///< [px]
-  int height = 0;  ///< [px]
-  double fx = 0, fy = 0, cx = 0, cy = 0;       ///< [px]
-  std::array<double, 5> distortion{};          ///< k1 k2 p1 p2 k3 [-]
+  int width = 0;                          ///< [px]
+  int height = 0;                         ///< [px]
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
+  std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3 [-]
 
   [[nodiscard]] bool operator==(const PinholeCamera&) const = default;
 
@@ -52,8 +52,8 @@ struct PinholeCamera {
   void check(const std::string& place) const;
 };
 
-/// d pi(exp(xi^) p) / d xi at xi = 0 (2x6) [px]: the interaction matrix for the POINT's motion, that is
-/// minus the printed (4.17), times the focal lengths. `ray` = (x, y, 1), `depth` > 0 [m].
+/// d pi(exp(xi^) p) / d xi at xi = 0 (2x6) [px]: the interaction matrix for the POINT's motion,
+/// that is minus the printed (4.17), times the focal lengths. `ray` = (x, y, 1), `depth` > 0 [m].
 [[nodiscard]] Eigen::Matrix<double, 2, 6> interaction_matrix(const PinholeCamera& camera,
                                                              const Eigen::Vector3d& ray,
                                                              double depth);

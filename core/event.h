@@ -30,8 +30,8 @@ struct Event {
   [[nodiscard]] bool operator==(const Event&) const = default;
 };
 
-/// The order of every event stream in this project: by time, ties by pixel index (row-major), then by
-/// polarity, so that a stream is unique whatever thread produced its parts.
+/// The order of every event stream in this project: by time, ties by pixel index (row-major), then
+/// by polarity, so that a stream is unique whatever thread produced its parts.
 struct EventOrder {
   [[nodiscard]] bool operator()(const Event& a, const Event& b) const {
     return std::tie(a.t_ns, a.y, a.x, a.polarity) < std::tie(b.t_ns, b.y, b.x, b.polarity);

@@ -58,8 +58,8 @@ using ImageU8 = Image<std::uint8_t>;
 using Rgb8 = std::array<std::uint8_t, 3>;
 using ImageRgb8 = Image<Rgb8>;
 
-/// The four texels around a sub-pixel position and their bilinear weights (thesis A.2), which sum to
-/// one. Valid for 0 <= x <= width - 1 and 0 <= y <= height - 1, borders included.
+/// The four texels around a sub-pixel position and their bilinear weights (thesis A.2), which sum
+/// to one. Valid for 0 <= x <= width - 1 and 0 <= y <= height - 1, borders included.
 template <class Real>
 struct BilinearCell {
   int x0, y0;
@@ -88,7 +88,8 @@ struct SampleWithGradient {
   Real dx, dy;  ///< [1/px], exact derivative of the bilinear interpolant
 };
 
-/// Bilinear interpolation with its derivative (thesis A.2). The image is at least 2 x 2; (x, y) inside.
+/// Bilinear interpolation with its derivative (thesis A.2). The image is at least 2 x 2; (x, y)
+/// inside.
 template <class T, class Real>
 [[nodiscard]] SampleWithGradient<Real> sample_with_gradient(const Image<T>& image, Real x, Real y) {
   const BilinearCell<Real> c(x, y, image.width(), image.height());
@@ -108,8 +109,8 @@ template <class T, class Real>
   return sample_with_gradient(image, x, y).value;
 }
 
-/// Bilinear drawing (thesis A.3-A.7): adds `value` to the four pixels around (x, y), weights summing to
-/// one. The image is at least 2 x 2; (x, y) inside.
+/// Bilinear drawing (thesis A.3-A.7): adds `value` to the four pixels around (x, y), weights
+/// summing to one. The image is at least 2 x 2; (x, y) inside.
 template <class T, class Real>
 void splat(Image<T>& image, Real x, Real y, T value) {
   const BilinearCell<Real> c(x, y, image.width(), image.height());

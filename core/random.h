@@ -6,8 +6,8 @@
 namespace saccade {
 
 /// Counter-based random numbers (Philox 4x32-10; Salmon et al., SC 2011): a pure function of
-/// (seed, stream, index), so a draw never depends on the order or the thread in which others are made.
-/// `stream` names who draws (a pixel, a point set), `index` which of its draws this is.
+/// (seed, stream, index), so a draw never depends on the order or the thread in which others are
+/// made. `stream` names who draws (a pixel, a point set), `index` which of its draws this is.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : seed_(seed) {}

@@ -66,7 +66,8 @@ Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& rotation_vector) {
 
 Eigen::Matrix3d so3_left_jacobian_inverse(const Eigen::Vector3d& rotation_vector) {
   const Eigen::Matrix3d w = skew(rotation_vector);
-  return Eigen::Matrix3d::Identity() - 0.5 * w + inverse_coefficient(rotation_vector.norm()) * w * w;
+  return Eigen::Matrix3d::Identity() - 0.5 * w +
+         inverse_coefficient(rotation_vector.norm()) * w * w;
 }
 
 Rigid3::Rigid3(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation)

@@ -22,8 +22,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& rotation_vector);
 [[nodiscard]] Eigen::Matrix3d so3_left_jacobian_inverse(const Eigen::Vector3d& rotation_vector);
 
-/// A rigid transformation p_a = R p_b + t. Objects are named a_from_b (`world_from_camera`), so that
-/// neighbouring names cancel in products: world_from_camera * camera_from_imu = world_from_imu.
+/// A rigid transformation p_a = R p_b + t. Objects are named a_from_b (`world_from_camera`), so
+/// that neighbouring names cancel in products: world_from_camera * camera_from_imu =
+/// world_from_imu.
 class Rigid3 {
  public:
   Rigid3() = default;
@@ -60,7 +61,8 @@ class Rigid3 {
 /// Angle between two rotations [rad], 0..pi (thesis 8.2, computed without the loss of acos near 0).
 [[nodiscard]] double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 
-/// From a to b on SO(3) x R^3: slerp of the rotation, straight line of the position; `fraction` 0..1.
+/// From a to b on SO(3) x R^3: slerp of the rotation, straight line of the position; `fraction`
+/// 0..1.
 [[nodiscard]] Rigid3 interpolate(const Rigid3& a, const Rigid3& b, double fraction);
 
 }  // namespace saccade

@@ -7,8 +7,7 @@
 namespace saccade {
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
-  for (std::size_t i = 1; i < poses_.size(); ++i)
-    SACCADE_CHECK(poses_[i - 1].t_s < poses_[i].t_s);
+  for (std::size_t i = 1; i < poses_.size(); ++i) SACCADE_CHECK(poses_[i - 1].t_s < poses_[i].t_s);
 }
 
 std::optional<std::size_t> Trajectory::last_before(double t_s) const {
@@ -36,9 +35,9 @@ Rigid3 Trajectory::at_clamped(double t_s) const {
 double Trajectory::path_length() const {
   double length = 0;
   for (std::size_t i = 1; i < poses_.size(); ++i)
-    length += (poses_[i].world_from_camera.translation() -
-               poses_[i - 1].world_from_camera.translation())
-                  .norm();
+    length +=
+        (poses_[i].world_from_camera.translation() - poses_[i - 1].world_from_camera.translation())
+            .norm();
   return length;
 }
 

@@ -18,7 +18,8 @@ struct TemplateOptions {
   int blur_size_px = 3;  ///< odd, 1..15
   double blur_sigma_px = 0.8;
   double min_value = 0.01;  ///< pixels of the blurred template above it are template points
-  double min_gradient_px = 0.15;  ///< of a template point [1/px]: flat pixels say nothing about the pose
+  double min_gradient_px =
+      0.15;  ///< of a template point [1/px]: flat pixels say nothing about the pose
   double redraw_px =
       0;  ///< the template is kept while the view moved less; 0: drawn for every frame
 };

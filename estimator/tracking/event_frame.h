@@ -35,9 +35,7 @@ class EventFrame {
   /// image may be read; they are empty.
   [[nodiscard]] int stride() const { return stride_; }
   [[nodiscard]] const std::uint8_t* data() const { return pixels_.data() + origin_; }
-  [[nodiscard]] std::uint8_t operator()(int x, int y) const {
-    return data()[y * stride_ + x];
-  }
+  [[nodiscard]] std::uint8_t operator()(int x, int y) const { return data()[y * stride_ + x]; }
 
   /// Adds events; their coordinates lie on the sensor (contract of every event reader).
   void draw(std::span<const Event> events);

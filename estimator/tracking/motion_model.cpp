@@ -1,13 +1,12 @@
 #include "estimator/tracking/motion_model.h"
 
-
 #include "estimator/tracking/cholesky.h"
 
 namespace saccade {
 namespace {
 
-/// Standard deviations at the start, as image motion: the first pose is given to about a pixel, of the
-/// velocity nothing is known.
+/// Standard deviations at the start, as image motion: the first pose is given to about a pixel, of
+/// the velocity nothing is known.
 constexpr double kInitialPose_px = 0.2;
 constexpr double kInitialVelocity_px_s = 300;
 
@@ -37,17 +36,19 @@ Eigen::Array<double, 6, 1> MotionModel::twist_of_px(double px, double depth_m) c
 PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
   const double dt = seconds_from_ns(t_ns - t_ns_);
   t_ns_ = t_ns;
-  if (options_.prediction == PredictionOptions::Prediction::kNone) return {map_from_camera_, Matrix6::Zero()};
+  if (options_.prediction == PredictionOptions::Prediction::kNone)
+    return {map_from_camera_, Matrix6::Zero()};
   if (!velocity_known_) {
     velocity_known_ = true;
     pose_covariance_ = twist_of_px(kInitialPose_px, depth_m).square().matrix().asDiagonal();
-    velocity_covariance_ = twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
+    velocity_covariance_ =
+        twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
     cross_covariance_.setZero();
   }
   map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);
   const Twist drift = twist_of_px(options_.agility_px, depth_m).square();
-  pose_covariance_ += dt * (cross_covariance_ + cross_covariance_.transpose()) +
-                      dt * dt * velocity_covariance_;
+  pose_covariance_ +=
+      dt * (cross_covariance_ + cross_covariance_.transpose()) + dt * dt * velocity_covariance_;
   pose_covariance_.diagonal() += dt * dt * dt / 3 * drift;
   cross_covariance_ += dt * velocity_covariance_;
   cross_covariance_.diagonal() += dt * dt / 2 * drift;
@@ -58,7 +59,8 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
 
 void MotionModel::update(const Rigid3& map_from_camera, const Matrix6& information) {
   if (options_.prediction == PredictionOptions::Prediction::kConstantVelocity) {
-    // Given the pose, the velocity is independent of the measurement: it follows the pose by regression.
+    // Given the pose, the velocity is independent of the measurement: it follows the pose by
+    // regression.
     const Matrix6 regression = cross_covariance_ * pose_precision_;
     const Twist deviation = (map_from_camera_.inverse() * map_from_camera).log();
     velocity_ += regression * deviation;

@@ -30,8 +30,8 @@ class MotionModel {
 
   void reset(TimeNs t_ns, const Rigid3& map_from_camera);
 
-  /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the filter to
-  /// `t_ns`, not before its last time.
+  /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the
+  /// filter to `t_ns`, not before its last time.
   [[nodiscard]] PosePrediction predict(TimeNs t_ns, double depth_m);
 
   /// Takes in the estimate for the time of the last predict() and what the data alone said about it

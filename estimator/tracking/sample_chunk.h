@@ -32,8 +32,8 @@ class SampleChunk {
   /// In place of warp(): all samples are visible.
   void show_all();
 
-  /// Bilinear value of the frame (full event = 1), or with `smooth` of its 3 x 3 means, and the residual
-  /// I - gain T - offset.
+  /// Bilinear value of the frame (full event = 1), or with `smooth` of its 3 x 3 means, and the
+  /// residual I - gain T - offset.
   void compare(const EventFrame& frame, bool smooth, float gain, float offset);
 
   /// The columns J, T, 1 of the normal equations, with

@@ -45,9 +45,9 @@ void fix_unknown(int k, Matrix& normal) {
 struct TemplateAligner::State {
   Rigid3 current_from_template;
   BrightnessModel brightness;
-  double step_gain = 1;  ///< gain that turns a solution of the equations into a twist
-  Matrix6 prior = Matrix6::Zero();        ///< precision of the prediction, in units of the normal matrix
-  Twist deviation = Twist::Zero();        ///< from the prediction, in the template's frame
+  double step_gain = 1;             ///< gain that turns a solution of the equations into a twist
+  Matrix6 prior = Matrix6::Zero();  ///< precision of the prediction, in units of the normal matrix
+  Twist deviation = Twist::Zero();  ///< from the prediction, in the template's frame
   Cholesky<kUnknowns> factors;
 };
 
@@ -159,8 +159,8 @@ BrightnessModel TemplateAligner::measure_brightness(const EventFrame& frame,
   const double covariance = means.rhs(kGain) - mean_t * mean_i;
   model.gain = std::max(covariance / variance_t, kMinGain);
   model.offset = mean_i - model.gain * mean_t;
-  model.variance = std::max(means.squared_residual - mean_i * mean_i - model.gain * covariance,
-                            kMinVariance);
+  model.variance =
+      std::max(means.squared_residual - mean_i * mean_i - model.gain * covariance, kMinVariance);
   return model;
 }
 
@@ -175,8 +175,7 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
   if (options_.brightness == AlignOptions::Brightness::kNone) state.brightness = {1, 0};
   // Not the gain under estimation: with few samples it may come near zero for an iteration.
   state.step_gain = std::max(state.brightness.gain, kMinGain);
-  const double weight =
-      effective_samples() * state.step_gain * state.step_gain /
+  const double weight = effective_samples() * state.step_gain * state.step_gain /
                         std::max(brightness.variance, kMinVariance);
   if (weight > 0) state.prior = precision / weight;
   if (options_.hessian == AlignOptions::Hessian::kTemplate && !factor(template_normal_, state))

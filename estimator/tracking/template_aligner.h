@@ -24,7 +24,7 @@ struct AlignOptions {
   Hessian hessian =
       Hessian::kTemplate;  ///< sum of J^T J over this iteration's samples, or of the template
   int averaging_from =
-      8;               ///< from this iteration on, steps shrink as 1/n: the pose becomes the mean
+      8;                ///< from this iteration on, steps shrink as 1/n: the pose becomes the mean
   bool smooth = false;  ///< read 3 x 3 means of the frame: every sample then hears of more events
   double min_visible =
       0.3;  ///< share of samples inside the frame below which the result is kTooFewVisible

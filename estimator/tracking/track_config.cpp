@@ -25,8 +25,7 @@ void describe_map(config::Fields& fields, MapOptions& options) {
       .value("min_gradient", options.min_gradient,
              "g_min: gradient magnitude of a map point, share of the largest")
       .range(0, 1);
-  fields
-      .value("max_share", options.max_share, "largest share of the pixels: the steepest of them")
+  fields.value("max_share", options.max_share, "largest share of the pixels: the steepest of them")
       .above(0)
       .at_most(1);
   fields.value("thin", options.thin, "keep only the maxima across an edge");

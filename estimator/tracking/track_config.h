@@ -14,8 +14,8 @@ struct ReferenceOptions {
   std::optional<int> frame;  ///< index in images.txt; default: the first at or after the start
   std::optional<double>
       planar_depth_m;  ///< the map is a plane at this z of the reference view; else the depth map
-  /// Left, top, right, bottom [px] of the part of the undistorted frame that becomes the map; a plane
-  /// rarely fills the view. Default: all of it.
+  /// Left, top, right, bottom [px] of the part of the undistorted frame that becomes the map; a
+  /// plane rarely fills the view. Default: all of it.
   std::optional<std::array<double, 4>> region_px;
   double time_offset_s = 0;  ///< the frame shows the scene this long after its stamp
 };

@@ -114,8 +114,7 @@ AlignResult Tracker::align(TimeNs t_ns) {
   const StageClock clock(timing_.align_s);
   const PosePrediction predicted = motion_.predict(t_ns, typical_depth_m_);
   const Rigid3 current_from_template = predicted.map_from_camera.inverse() * map_from_template_;
-  if (frame_index_ == 0)
-    brightness_ = aligner_.measure_brightness(frame_, current_from_template);
+  if (frame_index_ == 0) brightness_ = aligner_.measure_brightness(frame_, current_from_template);
   return aligner_.align(frame_, current_from_template, predicted.precision, brightness_, seed_,
                         frame_index_++);
 }

@@ -13,8 +13,8 @@ namespace saccade {
 using TriangleId = std::uint32_t;
 constexpr TriangleId kNothing = std::numeric_limits<TriangleId>::max();
 
-/// A ray in the world. `direction` need not be a unit vector: distances below are in its length, so with
-/// direction = R (x, y, 1) the distance is the z depth.
+/// A ray in the world. `direction` need not be a unit vector: distances below are in its length, so
+/// with direction = R (x, y, 1) the distance is the z depth.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -26,28 +26,30 @@ struct Shade {
   double distance = 0;  ///< along Ray::direction [its length]; 0 = background
 };
 
-/// Everything that reflects or emits light, immutable after loading; all members are thread-safe and
-/// deterministic. Visibility comes from Embree (float); the point that is seen and its radiance are
-/// recomputed in double from the triangle, because float barycentrics alone cost microseconds of time.
+/// Everything that reflects or emits light, immutable after loading; all members are thread-safe
+/// and deterministic. Visibility comes from Embree (float); the point that is seen and its radiance
+/// are recomputed in double from the triangle, because float barycentrics alone cost microseconds
+/// of time.
 class Scene {
  public:
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// The nearest opaque triangle along each of at most 16 coherent rays; `triangles` has the same size.
+  /// The nearest opaque triangle along each of at most 16 coherent rays; `triangles` has the same
+  /// size.
   void visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
 
-  /// Radiance and distance where `ray` meets the plane of `triangle` (inside it or, for a ray that leaves
-  /// it by a hair, just outside); the background for kNothing. Lights cast shadows.
+  /// Radiance and distance where `ray` meets the plane of `triangle` (inside it or, for a ray that
+  /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
 
-  /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true when
-  /// `ray` passes through `triangle` (edges included). Says nothing about occluders.
+  /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
+  /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.
   [[nodiscard]] bool meets(const Ray& ray, TriangleId triangle) const;
 
  private:

@@ -21,7 +21,8 @@ CommandResult run_command(const std::string& program, const std::vector<std::str
     close(pipe_ends[0]);
     close(pipe_ends[1]);
     std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : arguments)
+      argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     execv(program.c_str(), argv.data());
     _exit(127);

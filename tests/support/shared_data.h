@@ -14,8 +14,8 @@ namespace saccade::testing {
 
 }  // namespace saccade::testing
 
-/// Defines `variable` as the path of the recording `name`, or skips the test with a message that says
-/// where it was looked for.
+/// Defines `variable` as the path of the recording `name`, or skips the test with a message that
+/// says where it was looked for.
 #define SACCADE_SHARED_DATA_OR_SKIP(variable, name)                                  \
   const std::filesystem::path variable = ::saccade::testing::find_shared_data(name); \
   if (variable.empty())                                                              \

@@ -10,8 +10,8 @@
 namespace saccade::config {
 namespace {
 
-using saccade::testing::TemporaryFolder;
 using saccade::testing::error_of;
+using saccade::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 const Node& at(const Node& map, const std::string& key) { return map.find(key)->value; }

@@ -3,14 +3,14 @@
 
 #include "core/config/config.h"
 #include "tests/support/command.h"
-#include "tests/unit/core/config/example_options.h"
 #include "tests/support/error_of.h"
+#include "tests/unit/core/config/example_options.h"
 
 namespace saccade::config {
 namespace {
 
-using saccade::testing::TemporaryFolder;
 using saccade::testing::error_of;
+using saccade::testing::TemporaryFolder;
 using testing::Options;
 
 Options read_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
