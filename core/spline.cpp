@@ -7,6 +7,22 @@
 
 namespace saccade {
 
+SplineState SplineState::attached(const Rigid3& body_from_frame) const {
+  const Eigen::Quaterniond& world_from_body_rotation = world_from_body.rotation();
+  const Eigen::Quaterniond frame_from_body = body_from_frame.rotation().conjugate();
+  const Eigen::Vector3d& r = body_from_frame.translation();
+  const Eigen::Vector3d& w = angular_velocity_in_body;
+  SplineState frame;
+  frame.world_from_body = world_from_body * body_from_frame;
+  frame.velocity_in_world = velocity_in_world + world_from_body_rotation * w.cross(r);
+  frame.acceleration_in_world =
+      acceleration_in_world +
+      world_from_body_rotation * (angular_acceleration_in_body.cross(r) + w.cross(w.cross(r)));
+  frame.angular_velocity_in_body = frame_from_body * w;
+  frame.angular_acceleration_in_body = frame_from_body * angular_acceleration_in_body;
+  return frame;
+}
+
 Spline::Spline(std::vector<SplineSegment> segments, double start_s, double end_s)
     : segments_(std::move(segments)), start_s_(start_s), end_s_(end_s) {
   SACCADE_CHECK(!segments_.empty() && end_s_ > start_s_);
@@ -54,10 +70,16 @@ Rigid3 Spline::pose(double t_s) const {
   s.factors(s.basis.value(u), e);
   const Eigen::Vector3d position =
       s.position.col(0) + u * (s.position.col(1) + u * (s.position.col(2) + u * s.position.col(3)));
-  return {(s.first_rotation * e[0]) * (e[1] * e[2]), position};
+  const Rigid3 world_from_body((s.first_rotation * e[0]) * (e[1] * e[2]), position);
+  return body_from_frame_ ? world_from_body * *body_from_frame_ : world_from_body;
 }
 
 SplineState Spline::state(double t_s) const {
+  const SplineState body = body_state(t_s);
+  return body_from_frame_ ? body.attached(*body_from_frame_) : body;
+}
+
+SplineState Spline::body_state(double t_s) const {
   const double t = clamped(t_s);
   const SplineSegment& s = segment_at(t);
   const double u = (t - s.start_s) * s.inverse_length;
@@ -98,7 +120,16 @@ Spline Spline::cut(double from_s, double duration_s) const {
     segments.push_back(segments_[i]);
     segments.back().start_s -= from_s;
   }
-  return {std::move(segments), 0, duration_s};
+  Spline piece(std::move(segments), 0, duration_s);
+  piece.body_from_frame_ = body_from_frame_;
+  return piece;
+}
+
+Spline Spline::attached(const Rigid3& body_from_frame) const {
+  Spline motion = *this;
+  motion.body_from_frame_ =
+      body_from_frame_ ? *body_from_frame_ * body_from_frame : body_from_frame;
+  return motion;
 }
 
 Spline Spline::from_control_poses(std::span<const Rigid3> control_poses, double start_s,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,12 @@ struct SplineState {
   Eigen::Vector3d acceleration_in_world;         ///< [m/s^2], without gravity
   Eigen::Vector3d angular_velocity_in_body;      ///< [rad/s]
   Eigen::Vector3d angular_acceleration_in_body;  ///< [rad/s^2]
+
+  /// The state of a frame fixed to the body, r from the body's origin to the frame's, both in the
+  /// body:
+  ///   v_frame = v + R (w x r),   a_frame = a + R (alpha x r + w x (w x r)),
+  /// and the angular rates in the frame's axes.
+  [[nodiscard]] SplineState attached(const Rigid3& body_from_frame) const;
 };
 
 /// Cumulative cubic B-spline on R^3 x SO(3), C2, knots at any strictly increasing times:
@@ -47,6 +54,10 @@ class Spline {
   /// piece lies within [start_s, end_s] (contract) and lasts longer than 0.
   [[nodiscard]] Spline cut(double from_s, double duration_s) const;
 
+  /// The motion of a frame fixed to the moving body (a rig's second camera, an IMU): pose(t) is
+  /// world_from_body(t) * body_from_frame, with all derivatives. May be applied repeatedly.
+  [[nodiscard]] Spline attached(const Rigid3& body_from_frame) const;
+
   [[nodiscard]] double start_s() const { return start_s_; }
   [[nodiscard]] double end_s() const { return end_s_; }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
@@ -59,6 +70,7 @@ class Spline {
   [[nodiscard]] std::size_t bucket_of(double t_s) const;
   [[nodiscard]] const SplineSegment& segment_at(double t_s) const;
   [[nodiscard]] double clamped(double t_s) const;
+  [[nodiscard]] SplineState body_state(double t_s) const;
 
   std::vector<SplineSegment> segments_;
   double start_s_;
@@ -67,6 +79,7 @@ class Spline {
   /// Per bucket of time the last segment that starts in an earlier bucket, so that a look-up
   /// compares a few neighbours only, however uneven the knots.
   std::vector<std::uint32_t> buckets_;
+  std::optional<Rigid3> body_from_frame_;  ///< none: the body's own frame
 };
 
 }  // namespace saccade

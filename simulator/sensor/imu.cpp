@@ -45,15 +45,10 @@ void describe(config::Fields& fields, ImuOptions& options) {
 
 ImuSample imu_sample(const Spline& motion, const Rigid3& camera_from_imu,
                      const Eigen::Vector3d& gravity_m_s2, TimeNs t_ns) {
-  const SplineState state = motion.state(seconds_from_ns(t_ns));
-  const Eigen::Quaterniond camera_from_world = state.world_from_body.rotation().conjugate();
-  const Eigen::Quaterniond imu_from_camera = camera_from_imu.rotation().conjugate();
-  const Eigen::Vector3d& lever = camera_from_imu.translation();
-  const Eigen::Vector3d& w = state.angular_velocity_in_body;
-  const Eigen::Vector3d force_in_camera =
-      camera_from_world * (state.acceleration_in_world - gravity_m_s2) +
-      state.angular_acceleration_in_body.cross(lever) + w.cross(w.cross(lever));
-  return {t_ns, imu_from_camera * force_in_camera, imu_from_camera * w};
+  const SplineState imu = motion.state(seconds_from_ns(t_ns)).attached(camera_from_imu);
+  const Eigen::Quaterniond imu_from_world = imu.world_from_body.rotation().conjugate();
+  return {t_ns, imu_from_world * (imu.acceleration_in_world - gravity_m_s2),
+          imu.angular_velocity_in_body};
 }
 
 std::vector<ImuSample> imu_samples(const Spline& motion, const ImuOptions& options,

@@ -332,5 +332,42 @@ TEST(SplineSmooth, ConvergesWithKnotsFarTooCoarseForTheMotion) {
   }
 }
 
+TEST(SplineAttached, MovesWithTheBodyWithExactDerivatives) {
+  const auto poses = random_poses(25, 100 * kDegree, 2);
+  const Spline body = Spline::interpolate(poses);
+  const Rigid3 body_from_frame(so3_exp({0.4, -1.1, 0.7}), {0.3, -0.2, 0.5});
+  const Spline frame = body.attached(body_from_frame);
+  EXPECT_EQ(frame.start_s(), body.start_s());
+  EXPECT_EQ(frame.end_s(), body.end_s());
+  for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
+    const double t = 0.5 * (poses[i].t_s + poses[i + 1].t_s);
+    const Rigid3 expected = body.pose(t) * body_from_frame;
+    EXPECT_LT((expected.inverse() * frame.pose(t)).log().norm(), 1e-14);
+    EXPECT_LT((expected.inverse() * frame.state(t).world_from_body).log().norm(), 1e-14);
+    expect_twice_continuous(frame, poses[i].t_s);
+    expect_derivatives(frame, t, 1e-3);
+  }
+}
+
+TEST(SplineAttached, ComposesAndSurvivesACut) {
+  const Spline body = Spline::interpolate(random_poses(9, 60 * kDegree, 3));
+  const Rigid3 a(so3_exp({0.1, 0.2, -0.3}), {0.1, 0, 0.2});
+  const Rigid3 b(so3_exp({-0.5, 0.1, 0.9}), {0, 0.4, -0.1});
+  const Spline twice = body.attached(a).attached(b).cut(body.start_s() + 0.1, 0.5);
+  for (const double t : {0.0, 0.2, 0.5}) {
+    const Rigid3 expected = body.pose(body.start_s() + 0.1 + t) * a * b;
+    EXPECT_LT((expected.inverse() * twice.pose(t)).log().norm(), 1e-13);
+  }
+}
+
+TEST(SplineAttached, TheBodysOwnFrameChangesNothing) {
+  const Spline body = Spline::interpolate(random_poses(9, 60 * kDegree, 3));
+  const SplineState own = body.state(4);
+  const SplineState same = body.attached(Rigid3()).state(4);
+  EXPECT_EQ(own.velocity_in_world, same.velocity_in_world);
+  EXPECT_EQ(own.acceleration_in_world, same.acceleration_in_world);
+  EXPECT_EQ(own.angular_velocity_in_body, same.angular_velocity_in_body);
+}
+
 }  // namespace
 }  // namespace saccade
