@@ -15,6 +15,7 @@
 #include "core/srgb.h"
 #include "simulator/scene/assimp_files.h"
 #include "simulator/scene/material_import.h"
+#include "simulator/scene/relief.h"
 
 namespace saccade {
 namespace {
@@ -166,6 +167,16 @@ class Flattener {
 
 }  // namespace
 
+Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& source) {
+  const std::string place = location.text();
+  if (!location.archive.empty())
+    throw InputError(place, "relief parameters cannot be read from within an archive");
+  const ReliefOptions options = read_relief_options(location.file);
+  if (!options.texture) return generate_relief(options);
+  const WrapModes wrap{Wrap::kClamp, Wrap::kClamp};
+  return generate_relief(options, textures_.colour(source, *options.texture, wrap, place).grey);
+}
+
 Mesh MeshImporter::read(const fs::path& file) {
   const std::string problem = missing_file_problem(file);
   if (!problem.empty()) throw InputError(file.string(), problem);
@@ -173,6 +184,7 @@ Mesh MeshImporter::read(const fs::path& file) {
   const FileSource& source = sources_.try_emplace(location.archive, location.archive).first->second;
   const std::string place = location.text();
   if (!source.contains(location.file)) throw InputError(place, "is not in this archive");
+  if (place.ends_with(".relief.yaml")) return read_relief(location, source);
 
   Assimp::Importer importer;  // owns the AssimpFiles
   const aiScene& scene = load(importer, new AssimpFiles(source), location.file, place);

@@ -14,7 +14,8 @@ namespace saccade {
 /// triangulated, points, lines and wholly transparent surfaces left out. Files without normals are
 /// shaded smoothly where faces meet at less than 40 degrees. A texture replaces the material's
 /// colour (whose value beside one means nothing in most files), except in glTF, which defines their
-/// product. Archives stay open and textures loaded as long as the importer lives. Not thread-safe.
+/// product. A *.relief.yaml on disk is a surface of generate_relief(). Archives stay open and
+/// textures loaded as long as the importer lives. Not thread-safe.
 class MeshImporter {
  public:
   /// Throws InputError naming the file, its material library or its texture: missing or unreadable,
@@ -23,6 +24,8 @@ class MeshImporter {
   [[nodiscard]] Mesh read(const std::filesystem::path& file);
 
  private:
+  [[nodiscard]] Mesh read_relief(const FileLocation& location, const FileSource& source);
+
   std::map<std::filesystem::path, FileSource> sources_;
   TextureLibrary textures_;
 };
