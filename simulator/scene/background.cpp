@@ -5,10 +5,12 @@
 
 namespace saccade {
 
-double Background::map_radiance(const Eigen::Vector3d& direction) const {
+SurfaceLook Background::map_look(const Eigen::Vector3d& direction) const {
   const double azimuth = std::atan2(direction.y(), direction.x());
   const double elevation = std::atan2(direction.z(), direction.head<2>().norm());
-  return map_->at(0.5 - azimuth / (2 * std::numbers::pi), 0.5 + elevation / std::numbers::pi);
+  const double u = 0.5 - azimuth / (2 * std::numbers::pi);
+  const double v = 0.5 + elevation / std::numbers::pi;
+  return {map_.get(), u * map_->width() - 0.5, (1 - v) * map_->height() - 0.5};
 }
 
 }  // namespace saccade

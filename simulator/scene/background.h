@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/scene.h"
 #include "simulator/scene/texture.h"
 
 namespace saccade {
@@ -16,13 +17,13 @@ class Background {
   explicit Background(ImageF map)
       : map_(std::make_shared<Texture>(std::move(map), Wrap::kRepeat, Wrap::kClamp)) {}
 
-  /// `direction` not zero, of any length.
-  [[nodiscard]] double radiance(const Eigen::Vector3d& direction) const {
-    return map_ ? map_radiance(direction) : radiance_;
+  /// What is seen along `direction` (not zero, of any length).
+  [[nodiscard]] SurfaceLook look(const Eigen::Vector3d& direction) const {
+    return map_ ? map_look(direction) : SurfaceLook{.x = radiance_};
   }
 
  private:
-  [[nodiscard]] double map_radiance(const Eigen::Vector3d& direction) const;
+  [[nodiscard]] SurfaceLook map_look(const Eigen::Vector3d& direction) const;
 
   double radiance_ = 0;
   std::shared_ptr<const Texture> map_;

@@ -1,5 +1,6 @@
 #include "simulator/scene/scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -47,35 +48,44 @@ void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) 
 }
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
-  if (triangle == kNothing) return {state_->background.radiance(ray.direction), 0};
+  SurfaceLook seen = look(ray, triangle);
+  seen.irradiance = irradiance(ray, triangle, seen);
+  return {seen.radiance(), seen.distance};
+}
+
+SurfaceLook Scene::look(const Ray& ray, TriangleId triangle) const {
+  if (triangle == kNothing) return state_->background.look(ray.direction);
   const TriangleSurface& surface = state_->surfaces[triangle];
   const double distance = distance_to(surface.plane, ray);
   // A ray that grazes the triangle's plane may miss it by far: nothing of it is to be seen there.
-  if (!(distance > 0 && distance < kFarthest))
-    return {state_->background.radiance(ray.direction), 0};
+  if (!(distance > 0 && distance < kFarthest)) return state_->background.look(ray.direction);
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const double x = surface.x.at(point);
-  double radiance = surface.texture != nullptr
-                        ? surface.factor * surface.texture->at_texel(x, surface.y.at(point))
-                        : x;
-  if (state_->illumination)
-    radiance *=
-        state_->illumination->at(state_->surface_point(ray, distance, triangle), *state_->caster);
-  return {radiance, distance};
+  return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
 }
 
+double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceLook& look) const {
+  if (!state_->illumination || look.distance == 0) return 1;
+  return state_->illumination->at(state_->surface_point(ray, look.distance, triangle),
+                                  *state_->caster);
+}
+
+bool Scene::is_lit() const { return state_->illumination.has_value(); }
+
 bool Scene::meets(const Ray& ray, TriangleId triangle) const {
-  if (triangle == kNothing) return false;
+  if (inside(ray, triangle) < -kEdgeTolerance) return false;
+  const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
+  return triangle < opaque || state_->is_opaque(ray, triangle);
+}
+
+double Scene::inside(const Ray& ray, TriangleId triangle) const {
+  if (triangle == kNothing) return -1;
   const double distance = distance_to(state_->surfaces[triangle].plane, ray);
-  if (!(distance > 0 && distance < kFarthest)) return false;
+  if (!(distance > 0 && distance < kFarthest)) return -1;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
   const TriangleInterior& interior = state_->interiors[triangle];
   const double second = interior.second.at(point);
   const double third = interior.third.at(point);
-  if (second < -kEdgeTolerance || third < -kEdgeTolerance || second + third > 1 + kEdgeTolerance)
-    return false;
-  const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
-  return triangle < opaque || state_->is_opaque(ray, triangle);
+  return std::min({second, third, 1 - second - third});
 }
 
 std::uint32_t Scene::object(TriangleId triangle) const {

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/texture.h"
+
 namespace saccade {
 
 /// A triangle of the scene, numbered over all meshes; kNothing where a ray meets none.
@@ -18,6 +20,20 @@ constexpr TriangleId kNothing = std::numeric_limits<TriangleId>::max();
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
+};
+
+/// What the radiance of a visible point is made of: irradiance * factor * texture(x, y), without a
+/// texture irradiance * x.
+struct SurfaceLook {
+  const Texture* texture = nullptr;
+  double x = 0, y = 0;    ///< texel coordinates; without a texture x is the albedo
+  double factor = 1;      ///< multiplies the texture
+  double irradiance = 1;  ///< under lights; else 1
+  double distance = 0;    ///< along Ray::direction [its length]; 0 = background
+
+  [[nodiscard]] double radiance() const {
+    return irradiance * (texture != nullptr ? factor * texture->at_texel(x, y) : x);
+  }
 };
 
 /// What a camera ray sees.
@@ -44,6 +60,14 @@ class Scene {
   /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
 
+  /// Where `ray` meets the plane of `triangle`, as shade() has it, in terms of its texture and
+  /// without the lights (irradiance 1).
+  [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle) const;
+  /// Light that falls onto the point of a look(); 1 in an unlit scene and for the background.
+  [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
+                                  const SurfaceLook& look) const;
+  [[nodiscard]] bool is_lit() const;
+
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
@@ -51,6 +75,10 @@ class Scene {
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.
   [[nodiscard]] bool meets(const Ray& ray, TriangleId triangle) const;
+  /// Smallest barycentric coordinate of the point where `ray` meets the plane of `triangle`: how
+  /// far it passes inside the edges, negative outside. -1 where it does not meet the plane, and for
+  /// kNothing.
+  [[nodiscard]] double inside(const Ray& ray, TriangleId triangle) const;
 
  private:
   struct State;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace saccade {
@@ -31,6 +32,38 @@ Neighbours neighbours(double x, int size, Wrap wrap) {
   return {first, first + 1, inside - first};
 }
 
+/// The texel that shows at index `i` of an endless texture.
+int wrapped(std::int64_t i, int size, Wrap wrap) {
+  if (wrap == Wrap::kClamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, size - 1));
+  const std::int64_t period = wrap == Wrap::kMirror ? 2 * std::int64_t{size} : size;
+  const std::int64_t inside = (i % period + period) % period;
+  return static_cast<int>(inside < size ? inside : period - 1 - inside);
+}
+
+/// Stored texels first..last, borders included.
+struct IndexRange {
+  int first, last;
+};
+
+/// Texels that at_texel() reads over from..to; all of them where the range crosses the border of a
+/// repeated or mirrored texture.
+IndexRange inside_indices(double from, double to, int size, Wrap wrap) {
+  const IndexRange all{0, size - 1};
+  if (!(to - from < size) || !(std::abs(from) < 1e15)) return all;
+  const auto first = static_cast<std::int64_t>(std::floor(from));
+  const auto last = static_cast<std::int64_t>(std::floor(to)) + 1;
+  if (first >= 0 && last < size) return {static_cast<int>(first), static_cast<int>(last)};
+  const int a = wrapped(first, size, wrap);
+  const int b = wrapped(last, size, wrap);
+  if (wrap == Wrap::kClamp) return {a, b};
+  const IndexRange folded{std::min(a, b), std::max(a, b)};
+  return folded.last - folded.first == last - first ? folded : all;
+}
+
+TexelRange hull(const TexelRange& a, const TexelRange& b) {
+  return {std::min(a.low, b.low), std::max(a.high, b.high)};
+}
+
 /// Bilinear interpolation needs two texels each way.
 ImageF widened(ImageF image) {
   if (image.width() >= 2 && image.height() >= 2) return image;
@@ -46,6 +79,61 @@ ImageF widened(ImageF image) {
 Texture::Texture(ImageF image, Wrap wrap_u, Wrap wrap_v)
     : image_(widened(std::move(image))), wrap_u_(wrap_u), wrap_v_(wrap_v) {
   SACCADE_CHECK(image_.width() >= 2 && image_.height() >= 2);
+  build_ranges();
+}
+
+void Texture::build_ranges() {
+  const auto halve = [](int width, int height, const auto& at) {
+    Image<TexelRange> blocks((width + 1) / 2, (height + 1) / 2);
+    for (int y = 0; y < blocks.height(); ++y)
+      for (int x = 0; x < blocks.width(); ++x) {
+        TexelRange range = at(2 * x, 2 * y);
+        for (int j = 2 * y; j < std::min(2 * y + 2, height); ++j)
+          for (int i = 2 * x; i < std::min(2 * x + 2, width); ++i) range = hull(range, at(i, j));
+        blocks(x, y) = range;
+      }
+    return blocks;
+  };
+  ranges_.push_back(halve(width(), height(), [&](int i, int j) {
+    return TexelRange{image_(i, j), image_(i, j)};
+  }));
+  while (ranges_.back().width() > 1 || ranges_.back().height() > 1) {
+    const Image<TexelRange>& finer = ranges_.back();
+    ranges_.push_back(
+        halve(finer.width(), finer.height(), [&](int i, int j) { return finer(i, j); }));
+  }
+}
+
+std::array<float, 4> Texture::cell(std::int64_t i, std::int64_t j) const {
+  if (i >= 0 && j >= 0 && i + 1 < width() && j + 1 < height()) {
+    const float* row = &image_(static_cast<int>(i), static_cast<int>(j));
+    return {row[0], row[1], row[width()], row[width() + 1]};
+  }
+  const int x0 = wrapped(i, width(), wrap_u_);
+  const int x1 = wrapped(i + 1, width(), wrap_u_);
+  const int y0 = wrapped(j, height(), wrap_v_);
+  const int y1 = wrapped(j + 1, height(), wrap_v_);
+  return {image_(x0, y0), image_(x1, y0), image_(x0, y1), image_(x1, y1)};
+}
+
+TexelRange Texture::range(const TexelBox& box) const {
+  const IndexRange across = inside_indices(box.x0, box.x1, width(), wrap_u_);
+  const IndexRange down = inside_indices(box.y0, box.y1, height(), wrap_v_);
+  return range_within(across.first, across.last, down.first, down.last);
+}
+
+TexelRange Texture::range_within(int i0, int i1, int j0, int j1) const {
+  constexpr int kMost = 4;  // values looked at per side
+  const int extent = std::max(i1 - i0, j1 - j0);
+  std::size_t level = 0;
+  while ((extent >> level) >= kMost) ++level;
+  const auto shift = static_cast<int>(level);
+  TexelRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  for (int j = j0 >> shift; j <= j1 >> shift; ++j)
+    for (int i = i0 >> shift; i <= i1 >> shift; ++i)
+      range = hull(range,
+                   level == 0 ? TexelRange{image_(i, j), image_(i, j)} : ranges_[level - 1](i, j));
+  return range;
 }
 
 double Texture::across_border(double x, double y) const {

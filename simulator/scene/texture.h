@@ -1,8 +1,21 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "core/image.h"
 
 namespace saccade {
+
+/// Texel coordinates x0..x1 by y0..y1.
+struct TexelBox {
+  double x0, x1, y0, y1;
+};
+
+struct TexelRange {
+  float low, high;
+};
 
 /// What a texture shows outside [0, 1]: itself again, its border, or itself mirrored.
 enum class Wrap { kRepeat, kClamp, kMirror };
@@ -32,10 +45,22 @@ class Texture {
     return at_texel(u * width() - 0.5, (1 - v) * height() - 0.5);
   }
 
+  /// Texels (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), wrapped: between them at_texel() is
+  /// bilinear.
+  [[nodiscard]] std::array<float, 4> cell(std::int64_t i, std::int64_t j) const;
+
+  /// Bounds of at_texel() over a box, tight up to a texel for small boxes and up to a quarter of
+  /// the box for large ones (min-max pyramid).
+  [[nodiscard]] TexelRange range(const TexelBox& box) const;
+
  private:
   [[nodiscard]] double across_border(double x, double y) const;
+  [[nodiscard]] TexelRange range_within(int i0, int i1, int j0, int j1) const;
+  void build_ranges();
 
   ImageF image_;
+  /// Extremes of blocks of 2 x 2, 4 x 4, 8 x 8 ... texels; the last level is one block.
+  std::vector<Image<TexelRange>> ranges_;
   Wrap wrap_u_;
   Wrap wrap_v_;
 };

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+
 namespace saccade {
 namespace {
 
@@ -55,6 +60,58 @@ TEST(Texture, ASingleTexelIsThatEverywhere) {
   const Texture texture(ImageF(1, 1, 0.25F));
   EXPECT_DOUBLE_EQ(texture.at(0.3, 0.7), 0.25);
   EXPECT_DOUBLE_EQ(texture.at(-7.1, 12.4), 0.25);
+}
+
+ImageF noise_picture(int width, int height) {
+  const Random random(5);
+  ImageF image(width, height);
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image.pixels()[i] = static_cast<float>(random.uniform(0, i));
+  return image;
+}
+
+TEST(Texture, RangeBoundsTheInterpolant) {
+  const Random random(6);
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror}) {
+    const Texture texture(noise_picture(37, 22), wrap, wrap);
+    for (std::uint64_t k = 0; k < 300; ++k) {
+      const double size = std::pow(60.0, random.uniform(1, k));
+      const double x = 120 * random.uniform(2, k) - 40;
+      const double y = 80 * random.uniform(3, k) - 30;
+      const TexelBox box{x, x + size * random.uniform(4, k), y, y + size * random.uniform(5, k)};
+      const TexelRange range = texture.range(box);
+      for (std::uint64_t i = 0; i < 30; ++i) {
+        const double value =
+            texture.at_texel(box.x0 + (box.x1 - box.x0) * random.uniform(6, 100 * k + i),
+                             box.y0 + (box.y1 - box.y0) * random.uniform(7, 100 * k + i));
+        ASSERT_GE(value, range.low - 1e-6);
+        ASSERT_LE(value, range.high + 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Texture, RangeOfASmallBoxIsThatOfItsTexels) {
+  const Texture texture(noise_picture(37, 22));
+  const std::array<float, 4> cell = texture.cell(11, 7);
+  const TexelRange range = texture.range({11.2, 11.4, 7.3, 7.9});
+  EXPECT_EQ(range.low, *std::min_element(cell.begin(), cell.end()));
+  EXPECT_EQ(range.high, *std::max_element(cell.begin(), cell.end()));
+}
+
+TEST(Texture, CellHoldsTheFourTexelsOfTheInterpolant) {
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror}) {
+    const Texture texture(noise_picture(7, 5), wrap, wrap);
+    for (std::int64_t j = -11; j < 12; ++j)
+      for (std::int64_t i = -15; i < 16; ++i) {
+        const std::array<float, 4> cell = texture.cell(i, j);
+        for (std::int64_t k = 0; k < 4; ++k)
+          EXPECT_NEAR(
+              cell[static_cast<std::size_t>(k)],
+              texture.at_texel(static_cast<double>(i + k % 2), static_cast<double>(j + k / 2)),
+              1e-6);
+      }
+  }
 }
 
 }  // namespace
