@@ -1,15 +1,18 @@
 #include "simulator/sensor/event_options.h"
 
 namespace saccade {
-namespace {
-
-enum class Preset { kIdeal };
-
-}  // namespace
 
 void describe(config::Fields& fields, EventOptions& options) {
-  Preset preset = Preset::kIdeal;
-  fields.choice("preset", preset, {{"ideal", Preset::kIdeal}}, "noise models switched on together");
+  fields.choice("preset", options.preset,
+                {{"ideal", SensorModel::kIdeal},
+                 {"davis240c", SensorModel::kDavis240c},
+                 {"dvxplorer", SensorModel::kDvxplorer}},
+                "sensor whose thresholds and noise are the defaults");
+  if (fields.has("preset")) {
+    const SensorPreset preset = sensor_preset(options.preset);
+    options.contrast = preset.contrast;
+    options.noise = preset.noise;
+  }
   fields.value("contrast_on", options.contrast.on, "threshold of ON events [log units]")
       .range(0.001, 10);
   fields.value("contrast_off", options.contrast.off, "threshold of OFF events [log units]")
@@ -31,6 +34,17 @@ void describe(config::Fields& fields, EventOptions& options) {
       .value("max_step_px", options.max_step_px,
              "image motion between two looks at a pixel, over its neighbourhood [px]")
       .range(0.01, 2);
+  fields.choice("sampling", options.sampling,
+                {{"asynchronous", Sampling::kAsynchronous}, {"frames", Sampling::kFrames}},
+                "every pixel at its own times, or whole frames");
+  fields
+      .value("frames_lambda_px", options.frames_lambda_px,
+             "greatest image motion between two frames of sampling: frames [px]")
+      .range(0.01, 10);
+  fields.choice("texture_filter", options.texture_filter,
+                {{"bilinear", TextureFilter::kBilinear}, {"mipmap", TextureFilter::kMipmap}},
+                "the point that a ray meets, or the mean over its footprint");
+  fields.section("noise", options.noise, "imperfections of the sensor, all off by default");
 }
 
 }  // namespace saccade
