@@ -40,6 +40,7 @@ struct Take {
   DatasetWriter& writer;
 
   [[nodiscard]] double duration_s() const { return world_from_camera.end_s(); }
+  [[nodiscard]] StampedPose pose(double t_s) const { return {t_s, world_from_camera.pose(t_s)}; }
 };
 
 double write_groundtruth(const Take& take) {
@@ -54,22 +55,23 @@ double write_groundtruth(const Take& take) {
 
 /// Poses whose views average to the frame at `t_s`: midpoints of equal parts of the exposure, as
 /// many as keep the image motion between two of them below a quarter of a pixel.
-std::vector<Rigid3> exposure_poses(const Take& take, const ViewRenderer& renderer, double t_s) {
+std::vector<StampedPose> exposure_poses(const Take& take, const ViewRenderer& renderer,
+                                        double t_s) {
   constexpr double kMotion_px = 0.25;
   constexpr double kMostPoses = 256;
   const double half_s = 0.5 * take.config.frames.exposure_s;
-  if (half_s == 0) return {take.world_from_camera.pose(t_s)};
+  if (half_s == 0) return {take.pose(t_s)};
   const double from_s = std::max(0.0, t_s - half_s);
   const double to_s = std::min(take.duration_s(), t_s + half_s);
-  const FlowField flow = renderer.flow(take.world_from_camera.state(t_s));
+  const FlowField flow = renderer.flow(take.world_from_camera.state(t_s), t_s);
   float speed = 0;
   for (std::size_t i = 0; i < flow.u.size(); ++i)
     speed = std::max(speed, std::hypot(flow.u.pixels()[i], flow.v.pixels()[i]));
   const double count = std::clamp(
       std::ceil(static_cast<double>(speed) * (to_s - from_s) / kMotion_px), 1.0, kMostPoses);
-  std::vector<Rigid3> poses;
+  std::vector<StampedPose> poses;
   for (double k = 0.5; k < count; ++k)
-    poses.push_back(take.world_from_camera.pose(from_s + (to_s - from_s) * k / count));
+    poses.push_back(take.pose(from_s + (to_s - from_s) * k / count));
   return poses;
 }
 
@@ -88,12 +90,12 @@ void write_images(const Take& take) {
   });
   parallel_for(depths.size(), [&](std::size_t i) {
     const double t = seconds_from_ns(depths[i]);
-    take.writer.write_depth(i, t, renderer.depth(take.world_from_camera.pose(t)));
+    take.writer.write_depth(i, t, renderer.depth(take.pose(t)));
     progress.add(1);
   });
   parallel_for(flows.size(), [&](std::size_t i) {
     const double t = seconds_from_ns(flows[i]);
-    take.writer.write_flow(i, t, renderer.flow(take.world_from_camera.state(t)));
+    take.writer.write_flow(i, t, renderer.flow(take.world_from_camera.state(t), t));
     progress.add(1);
   });
 }

@@ -15,11 +15,12 @@ namespace saccade {
 using TriangleId = std::uint32_t;
 constexpr TriangleId kNothing = std::numeric_limits<TriangleId>::max();
 
-/// A ray in the world. `direction` need not be a unit vector: distances below are in its length, so
-/// with direction = R (x, y, 1) the distance is the z depth.
+/// A ray in the world at one instant. `direction` need not be a unit vector: distances below are in
+/// its length, so with direction = R (x, y, 1) the distance is the z depth.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
+  double time_s = 0;  ///< at which it sees the moving objects
 };
 
 /// What the radiance of a visible point is made of: irradiance * factor * texture(x, y), without a

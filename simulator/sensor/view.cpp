@@ -14,15 +14,16 @@ constexpr std::size_t kTilesPerTask = 16;
 
 /// What each ray of a tile sees: `use(ray index, shade)`.
 template <class Use>
-void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions, const Rigid3& pose,
-                const Use& use) {
-  const Eigen::Matrix3d rotation = pose.rotation_matrix();
+void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
+                const StampedPose& pose, const Use& use) {
+  const Eigen::Matrix3d rotation = pose.world_from_camera.rotation_matrix();
+  const Eigen::Vector3d& origin = pose.world_from_camera.translation();
   std::array<Ray, kTilePixels> rays;
   std::array<TriangleId, kTilePixels> triangles;
   for (std::size_t first = 0; first < directions.size(); first += kTilePixels) {
     const std::size_t n = std::min(kTilePixels, directions.size() - first);
     for (std::size_t k = 0; k < n; ++k)
-      rays[k] = {pose.translation(), rotation * directions[first + k]};
+      rays[k] = {origin, rotation * directions[first + k], pose.t_s};
     scene.visible({rays.data(), n}, {triangles.data(), n});
     for (std::size_t k = 0; k < n; ++k) use(first + k, scene.shade(rays[k], triangles[k]));
   }
@@ -46,14 +47,14 @@ Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Ve
 ViewRenderer::ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel)
     : scene_(scene), radiance_rays_(camera, rays_per_pixel), centre_rays_(camera, 1) {}
 
-ImageF ViewRenderer::radiance(std::span<const Rigid3> world_from_camera) const {
+ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
   ImageF image(camera().width, camera().height);
   const std::size_t per_pixel = radiance_rays_.rays_per_pixel();
-  const double count = static_cast<double>(per_pixel * world_from_camera.size());
+  const double count = static_cast<double>(per_pixel * poses.size());
   const auto render = [&](std::size_t index) {
     const Tile tile = radiance_rays_.tile(index);
     std::array<double, kTilePixels> sums{};
-    for (const Rigid3& pose : world_from_camera)
+    for (const StampedPose& pose : poses)
       trace_tile(scene_, radiance_rays_.rays(index), pose,
                  [&](std::size_t ray, const Shade& s) { sums[ray / per_pixel] += s.radiance; });
     for (std::size_t i = 0; i < tile.pixels(); ++i)
@@ -63,26 +64,26 @@ ImageF ViewRenderer::radiance(std::span<const Rigid3> world_from_camera) const {
   return image;
 }
 
-ImageF ViewRenderer::depth(const Rigid3& world_from_camera) const {
+ImageF ViewRenderer::depth(const StampedPose& pose) const {
   ImageF image(camera().width, camera().height);
   const auto render = [&](std::size_t index) {
     const Tile tile = centre_rays_.tile(index);
-    trace_tile(scene_, centre_rays_.rays(index), world_from_camera,
-               [&](std::size_t i, const Shade& shade) {
-                 image(tile.x(i), tile.y(i)) = static_cast<float>(shade.distance);
-               });
+    trace_tile(scene_, centre_rays_.rays(index), pose, [&](std::size_t i, const Shade& shade) {
+      image(tile.x(i), tile.y(i)) = static_cast<float>(shade.distance);
+    });
   };
   parallel_for(centre_rays_.tile_count(), render, kTilesPerTask);
   return image;
 }
 
-FlowField ViewRenderer::flow(const SplineState& state) const {
+FlowField ViewRenderer::flow(const SplineState& state, double t_s) const {
   FlowField field{ImageF(camera().width, camera().height), ImageF(camera().width, camera().height)};
+  const StampedPose pose{t_s, state.world_from_body};
   const Twist twist = camera_twist(state);
   const auto render = [&](std::size_t index) {
     const Tile tile = centre_rays_.tile(index);
     const std::span<const Eigen::Vector3d> rays = centre_rays_.rays(index);
-    trace_tile(scene_, rays, state.world_from_body, [&](std::size_t i, const Shade& shade) {
+    trace_tile(scene_, rays, pose, [&](std::size_t i, const Shade& shade) {
       const double depth =
           shade.distance > 0 ? shade.distance : std::numeric_limits<double>::infinity();
       // In the camera's frame the point moves by minus the camera's twist.

@@ -21,14 +21,14 @@ class ViewRenderer {
   ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel);
 
   /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur).
-  [[nodiscard]] ImageF radiance(std::span<const Rigid3> world_from_camera) const;
+  [[nodiscard]] ImageF radiance(std::span<const StampedPose> poses) const;
 
   /// z depth [m]; 0 = background.
-  [[nodiscard]] ImageF depth(const Rigid3& world_from_camera) const;
+  [[nodiscard]] ImageF depth(const StampedPose& pose) const;
 
-  /// Motion field of the static scene [px/s] on the distorted image; the background is infinitely
-  /// far, so only rotation moves it.
-  [[nodiscard]] FlowField flow(const SplineState& state) const;
+  /// Motion field [px/s] on the distorted image of a camera that is in `state` at `t_s`; the
+  /// background is infinitely far, so only rotation moves it.
+  [[nodiscard]] FlowField flow(const SplineState& state, double t_s) const;
 
   [[nodiscard]] const PinholeCamera& camera() const { return radiance_rays_.camera(); }
 

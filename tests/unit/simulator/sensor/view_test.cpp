@@ -32,7 +32,7 @@ struct TiltedPlane {
 
 TEST(ViewRenderer, DepthOfATiltedPlane) {
   const TiltedPlane world;
-  const ImageF depth = ViewRenderer(world.scene, world.camera, 4).depth(world.pose);
+  const ImageF depth = ViewRenderer(world.scene, world.camera, 4).depth({0, world.pose});
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 41; ++x) {
       const Eigen::Vector3d ray = world.camera.ray(world.camera.undistort({x, y}));
@@ -45,7 +45,7 @@ TEST(ViewRenderer, BackgroundHasNoDepth) {
       testing::scene_of({testing::rectangle({0, 0, 2}, {9, 0, 0}, {0, 9, 0}, ImageF(2, 2, 0.4F))});
   const ViewRenderer renderer(scene, {9, 7, 20, 20, 4, 3, {}}, 1);
   const ImageF depth = renderer.depth({});
-  const ImageF radiance = renderer.radiance(std::vector<Rigid3>(1));
+  const ImageF radiance = renderer.radiance(std::vector<StampedPose>(1));
   EXPECT_EQ(depth(0, 0), 0);
   EXPECT_EQ(radiance(0, 0), 0.5F);
   EXPECT_FLOAT_EQ(depth(8, 6), 2);
@@ -57,7 +57,7 @@ TEST(ViewRenderer, RadianceIsThatOfTheTextureAndAveragesOverPoses) {
   const Scene scene = testing::scene_of(plane);
   const ViewRenderer renderer(scene, plane.camera, 1);
   const Spline motion = plane.motion();
-  const std::vector<Rigid3> poses{motion.pose(0.1), motion.pose(0.35)};
+  const std::vector<StampedPose> poses{{0.1, motion.pose(0.1)}, {0.35, motion.pose(0.35)}};
   const ImageF image = renderer.radiance(poses);
   for (int y = 0; y < 14; ++y)
     for (int x = 0; x < 20; ++x) {
@@ -75,7 +75,7 @@ TEST(ViewRenderer, FlowIsTheMotionOfTheSeenPoint) {
   state.world_from_body = world.pose;
   state.velocity_in_world = {0.4, 0.7, -0.3};
   state.angular_velocity_in_body = {0.5, -0.8, 1.1};
-  const FlowField flow = ViewRenderer(world.scene, world.camera, 1).flow(state);
+  const FlowField flow = ViewRenderer(world.scene, world.camera, 1).flow(state, 0);
   constexpr double kStep_s = 1e-4;
   const auto pose_at = [&](double t) {
     return Rigid3(world.pose.rotation() * so3_exp(t * state.angular_velocity_in_body),
