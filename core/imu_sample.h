@@ -13,4 +13,25 @@ struct ImuSample {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
 };
 
+/// What is behind a reading: reading = ideal + bias + white noise.
+struct ImuTruth {
+  ImuSample ideal;                                       ///< of a perfect sensor
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();   ///< [rad/s]
+};
+
+/// Continuous-time noise of one triad of an inertial sensor, as Kalibr states it. In SI units
+/// (U = rad/s or m/s^2).
+struct TriadNoise {
+  double density = 0;      ///< of the white noise [U/sqrt(Hz)]
+  double random_walk = 0;  ///< of the bias [U/s/sqrt(Hz)]
+};
+
+/// What an estimator must know of an inertial sensor (imu.yaml).
+struct ImuCalibration {
+  double rate_hz = 0;
+  TriadNoise accelerometer;
+  TriadNoise gyroscope;
+};
+
 }  // namespace saccade

@@ -13,6 +13,13 @@ struct StampedPose {
   Rigid3 world_from_camera;
 };
 
+/// How the camera moves at one instant, in its own axes.
+struct StampedTwist {
+  double t_s = 0;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+
 /// Time-stamped poses with interpolation between neighbours (slerp and straight line).
 class Trajectory {
  public:

@@ -7,6 +7,8 @@
 
 #include "core/config/config.h"
 #include "core/io/dataset_writer.h"
+#include "core/io/imu_file.h"
+#include "core/io/trajectory_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "simulator/motion/motion.h"
@@ -46,11 +48,29 @@ struct Take {
 double write_groundtruth(const Take& take) {
   const TimeNs end = ns_from_seconds(take.duration_s());
   std::vector<StampedPose> poses;
+  std::vector<StampedTwist> twists;
   for (const TimeNs t :
-       merge_times({end}, sample_times(take.config.groundtruth.pose_rate_hz, take.duration_s())))
-    poses.push_back({seconds_from_ns(t), take.world_from_camera.pose(seconds_from_ns(t))});
+       merge_times({end}, sample_times(take.config.groundtruth.pose_rate_hz, take.duration_s()))) {
+    const double t_s = seconds_from_ns(t);
+    const SplineState state = take.world_from_camera.state(t_s);
+    const Rigid3& pose = state.world_from_body;
+    poses.push_back({t_s, pose});
+    twists.push_back({t_s, pose.rotation().conjugate() * state.velocity_in_world,
+                      state.angular_velocity_in_body});
+  }
   take.writer.write_groundtruth(poses);
+  write_twists(take.writer.folder() / "twist.txt", twists);
   return Trajectory(std::move(poses)).path_length();
+}
+
+void write_imu(const Take& take) {
+  const ImuOptions& options = take.config.imu;
+  if (options.rate_hz <= 0) return;
+  const ImuRecording imu =
+      record_imu(take.world_from_camera, options, take.config.gravity_m_s2, take.config.seed);
+  take.writer.write_imu(imu.readings);
+  write_imu_truth(take.writer.folder() / "imu_groundtruth.txt", imu.truth);
+  write_imu_yaml(take.writer.folder() / "imu.yaml", options.calibration());
 }
 
 /// Poses whose views average to the frame at `t_s`: midpoints of equal parts of the exposure, as
@@ -146,8 +166,7 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   DatasetWriter writer(output, config.camera, {config.events.timestamp_unit});
   const Take take{config, scene, motion, writer};
   report.path_length_m = write_groundtruth(take);
-  if (config.imu.rate_hz > 0)
-    writer.write_imu(imu_samples(motion, config.imu, config.gravity_m_s2));
+  write_imu(take);
   write_images(take);
   report.images_s = watch.lap();
   report.events = write_events(take);

@@ -9,6 +9,8 @@
 
 #include "core/config/convert.h"
 #include "core/config/document.h"
+#include "core/config/rigid3_node.h"
+#include "core/config/yaml_emit.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/io/text_table.h"
@@ -47,6 +49,54 @@ void read_distortion(const config::Node& cam, PinholeCamera& camera) {
   std::copy(values.begin(), values.end(), camera.distortion.begin());
 }
 
+PinholeCamera read_camera(const config::Node& cam) {
+  expect_text(require(cam, "camera_model"), "camera_model", {"pinhole"});
+  std::array<double, 4> intrinsics{};
+  config::from_node(require(cam, "intrinsics"), "intrinsics", intrinsics);
+  std::array<int, 2> resolution{};
+  config::from_node(require(cam, "resolution"), "resolution", resolution);
+  PinholeCamera camera;
+  camera.width = resolution[0];
+  camera.height = resolution[1];
+  camera.fx = intrinsics[0];
+  camera.fy = intrinsics[1];
+  camera.cx = intrinsics[2];
+  camera.cy = intrinsics[3];
+  read_distortion(cam, camera);
+  camera.check(cam.place.text());
+  return camera;
+}
+
+std::optional<Rigid3> read_transform(const config::Node& cam, const std::string& key) {
+  const config::Entry* entry = cam.find(key);
+  if (entry == nullptr) return std::nullopt;
+  Rigid3 transform;
+  from_node(entry->value, key, transform);
+  return transform;
+}
+
+std::string camera_key(std::size_t index) { return fmt::format("cam{}", index); }
+
+config::Node camera_node(const ChainCamera& chained) {
+  const PinholeCamera& camera = chained.camera;
+  const std::span<const double> coefficients(camera.distortion);
+  config::Node node = config::Node::map();
+  const auto add = [&](const char* key, config::Node value) {
+    node.entries.push_back({key, {}, std::move(value), {}});
+  };
+  if (chained.camera_from_imu) add("T_cam_imu", to_node(*chained.camera_from_imu));
+  if (chained.camera_from_previous) add("T_cn_cnm1", to_node(*chained.camera_from_previous));
+  add("camera_model", config::Node::scalar("pinhole", false));
+  add("intrinsics", config::to_node(std::array{camera.fx, camera.fy, camera.cx, camera.cy}));
+  add("distortion_model", config::Node::scalar("radtan", false));
+  const auto kept = coefficients.first(coefficients[4] != 0 ? 5 : 4);
+  add("distortion_coeffs", config::to_node(std::vector<double>(kept.begin(), kept.end())));
+  add("resolution", config::to_node(std::array{camera.width, camera.height}));
+  // The clocks of all sensors agree.
+  if (chained.camera_from_imu) add("timeshift_cam_imu", config::to_node(0.0));
+  return node;
+}
+
 }  // namespace
 
 PinholeCamera read_calib_txt(const std::filesystem::path& file) {
@@ -76,36 +126,30 @@ void write_calib_txt(const std::filesystem::path& file, const PinholeCamera& cam
 
 PinholeCamera read_camera_yaml(const std::filesystem::path& file) {
   const config::Document document = config::load(file);
-  const config::Node& cam = require(document.root(), "cam0");
-  expect_text(require(cam, "camera_model"), "camera_model", {"pinhole"});
-  std::array<double, 4> intrinsics{};
-  config::from_node(require(cam, "intrinsics"), "intrinsics", intrinsics);
-  std::array<int, 2> resolution{};
-  config::from_node(require(cam, "resolution"), "resolution", resolution);
-  PinholeCamera camera;
-  camera.width = resolution[0];
-  camera.height = resolution[1];
-  camera.fx = intrinsics[0];
-  camera.fy = intrinsics[1];
-  camera.cx = intrinsics[2];
-  camera.cy = intrinsics[3];
-  read_distortion(cam, camera);
-  camera.check(cam.place.text());
-  return camera;
+  return read_camera(require(document.root(), "cam0"));
 }
 
 void write_camera_yaml(const std::filesystem::path& file, const PinholeCamera& camera) {
-  const std::size_t coefficients = camera.distortion[4] != 0 ? 5 : 4;
-  write_atomically(file,
-                   fmt::format("cam0:\n"
-                               "  camera_model: pinhole\n"
-                               "  intrinsics: [{}, {}, {}, {}]\n"
-                               "  distortion_model: radtan\n"
-                               "  distortion_coeffs: [{}]\n"
-                               "  resolution: [{}, {}]\n",
-                               camera.fx, camera.fy, camera.cx, camera.cy,
-                               fmt::join(std::span(camera.distortion).first(coefficients), ", "),
-                               camera.width, camera.height));
+  write_camera_chain(file, std::vector<ChainCamera>{{camera, {}, {}}});
+}
+
+std::vector<ChainCamera> read_camera_chain(const std::filesystem::path& file) {
+  const config::Document document = config::load(file);
+  static_cast<void>(require(document.root(), "cam0"));
+  std::vector<ChainCamera> cameras;
+  while (const config::Entry* entry = document.root().find(camera_key(cameras.size()))) {
+    const config::Node& cam = entry->value;
+    cameras.push_back(
+        {read_camera(cam), read_transform(cam, "T_cam_imu"), read_transform(cam, "T_cn_cnm1")});
+  }
+  return cameras;
+}
+
+void write_camera_chain(const std::filesystem::path& file, std::span<const ChainCamera> cameras) {
+  config::Node chain = config::Node::map();
+  for (const ChainCamera& camera : cameras)
+    chain.entries.push_back({camera_key(chain.entries.size()), {}, camera_node(camera), {}});
+  write_atomically(file, config::to_yaml(chain));
 }
 
 }  // namespace saccade

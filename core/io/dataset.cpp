@@ -167,4 +167,12 @@ bool Dataset::has_imu() const { return fs::exists(folder_ / "imu.txt"); }
 
 std::vector<ImuSample> Dataset::load_imu() const { return read_imu(folder_ / "imu.txt"); }
 
+std::vector<ImuTruth> Dataset::load_imu_truth() const {
+  return read_imu_truth(folder_ / "imu_groundtruth.txt");
+}
+
+std::vector<StampedTwist> Dataset::load_twists() const {
+  return read_twists(folder_ / "twist.txt");
+}
+
 }  // namespace saccade

@@ -63,6 +63,10 @@ class Dataset {
   [[nodiscard]] ImageF load_depth(std::size_t index) const;
   [[nodiscard]] FlowField load_flow(std::size_t index) const;
   [[nodiscard]] std::vector<ImuSample> load_imu() const;
+  /// Of simulated datasets: what is behind the readings, and the camera's motion
+  /// (imu_groundtruth.txt, twist.txt).
+  [[nodiscard]] std::vector<ImuTruth> load_imu_truth() const;
+  [[nodiscard]] std::vector<StampedTwist> load_twists() const;
 
  private:
   std::filesystem::path folder_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <string>
@@ -15,6 +16,7 @@ namespace saccade {
 namespace {
 
 constexpr double kUnitTolerance = 1e-3;
+constexpr const char* kTwist = "t vx vy vz wx wy wz";
 
 /// `tx ty tz qx qy qz qw`.
 Rigid3 read_pose(TextRow& row) {
@@ -34,11 +36,12 @@ Rigid3 read_pose(TextRow& row) {
   return {q, t};
 }
 
-void append(std::vector<StampedPose>& poses, const StampedPose& pose, const TextRow& row) {
-  if (!poses.empty() && !(pose.t_s > poses.back().t_s))
-    row.fail(
-        fmt::format("times must increase: {:.9f} s after {:.9f} s", pose.t_s, poses.back().t_s));
-  poses.push_back(pose);
+/// Appends to poses or twists; their times must increase.
+template <class Stamped>
+void append(std::vector<Stamped>& list, const Stamped& one, const TextRow& row) {
+  if (!list.empty() && !(one.t_s > list.back().t_s))
+    row.fail(fmt::format("times must increase: {:.9f} s after {:.9f} s", one.t_s, list.back().t_s));
+  list.push_back(one);
 }
 
 Trajectory finished(std::vector<StampedPose> poses, const std::filesystem::path& file) {
@@ -94,6 +97,35 @@ void write_tum_trajectory(const std::filesystem::path& file, std::span<const Sta
     const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
     fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {} {}\n", pose.t_s, t.x(),
                    t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+std::vector<StampedTwist> read_twists(const std::filesystem::path& file) {
+  std::vector<StampedTwist> twists;
+  for_each_row(file, [&](TextRow& row) {
+    StampedTwist twist;
+    twist.t_s = row.number("t");
+    for (int i = 0; i < 3; ++i)
+      twist.velocity[i] = row.number(std::array{"vx", "vy", "vz"}[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i)
+      twist.angular_velocity[i] =
+          row.number(std::array{"wx", "wy", "wz"}[static_cast<std::size_t>(i)]);
+    row.expect_end(kTwist);
+    append(twists, twist, row);
+    return true;
+  });
+  return twists;
+}
+
+void write_twists(const std::filesystem::path& file, std::span<const StampedTwist> twists) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "# {}\n", kTwist);
+  for (const StampedTwist& twist : twists) {
+    const Eigen::Vector3d& v = twist.velocity;
+    const Eigen::Vector3d& w = twist.angular_velocity;
+    fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {}\n", twist.t_s, v.x(), v.y(),
+                   v.z(), w.x(), w.y(), w.z());
   }
   write_atomically(file, {text.data(), text.size()});
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <vector>
 
 #include "core/trajectory.h"
 
@@ -22,5 +23,11 @@ namespace saccade {
 
 /// TUM text; times with 9 decimals, the rest exact in double.
 void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses);
+
+/// Lines `t vx vy vz wx wy wz` below a comment that names the columns: seconds with 9 decimals, the
+/// camera's velocity [m/s] and angular velocity [rad/s] in its own axes, exact in double. Times
+/// must increase; InputError with `file:line`.
+[[nodiscard]] std::vector<StampedTwist> read_twists(const std::filesystem::path& file);
+void write_twists(const std::filesystem::path& file, std::span<const StampedTwist> twists);
 
 }  // namespace saccade

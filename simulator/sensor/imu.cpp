@@ -1,46 +1,29 @@
 #include "simulator/sensor/imu.h"
 
-#include <array>
-#include <cmath>
+#include "core/config/rigid3_node.h"
+#include "simulator/sensor/imu_noise.h"
+#include "simulator/sensor/sample_times.h"
 
 namespace saccade {
-namespace {
-
-using Rows = std::array<std::array<double, 4>, 4>;
-
-Rows rows_of(const Rigid3& transform) {
-  const Eigen::Matrix3d r = transform.rotation_matrix();
-  const Eigen::Vector3d& t = transform.translation();
-  Rows rows{};
-  for (int i = 0; i < 3; ++i) rows[static_cast<std::size_t>(i)] = {r(i, 0), r(i, 1), r(i, 2), t[i]};
-  rows[3] = {0, 0, 0, 1};
-  return rows;
-}
-
-/// False unless the rows are a rigid transformation.
-bool read_rows(const Rows& rows, Rigid3& transform) {
-  constexpr double kTolerance = 1e-3;
-  Eigen::Matrix3d r;
-  for (int i = 0; i < 3; ++i) {
-    const auto& row = rows[static_cast<std::size_t>(i)];
-    r.row(i) << row[0], row[1], row[2];
-  }
-  const bool rotates =
-      (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() < kTolerance && r.determinant() > 0;
-  if (!rotates || rows[3] != std::array<double, 4>{0, 0, 0, 1}) return false;
-  transform = {Eigen::Quaterniond(r), {rows[0][3], rows[1][3], rows[2][3]}};
-  return true;
-}
-
-}  // namespace
 
 void describe(config::Fields& fields, ImuOptions& options) {
   fields.value("rate_hz", options.rate_hz, "samples per second; 0: no IMU").range(0, 1e6);
-  Rows rows = rows_of(options.camera_from_imu);
-  fields.value("T_camera_imu", rows, "4 x 4, point in the camera = T * point in the IMU [m]");
-  if (!fields.has("T_camera_imu")) return;
-  fields.expect(read_rows(rows, options.camera_from_imu), "T_camera_imu",
-                "is no rigid transformation: a rotation, a translation, and 0 0 0 1 below");
+  fields.value("T_camera_imu", options.camera_from_imu,
+               "4 x 4, point in the camera = T * point in the IMU [m]");
+  fields.value("gyro_noise_density", options.gyroscope.density, "white noise [rad/s/sqrt(Hz)]")
+      .range(0, 1e3);
+  fields
+      .value("gyro_random_walk", options.gyroscope.random_walk,
+             "of the gyroscope's bias [rad/s^2/sqrt(Hz)]")
+      .range(0, 1e3);
+  fields.value("gyro_bias", options.gyro_bias, "at the start [rad/s]").range(-1e3, 1e3);
+  fields.value("accel_noise_density", options.accelerometer.density, "white noise [m/s^2/sqrt(Hz)]")
+      .range(0, 1e3);
+  fields
+      .value("accel_random_walk", options.accelerometer.random_walk,
+             "of the accelerometer's bias [m/s^3/sqrt(Hz)]")
+      .range(0, 1e3);
+  fields.value("accel_bias", options.accel_bias, "at the start [m/s^2]").range(-1e3, 1e3);
 }
 
 ImuSample imu_sample(const Spline& motion, const Rigid3& camera_from_imu,
@@ -51,16 +34,24 @@ ImuSample imu_sample(const Spline& motion, const Rigid3& camera_from_imu,
           imu.angular_velocity_in_body};
 }
 
-std::vector<ImuSample> imu_samples(const Spline& motion, const ImuOptions& options,
-                                   const Eigen::Vector3d& gravity_m_s2) {
-  std::vector<ImuSample> samples;
-  if (options.rate_hz <= 0) return samples;
-  const TimeNs end_ns = ns_from_seconds(motion.end_s());
-  for (std::size_t k = 0;; ++k) {
-    const TimeNs t_ns = ns_from_seconds(static_cast<double>(k) / options.rate_hz);
-    if (t_ns > end_ns) return samples;
-    samples.push_back(imu_sample(motion, options.camera_from_imu, gravity_m_s2, t_ns));
+ImuRecording record_imu(const Spline& motion, const ImuOptions& options,
+                        const Eigen::Vector3d& gravity_m_s2, std::uint64_t seed) {
+  ImuRecording recording;
+  if (options.rate_hz <= 0) return recording;
+  const std::vector<TimeNs> times = sample_times(options.rate_hz, motion.end_s());
+  const double dt_s = 1 / options.rate_hz;
+  const std::vector<TriadError> gyro = triad_errors(options.gyroscope, options.gyro_bias, dt_s,
+                                                    seed, ImuTriad::kGyroscope, times.size());
+  const std::vector<TriadError> accel =
+      triad_errors(options.accelerometer, options.accel_bias, dt_s, seed, ImuTriad::kAccelerometer,
+                   times.size());
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const ImuSample ideal = imu_sample(motion, options.camera_from_imu, gravity_m_s2, times[k]);
+    recording.truth.push_back({ideal, accel[k].bias, gyro[k].bias});
+    recording.readings.push_back({times[k], ideal.specific_force + accel[k].bias + accel[k].white,
+                                  ideal.angular_velocity + gyro[k].bias + gyro[k].white});
   }
+  return recording;
 }
 
 }  // namespace saccade

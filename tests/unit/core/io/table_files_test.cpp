@@ -7,15 +7,18 @@
 #include "core/io/csv_file.h"
 #include "core/io/file_list.h"
 #include "core/io/imu_file.h"
+#include "core/io/trajectory_file.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 
 namespace saccade {
 namespace {
 
+using ::testing::AllOf;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::read_file;
+using ::testing::StartsWith;
 using testing::TemporaryFolder;
 
 class TableFiles : public ::testing::Test {
@@ -129,6 +132,80 @@ TEST_F(TableFiles, ImuErrors) {
   EXPECT_THAT(imu_error("0 1 2 3 4 5\n"), HasSubstr("imu.txt:1: gz: expected a number"));
   EXPECT_THAT(imu_error("1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"), HasSubstr("imu.txt:2: times must"));
   EXPECT_THAT(imu_error("1 0 inf 0 0 0 0\n"), HasSubstr("ay: expected a finite"));
+}
+
+TEST_F(TableFiles, ImuTruthRoundTripIsExactAndNamesItsColumns) {
+  const std::filesystem::path file = folder_.path() / "imu_groundtruth.txt";
+  const std::vector<ImuTruth> truth{
+      {{0, {0.1, 0.2, 9.81}, {1e-9, -2, 3}}, {1.0 / 3, 0, 0}, {0, 2.0 / 3, 0}},
+      {{1'000'000, {0, 0, 0}, {0, 0, 0}}, {1, 2, 3}, {4, 5, 6}}};
+  write_imu_truth(file, truth);
+  EXPECT_THAT(read_file(file), StartsWith("# t ax ay az gx gy gz bax bay baz bgx bgy bgz\n"));
+  const std::vector<ImuTruth> read = read_imu_truth(file);
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read[i].ideal.specific_force, truth[i].ideal.specific_force);
+    EXPECT_EQ(read[i].ideal.angular_velocity, truth[i].ideal.angular_velocity);
+    EXPECT_EQ(read[i].accel_bias, truth[i].accel_bias);
+    EXPECT_EQ(read[i].gyro_bias, truth[i].gyro_bias);
+  }
+}
+
+TEST_F(TableFiles, ImuYamlIsKalibrs) {
+  const std::filesystem::path file = folder_.path() / "imu.yaml";
+  write_imu_yaml(file, {200, {0.01, 2e-4}, {1.7e-3, 2e-5}});
+  const ImuCalibration imu = read_imu_yaml(file);
+  EXPECT_EQ(imu.rate_hz, 200);
+  EXPECT_EQ(imu.accelerometer.density, 0.01);
+  EXPECT_EQ(imu.gyroscope.random_walk, 2e-5);
+  EXPECT_EQ(read_imu_yaml(folder_.write("kalibr.yaml", R"(#Accelerometers
+accelerometer_noise_density: 1.86e-03   #Noise density (continuous-time)
+accelerometer_random_walk:   4.33e-04   #Bias random walk
+gyroscope_noise_density:     1.87e-04
+gyroscope_random_walk:       2.66e-05
+rostopic:                    /imu0      #the IMU ROS topic
+update_rate:                 200.0      #Hz
+)"))
+                .accelerometer.random_walk,
+            4.33e-4);
+  EXPECT_THAT(
+      error_of([&] { return read_imu_yaml(folder_.write("imu.yaml", "update_rate: 1\n")); }),
+      HasSubstr("accelerometer_noise_density"));
+}
+
+TEST_F(TableFiles, TwistsRoundTrip) {
+  const std::filesystem::path file = folder_.path() / "twist.txt";
+  write_twists(file, std::vector<StampedTwist>{{0, {0.1, 1.0 / 3, -2}, {1e-9, 0, 3}},
+                                               {0.001, {1, 2, 3}, {4, 5, 6}}});
+  EXPECT_EQ(read_file(file),
+            "# t vx vy vz wx wy wz\n0.000000000 0.1 0.3333333333333333 -2 1e-09 0 3\n"
+            "0.001000000 1 2 3 4 5 6\n");
+  const std::vector<StampedTwist> read = read_twists(file);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].velocity, Eigen::Vector3d(0.1, 1.0 / 3, -2));
+  EXPECT_EQ(read[1].angular_velocity, Eigen::Vector3d(4, 5, 6));
+  EXPECT_THAT(error_of([&] {
+                return read_twists(folder_.write("t.txt", "0 1 2 3 4 5 6\n0 1 2 3 4 5 6\n"));
+              }),
+              HasSubstr("t.txt:2: times must increase"));
+}
+
+TEST_F(TableFiles, CameraChainRoundTrip) {
+  const std::filesystem::path file = folder_.path() / "camera.yaml";
+  const Rigid3 imu(so3_exp({0.1, 0.2, 0.3}), {1, 2, 3});
+  const Rigid3 base(so3_exp({0, 0.01, 0}), {-0.1, 0, 0});
+  const PinholeCamera left{240, 180, 335.4, 335.3, 129.9, 99.1, {-0.1, 0.09, -3e-4, 1e-4, 0}};
+  const PinholeCamera right{346, 260, 250, 251, 172, 129, {}};
+  write_camera_chain(file, std::vector<ChainCamera>{{left, imu, {}}, {right, base * imu, base}});
+  EXPECT_EQ(read_camera_yaml(file), left);
+  const std::vector<ChainCamera> read = read_camera_chain(file);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[1].camera, right);
+  EXPECT_FALSE(read[0].camera_from_previous.has_value());
+  EXPECT_LT((read[1].camera_from_previous->inverse() * base).log().norm(), 1e-14);
+  EXPECT_LT((read[0].camera_from_imu->inverse() * imu).log().norm(), 1e-14);
+  EXPECT_THAT(read_file(file), AllOf(HasSubstr("T_cn_cnm1:"), HasSubstr("T_cam_imu:"),
+                                     HasSubstr("timeshift_cam_imu: 0")));
 }
 
 TEST_F(TableFiles, CsvQuotesAndLeavesNanEmpty) {
