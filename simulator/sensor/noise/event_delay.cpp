@@ -1,0 +1,76 @@
+#include "simulator/sensor/noise/event_delay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulator/sensor/noise/pixel_random.h"
+#include "simulator/sensor/noise/radiance.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kNsPerUs = 1e3;
+constexpr double kLongestJitter = 4;  // standard deviations
+
+bool comes_later(const SensedEvent& a, const SensedEvent& b) { return SensedEventOrder{}(b, a); }
+
+}  // namespace
+
+EventDelay::EventDelay(const LatencyOptions& options, double log_eps, int width, int height,
+                       TimeNs step_ns, std::uint64_t seed)
+    : options_(options),
+      log_eps_(log_eps),
+      width_(width),
+      step_ns_(step_ns),
+      random_(seed),
+      pixels_(options.on() ? static_cast<std::size_t>(width) * static_cast<std::size_t>(height)
+                           : 0) {}
+
+double EventDelay::latency_ns(const SensedEvent& event, std::uint32_t index) const {
+  double latency_us = options_.mean_us;
+  if (options_.intensity_us > 0)
+    latency_us += options_.intensity_us * (1 + options_.dark_radiance) /
+                  (radiance_from_log(event.log_intensity, log_eps_) + options_.dark_radiance);
+  if (options_.jitter_us > 0) {
+    const double z = random_.normal(noise_stream(NoiseStream::kLatency, event.x, event.y), index);
+    latency_us += options_.jitter_us * std::clamp(z, -kLongestJitter, kLongestJitter);
+  }
+  return kNsPerUs * std::max(0.0, latency_us);
+}
+
+void EventDelay::push(std::span<const SensedEvent> events) {
+  const auto step = static_cast<double>(step_ns_);
+  for (SensedEvent event : events) {
+    Pixel& pixel =
+        pixels_[static_cast<std::size_t>(event.y) * static_cast<std::size_t>(width_) + event.x];
+    event.t_ns += step_ns_ * std::llround(latency_ns(event, pixel.events) / step);
+    const TimeNs after = pixel.polarity != event.polarity ? step_ns_ : 0;
+    if (pixel.events > 0) event.t_ns = std::max(event.t_ns, pixel.last_ns + after);
+    pixel = {event.t_ns, pixel.events + 1, event.polarity};
+    waiting_.push_back(event);
+    std::ranges::push_heap(waiting_, comes_later);
+  }
+}
+
+void EventDelay::take(TimeNs complete_ns, SensedEvents& out) {
+  while (!waiting_.empty() && waiting_.front().t_ns < complete_ns) {
+    std::ranges::pop_heap(waiting_, comes_later);
+    out.push_back(waiting_.back());
+    waiting_.pop_back();
+  }
+}
+
+void EventDelay::save(StateWriter& state) const {
+  state.values(pixels_);
+  state.values(waiting_);
+}
+
+void EventDelay::load(StateReader& state) {
+  const std::size_t pixels = pixels_.size();
+  state.values(pixels_);
+  state.values(waiting_);
+  if (pixels_.size() != pixels)
+    throw InputError("saved state", "belongs to a sensor of another size or other latency");
+}
+
+}  // namespace saccade

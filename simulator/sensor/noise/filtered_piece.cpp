@@ -1,0 +1,173 @@
+#include "simulator/sensor/noise/filtered_piece.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+struct ValueAndSlope {
+  double value;
+  double slope;
+};
+
+/// The upper end of a bracket of the only root of a function that rises through it, closed to
+/// `tolerance`: f(lo) < 0 <= f(hi). Newton's steps, aimed half a tolerance past the root so that
+/// the bracket closes from both sides; bisection where they leave the bracket or do not halve it in
+/// two.
+template <class Function>
+double close_bracket(const Function& f, double lo, double hi, double tolerance) {
+  double t = 0.5 * (lo + hi);
+  double width_before = 2 * (hi - lo);
+  while (hi - lo > tolerance) {
+    if (!(t > lo && t < hi)) t = 0.5 * (lo + hi);
+    if (t <= lo || t >= hi) break;  // no double left between them
+    const double width = hi - lo;
+    const ValueAndSlope at = f(t);
+    (at.value < 0 ? lo : hi) = t;
+    const bool is_slow = hi - lo > 0.5 * width_before;
+    width_before = width;
+    t = is_slow ? 0.5 * (lo + hi)
+                : t - at.value / at.slope + (at.value < 0 ? 0.5 : -0.5) * tolerance;
+  }
+  return hi;
+}
+
+/// 1 - e^-a.
+double rise(double a) { return -std::expm1(-a); }
+
+/// (1 - e^-a) / a.
+double mean_decay(double a) { return a > 0 ? rise(a) / a : 1; }
+
+}  // namespace
+
+FilteredPiece::FilteredPiece(const FilterState& state, const LinearPiece& input, double rate,
+                             int order)
+    : state_(state),
+      t0_s_(input.t0_s),
+      duration_s_(input.t1_s - input.t0_s),
+      input_(input.start),
+      slope_(duration_s_ > 0 ? (input.end - input.start) / duration_s_ : 0),
+      rate_(rate),
+      order_(order) {
+  SACCADE_CHECK(duration_s_ >= 0 && rate > 0 && (order == 1 || order == 2));
+  if (order == 1) state_.first = state_.output;
+}
+
+double FilteredPiece::first_after(double tau_s) const {
+  const double a = rate_ * tau_s;
+  return state_.first + (input_ - state_.first) * rise(a) + slope_ * tau_s * (1 - mean_decay(a));
+}
+
+double FilteredPiece::first_slope_after(double tau_s) const {
+  const double a = rate_ * tau_s;
+  return slope_ * rise(a) + rate_ * (input_ - state_.first) * std::exp(-a);
+}
+
+double FilteredPiece::value_after(double tau_s) const {
+  if (order_ == 1) return first_after(tau_s);
+  const double a = rate_ * tau_s;
+  const double decay = std::exp(-a);
+  return state_.output + (input_ - state_.output) * rise(a) + (state_.first - input_) * a * decay +
+         slope_ * tau_s * (1 + decay - 2 * mean_decay(a));
+}
+
+double FilteredPiece::slope_after(double tau_s) const {
+  if (order_ == 1) return first_slope_after(tau_s);
+  const double a = rate_ * tau_s;
+  const double decay = std::exp(-a);
+  return slope_ * (rise(a) - a * decay) +
+         rate_ * decay * ((state_.first - state_.output) - a * (state_.first - input_));
+}
+
+FilterState FilteredPiece::state(double t_s) const {
+  const double tau_s = t_s - t0_s_;
+  return {first_after(tau_s), value_after(tau_s)};
+}
+
+/// The stage's slope s + e^-a (w (x0 - y1_0) - s) vanishes where e^a = 1 + w (y1_0 - x0) / s.
+std::optional<double> FilteredPiece::first_turn() const {
+  const double ratio = rate_ * (state_.first - input_) / slope_;
+  if (!(ratio > 0) || std::isinf(ratio)) return std::nullopt;
+  return std::log1p(ratio) / rate_;
+}
+
+/// e^a times the second stage's slope is s e^a + P - Q a. Its own slope s e^a - Q vanishes where
+/// the first stage turns, so on either side of that time the output turns at most once.
+FilteredPiece::Turns FilteredPiece::turns() const {
+  Turns turns;
+  const std::optional<double> first = first_turn();
+  if (order_ == 1) {
+    if (first && *first < duration_s_) turns.t_s[static_cast<std::size_t>(turns.count++)] = *first;
+  } else if (first && *first < duration_s_) {
+    add_turn(0, *first, turns);
+    add_turn(*first, duration_s_, turns);
+  } else {
+    add_turn(0, duration_s_, turns);
+  }
+  for (double& t : turns.t_s) t += t0_s_;
+  return turns;
+}
+
+/// The turn of a second-order output strictly between two times after t0, if there is one.
+void FilteredPiece::add_turn(double from_s, double to_s, Turns& turns) const {
+  double turn = 0;
+  if (slope_ == 0) {
+    // In closed form, because the slope's sign at the end of a long piece underflows.
+    turn = (state_.first - state_.output) / (rate_ * (state_.first - input_));
+    if (!(turn > from_s && turn < to_s)) return;
+  } else {
+    const double slope_from = slope_after(from_s);
+    const double slope_to = slope_after(to_s);
+    if (!(slope_from < 0 ? slope_to > 0 : slope_from > 0 && slope_to < 0)) return;
+    const double sign = slope_from < 0 ? 1 : -1;
+    const auto slope = [&](double tau_s) {
+      const double at = slope_after(tau_s);
+      return ValueAndSlope{sign * at, sign * rate_ * (first_slope_after(tau_s) - at)};
+    };
+    // The value at a turn is exact to the square of this.
+    constexpr double kTimeShare = 1e-12;
+    turn = close_bracket(slope, from_s, to_s, kTimeShare * (to_s - from_s));
+  }
+  turns.t_s[static_cast<std::size_t>(turns.count++)] = turn;
+}
+
+std::optional<FilterCrossing> FilteredPiece::first_crossing(double lower, double upper,
+                                                            double from_s,
+                                                            double tolerance_s) const {
+  const auto side = [&](double y) { return y >= upper ? 1 : (y <= lower ? -1 : 0); };
+  double lo = from_s - t0_s_;
+  if (const int polarity = side(value_after(lo)); polarity != 0)
+    return FilterCrossing{from_s, polarity};
+  const Turns turns = this->turns();
+  for (int k = 0; k <= turns.count; ++k) {
+    const double hi =
+        k < turns.count ? turns.t_s[static_cast<std::size_t>(k)] - t0_s_ : duration_s_;
+    if (hi <= lo) continue;
+    if (const int polarity = side(value_after(hi)); polarity != 0) {
+      const double level = polarity > 0 ? upper : lower;
+      const auto excess = [&](double tau_s) {
+        return ValueAndSlope{polarity * (value_after(tau_s) - level),
+                             polarity * slope_after(tau_s)};
+      };
+      return FilterCrossing{t0_s_ + close_bracket(excess, lo, hi, tolerance_s), polarity};
+    }
+    lo = hi;
+  }
+  return std::nullopt;
+}
+
+/// z = y + m (t - t0) is what the same stages make of an input with slope s + m that stands m / w
+/// higher per stage.
+FilteredPiece FilteredPiece::drifting(double slope) const {
+  FilteredPiece piece = *this;
+  const double lift = slope / rate_;
+  piece.slope_ += slope;
+  piece.input_ += order_ * lift;
+  if (order_ == 2) piece.state_.first += lift;
+  return piece;
+}
+
+}  // namespace saccade

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "simulator/sensor/noise/filtered_piece.h"
+#include "simulator/sensor/noise/noise_options.h"
+
+namespace saccade {
+
+/// The low pass of the photoreceptor (formula at BandwidthOptions): with w = 2 pi f_c(I)
+///   order 1: y' = w (x - y)        order 2: y1' = w (x - y1),  y' = w (y1 - y)
+/// on the log intensity x, which is given in pieces that are linear in time; a piece has the cutoff
+/// of its middle. Each piece is solved in closed form, so the result depends on the pieces' error
+/// alone: where the pieces are within d of the true signal and the cutoff within a share r of the
+/// true one, the output is within d + r max|x - y| per stage of the exact one, since every stage
+/// averages its input with positive weights. For the same reason the output never leaves the hull
+/// of the state and the inputs since. A jump of the signal is a gap between the values of two
+/// pieces. Thread-safe.
+class PhotoreceptorFilter {
+ public:
+  /// `log_eps`: eps of L = ln(eps + I).
+  PhotoreceptorFilter(const BandwidthOptions& options, double log_eps)
+      : options_(options), log_eps_(log_eps) {}
+
+  [[nodiscard]] bool on() const { return options_.on(); }
+
+  /// f_c(I) [Hz].
+  [[nodiscard]] double cutoff_hz(double log_intensity) const;
+  /// The state of a pixel that has seen one intensity for long.
+  [[nodiscard]] static FilterState settled(double log_intensity) {
+    return {log_intensity, log_intensity};
+  }
+  /// The output over a piece that `state` enters; on() must hold.
+  [[nodiscard]] FilteredPiece piece(const FilterState& state, const LinearPiece& input) const;
+
+ private:
+  BandwidthOptions options_;
+  double log_eps_;
+};
+
+}  // namespace saccade

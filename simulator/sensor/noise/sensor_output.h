@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "simulator/sensor/noise/event_bus.h"
+#include "simulator/sensor/noise/event_delay.h"
+#include "simulator/sensor/noise/noise_options.h"
+#include "simulator/sensor/sensed_event.h"
+
+namespace saccade {
+
+/// What became of the events behind the pixels.
+struct OutputCounts {
+  std::uint64_t fired = 0;     ///< by the pixels
+  std::uint64_t recorded = 0;  ///< handed out so far
+  std::uint64_t lost = 0;      ///< met a full queue of the bus
+};
+
+/// The part of the sensor behind the pixels: latency, then the readout. It turns the stream of true
+/// times into the stream of recorded ones, event by event in time order, so how the stream is cut
+/// into calls changes nothing. With both models off it hands out what it got.
+class SensorOutput {
+ public:
+  /// Receives events in SensedEventOrder over all calls.
+  using Sink = std::function<void(std::span<const SensedEvent> events)>;
+
+  /// All times are multiples of `step_ns`. `log_eps`: eps of L = ln(eps + I).
+  SensorOutput(const NoiseOptions& options, double log_eps, int width, int height, TimeNs step_ns,
+               std::uint64_t seed);
+
+  /// Takes `events`, in SensedEventOrder over all calls, and hands out what no later event can
+  /// precede. Contract: later calls bring only events with t_ns >= complete_ns.
+  void push(std::span<const SensedEvent> events, TimeNs complete_ns, const Sink& sink);
+  /// Hands out what still waits, stamped beyond the last time if need be.
+  void finish(const Sink& sink);
+
+  [[nodiscard]] OutputCounts counts() const;
+
+  /// Everything that later output depends on, for load() of an output made with the same arguments.
+  [[nodiscard]] std::string state() const;
+  /// Throws InputError where the state does not fit.
+  void load(std::string_view state);
+
+ private:
+  EventDelay delay_;
+  EventBus bus_;
+  bool delays_;
+  bool queues_;
+  std::uint64_t fired_ = 0;
+  std::uint64_t recorded_ = 0;
+};
+
+}  // namespace saccade
