@@ -43,29 +43,37 @@ std::string bar(double share) {
 
 void set_progress_quiet(bool now_quiet) { quiet = now_quiet; }
 
+void show_notice(const std::string& line) {
+  if (!quiet) std::fputs((line + "\n").c_str(), stderr);
+}
+
 std::string progress_text(const ProgressState& state) {
   const double done = static_cast<double>(state.done);
-  const double rate = state.elapsed_s > 0 ? done / state.elapsed_s : 0;
+  const double now = static_cast<double>(state.done - state.resumed);
+  const double rate = state.elapsed_s > 0 ? now / state.elapsed_s : 0;
   const std::string speed = with_prefix(rate) + state.unit + "/s";
   if (state.finished)
-    return fmt::format("{}: {}{} in {}, {}", state.label, with_prefix(done), state.unit,
+    return fmt::format("{}: {}{} in {}, {}", state.label, with_prefix(now), state.unit,
                        clock_text(state.elapsed_s), speed);
   if (state.total == 0)
     return fmt::format("{}: {}{}, {}", state.label, with_prefix(done), state.unit, speed);
   const double share = std::min(1.0, done / static_cast<double>(state.total));
   std::string text = fmt::format("{}: {}{:3.0f} %, {}", state.label,
                                  state.with_bar ? bar(share) : "", 100 * share, speed);
-  if (share > 0)
-    text += fmt::format(", {} left", clock_text(state.elapsed_s * (1 - share) / share));
+  if (rate > 0)
+    text += fmt::format(", {} left",
+                        clock_text(std::max(0.0, static_cast<double>(state.total) - done) / rate));
   return text;
 }
 
-Progress::Progress(std::string label, std::uint64_t total, std::string unit)
+Progress::Progress(std::string label, std::uint64_t total, std::string unit, std::uint64_t resumed)
     : label_(std::move(label)),
       total_(total),
       unit_(std::move(unit)),
+      resumed_(resumed),
       terminal_(::isatty(STDERR_FILENO) != 0),
       start_(Clock::now()),
+      done_(resumed),
       next_(start_ + (terminal_ ? Clock::duration(kRedraw) : Clock::duration(kFirstLine))) {}
 
 Progress::~Progress() { finish(); }
@@ -88,8 +96,8 @@ void Progress::finish() {
 
 void Progress::show(Clock::time_point now, bool last) const {
   if (quiet) return;
-  const std::string text =
-      progress_text({label_, unit_, done_, total_, Seconds(now - start_).count(), terminal_, last});
+  const std::string text = progress_text(
+      {label_, unit_, done_, total_, Seconds(now - start_).count(), terminal_, last, resumed_});
   // \r and "clear to the end of the line" redraw in place.
   const std::string line = terminal_ ? "\r" + text + "\x1b[K" + (last ? "\n" : "") : text + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);

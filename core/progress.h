@@ -10,6 +10,9 @@ namespace saccade {
 /// No progress is shown anywhere from now on (`-q`), or it is again.
 void set_progress_quiet(bool quiet);
 
+/// Shows a line on stderr, unless progress is not shown.
+void show_notice(const std::string& line);
+
 /// What one line of progress says.
 struct ProgressState {
   std::string label;
@@ -19,6 +22,7 @@ struct ProgressState {
   double elapsed_s = 0;
   bool with_bar = false;
   bool finished = false;
+  std::uint64_t resumed = 0;  ///< of `done`: by an earlier program, not in elapsed_s
 };
 
 /// "simulating: [####....]  50 %, 1.2 M events/s, 3.4 s left".
@@ -29,8 +33,9 @@ struct ProgressState {
 /// time), so that logs stay short. add() is thread-safe and cheap enough for every batch.
 class Progress {
  public:
-  /// `total`: units of the whole work, 0 when unknown; `unit`: their plural ("events").
-  Progress(std::string label, std::uint64_t total, std::string unit);
+  /// `total`: units of the whole work, 0 when unknown; `unit`: their plural ("events"); `resumed`:
+  /// units that are done already.
+  Progress(std::string label, std::uint64_t total, std::string unit, std::uint64_t resumed = 0);
   ~Progress();  ///< finishes
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -46,10 +51,11 @@ class Progress {
   const std::string label_;
   const std::uint64_t total_;
   const std::string unit_;
+  const std::uint64_t resumed_;
   const bool terminal_;
   const Clock::time_point start_;
   std::mutex mutex_;
-  std::uint64_t done_ = 0;
+  std::uint64_t done_;
   Clock::time_point next_;
   bool finished_ = false;
 };

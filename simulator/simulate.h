@@ -22,9 +22,10 @@ struct SimulationReport {
 };
 
 /// Simulates `config` into the dataset folder `output` (an existing dataset there is replaced),
-/// which appears under its name when it is complete. Shows progress. The bytes depend on `config`
-/// alone, not on the number of threads. Throws InputError for anything wrong with the configuration
-/// or the files that it names.
+/// which appears under its name when it is complete. What a killed program left of the same
+/// simulation is resumed. Shows progress. The bytes depend on `config` alone, not on interruptions
+/// or the number of threads. Throws InputError for anything wrong with the configuration or the
+/// files that it names.
 SimulationReport simulate(const SimulationConfig& config, const std::filesystem::path& output);
 
 }  // namespace saccade

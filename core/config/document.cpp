@@ -13,6 +13,7 @@
 #include "core/config/merge.h"
 #include "core/config/yaml_parse.h"
 #include "core/error.h"
+#include "core/io/input_log.h"
 
 namespace saccade::config {
 namespace {
@@ -33,6 +34,7 @@ std::string read_text(const fs::path& file, const std::string& place) {
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad())
     throw InputError(place, "cannot read '" + file.string() + "'");
+  InputLog::note(file.string(), std::as_bytes(std::span(text)));
   return text;
 }
 

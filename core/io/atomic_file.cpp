@@ -58,8 +58,8 @@ AtomicFile::AtomicFile(const fs::path& file)
   if (fs::exists(target_) && !fs::is_regular_file(target_))
     throw InputError(file.string(), "is a device or the like, which cannot be replaced by a file");
   // Fails here rather than after the work when the place is not writable.
-  if (!std::ofstream(temporary_))
-    throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+  errno = 0;
+  if (!std::ofstream(temporary_)) fail_to_write(file, errno);
 }
 
 AtomicFile::~AtomicFile() {
@@ -79,17 +79,48 @@ void write_atomically(const fs::path& file, std::string_view contents) {
   std::ofstream stream(target.path(), std::ios::binary);
   stream.write(contents.data(), static_cast<std::streamsize>(contents.size()));
   stream.close();
-  if (!stream)
-    throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream) fail_to_write(file, errno);
   target.commit();
 }
 
-AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
-    : target_(final_name(folder)),
-      temporary_(sibling_of(target_, "partial")),
-      marker_(std::move(marker)) {
+void fail_to_write(const fs::path& file, int error) {
+  std::string problem = "cannot be written";
+  if (error != 0) problem += std::string(": ") + std::strerror(error);
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG)
+    problem += "; make room there or write to another place";
+  throw InputError(file.string(), problem);
+}
+
+FinalFolder::FinalFolder(const fs::path& folder, std::string marker)
+    : path_(final_name(folder)), marker_(std::move(marker)) {}
+
+void FinalFolder::check_replaceable() const {
+  if (!fs::exists(fs::symlink_status(path_))) return;
+  if (!fs::is_directory(path_)) throw InputError(path_.string(), "exists and is no folder");
+  if (!fs::is_empty(path_) && !fs::exists(path_ / marker_))
+    throw InputError(path_.string(), "exists and holds other files (no " + marker_ +
+                                         " in it); choose another name or remove it");
+}
+
+void FinalFolder::create_parent() const { create_parent_of(path_); }
+
+void FinalFolder::take(const fs::path& complete) const {
   check_replaceable();
-  create_parent_of(target_);
+  if (!fs::exists(path_)) return rename_or_throw(complete, path_);
+  // Exchanged in one step where the file system can, so that the name is never without a folder.
+  fs::path old = complete;
+  if (::renameat2(AT_FDCWD, complete.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) {
+    old = sibling_of(path_, "old");
+    rename_or_throw(path_, old);
+    rename_or_throw(complete, path_);
+  }
+  fs::remove_all(old);
+}
+
+AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
+    : final_(folder, std::move(marker)), temporary_(sibling_of(final_.path(), "partial")) {
+  final_.check_replaceable();
+  final_.create_parent();
   std::error_code error;
   fs::create_directory(temporary_, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
@@ -100,31 +131,10 @@ AtomicFolder::~AtomicFolder() {
   if (!committed_) fs::remove_all(temporary_, ignored);
 }
 
-void AtomicFolder::check_replaceable() const {
-  if (!fs::exists(fs::symlink_status(target_))) return;
-  if (!fs::is_directory(target_)) throw InputError(target_.string(), "exists and is no folder");
-  if (!fs::is_empty(target_) && !fs::exists(target_ / marker_))
-    throw InputError(target_.string(), "exists and holds other files (no " + marker_ +
-                                           " in it); choose another name or remove it");
-}
-
 void AtomicFolder::commit() {
   SACCADE_CHECK(!committed_);
-  check_replaceable();
-  if (!fs::exists(target_)) {
-    rename_or_throw(temporary_, target_);
-    committed_ = true;
-    return;
-  }
-  // Exchanged in one step where the file system can, so that the name is never without a folder.
-  if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
-    const fs::path old = sibling_of(target_, "old");
-    rename_or_throw(target_, old);
-    rename_or_throw(temporary_, target_);
-    temporary_ = old;
-  }
+  final_.take(temporary_);
   committed_ = true;
-  fs::remove_all(temporary_);
 }
 
 }  // namespace saccade

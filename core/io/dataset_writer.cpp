@@ -28,15 +28,25 @@ void write_list_if_any(const fs::path& list, const std::vector<StampedFile>& fil
   if (!files.empty()) write_file_list(list, files);
 }
 
+/// False when `file` is not there, cannot be read, or does not please `check`.
+template <class Check>
+bool decodes(const fs::path& file, const Check& check) {
+  if (!fs::exists(file)) return false;
+  try {
+    return check();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 DatasetWriter::DatasetWriter(const fs::path& folder, const PinholeCamera& camera,
                              const DatasetWriterOptions& options)
-    : target_(folder, "dataset.yaml"), camera_(camera), options_(options) {
-  event_writers_.push_back(make_event_writer(target_.path() / "events.h5", options.timestamp_unit));
+    : folder_(folder), camera_(camera), options_(options) {
+  event_writers_.push_back(make_event_writer(folder_ / "events.h5", options.timestamp_unit));
   if (options.events_text)
-    event_writers_.push_back(
-        make_event_writer(target_.path() / "events.txt", options.timestamp_unit));
+    event_writers_.push_back(make_event_writer(folder_ / "events.txt", options.timestamp_unit));
 }
 
 DatasetWriter::~DatasetWriter() = default;
@@ -50,20 +60,24 @@ void DatasetWriter::store(std::vector<StampedFile>& list, std::size_t index, dou
                           const fs::path& file) {
   const std::scoped_lock lock(mutex_);
   if (list.size() <= index) list.resize(index + 1);
-  list[index] = {t_s, target_.path() / file};
+  list[index] = {t_s, folder_ / file};
 }
 
 void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& radiance) {
   const fs::path png = numbered("images", "frame", index, "png");
-  write_png(target_.path() / png, srgb8_from_linear(radiance));
-  write_exr(target_.path() / numbered("images", "frame", index, "exr"), radiance, "Y");
+  write_png(folder_ / png, srgb8_from_linear(radiance));
+  write_exr(folder_ / numbered("images", "frame", index, "exr"), radiance, "Y");
   store(frames_, index, t_s, png);
 }
 
 void DatasetWriter::write_depth(std::size_t index, double t_s, const ImageF& depth) {
   const fs::path file = numbered("depth", "depth", index, "exr");
-  write_exr(target_.path() / file, depth, "Z");
+  write_exr(folder_ / file, depth, "Z");
   store(depth_maps_, index, t_s, file);
+  store_depths(index, depth);
+}
+
+void DatasetWriter::store_depths(std::size_t index, const ImageF& depth) {
   Depths depths;
   for (const float z : depth.pixels())
     if (z > 0) {
@@ -77,16 +91,53 @@ void DatasetWriter::write_depth(std::size_t index, double t_s, const ImageF& dep
 
 void DatasetWriter::write_flow(std::size_t index, double t_s, const FlowField& flow) {
   const fs::path file = numbered("flow", "flow", index, "exr");
-  write_exr_flow(target_.path() / file, flow);
+  write_exr_flow(folder_ / file, flow);
   store(flow_maps_, index, t_s, file);
 }
 
+bool DatasetWriter::has_size(const ImageF& image) const {
+  return image.width() == camera_.width && image.height() == camera_.height;
+}
+
+bool DatasetWriter::take_up_frame(std::size_t index, double t_s) {
+  const fs::path png = numbered("images", "frame", index, "png");
+  const fs::path exr = numbered("images", "frame", index, "exr");
+  const bool complete = decodes(folder_ / exr, [&] { return has_size(read_exr(folder_ / exr)); }) &&
+                        decodes(folder_ / png, [&] {
+                          return read_image_grey(folder_ / png).size() ==
+                                 static_cast<std::size_t>(camera_.width * camera_.height);
+                        });
+  if (complete) store(frames_, index, t_s, png);
+  return complete;
+}
+
+bool DatasetWriter::take_up_depth(std::size_t index, double t_s) {
+  const fs::path file = numbered("depth", "depth", index, "exr");
+  ImageF depth;
+  const bool complete = decodes(folder_ / file, [&] {
+    depth = read_exr(folder_ / file);
+    return has_size(depth);
+  });
+  if (!complete) return false;
+  store(depth_maps_, index, t_s, file);
+  store_depths(index, depth);
+  return true;
+}
+
+bool DatasetWriter::take_up_flow(std::size_t index, double t_s) {
+  const fs::path file = numbered("flow", "flow", index, "exr");
+  const bool complete =
+      decodes(folder_ / file, [&] { return has_size(read_exr_flow(folder_ / file).u); });
+  if (complete) store(flow_maps_, index, t_s, file);
+  return complete;
+}
+
 void DatasetWriter::write_groundtruth(std::span<const StampedPose> world_from_camera) {
-  write_tum_trajectory(target_.path() / "groundtruth.txt", world_from_camera);
+  write_tum_trajectory(folder_ / "groundtruth.txt", world_from_camera);
 }
 
 void DatasetWriter::write_imu(std::span<const ImuSample> samples) {
-  saccade::write_imu(target_.path() / "imu.txt", samples);
+  saccade::write_imu(folder_ / "imu.txt", samples);
   counts_.imu_samples = static_cast<std::int64_t>(samples.size());
 }
 
@@ -102,17 +153,16 @@ std::optional<double> DatasetWriter::mean_depth() const {
 
 DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   for (const std::unique_ptr<EventWriter>& writer : event_writers_) writer->close();
-  const fs::path& folder = target_.path();
-  write_list_if_any(folder / "images.txt", frames_);
-  write_list_if_any(folder / "depth.txt", depth_maps_);
-  write_list_if_any(folder / "flow.txt", flow_maps_);
-  write_calib_txt(folder / "calib.txt", camera_);
-  write_camera_yaml(folder / "camera.yaml", camera_);
+  write_list_if_any(folder_ / "images.txt", frames_);
+  write_list_if_any(folder_ / "depth.txt", depth_maps_);
+  write_list_if_any(folder_ / "flow.txt", flow_maps_);
+  write_calib_txt(folder_ / "calib.txt", camera_);
+  write_camera_yaml(folder_ / "camera.yaml", camera_);
   counts_.frames = static_cast<std::int64_t>(frames_.size());
   counts_.depth_maps = static_cast<std::int64_t>(depth_maps_.size());
   counts_.flow_maps = static_cast<std::int64_t>(flow_maps_.size());
   record.format_version = 1;
-  if (record.name.empty()) record.name = target_.target().filename().string();
+  if (record.name.empty()) record.name = folder_.filename().string();
   record.tool_version = fmt::format("saccade {} ({})", version(), git_commit());
   record.width = camera_.width;
   record.height = camera_.height;
@@ -122,9 +172,8 @@ DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   const std::int64_t events = counts_.events_on + counts_.events_off;
   if (record.rays && events > 0)
     record.rays_per_event = static_cast<double>(*record.rays) / static_cast<double>(events);
-  record.sha256 = hash_files(folder);
-  write_dataset_record(folder / "dataset.yaml", record);
-  target_.commit();
+  record.sha256 = hash_files(folder_);
+  write_dataset_record(folder_ / "dataset.yaml", record);
   return record;
 }
 

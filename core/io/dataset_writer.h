@@ -12,7 +12,6 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/imu_sample.h"
-#include "core/io/atomic_file.h"
 #include "core/io/dataset_record.h"
 #include "core/io/event_file.h"
 #include "core/io/exr_file.h"
@@ -26,17 +25,18 @@ struct DatasetWriterOptions {
   bool events_text = false;  ///< events.txt beside events.h5
 };
 
-/// Fills a dataset folder, which appears under its final name when finish() is done; without it
-/// nothing is left. An existing dataset of that name is replaced, another folder is an InputError.
+/// Fills a dataset folder. Every file in it is complete or not there; the folder as a whole gets
+/// its final name from the caller (AtomicFolder, ResumableFolder).
 class DatasetWriter {
  public:
+  /// `folder` is created when it is not there; files of the same names are replaced.
   DatasetWriter(const std::filesystem::path& folder, const PinholeCamera& camera,
                 const DatasetWriterOptions& options = {});
   ~DatasetWriter();
 
   /// Where further files go (objects.txt, imu_groundtruth.txt, cam1/ ...); finish() hashes them
   /// too.
-  [[nodiscard]] const std::filesystem::path& folder() const { return target_.path(); }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
   /// Events in order of time, not earlier than those written before. One thread at a time.
   void write_events(std::span<const Event> events);
@@ -48,13 +48,18 @@ class DatasetWriter {
   void write_depth(std::size_t index, double t_s, const ImageF& depth);
   void write_flow(std::size_t index, double t_s, const FlowField& flow);
 
+  /// True when the folder holds the image already, complete and of the camera's size, from a
+  /// program that was interrupted: it counts as written. As thread-safe as writing.
+  [[nodiscard]] bool take_up_frame(std::size_t index, double t_s);
+  [[nodiscard]] bool take_up_depth(std::size_t index, double t_s);
+  [[nodiscard]] bool take_up_flow(std::size_t index, double t_s);
+
   void write_groundtruth(std::span<const StampedPose> world_from_camera);
   void write_imu(std::span<const ImuSample> samples);
 
-  /// Writes the lists, calib.txt, camera.yaml and dataset.yaml and gives the folder its name. Fills
-  /// in the record's size, its name where none is stated (the folder's), unit, counts, mean depth
-  /// (unless no depth map was written), rays per event, hashes and tool version; the rest is the
-  /// caller's.
+  /// Writes the lists, calib.txt, camera.yaml and, last, dataset.yaml. Fills in the record's size,
+  /// its name where none is stated (the folder's), unit, counts, mean depth (unless no depth map
+  /// was written), rays per event, hashes and tool version; the rest is the caller's.
   DatasetRecord finish(DatasetRecord record);
 
  private:
@@ -64,9 +69,11 @@ class DatasetWriter {
   };
   void store(std::vector<StampedFile>& list, std::size_t index, double t_s,
              const std::filesystem::path& file);
+  void store_depths(std::size_t index, const ImageF& depth);
+  [[nodiscard]] bool has_size(const ImageF& image) const;
   [[nodiscard]] std::optional<double> mean_depth() const;
 
-  AtomicFolder target_;
+  std::filesystem::path folder_;
   PinholeCamera camera_;
   DatasetWriterOptions options_;
   std::vector<std::unique_ptr<EventWriter>> event_writers_;

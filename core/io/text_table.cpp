@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/io/input_log.h"
 
 namespace saccade {
 namespace {
@@ -160,6 +161,7 @@ TextReader::TextReader(const std::filesystem::path& file) : name_(file.string())
   stream_.open(file, std::ios::binary);
   if (!stream_)
     throw InputError(name_, std::filesystem::exists(file) ? "cannot be opened" : "no such file");
+  InputLog::note(file);
   block_.resize(kBlockBytes);
 }
 

@@ -5,9 +5,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
+#include "core/io/input_log.h"
 
 namespace saccade {
 namespace {
@@ -31,6 +33,7 @@ std::optional<Bytes> read_from_disk(const fs::path& file) {
   if (!stream) throw InputError(file.string(), "cannot be opened for reading");
   Bytes bytes(std::istreambuf_iterator<char>(stream), {});
   if (stream.bad()) throw InputError(file.string(), "cannot be read to its end");
+  InputLog::note(file.string(), std::as_bytes(std::span(bytes)));
   return bytes;
 }
 
@@ -93,6 +96,7 @@ std::optional<Bytes> FileSource::read(const fs::path& file) const {
   if (!member ||
       zip_fread(member.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()))
     throw InputError(FileLocation{archive_, name}.text(), "is damaged in its archive");
+  InputLog::note(FileLocation{archive_, name}.text(), std::as_bytes(std::span(bytes)));
   return bytes;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/io/dataset_writer.h"
 #include "core/io/events_h5.h"
+#include "core/io/exr_file.h"
 #include "core/io/image_file.h"
 #include "core/srgb.h"
 #include "tests/support/command.h"
@@ -132,13 +133,33 @@ TEST_F(DatasetFolder, HashesFindWhatChanged) {
   EXPECT_THAT(error_of([&] { return verify_hashes(plain()); }), HasSubstr("dataset.yaml"));
 }
 
-TEST_F(DatasetFolder, UnfinishedDatasetLeavesNothing) {
-  {
-    DatasetWriter writer(written_, kCamera);
-    writer.write_events(random_events(10));
-    writer.write_frame(0, 0, ImageF(240, 180));
-  }
-  EXPECT_TRUE(fs::is_empty(folder_.path()));
+TEST_F(DatasetFolder, TakesUpImagesThatAreComplete) {
+  const DatasetRecord record = write_dataset(written_);
+  write_exr(written_ / "depth/depth_00000002.exr", ImageF(2, 2, 1.0F), "Z");
+  std::ofstream(written_ / "images/frame_00000001.png") << "damaged";
+  DatasetWriter writer(written_, kCamera);
+  EXPECT_TRUE(writer.take_up_frame(0, 0));
+  EXPECT_FALSE(writer.take_up_frame(1, 0.5));
+  EXPECT_TRUE(writer.take_up_depth(0, 0));
+  EXPECT_TRUE(writer.take_up_depth(1, 0.5));
+  EXPECT_FALSE(writer.take_up_depth(2, 1));  // of another size
+  EXPECT_TRUE(writer.take_up_flow(0, 0));
+  EXPECT_FALSE(writer.take_up_flow(1, 0.5));
+  const DatasetRecord again = writer.finish({});
+  EXPECT_EQ(again.mean_scene_depth_m, record.mean_scene_depth_m);
+  EXPECT_EQ(again.counts->depth_maps, 2);
+  EXPECT_EQ(again.counts->frames, 1);
+}
+
+TEST_F(DatasetFolder, HashesReachIntoTheFoldersOfARig) {
+  write_dataset(written_ / "cam1");
+  write_dataset(written_);
+  EXPECT_TRUE(verify_hashes(written_).empty());
+  EXPECT_TRUE(verify_hashes(written_ / "cam1").empty());
+  std::ofstream(written_ / "cam1/dataset.yaml", std::ios::app) << "\n";
+  fs::remove(written_ / "cam1/events.h5");
+  EXPECT_THAT(verify_hashes(written_),
+              ElementsAre("cam1/dataset.yaml: changed", "cam1/events.h5: missing"));
 }
 
 TEST_F(DatasetFolder, PlainRecording) {

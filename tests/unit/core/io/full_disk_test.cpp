@@ -7,11 +7,13 @@
 #include <functional>
 
 #include "core/io/atomic_file.h"
+#include "core/io/block_journal.h"
 #include "core/io/dataset_writer.h"
 #include "core/io/event_file.h"
 #include "core/io/exr_file.h"
 #include "core/io/image_file.h"
 #include "core/io/ply_file.h"
+#include "core/io/resumable_folder.h"
 #include "core/random.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -91,10 +93,29 @@ TEST(FullDisk, EventWritersFailCleanly) {
 
 TEST(FullDisk, DatasetFailsCleanly) {
   expect_clean_failure("dataset", [](const fs::path& f) {
-    DatasetWriter writer(f, {64, 64, 100, 100, 32, 32, {}});
+    const ResumableFolder folder(f, "dataset.yaml", {});
+    DatasetWriter writer(folder.path(), {64, 64, 100, 100, 32, 32, {}});
     writer.write_events(testing::random_events(100'000));
     writer.finish({});
   });
+}
+
+TEST(FullDisk, JournalFailsCleanly) {
+  expect_clean_failure("dataset", [](const fs::path& f) {
+    const ResumableFolder folder(f, "dataset.yaml", {});
+    BlockJournal journal(folder.journal() / "events", 0);
+    journal.append(std::vector<std::byte>(10'000));
+    journal.flush();
+  });
+}
+
+TEST(FullDisk, ErrorSaysWhatToDo) {
+  const testing::TemporaryFolder folder;
+  const FileSizeLimit limit(100);
+  EXPECT_THAT(testing::error_of([&] {
+                return write_atomically(folder.path() / "f", std::string(10'000, 'x')), 0;
+              }),
+              HasSubstr("make room there or write to another place"));
 }
 
 }  // namespace

@@ -1,0 +1,122 @@
+#include "simulator/event_log.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "core/io/atomic_file.h"
+#include "core/io/file_bytes.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x31474f4c44434153;  // of this layout
+constexpr std::chrono::milliseconds kShortestInterval{200};
+/// A checkpoint may take this share of the time from one to the next.
+constexpr int kCheckpointShare = 20;
+
+/// An event in the journal.
+struct Packed {
+  TimeNs t_ns;
+  std::uint16_t x, y;
+  std::int8_t polarity;
+  std::uint8_t origin;
+  std::uint16_t unused;
+};
+static_assert(sizeof(Packed) == 16);
+static_assert(std::is_trivially_copyable_v<EventStatistics>);
+
+std::uint64_t checksum_of(std::string_view bytes) {
+  return crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+}
+
+}  // namespace
+
+EventLog::EventLog(const std::filesystem::path& folder) : folder_(folder) {
+  std::filesystem::create_directories(folder);
+  if (std::filesystem::exists(folder / "checkpoint")) read_checkpoint();
+  journal_.emplace(folder / "events.journal", head_.journal_length);
+  journal_->read([](std::span<const std::byte>) {});  // whether it is damaged
+  next_ = Clock::now() + kShortestInterval;
+}
+
+void EventLog::read_checkpoint() {
+  const std::filesystem::path file = folder_ / "checkpoint";
+  const std::vector<std::byte> bytes = read_file_bytes(file);
+  std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.size() < sizeof head_) throw InputError(file.string(), "is damaged");
+  std::memcpy(&head_, text.data(), sizeof head_);
+  if (head_.magic != kMagic || head_.checksum != checksum_of(std::string_view(text).substr(16)))
+    throw InputError(file.string(), "is damaged");
+  text.erase(0, sizeof head_);
+  if (head_.is_complete == 0) {
+    state_ = std::move(text);
+    return;
+  }
+  SACCADE_CHECK(text.size() == sizeof(EventStatistics));
+  std::memcpy(&statistics_.emplace(), text.data(), text.size());
+}
+
+void EventLog::append(std::span<const SensedEvent> events) {
+  packed_.resize(events.size() * sizeof(Packed));
+  std::byte* out = packed_.data();
+  for (const SensedEvent& event : events) {
+    const Packed packed{
+        event.t_ns, event.x, event.y, event.polarity, static_cast<std::uint8_t>(event.origin), 0};
+    std::memcpy(out, &packed, sizeof packed);
+    out += sizeof packed;
+  }
+  journal_->append(packed_);
+}
+
+bool EventLog::wants_checkpoint() const { return Clock::now() >= next_; }
+
+void EventLog::checkpoint(double reached_s, std::string_view state) {
+  head_.reached_s = reached_s;
+  write_checkpoint(state);
+}
+
+void EventLog::complete(const EventStatistics& statistics) {
+  head_.is_complete = 1;
+  statistics_ = statistics;
+  write_checkpoint({reinterpret_cast<const char*>(&*statistics_), sizeof *statistics_});
+}
+
+void EventLog::write_checkpoint(std::string_view payload) {
+  const Clock::time_point start = Clock::now();
+  journal_->flush();
+  head_.magic = kMagic;
+  head_.journal_length = journal_->length();
+  std::string text(sizeof head_, '\0');
+  text += payload;
+  std::memcpy(text.data(), &head_, sizeof head_);
+  head_.checksum = checksum_of(std::string_view(text).substr(16));
+  std::memcpy(text.data(), &head_, sizeof head_);
+  write_atomically(folder_ / "checkpoint", text);
+  const Clock::time_point end = Clock::now();
+  next_ = end + std::max<Clock::duration>(kShortestInterval, kCheckpointShare * (end - start));
+}
+
+void EventLog::replay(const std::function<void(std::span<const SensedEvent>)>& use) const {
+  std::vector<SensedEvent> events;
+  journal_->read([&](std::span<const std::byte> bytes) {
+    events.resize(bytes.size() / sizeof(Packed));
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      Packed packed;
+      std::memcpy(&packed, bytes.data() + i * sizeof packed, sizeof packed);
+      events[i] = {};
+      events[i].t_ns = packed.t_ns;
+      events[i].x = packed.x;
+      events[i].y = packed.y;
+      events[i].polarity = packed.polarity;
+      events[i].origin = static_cast<EventOrigin>(packed.origin);
+    }
+    use(events);
+  });
+}
+
+}  // namespace saccade

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/io/block_journal.h"
+#include "simulator/sensor/event_tile.h"
+#include "simulator/sensor/sensed_event.h"
+
+namespace saccade {
+
+/// The events of a recording in the making, with what the event camera needs to go on from there,
+/// in a folder that outlives an interrupted program: `events.journal`, 16 bytes an event in blocks
+/// with checksums, and `checkpoint`, the camera's state at an instant with the journal's length
+/// then. What the journal holds beyond that length is found again, so the final events do not
+/// depend on when checkpoints were taken.
+class EventLog {
+ public:
+  /// Goes on with what `folder` holds, which is created when it is not there. InputError when that
+  /// is damaged.
+  explicit EventLog(const std::filesystem::path& folder);
+
+  /// Time up to which the log holds all events that the state stands for [s]; 0 for a new one.
+  [[nodiscard]] double reached_s() const { return head_.reached_s; }
+  /// The camera's state at reached_s(), once; empty for a new log.
+  [[nodiscard]] std::string take_state() { return std::move(state_); }
+  /// Of a log that holds the whole recording.
+  [[nodiscard]] const std::optional<EventStatistics>& statistics() const { return statistics_; }
+
+  /// Events in order.
+  void append(std::span<const SensedEvent> events);
+  /// True when so much time has passed since the last checkpoint that one costs little of it.
+  [[nodiscard]] bool wants_checkpoint() const;
+  /// Everything up to `reached_s` is appended and `state` goes on from there.
+  void checkpoint(double reached_s, std::string_view state);
+  /// The recording is complete.
+  void complete(const EventStatistics& statistics);
+
+  /// Hands out all events up to the last checkpoint, in order, in parts.
+  void replay(const std::function<void(std::span<const SensedEvent>)>& use) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// The first bytes of the checkpoint file; the state or the statistics follow.
+  struct Head {
+    std::uint64_t magic = 0;
+    std::uint64_t checksum = 0;        ///< of all that follows it
+    std::uint64_t journal_length = 0;  ///< [bytes]
+    double reached_s = 0;
+    std::uint64_t is_complete = 0;
+  };
+
+  void read_checkpoint();
+  void write_checkpoint(std::string_view payload);
+
+  std::filesystem::path folder_;
+  Head head_;
+  std::string state_;
+  std::optional<EventStatistics> statistics_;
+  std::optional<BlockJournal> journal_;
+  std::vector<std::byte> packed_;
+  Clock::time_point next_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,67 @@
+#include "simulator/record_events.h"
+
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+
+namespace saccade {
+namespace {
+
+std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 * t_s); }
+
+/// Until the camera's state can be saved, an interrupted recording begins again.
+template <class Camera>
+concept Resumable = requires(Camera camera, std::string state) {
+  camera.resume(state);
+  state = camera.state();
+};
+
+[[maybe_unused]] void append(EventLog& log, std::span<const SensedEvent> events) { log.append(events); }
+
+[[maybe_unused]] void append(EventLog& log, std::span<const Event> events) {
+  SensedEvents sensed;
+  for (const Event& e : events) sensed.push_back({e.t_ns, e.x, e.y, e.polarity});
+  log.append(sensed);
+}
+
+/// Records what the log does not hold yet.
+template <class Camera>
+void fill(Camera& camera, const Take& take) {
+  EventLog& log = take.log;
+  double shown_s = log.reached_s();
+  Progress progress("events", microseconds(take.duration_s()), "simulated us",
+                    microseconds(shown_s));
+  if constexpr (Resumable<Camera>)
+    if (shown_s > 0) camera.resume(log.take_state());
+  camera.record(take.duration_s(), [&](auto events, double t_s) {
+    append(log, events);
+    if constexpr (Resumable<Camera>)
+      if (log.wants_checkpoint()) log.checkpoint(t_s, camera.state());
+    progress.add(microseconds(t_s) - microseconds(shown_s));
+    shown_s = t_s;
+  });
+  log.complete(camera.statistics());
+}
+
+void write(const EventLog& log, DatasetWriter& writer) {
+  std::vector<Event> events;
+  log.replay([&](std::span<const SensedEvent> part) {
+    events.clear();
+    for (const SensedEvent& event : part) events.push_back(event.event());
+    writer.write_events(events);
+  });
+}
+
+}  // namespace
+
+EventStatistics record_events(const Take& take) {
+  if (!take.log.statistics()) {
+    EventCamera camera(take.scene, take.world_from_camera, take.camera, take.events);
+    fill(camera, take);
+  }
+  write(take.log, take.writer);
+  return *take.log.statistics();
+}
+
+}  // namespace saccade
