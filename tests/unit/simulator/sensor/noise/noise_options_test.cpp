@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::error_of;
+using ::testing::HasSubstr;
 
 EventOptions read(const std::string& yaml) {
   return config::read<EventOptions>(config::parse(yaml, "events.yaml", "/data"));
