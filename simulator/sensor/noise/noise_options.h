@@ -10,7 +10,7 @@ namespace saccade {
 
 /// Contrast thresholds that differ from pixel to pixel (fixed-pattern noise):
 ///   C_p = C max(kLeastContrast, 1 + sigma z),   z ~ N(0, 1), one draw per pixel and polarity
-/// Measured so by Lichtsteiner et al. (JSSC 43(2), 2008, fig. 9) and Brandli et al. (JSSC 49(10),
+/// Measured so by Lichtsteiner et al. (JSSC 43(2), 2008) and Brandli et al. (JSSC 49(10),
 /// 2014); Gaussian as in v2e (Hu et al., CVPRW 2021).
 struct MismatchOptions {
   double sigma = 0;  ///< standard deviation as a share of the nominal threshold
@@ -64,7 +64,8 @@ struct BandwidthOptions {
 
 /// Pixels whose leaking junctions fire by themselves: a Poisson process of ON events per hot pixel,
 ///   rate_p = rate_hz exp(sigma z),   z ~ N(0, 1), one draw per pixel
-/// The heavy tail is what noise histograms of real sensors show (Joubert et al., IEBCS, 2021).
+/// The heavy tail is what noise histograms of real sensors show (Joubert et al., Frontiers in
+/// Neuroscience 15, 2021).
 struct HotOptions {
   double fraction = 0;   ///< share of the pixels that are hot
   double rate_hz = 100;  ///< median over the hot pixels
@@ -76,8 +77,8 @@ struct HotOptions {
 /// Time from the crossing to the request at the bus:
 ///   latency = max(0, mean_us + intensity_us (1 + dark_radiance) / (I + dark_radiance)
 ///                    + jitter_us z),   z ~ N(0, 1) cut at +-4
-/// Reciprocal in the radiance as Lichtsteiner et al. 2008 (fig. 12) measured. The bandwidth model
-/// brings a latency of its own; state only the rest here when both are on.
+/// Reciprocal in the radiance as Lichtsteiner et al. 2008 measured. The bandwidth model brings a
+/// latency of its own; state only the rest here when both are on.
 struct LatencyOptions {
   double mean_us = 0;
   double intensity_us = 0;  ///< added at radiance 1

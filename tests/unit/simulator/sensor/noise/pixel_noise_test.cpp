@@ -150,6 +150,27 @@ TEST(ShotNoise, GapsAreExponentialAndPolaritiesFair) {
   EXPECT_NEAR(on_after_on, 0.25 * count, kSigmas * std::sqrt(count));
 }
 
+TEST(ShotNoise, FollowsASignalThatChanges) {
+  // Dark in the first quarter of every 100 ms, white in the rest.
+  const SpontaneousEvents events(shot_noise(40), kLogEps, kSeed);
+  const double duration_s = 5;
+  double dark = 0;
+  double bright = 0;
+  for (std::uint16_t x = 0; x < 200; ++x) {
+    SpontaneousState state = events.start(x, 0, 0);
+    while (state.next_s() < duration_s) {
+      const SpontaneousCandidate candidate = events.take(state, x, 0);
+      const bool is_dark = std::fmod(candidate.t_s, 0.1) < 0.025;
+      if (events.accepts(candidate, std::log(kLogEps + (is_dark ? 0 : 1))))
+        ++(is_dark ? dark : bright);
+    }
+  }
+  const double expected_dark = 200 * duration_s * 0.25 * 40;
+  const double expected_bright = 200 * duration_s * 0.75 * 10;
+  EXPECT_NEAR(dark, expected_dark, kSigmas * std::sqrt(expected_dark));
+  EXPECT_NEAR(bright, expected_bright, kSigmas * std::sqrt(expected_bright));
+}
+
 TEST(ShotNoise, SavedStateGoesOnWithTheSameCandidates) {
   const SpontaneousEvents events(shot_noise(50), kLogEps, kSeed);
   SpontaneousState state = events.start(3, 4, 0);
