@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include "core/error.h"
@@ -97,6 +98,21 @@ std::string imu_text(const Dataset& dataset) {
                       seconds_from_ns(samples.back().t_ns));
 }
 
+/// "1,204 signal, 3 leak".
+std::string labels_text(const Dataset& dataset) {
+  if (!dataset.has_labels()) return "none";
+  constexpr std::array<const char*, 4> kOrigins{"signal", "leak", "shot noise", "hot pixel"};
+  std::array<std::size_t, 4> counts{};
+  for (const std::uint8_t origin : dataset.load_labels().origin)
+    if (origin < counts.size()) ++counts[origin];
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                          grouped(static_cast<double>(counts[i])), kOrigins[i]);
+  return text.empty() ? "of no events" : text;
+}
+
 std::string record_lines(const Dataset& dataset) {
   const DatasetFacts& facts = dataset.facts();
   std::string text;
@@ -124,6 +140,7 @@ std::string describe_dataset(const fs::path& folder) {
   text += line("frames", files_text(dataset.frames()));
   text += line("depth maps", files_text(dataset.depth_maps()));
   text += line("IMU", imu_text(dataset));
+  text += line("event labels", labels_text(dataset));
   return text + record_lines(dataset);
 }
 

@@ -5,6 +5,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/io/calibration_file.h"
+#include "core/io/events_h5.h"
 #include "core/io/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
@@ -161,6 +162,16 @@ FlowField Dataset::load_flow(std::size_t index) const {
   FlowField flow = read_exr_flow(flow_maps_[index].file);
   expect_size(flow.u, camera_, flow_maps_[index].file);
   return flow;
+}
+
+bool Dataset::has_labels() const { return fs::exists(folder_ / "labels.h5"); }
+
+EventLabels Dataset::load_labels(double start_s, double end_s) const {
+  const fs::path events = folder_ / "events.h5";
+  if (!fs::exists(events)) throw InputError(events.string(), "is missing; labels belong to it");
+  const EventH5Reader reader(events);
+  const auto [begin, end] = reader.range({clamped_ns(start_s), clamped_ns(end_s)});
+  return read_labels_h5(folder_ / "labels.h5", reader.info().count, begin, end);
 }
 
 bool Dataset::has_imu() const { return fs::exists(folder_ / "imu.txt"); }

@@ -14,6 +14,7 @@
 #include "core/io/event_file.h"
 #include "core/io/exr_file.h"
 #include "core/io/file_list.h"
+#include "core/io/labels_h5.h"
 #include "core/trajectory.h"
 
 namespace saccade {
@@ -62,6 +63,11 @@ class Dataset {
   /// z depth [m] of depth map `index`, 0 = nothing hit.
   [[nodiscard]] ImageF load_depth(std::size_t index) const;
   [[nodiscard]] FlowField load_flow(std::size_t index) const;
+  [[nodiscard]] bool has_labels() const;
+  /// Labels of the events that load_events() gives for the same window.
+  [[nodiscard]] EventLabels load_labels(
+      double start_s = -std::numeric_limits<double>::infinity(),
+      double end_s = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] std::vector<ImuSample> load_imu() const;
   /// Of simulated datasets: what is behind the readings, and the camera's motion
   /// (imu_groundtruth.txt, twist.txt).

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "core/io/event_file.h"
 
@@ -20,6 +22,8 @@ class EventH5Reader {
   EventH5Reader& operator=(EventH5Reader&&) noexcept;
 
   [[nodiscard]] EventFileInfo info() const;
+  /// Indices [first, second) of the window's events.
+  [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> range(TimeWindow window) const;
   /// Events of the window in EventOrder; reads only the chunks that hold them. InputError with the
   /// place `file:/events/t[INDEX]` for times that go back, polarities other than 0/1, coordinates
   /// outside `size`, an index that contradicts the times, and chunks that cannot be read.

@@ -285,6 +285,12 @@ EventFileInfo EventH5Reader::info() const {
   return info;
 }
 
+std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) const {
+  const H5Lock lock;
+  const Range range = state_->find(window);
+  return {range.begin, range.end};
+}
+
 Events EventH5Reader::read(SensorSize size, TimeWindow window) const {
   const H5Lock lock;
   const Range range = state_->find(window);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <fstream>
 #include <string>
 
@@ -96,9 +95,7 @@ struct EventTextWriter::State {
   void flush() {
     stream.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     buffer.clear();
-    if (!stream)
-      throw InputError(target.target().string(),
-                       "cannot be written: " + std::string(std::strerror(errno)));
+    if (!stream) fail_to_write(target.target(), errno);
   }
 
   AtomicFile target;

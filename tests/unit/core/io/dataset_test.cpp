@@ -122,6 +122,58 @@ TEST_F(DatasetFolder, TextEventsBesideHdf5AreTheSame) {
   EXPECT_EQ(read_events(written_ / "events.txt", {}), h5);
 }
 
+/// Labels that tell every event by its index.
+EventLabels numbered_labels(std::size_t count) {
+  EventLabels labels;
+  labels.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    labels.depth[i] = 0.5F * static_cast<float>(i);
+    labels.flow_x[i] = -static_cast<float>(i);
+    labels.flow_y[i] = 3;
+    labels.object[i] = static_cast<std::int32_t>(i % 7) - 1;
+    labels.origin[i] = static_cast<std::uint8_t>(i % 4);
+  }
+  return labels;
+}
+
+TEST_F(DatasetFolder, LabelsBelongToTheEvents) {
+  const std::size_t count = 200'000;  // several chunks
+  {
+    DatasetWriter writer(written_, kCamera);
+    writer.write_events(random_events(count));
+    LabelsH5Writer labels(written_ / "labels.h5");
+    labels.append(numbered_labels(count));
+    labels.close();
+    (void)writer.finish({});
+  }
+  const Dataset dataset = Dataset::open(written_);
+  ASSERT_TRUE(dataset.has_labels());
+  const EventLabels expected = numbered_labels(count);
+  const EventLabels all = dataset.load_labels();
+  EXPECT_EQ(all.depth, expected.depth);
+  EXPECT_EQ(all.flow_x, expected.flow_x);
+  EXPECT_EQ(all.flow_y, expected.flow_y);
+  EXPECT_EQ(all.object, expected.object);
+  EXPECT_EQ(all.origin, expected.origin);
+  const double middle_s = seconds_from_ns(dataset.load_events()[count / 2].t_ns);
+  const std::size_t before = dataset.load_events(0, middle_s).size();
+  const EventLabels late = dataset.load_labels(middle_s);
+  ASSERT_EQ(late.size(), count - before);
+  EXPECT_EQ(late.depth.front(), expected.depth[before]);
+}
+
+TEST_F(DatasetFolder, LabelsOfOtherEventsAreAnError) {
+  write_dataset(written_);
+  const auto load = [&] { return Dataset::open(written_).load_labels(); };
+  EXPECT_THAT(error_of(load), HasSubstr("labels.h5: no such file"));
+  LabelsH5Writer labels(written_ / "labels.h5");
+  labels.append(numbered_labels(10));
+  labels.close();
+  EXPECT_THAT(error_of(load), HasSubstr("/labels/depth: has 10 entries for 5000 events"));
+  std::ofstream(written_ / "labels.h5") << "text";
+  EXPECT_THAT(error_of(load), HasSubstr("labels.h5: is no HDF5 file"));
+}
+
 TEST_F(DatasetFolder, HashesFindWhatChanged) {
   write_dataset(written_);
   EXPECT_TRUE(verify_hashes(written_).empty());
