@@ -8,7 +8,6 @@
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "simulator/motion/presets.h"
-#include "simulator/scene/placement.h"
 
 namespace saccade {
 namespace {
@@ -91,12 +90,12 @@ Spline sampled(const MotionOptions& options) {
 
 }  // namespace
 
-Spline build_motion(const MotionOptions& options) {
+Spline build_motion(const MotionOptions& options, const std::string& name) {
   switch (options.source) {
     case MotionSource::kControlPoses:
       return controlled(options);
     case MotionSource::kWaypoints:
-      return fitted(options, waypoint_poses(options), "trajectory.waypoints");
+      return fitted(options, waypoint_poses(options), name + ".waypoints");
     case MotionSource::kFile:
       return fitted(options, file_poses(options.file), options.file.string());
     default:

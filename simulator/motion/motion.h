@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/spline.h"
 #include "simulator/motion/motion_options.h"
@@ -12,8 +13,9 @@ namespace saccade {
 /// second one); everything else starts at 0. A preset is sampled densely in its closed form and
 /// interpolated, within 1e-6 of its size. Throws InputError for what describe() could not check: a
 /// file with fewer than two poses, rotations without a spline through them, a view without
-/// direction.
-[[nodiscard]] Spline build_motion(const MotionOptions& options);
+/// direction. `name`: of the section in errors.
+[[nodiscard]] Spline build_motion(const MotionOptions& options,
+                                  const std::string& name = "trajectory");
 
 /// The piece that is simulated: from `start_s` after the motion's first pose, `duration_s` long
 /// (default: up to the end), its time starting at 0. Throws InputError naming the key, with the

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/config/fields.h"
-#include "simulator/scene/scene_options.h"
+#include "simulator/motion/transform_options.h"
 
 namespace saccade {
 

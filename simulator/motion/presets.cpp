@@ -8,7 +8,6 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "simulator/scene/placement.h"
 
 namespace saccade {
 namespace {

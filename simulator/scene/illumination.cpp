@@ -1,5 +1,6 @@
 #include "simulator/scene/illumination.h"
 
+#include <cmath>
 #include <limits>
 
 namespace saccade {
@@ -30,12 +31,13 @@ Illumination::Illumination(double ambient, const std::vector<LightOptions>& ligh
   for (LightOptions& light : lights_) light.direction.normalize();
 }
 
-double Illumination::at(const SurfacePoint& point, const RayCaster& blockers) const {
+double Illumination::at(const SurfacePoint& point, const Visibility& blockers) const {
   double sum = ambient_;
   for (const LightOptions& light : lights_) {
     const WayToLight way = way_to(light, point);
     if (!(way.irradiance > 0) || point.plane_normal.dot(way.direction) <= 0) continue;
-    const Ray ray{point.position + shadow_offset_ * point.plane_normal, way.direction};
+    const Ray ray{point.position + shadow_offset_ * point.plane_normal, way.direction,
+                  point.time_s};
     if (light.shadows && blockers.is_blocked(ray, way.distance)) continue;
     sum += way.irradiance;
   }

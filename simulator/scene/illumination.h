@@ -4,16 +4,17 @@
 
 #include <Eigen/Core>
 
-#include "simulator/scene/ray_caster.h"
 #include "simulator/scene/scene_options.h"
+#include "simulator/scene/visibility.h"
 
 namespace saccade {
 
-/// A point on a surface, with unit normals on the side that is looked at.
+/// A point on a surface in the world, with unit normals on the side that is looked at.
 struct SurfacePoint {
   Eigen::Vector3d position;
   Eigen::Vector3d plane_normal;
   Eigen::Vector3d shading_normal;
+  double time_s;  ///< at which it is looked at
 };
 
 /// What falls onto a Lambertian surface: ambient light and lamps with shadows.
@@ -24,7 +25,7 @@ class Illumination {
 
   /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
   /// without the distance) over the lights that are not in shadow.
-  [[nodiscard]] double at(const SurfacePoint& point, const RayCaster& blockers) const;
+  [[nodiscard]] double at(const SurfacePoint& point, const Visibility& blockers) const;
 
  private:
   double ambient_;

@@ -1,7 +1,5 @@
 #include "simulator/scene/placement.h"
 
-#include <numbers>
-
 namespace saccade {
 namespace {
 
@@ -24,14 +22,6 @@ Eigen::Vector3d anchor_point(Anchor anchor, const Eigen::AlignedBox3d& box) {
 }
 
 }  // namespace
-
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& angles_deg) {
-  const Eigen::Vector3d angles = angles_deg * (std::numbers::pi / 180);
-  return (Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
 
 Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
   const Eigen::Vector3d scale =

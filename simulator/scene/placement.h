@@ -7,9 +7,6 @@
 
 namespace saccade {
 
-/// R = Rz Ry Rx; `angles_deg` about x, y and z.
-[[nodiscard]] Eigen::Matrix3d rotation_of(const Eigen::Vector3d& angles_deg);
-
 /// Where `options` puts the mesh: scale (or size), then R = Rz Ry Rx, then the anchor to the
 /// translation. A side of the bounding box without extent keeps its size.
 [[nodiscard]] Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh);

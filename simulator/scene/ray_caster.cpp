@@ -15,7 +15,6 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kPacket = 16;
 /// Beyond this many triangles Embree's coherent traversal loses against the incoherent one.
 constexpr std::size_t kCoherentTriangles = 500'000;
 
@@ -71,8 +70,7 @@ void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> co
   rtcReleaseGeometry(geometry);
 }
 
-/// A packet without rays; copied, because filling its constants costs as much as the rays.
-RTCRayHit16 empty_packet() {
+RTCRayHit16 make_empty_packet() {
   RTCRayHit16 packet{};
   for (unsigned i = 0; i < kPacket; ++i) {
     packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
@@ -82,6 +80,12 @@ RTCRayHit16 empty_packet() {
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   return packet;
+}
+
+/// A packet without rays; copied, because filling its constants costs as much as the rays.
+const RTCRayHit16& empty_packet() {
+  static const RTCRayHit16 kEmpty = make_empty_packet();
+  return kEmpty;
 }
 
 void set_ray(RTCRay16& packet, std::size_t i, const Ray& ray) {
@@ -113,21 +117,37 @@ struct RayCaster::State {
       if (!state.is_opaque(context.rays[ray], triangle)) arguments->valid[i] = 0;
     }
   }
+
+  void trace(std::span<const Ray> rays, RTCRayHit16& packet) const {
+    alignas(64) std::array<int, kPacket> valid{};
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      set_ray(packet.ray, i, rays[i]);
+      valid[i] = -1;
+    }
+    Context context(rays.data(), flags);
+    rtcIntersect16(valid.data(), scene.get(), &context.embree, &packet);
+  }
+
+  [[nodiscard]] TriangleId hit(const RTCRayHit16& packet, std::size_t i) const {
+    const unsigned geometry = packet.hit.geomID[i];
+    return geometry == RTC_INVALID_GEOMETRY_ID ? kNothing
+                                               : first_of_geometry[geometry] + packet.hit.primID[i];
+  }
 };
 
-RayCaster::RayCaster(std::span<const Corners> corners, std::size_t opaque, IsOpaque is_opaque)
+RayCaster::RayCaster(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque)
     : state_(std::make_unique<State>()) {
-  SACCADE_CHECK(opaque <= corners.size() && corners.size() < kNothing / 3);
+  const std::size_t count = opaque.corners.size() + cut_out.corners.size();
+  SACCADE_CHECK(count < kNothing / 3);
   state_->device.reset(rtcNewDevice(kDeviceOptions));
   SACCADE_CHECK(state_->device != nullptr);
   state_->scene.reset(rtcNewScene(state_->device.get()));
   state_->is_opaque = std::move(is_opaque);
-  state_->first_of_geometry = {0, static_cast<TriangleId>(opaque)};
-  if (corners.size() > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  state_->first_of_geometry = {opaque.first, cut_out.first};
+  if (count > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   RTCScene scene = state_->scene.get();
-  add_triangles(state_->device.get(), scene, corners.first(opaque), 0, nullptr, nullptr);
-  add_triangles(state_->device.get(), scene, corners.subspan(opaque), 1, State::filter,
-                state_.get());
+  add_triangles(state_->device.get(), scene, opaque.corners, 0, nullptr, nullptr);
+  add_triangles(state_->device.get(), scene, cut_out.corners, 1, State::filter, state_.get());
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   // One thread builds the tree, so that it is the same on every machine.
@@ -142,20 +162,24 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 void RayCaster::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
   SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size());
   if (rays.empty()) return;
-  static const RTCRayHit16 kEmpty = empty_packet();
-  alignas(64) RTCRayHit16 packet = kEmpty;
-  alignas(64) std::array<int, kPacket> valid{};
+  alignas(64) RTCRayHit16 packet = empty_packet();
+  state_->trace(rays, packet);
+  for (std::size_t i = 0; i < rays.size(); ++i) triangles[i] = state_->hit(packet, i);
+}
+
+void RayCaster::nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,
+                       std::span<float> distances) const {
+  SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size() &&
+                rays.size() == distances.size());
+  if (rays.empty()) return;
+  alignas(64) RTCRayHit16 packet = empty_packet();
+  std::copy(distances.begin(), distances.end(), packet.ray.tfar);
+  state_->trace(rays, packet);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    set_ray(packet.ray, i, rays[i]);
-    valid[i] = -1;
-  }
-  Context context(rays.data(), state_->flags);
-  rtcIntersect16(valid.data(), state_->scene.get(), &context.embree, &packet);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const unsigned geometry = packet.hit.geomID[i];
-    triangles[i] = geometry == RTC_INVALID_GEOMETRY_ID
-                       ? kNothing
-                       : state_->first_of_geometry[geometry] + packet.hit.primID[i];
+    const TriangleId triangle = state_->hit(packet, i);
+    if (triangle == kNothing) continue;
+    triangles[i] = triangle;
+    distances[i] = packet.ray.tfar[i];
   }
 }
 

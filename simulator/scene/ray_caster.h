@@ -14,23 +14,36 @@ namespace saccade {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// Visibility and shadows among triangles, by Embree in single precision. Neighbouring triangles
-/// must share bit-equal corners; then no ray slips through between them. Thread-safe once built.
+/// Rays that are traced at once, at most.
+constexpr std::size_t kPacket = 16;
+
+/// Triangles numbered from `first` on.
+struct TriangleRun {
+  std::span<const Corners> corners;
+  TriangleId first = 0;
+};
+
+/// Visibility and shadows among triangles of one frame, by Embree in single precision. Neighbouring
+/// triangles must share bit-equal corners; then no ray slips through between them. Thread-safe once
+/// built.
 class RayCaster {
  public:
-  /// Whether a triangle is opaque where a ray meets its plane. Asked for triangles of the second
-  /// kind only; thread-safe.
+  /// Whether a triangle is opaque where a ray meets its plane. Asked for triangles with
+  /// cutouts only; thread-safe.
   using IsOpaque = std::function<bool(const Ray&, TriangleId)>;
 
-  /// Triangles are numbered through both lists. `corners` of the first `opaque` ones stop every
-  /// ray, those of the others where `is_opaque` says so.
-  RayCaster(std::span<const Corners> corners, std::size_t opaque, IsOpaque is_opaque);
+  /// `opaque` ones stop every ray, those with cutouts where `is_opaque` says so.
+  RayCaster(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
 
   /// The nearest triangle along each of at most 16 coherent rays.
   void nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
+
+  /// Replaces `triangles` and `distances` [length of the direction] where a nearer triangle is met.
+  void nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,
+              std::span<float> distances) const;
 
   /// Whether anything stands within `distance` [length of the direction] of the ray's origin.
   [[nodiscard]] bool is_blocked(const Ray& ray, double distance) const;

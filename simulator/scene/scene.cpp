@@ -27,15 +27,42 @@ bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
 SurfacePoint Scene::State::surface_point(const Ray& ray, double distance,
                                          TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
+  if (surface.body == kStill) return local_point(ray, distance, triangle);
+  const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
+  const SurfacePoint local = local_point(in_frame(frame, ray), distance, triangle);
+  return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
+          frame.rotation * local.shading_normal, ray.time_s};
+}
+
+SurfacePoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
+  const AffineForm& plane = surfaces[triangle].plane;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const double side = surface.plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
+  const double side = plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
   const double second = interiors[triangle].second.at(point);
   const double third = interiors[triangle].third.at(point);
   const ShadingNormals& corners = normals[triangle];
   const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
                                  second * corners[1].cast<double>() +
                                  third * corners[2].cast<double>();
-  return {point, side * surface.plane.gradient, side * normal.normalized()};
+  return {point, side * plane.gradient, side * normal.normalized(), ray.time_s};
+}
+
+SurfaceLook Scene::State::look(const Ray& ray, const TriangleSurface& surface) const {
+  const double distance = distance_to(surface.plane, ray);
+  // A ray that grazes the triangle's plane may miss it by far: nothing of it is to be seen there.
+  if (!(distance > 0 && distance < kFarthest)) return {};
+  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
+  return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
+}
+
+double Scene::State::inside(const Ray& ray, TriangleId triangle) const {
+  const double distance = distance_to(surfaces[triangle].plane, ray);
+  if (!(distance > 0 && distance < kFarthest)) return -1;
+  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
+  const TriangleInterior& interior = interiors[triangle];
+  const double second = interior.second.at(point);
+  const double third = interior.third.at(point);
+  return std::min({second, third, 1 - second - third});
 }
 
 Scene::Scene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -44,7 +71,7 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
-  state_->caster->nearest(rays, triangles);
+  state_->visibility->nearest(rays, triangles);
 }
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
@@ -56,36 +83,41 @@ Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
 SurfaceLook Scene::look(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return state_->background.look(ray.direction);
   const TriangleSurface& surface = state_->surfaces[triangle];
-  const double distance = distance_to(surface.plane, ray);
-  // A ray that grazes the triangle's plane may miss it by far: nothing of it is to be seen there.
-  if (!(distance > 0 && distance < kFarthest)) return state_->background.look(ray.direction);
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
+  const SurfaceLook seen = state_->in_frame_of(
+      surface.body, ray, [&](const Ray& local) { return state_->look(local, surface); });
+  return seen.distance > 0 ? seen : state_->background.look(ray.direction);
 }
 
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceLook& look) const {
   if (!state_->illumination || look.distance == 0) return 1;
   return state_->illumination->at(state_->surface_point(ray, look.distance, triangle),
-                                  *state_->caster);
+                                  *state_->visibility);
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
 
 bool Scene::meets(const Ray& ray, TriangleId triangle) const {
-  if (inside(ray, triangle) < -kEdgeTolerance) return false;
+  if (triangle == kNothing) return false;
   const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
-  return triangle < opaque || state_->is_opaque(ray, triangle);
+  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
+    return state_->inside(local, triangle) >= -kEdgeTolerance &&
+           (triangle < opaque || state_->is_opaque(local, triangle));
+  });
 }
 
 double Scene::inside(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return -1;
-  const double distance = distance_to(state_->surfaces[triangle].plane, ray);
-  if (!(distance > 0 && distance < kFarthest)) return -1;
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const TriangleInterior& interior = state_->interiors[triangle];
-  const double second = interior.second.at(point);
-  const double third = interior.third.at(point);
-  return std::min({second, third, 1 - second - third});
+  return state_->in_frame_of(state_->surfaces[triangle].body, ray,
+                             [&](const Ray& local) { return state_->inside(local, triangle); });
+}
+
+std::span<const MovingObject> Scene::moving_objects() const {
+  return state_->visibility->objects();
+}
+
+const MovingObject* Scene::moving_object(TriangleId triangle) const {
+  if (triangle == kNothing || state_->surfaces[triangle].body == kStill) return nullptr;
+  return &moving_objects()[state_->surfaces[triangle].body];
 }
 
 std::uint32_t Scene::object(TriangleId triangle) const {

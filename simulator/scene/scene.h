@@ -43,6 +43,8 @@ struct Shade {
   double distance = 0;  ///< along Ray::direction [its length]; 0 = background
 };
 
+class MovingObject;
+
 /// Everything that reflects or emits light, immutable after loading; all members are thread-safe
 /// and deterministic. Visibility comes from Embree (float); the point that is seen and its radiance
 /// are recomputed in double from the triangle, because float barycentrics alone cost microseconds
@@ -71,6 +73,10 @@ class Scene {
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
+  /// The objects with a motion of their own, in the order of the mesh list.
+  [[nodiscard]] std::span<const MovingObject> moving_objects() const;
+  /// The one that a triangle belongs to; nullptr where it stands still, and for kNothing.
+  [[nodiscard]] const MovingObject* moving_object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
 
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/check.h"
 #include "core/error.h"
+#include "simulator/motion/motion.h"
 #include "simulator/scene/mesh_import.h"
 #include "simulator/scene/picture.h"
 #include "simulator/scene/placement.h"
@@ -15,15 +19,27 @@
 namespace saccade {
 namespace {
 
-/// Shadow rays start this share of the scene's diagonal above their surface: ten times what single
-/// precision resolves there.
+/// Shadow rays start this share of the largest body's extent above their surface: ten times what
+/// single precision resolves there.
 constexpr double kShadowOffset = 1e-6;
 
-double diagonal(const std::vector<Corners>& triangles) {
+Eigen::AlignedBox3f box_of(const PreparedTriangles& triangles) {
   Eigen::AlignedBox3f box;
-  for (const Corners& corners : triangles)
+  for (const Corners& corners : triangles.corners)
     for (const Eigen::Vector3f& corner : corners) box.extend(corner);
-  return box.diagonal().norm() + box.center().norm();
+  return box;
+}
+
+double extent_of(const Eigen::AlignedBox3f& box) {
+  return static_cast<double>(box.diagonal().norm() + box.center().norm());
+}
+
+/// Corners are rounded to single precision, those of a plane lie on it: a hair of room for both.
+Eigen::AlignedBox3d roomy(const Eigen::AlignedBox3f& box) {
+  constexpr double kRoom = 1e-5;
+  const Eigen::AlignedBox3d exact = box.cast<double>();
+  const Eigen::Vector3d room = Eigen::Vector3d::Constant(kRoom * extent_of(box));
+  return {exact.min() - room, exact.max() + room};
 }
 
 Background read_background(const SceneOptions& options) {
@@ -36,13 +52,36 @@ Background read_background(const SceneOptions& options) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder()
-    : opaque_(std::make_unique<PreparedTriangles>()),
-      cut_out_(std::make_unique<PreparedTriangles>()) {}
+struct SceneBuilder::Body {
+  std::optional<Spline> world_from_body;  ///< none: stands still
+  std::uint32_t object = 0;               ///< of a moving one
+  PreparedTriangles opaque, cut_out;
+  TriangleId first_opaque = 0, first_cut_out = 0;
+
+  [[nodiscard]] bool is_empty() const { return opaque.corners.empty() && cut_out.corners.empty(); }
+  [[nodiscard]] Eigen::AlignedBox3f box() const { return box_of(opaque).merged(box_of(cut_out)); }
+};
+
+SceneBuilder::SceneBuilder() : bodies_(1) {}
 SceneBuilder::~SceneBuilder() = default;
 
 std::size_t SceneBuilder::add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh) {
-  const TriangleSetup setup(mesh, world_from_mesh, objects_++);
+  return add_to(bodies_.front(), mesh, world_from_mesh);
+}
+
+std::size_t SceneBuilder::add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
+                                     Spline world_from_object) {
+  Body body;
+  body.world_from_body = std::move(world_from_object);
+  body.object = objects_;
+  const std::size_t kept = add_to(body, mesh, object_from_mesh);
+  if (kept > 0) bodies_.push_back(std::move(body));
+  return kept;
+}
+
+std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
+                                 const Eigen::Affine3d& body_from_mesh) {
+  const TriangleSetup setup(mesh, body_from_mesh, objects_++);
   for (const Material& material : mesh.materials) {
     textures_.push_back(material.texture);
     textures_.push_back(material.opacity);
@@ -50,7 +89,7 @@ std::size_t SceneBuilder::add(const Mesh& mesh, const Eigen::Affine3d& world_fro
   std::size_t kept = 0;
   for (const Triangle& triangle : mesh.triangles) {
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
-    kept += setup.add(triangle, is_cut_out ? *cut_out_ : *opaque_) ? 1 : 0;
+    kept += setup.add(triangle, is_cut_out ? body.cut_out : body.opaque) ? 1 : 0;
   }
   return kept;
 }
@@ -63,36 +102,80 @@ void SceneBuilder::light(double ambient, std::vector<LightOptions> lights) {
 
 Scene SceneBuilder::build(const Background& background) && {
   auto state = std::make_unique<Scene::State>();
-  const std::size_t opaque = opaque_->corners.size();
-  PreparedTriangles all = std::move(*opaque_);
-  all.append(*cut_out_);
-  SACCADE_CHECK(!all.corners.empty());
+  state->background = background;
+  state->textures = std::move(textures_);
+  PreparedTriangles all = number_triangles();
+  SACCADE_CHECK(!all.surfaces.empty());
   if (is_lit_) {
-    state->illumination.emplace(ambient_, lights_, kShadowOffset * diagonal(all.corners));
+    double extent = 0;
+    for (const Body& body : bodies_)
+      if (!body.is_empty()) extent = std::max(extent, extent_of(body.box()));
+    state->illumination.emplace(ambient_, lights_, kShadowOffset * extent);
     state->normals = std::move(all.normals);
   }
   state->surfaces = std::move(all.surfaces);
   state->interiors = std::move(all.interiors);
   state->cutouts = std::move(all.cutouts);
-  state->textures = std::move(textures_);
-  state->background = background;
-  state->caster.emplace(all.corners, opaque,
-                        [scene = state.get()](const Ray& ray, TriangleId triangle) {
-                          return scene->is_opaque(ray, triangle);
-                        });
+  state->visibility.emplace(make_visibility(*state));
   return Scene(std::move(state));
+}
+
+PreparedTriangles SceneBuilder::number_triangles() {
+  PreparedTriangles all;
+  const auto append = [&all](Body& body, PreparedTriangles Body::*part, std::size_t index) {
+    PreparedTriangles& triangles = body.*part;
+    if (body.world_from_body)
+      for (TriangleSurface& surface : triangles.surfaces)
+        surface.body = static_cast<std::uint32_t>(index - 1);
+    const auto first = static_cast<TriangleId>(all.surfaces.size());
+    std::vector<Corners> corners = std::move(triangles.corners);
+    all.append(std::move(triangles));
+    triangles.corners = std::move(corners);
+    return first;
+  };
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    bodies_[i].first_opaque = append(bodies_[i], &Body::opaque, i);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    bodies_[i].first_cut_out = append(bodies_[i], &Body::cut_out, i);
+  return all;
+}
+
+Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
+  const auto is_opaque = [&state](const Ray& ray, TriangleId triangle) {
+    return state.is_opaque(ray, triangle);
+  };
+  const auto caster_of = [&](const Body& body) {
+    return RayCaster({body.opaque.corners, body.first_opaque},
+                     {body.cut_out.corners, body.first_cut_out}, is_opaque);
+  };
+  std::optional<RayCaster> still;
+  if (!bodies_.front().is_empty()) still.emplace(caster_of(bodies_.front()));
+  std::vector<MovingObject> objects;
+  std::vector<RayCaster> casters;
+  for (std::size_t i = 1; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    objects.emplace_back(body.object, *body.world_from_body, roomy(body.box()));
+    casters.push_back(caster_of(body));
+  }
+  return {std::move(still), std::move(objects), std::move(casters)};
 }
 
 Scene build_scene(const SceneOptions& options) {
   SceneBuilder builder;
   MeshImporter importer;
   std::map<std::filesystem::path, Mesh> meshes;
-  for (const MeshOptions& item : options.meshes) {
+  for (std::size_t i = 0; i < options.meshes.size(); ++i) {
+    const MeshOptions& item = options.meshes[i];
     auto known = meshes.find(item.file);
     if (known == meshes.end()) known = meshes.emplace(item.file, importer.read(item.file)).first;
     const Mesh& mesh = known->second;
-    if (builder.add(mesh, world_from_mesh(item, mesh)) == 0)
-      throw InputError(item.file.string(), "none of its triangles has an area");
+    const Eigen::Affine3d transform = world_from_mesh(item, mesh);
+    const std::string motion = fmt::format("scene.meshes[{}].trajectory", i);
+    const std::size_t kept =
+        item.trajectory
+            ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion))
+            : builder.add(mesh, transform);
+    if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian) builder.light(options.ambient, options.lights);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/spline.h"
 #include "simulator/scene/background.h"
 #include "simulator/scene/mesh.h"
 #include "simulator/scene/scene.h"
@@ -19,6 +20,7 @@ namespace saccade {
 [[nodiscard]] Scene build_scene(const SceneOptions& options);
 
 struct PreparedTriangles;
+class Visibility;
 
 /// Assembles a scene from meshes in memory.
 class SceneBuilder {
@@ -30,6 +32,10 @@ class SceneBuilder {
   /// are left out. Returns how many are kept.
   std::size_t add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh);
 
+  /// The same for an object that moves rigidly, `object_from_mesh` first.
+  std::size_t add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
+                         Spline world_from_object);
+
   /// Lambertian surfaces under ambient light and lamps; without it the albedo is the radiance.
   void light(double ambient, std::vector<LightOptions> lights);
 
@@ -37,8 +43,14 @@ class SceneBuilder {
   [[nodiscard]] Scene build(const Background& background) &&;
 
  private:
-  std::unique_ptr<PreparedTriangles> opaque_;
-  std::unique_ptr<PreparedTriangles> cut_out_;
+  struct Body;
+
+  std::size_t add_to(Body& body, const Mesh& mesh, const Eigen::Affine3d& body_from_mesh);
+  /// Moves all triangles together and numbers them; the corners stay.
+  [[nodiscard]] PreparedTriangles number_triangles();
+  [[nodiscard]] Visibility make_visibility(const Scene::State& state) const;
+
+  std::vector<Body> bodies_;  ///< what stands still, then the moving objects
   std::vector<std::shared_ptr<const Texture>> textures_;
   std::uint32_t objects_ = 0;
   bool is_lit_ = false;

@@ -5,22 +5,6 @@
 
 namespace saccade {
 
-void describe(config::Fields& fields, TransformOptions& options) {
-  fields.value("translation", options.translation, "position [m]");
-  fields.value("rotation_deg", options.rotation_deg, "about x, then y, then z");
-  const char* const help = "one factor, or one for each of x, y, z; before the rotation";
-  const Eigen::Vector3d& scale = options.scale;
-  const bool one_number = fields.reading() ? fields.form("scale") != config::Form::kList
-                                           : scale.x() == scale.y() && scale.x() == scale.z();
-  if (one_number) {
-    double factor = scale.x();
-    fields.value("scale", factor, help).above(0);
-    options.scale.setConstant(factor);
-  } else {
-    fields.value("scale", options.scale, help).above(0);
-  }
-}
-
 void describe(config::Fields& fields, MeshOptions& options) {
   fields.path("file", options.file, "mesh file, or archive.zip!/path/in/it.obj").required();
   if (fields.reading() && !options.file.empty()) {
@@ -37,6 +21,8 @@ void describe(config::Fields& fields, MeshOptions& options) {
       {{"origin", Anchor::kOrigin}, {"center", Anchor::kCenter}, {"bottom", Anchor::kBottom}},
       "what the translation puts in place: the file's origin, or the centre or the "
       "middle of the lowest face of the bounding box");
+  fields.section("trajectory", options.trajectory,
+                 "motion of the object, after its transform; its time 0 is the recording's");
   fields.expect(!options.size_m || options.transform.scale == Eigen::Vector3d::Ones(), "size_m",
                 "cannot be combined with transform.scale");
 }

@@ -6,18 +6,9 @@
 
 #include <Eigen/Core>
 
+#include "simulator/motion/motion_options.h"
+
 namespace saccade {
-
-namespace config {
-class Fields;
-}
-
-/// Scale, then rotation R = Rz Ry Rx, then translation.
-struct TransformOptions {
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< [m]
-  Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();  ///< about x, y and z
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();         ///< > 0; one number or three
-};
 
 /// The point of a mesh that its translation puts in place: the origin of its file, or, of the
 /// bounding box as it stands turned in the world, the centre or the centre of the lowest face.
@@ -28,6 +19,8 @@ struct MeshOptions {
   TransformOptions transform;
   std::optional<Eigen::Vector3d> size_m;  ///< bounding box in the file's own axes, instead of scale
   Anchor anchor = Anchor::kOrigin;
+  /// Moves the mesh: its poses come after everything above. Its time 0 is the recording's.
+  std::optional<MotionOptions> trajectory;
 };
 
 enum class LightType { kPoint, kDirectional };
@@ -52,7 +45,6 @@ struct SceneOptions {
   std::vector<LightOptions> lights;
 };
 
-void describe(config::Fields& fields, TransformOptions& options);
 void describe(config::Fields& fields, MeshOptions& options);
 void describe(config::Fields& fields, LightOptions& options);
 void describe(config::Fields& fields, SceneOptions& options);

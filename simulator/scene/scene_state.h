@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -9,12 +10,12 @@
 #include "simulator/scene/background.h"
 #include "simulator/scene/illumination.h"
 #include "simulator/scene/mesh.h"
-#include "simulator/scene/ray_caster.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/visibility.h"
 
 namespace saccade {
 
-/// a . p + b of a point p of the world.
+/// a . p + b of a point p.
 struct AffineForm {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   double offset = 0;
@@ -24,7 +25,10 @@ struct AffineForm {
   }
 };
 
-/// What shading one triangle reads: two cache lines.
+/// The body of triangles that stand still; others are indices into the moving objects.
+constexpr std::uint32_t kStill = std::numeric_limits<std::uint32_t>::max();
+
+/// What shading one triangle reads, in its body's frame: two cache lines.
 struct alignas(64) TriangleSurface {
   AffineForm plane;        ///< unit normal; zero on the plane
   AffineForm x;            ///< texel column; without a texture the albedo
@@ -32,6 +36,7 @@ struct alignas(64) TriangleSurface {
   const Texture* texture;  ///< nullptr: none
   double factor;           ///< multiplies the texture
   std::uint32_t object;
+  std::uint32_t body = kStill;
 };
 
 /// Where a point lies within its triangle: weights of the second and the third corner.
@@ -45,10 +50,11 @@ struct Cutout {
   const Texture* opacity;
 };
 
-/// Corners' unit normals.
+/// Corners' unit normals in the body's frame.
 using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 
-/// The triangles of a scene by number: opaque ones first, then those with cutouts.
+/// The triangles of a scene by number: opaque ones first, then those with cutouts; in both parts
+/// what stands still first, then object by object what moves.
 struct Scene::State {
   std::vector<TriangleSurface> surfaces;
   std::vector<TriangleInterior> interiors;
@@ -57,9 +63,26 @@ struct Scene::State {
   std::vector<std::shared_ptr<const Texture>> textures;  ///< keeps them alive
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
-  std::optional<RayCaster> caster;
+  std::optional<Visibility> visibility;
 
+  /// use(ray) with the ray in the frame of a body.
+  template <class Use>
+  auto in_frame_of(std::uint32_t body, const Ray& ray, const Use& use) const {
+    if (body == kStill) return use(ray);
+    return use(in_frame(visibility->objects()[body].frame(ray.time_s), ray));
+  }
+
+  /// Of a ray in the frame of the triangle's body:
   [[nodiscard]] bool is_opaque(const Ray& ray, TriangleId triangle) const;
+  /// Without the light; distance 0 where the ray misses the plane.
+  [[nodiscard]] SurfaceLook look(const Ray& ray, const TriangleSurface& surface) const;
+  /// As Scene::inside().
+  [[nodiscard]] double inside(const Ray& ray, TriangleId triangle) const;
+  /// In the body's frame.
+  [[nodiscard]] SurfacePoint local_point(const Ray& ray, double distance,
+                                         TriangleId triangle) const;
+
+  /// In the world, as is `ray`.
   [[nodiscard]] SurfacePoint surface_point(const Ray& ray, double distance,
                                            TriangleId triangle) const;
 };

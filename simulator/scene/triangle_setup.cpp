@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 
@@ -43,28 +44,32 @@ TexelForms texel_forms(const Texture& texture, const Mesh& mesh, const Triangle&
 }
 
 template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
+void append(std::vector<T>& to, std::vector<T>&& from) {
+  if (to.empty()) {
+    to = std::move(from);
+  } else {
+    to.insert(to.end(), from.begin(), from.end());
+  }
 }
 
 }  // namespace
 
-void PreparedTriangles::append(const PreparedTriangles& other) {
-  saccade::append(corners, other.corners);
-  saccade::append(surfaces, other.surfaces);
-  saccade::append(interiors, other.interiors);
-  saccade::append(normals, other.normals);
-  saccade::append(cutouts, other.cutouts);
+void PreparedTriangles::append(PreparedTriangles&& other) {
+  saccade::append(corners, std::move(other.corners));
+  saccade::append(surfaces, std::move(other.surfaces));
+  saccade::append(interiors, std::move(other.interiors));
+  saccade::append(normals, std::move(other.normals));
+  saccade::append(cutouts, std::move(other.cutouts));
 }
 
-TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh,
+TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh,
                              std::uint32_t object)
-    : mesh_(mesh), object_(object), normal_matrix_(world_from_mesh.linear().inverse().transpose()) {
+    : mesh_(mesh), object_(object), normal_matrix_(body_from_mesh.linear().inverse().transpose()) {
   for (const std::size_t size : {mesh.normals.size(), mesh.uvs.size(), mesh.colours.size()})
     SACCADE_CHECK(size == 0 || size == mesh.vertices.size());
   vertices_.reserve(mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices)
-    vertices_.emplace_back(world_from_mesh * vertex);
+    vertices_.emplace_back(body_from_mesh * vertex);
 }
 
 bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) const {

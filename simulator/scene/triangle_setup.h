@@ -11,7 +11,7 @@
 
 namespace saccade {
 
-/// Triangles in the form that rendering reads, in the world.
+/// Triangles in the form that rendering reads, in the frame of their body.
 struct PreparedTriangles {
   std::vector<Corners> corners;
   std::vector<TriangleSurface> surfaces;
@@ -19,13 +19,13 @@ struct PreparedTriangles {
   std::vector<ShadingNormals> normals;
   std::vector<Cutout> cutouts;  ///< one per triangle, or none at all
 
-  void append(const PreparedTriangles& other);
+  void append(PreparedTriangles&& other);
 };
 
 /// Prepares the triangles of a mesh, one by one.
 class TriangleSetup {
  public:
-  TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, std::uint32_t object);
+  TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh, std::uint32_t object);
 
   /// False, and nothing is added, for a triangle without area. `target` gets its cutout when the
   /// material has one.
@@ -40,7 +40,7 @@ class TriangleSetup {
   const Mesh& mesh_;
   std::uint32_t object_;
   Eigen::Matrix3d normal_matrix_;
-  std::vector<Eigen::Vector3d> vertices_;  ///< in the world
+  std::vector<Eigen::Vector3d> vertices_;  ///< in the body's frame
 };
 
 }  // namespace saccade

@@ -11,7 +11,7 @@
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/pose_table.h"
+#include "simulator/motion/pose_table.h"
 
 namespace saccade {
 

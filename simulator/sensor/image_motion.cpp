@@ -4,12 +4,48 @@
 #include <limits>
 
 namespace saccade {
+namespace {
+
+/// d distort / d pixel (2x2) by central differences; smooth enough for 1e-8.
+Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
+  if (!camera.is_distorted()) return Eigen::Matrix2d::Identity();
+  constexpr double kStep_px = 1e-3;
+  Eigen::Matrix2d jacobian;
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector2d step = kStep_px * Eigen::Vector2d::Unit(k);
+    jacobian.col(k) =
+        (camera.distort(pixel + step) - camera.distort(pixel - step)) / (2 * kStep_px);
+  }
+  return jacobian;
+}
+
+}  // namespace
 
 Twist camera_twist(const SplineState& state) {
   Twist twist;
   twist << state.world_from_body.rotation().conjugate() * state.velocity_in_world,
       state.angular_velocity_in_body;
   return twist;
+}
+
+Eigen::Vector2d point_motion(const PinholeCamera& camera, const Eigen::Vector3d& ray, double depth,
+                             const Twist& twist) {
+  const double z = depth > 0 ? depth : std::numeric_limits<double>::infinity();
+  // In the camera's frame the point moves by minus the camera's twist.
+  const Eigen::Vector2d ideal = -interaction_matrix(camera, ray, z) * twist;
+  return distortion_jacobian(camera, camera.project(ray)) * ideal;
+}
+
+Twist relative_twist(const SplineState& camera, const SplineState& object) {
+  const Eigen::Quaterniond camera_from_world = camera.world_from_body.rotation().conjugate();
+  const Eigen::Vector3d turning =
+      object.world_from_body.rotation() * object.angular_velocity_in_body;
+  const Eigen::Vector3d apart =
+      camera.world_from_body.translation() - object.world_from_body.translation();
+  Twist moved;
+  moved << camera_from_world * (object.velocity_in_world + turning.cross(apart)),
+      camera_from_world * turning;
+  return camera_twist(camera) - moved;
 }
 
 ImageSpeed image_speed_bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,

@@ -11,6 +11,16 @@ namespace saccade {
 /// Twist (v, w) of the camera in its own frame [m/s, rad/s].
 [[nodiscard]] Twist camera_twist(const SplineState& state);
 
+/// Twist of the camera as seen from a moving object, in the camera's frame: before it, the points
+/// of the object stand still.
+///   v = R_c^T (v_c - v_o - w_o x (t_c - t_o)),   w = w_c - R_c^T w_o   (v_o, w_o in the world)
+[[nodiscard]] Twist relative_twist(const SplineState& camera, const SplineState& object);
+
+/// Motion [px/s] on the distorted image of the point in the direction `ray` = (x, y, 1) at z depth
+/// `depth` [m], 0 = infinitely far, against which the camera moves with `twist`.
+[[nodiscard]] Eigen::Vector2d point_motion(const PinholeCamera& camera, const Eigen::Vector3d& ray,
+                                           double depth, const Twist& twist);
+
 /// Range of 1 / z over some pixels [1/m]; 0 stands for the background.
 struct InverseDepthRange {
   double low = 0;

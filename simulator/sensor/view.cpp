@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/object_motion.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kTilesPerTask = 16;
 
-/// What each ray of a tile sees: `use(ray index, shade)`.
+/// What each ray of a tile sees: `use(ray index, shade, triangle)`.
 template <class Use>
 void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
                 const StampedPose& pose, const Use& use) {
@@ -25,21 +25,9 @@ void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
     for (std::size_t k = 0; k < n; ++k)
       rays[k] = {origin, rotation * directions[first + k], pose.t_s};
     scene.visible({rays.data(), n}, {triangles.data(), n});
-    for (std::size_t k = 0; k < n; ++k) use(first + k, scene.shade(rays[k], triangles[k]));
+    for (std::size_t k = 0; k < n; ++k)
+      use(first + k, scene.shade(rays[k], triangles[k]), triangles[k]);
   }
-}
-
-/// d distort / d pixel (2x2) by central differences; smooth enough for 1e-8.
-Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
-  if (!camera.is_distorted()) return Eigen::Matrix2d::Identity();
-  constexpr double kStep_px = 1e-3;
-  Eigen::Matrix2d jacobian;
-  for (int k = 0; k < 2; ++k) {
-    const Eigen::Vector2d step = kStep_px * Eigen::Vector2d::Unit(k);
-    jacobian.col(k) =
-        (camera.distort(pixel + step) - camera.distort(pixel - step)) / (2 * kStep_px);
-  }
-  return jacobian;
 }
 
 }  // namespace
@@ -56,7 +44,9 @@ ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
     std::array<double, kTilePixels> sums{};
     for (const StampedPose& pose : poses)
       trace_tile(scene_, radiance_rays_.rays(index), pose,
-                 [&](std::size_t ray, const Shade& s) { sums[ray / per_pixel] += s.radiance; });
+                 [&](std::size_t ray, const Shade& s, TriangleId) {
+                   sums[ray / per_pixel] += s.radiance;
+                 });
     for (std::size_t i = 0; i < tile.pixels(); ++i)
       image(tile.x(i), tile.y(i)) = static_cast<float>(sums[i] / count);
   };
@@ -68,9 +58,10 @@ ImageF ViewRenderer::depth(const StampedPose& pose) const {
   ImageF image(camera().width, camera().height);
   const auto render = [&](std::size_t index) {
     const Tile tile = centre_rays_.tile(index);
-    trace_tile(scene_, centre_rays_.rays(index), pose, [&](std::size_t i, const Shade& shade) {
-      image(tile.x(i), tile.y(i)) = static_cast<float>(shade.distance);
-    });
+    trace_tile(scene_, centre_rays_.rays(index), pose,
+               [&](std::size_t i, const Shade& shade, TriangleId) {
+                 image(tile.x(i), tile.y(i)) = static_cast<float>(shade.distance);
+               });
   };
   parallel_for(centre_rays_.tile_count(), render, kTilesPerTask);
   return image;
@@ -79,17 +70,13 @@ ImageF ViewRenderer::depth(const StampedPose& pose) const {
 FlowField ViewRenderer::flow(const SplineState& state, double t_s) const {
   FlowField field{ImageF(camera().width, camera().height), ImageF(camera().width, camera().height)};
   const StampedPose pose{t_s, state.world_from_body};
-  const Twist twist = camera_twist(state);
+  const RelativeTwists twists(scene_, state, t_s);
   const auto render = [&](std::size_t index) {
     const Tile tile = centre_rays_.tile(index);
     const std::span<const Eigen::Vector3d> rays = centre_rays_.rays(index);
-    trace_tile(scene_, rays, pose, [&](std::size_t i, const Shade& shade) {
-      const double depth =
-          shade.distance > 0 ? shade.distance : std::numeric_limits<double>::infinity();
-      // In the camera's frame the point moves by minus the camera's twist.
-      const Eigen::Vector2d ideal = -interaction_matrix(camera(), rays[i], depth) * twist;
-      const Eigen::Vector2d pixel = camera().project(rays[i]);
-      const Eigen::Vector2d flow = distortion_jacobian(camera(), pixel) * ideal;
+    trace_tile(scene_, rays, pose, [&](std::size_t i, const Shade& shade, TriangleId triangle) {
+      const Eigen::Vector2d flow =
+          point_motion(camera(), rays[i], shade.distance, twists.before(triangle));
       field.u(tile.x(i), tile.y(i)) = static_cast<float>(flow.x());
       field.v(tile.x(i), tile.y(i)) = static_cast<float>(flow.y());
     });

@@ -5,9 +5,9 @@
 
 #include "core/image.h"
 #include "core/random.h"
+#include "simulator/motion/pose_table.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/pose_table.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {

@@ -1,4 +1,4 @@
-#include "simulator/sensor/pose_table.h"
+#include "simulator/motion/pose_table.h"
 
 #include "core/check.h"
 
@@ -25,14 +25,14 @@ Knot knot_at(const Spline& spline, double t_s) {
 
 }  // namespace
 
-PoseTable::PoseTable(const Spline& world_from_camera, double from_s, double to_s)
+PoseTable::PoseTable(const Spline& world_from_body, double from_s, double to_s)
     : from_s_(from_s), length_s_(to_s - from_s) {
   SACCADE_CHECK(to_s > from_s);
   std::size_t count = kFewestPieces;
-  fill(world_from_camera, count);
-  while (largest_error(world_from_camera) > kTolerance &&
+  fill(world_from_body, count);
+  while (largest_error(world_from_body) > kTolerance &&
          length_s_ > kShortestPiece_s * static_cast<double>(2 * count))
-    fill(world_from_camera, count *= 2);
+    fill(world_from_body, count *= 2);
 }
 
 void PoseTable::fill(const Spline& spline, std::size_t count) {

@@ -11,9 +11,9 @@
 
 namespace saccade {
 
-/// A camera's axes and position in the world.
+/// The axes and the position in the world of a camera or another moving body.
 struct CameraFrame {
-  Eigen::Matrix3d rotation;  ///< world from camera
+  Eigen::Matrix3d rotation;  ///< world from body
   Eigen::Vector3d position;
 };
 
@@ -23,7 +23,7 @@ struct CameraFrame {
 class PoseTable {
  public:
   /// `from_s` < `to_s`, within the spline's span.
-  PoseTable(const Spline& world_from_camera, double from_s, double to_s);
+  PoseTable(const Spline& world_from_body, double from_s, double to_s);
 
   /// `t_s` within the stretch.
   [[nodiscard]] CameraFrame at(double t_s) const {
