@@ -18,19 +18,25 @@ struct SimulateVerbOptions {
   CommonOptions common;
 };
 
-void show(const SimulationReport& report, const std::filesystem::path& output) {
-  const DatasetRecord& record = report.record;
-  const double events = static_cast<double>(report.event_count());
+void show(const CameraReport& camera, const std::filesystem::path& folder) {
+  const DatasetRecord& record = camera.record;
+  const double events = static_cast<double>(camera.event_count());
   fmt::print("{}: {:.4g} s, {:.3f} M events ({:.3f} M ON), mean depth {:.2f} m, path {:.2f} m\n",
-             output.string(), record.duration_s, events * 1e-6,
+             folder.string(), record.duration_s, events * 1e-6,
              static_cast<double>(record.counts ? record.counts->events_on : 0) * 1e-6,
-             record.mean_scene_depth_m.value_or(0), report.path_length_m);
+             record.mean_scene_depth_m.value_or(0), record.path_length_m.value_or(0));
   fmt::print(
       "  {:.1f} M rays ({:.2f} per event), timestamps within {:.2g} us\n"
-      "  {:.1f} s: scene {:.1f}, images {:.1f}, events {:.1f} ({:.2f} M events/s)\n",
+      "  images {:.1f} s, events {:.1f} s ({:.2f} M events/s)\n",
       static_cast<double>(record.rays.value_or(0)) * 1e-6, record.rays_per_event.value_or(0),
-      1e6 * report.events.time_bound_s, report.total_s, report.load_s, report.images_s,
-      report.events_s, 1e-6 * events / report.events_s);
+      1e6 * camera.events.time_bound_s, camera.images_s, camera.events_s,
+      1e-6 * events / camera.events_s);
+}
+
+void show(const SimulationReport& report, const std::filesystem::path& output) {
+  for (std::size_t i = 0; i < report.cameras.size(); ++i)
+    show(report.cameras[i], i == 0 ? output : output / fmt::format("cam{}", i));
+  fmt::print("  {:.1f} s in all, scene {:.1f} s\n", report.total_s, report.load_s);
 }
 
 void simulate_config(const SimulateVerbOptions& options) {

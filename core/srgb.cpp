@@ -50,4 +50,14 @@ ImageU8 srgb8_from_linear(const ImageF& linear) {
   return converted<std::uint8_t>(linear, [](float value) { return srgb8_from_linear(value); });
 }
 
+ImageU8 codes_from_linear(const ImageF& linear, const ToneCurve& curve) {
+  const double exponent = 1 / curve.gamma.value_or(1);
+  return converted<std::uint8_t>(linear, [&](float value) -> std::uint8_t {
+    const double x = curve.gain * static_cast<double>(value);
+    if (!curve.gamma) return srgb8_from_linear(static_cast<float>(x));
+    if (!(x > 0)) return 0;
+    return static_cast<std::uint8_t>(std::pow(std::min(x, 1.0), exponent) * 255 + 0.5);
+  });
+}
+
 }  // namespace saccade

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/image.h"
 
@@ -17,6 +18,14 @@ namespace saccade {
 
 [[nodiscard]] ImageF linear_from_srgb8(const ImageU8& codes);
 [[nodiscard]] ImageU8 srgb8_from_linear(const ImageF& linear);
+
+/// How a camera turns linear radiance into 8-bit codes: 255 curve(gain * radiance), clamped.
+struct ToneCurve {
+  double gain = 1;              ///< radiance 1 / gain is white
+  std::optional<double> gamma;  ///< curve(x) = x^(1 / gamma); none: the sRGB curve
+};
+
+[[nodiscard]] ImageU8 codes_from_linear(const ImageF& linear, const ToneCurve& curve);
 
 /// Luminance of linear RGB (ITU-R BT.709).
 [[nodiscard]] constexpr float luminance(float r, float g, float b) {

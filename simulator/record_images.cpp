@@ -1,36 +1,22 @@
 #include "simulator/record_images.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "simulator/exposure.h"
 #include "simulator/sensor/sample_times.h"
 #include "simulator/sensor/view.h"
 
 namespace saccade {
 namespace {
 
-/// Poses whose views average to the frame at `t_s`: midpoints of equal parts of the exposure, as
-/// many as keep the image motion between two of them below a quarter of a pixel.
 std::vector<StampedPose> exposure_poses(const Take& take, const ViewRenderer& renderer,
                                         double t_s) {
-  constexpr double kMotion_px = 0.25;
-  constexpr double kMostPoses = 256;
-  const double half_s = 0.5 * take.config.frames.exposure_s;
-  if (half_s == 0) return {take.pose(t_s)};
-  const double from_s = std::max(0.0, t_s - half_s);
-  const double to_s = std::min(take.duration_s(), t_s + half_s);
-  const FlowField flow = renderer.flow(take.world_from_camera.state(t_s), t_s);
-  float speed = 0;
-  for (std::size_t i = 0; i < flow.u.size(); ++i)
-    speed = std::max(speed, std::hypot(flow.u.pixels()[i], flow.v.pixels()[i]));
-  const double count = std::clamp(
-      std::ceil(static_cast<double>(speed) * (to_s - from_s) / kMotion_px), 1.0, kMostPoses);
   std::vector<StampedPose> poses;
-  for (double k = 0.5; k < count; ++k)
-    poses.push_back(take.pose(from_s + (to_s - from_s) * k / count));
+  for (const double t :
+       exposure_times(renderer, take.world_from_camera, t_s, take.config.frames.exposure_s))
+    poses.push_back(take.pose(t));
   return poses;
 }
 

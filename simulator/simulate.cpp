@@ -1,7 +1,9 @@
 #include "simulator/simulate.h"
 
 #include <chrono>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/config/config.h"
 #include "core/io/dataset_writer.h"
@@ -9,6 +11,7 @@
 #include "simulator/record_events.h"
 #include "simulator/record_groundtruth.h"
 #include "simulator/record_images.h"
+#include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
 #include "simulator/unfinished.h"
 
@@ -29,50 +32,73 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-DatasetRecord facts(const Take& take, const SimulationReport& report) {
+DatasetRecord facts(const Take& take, const EventStatistics& events, double path_length_m) {
   DatasetRecord record;
   record.seed = take.config.seed;
   record.config_yaml = config::print(take.config);
   record.duration_s = take.duration_s();
-  record.contrast_on = take.config.events.contrast.on;
-  record.contrast_off = take.config.events.contrast.off;
-  record.log_eps = take.config.events.log_eps;
-  record.rays = static_cast<std::int64_t>(report.events.rays);
-  record.time_bound_us = 1e6 * report.events.time_bound_s;
-  record.path_length_m = report.path_length_m;
+  record.contrast_on = take.events.contrast.on;
+  record.contrast_off = take.events.contrast.off;
+  record.log_eps = take.events.log_eps;
+  record.rays = static_cast<std::int64_t>(events.rays);
+  record.time_bound_us = 1e6 * events.time_bound_s;
+  record.path_length_m = path_length_m;
   return record;
+}
+
+/// Records what one camera sees; the first one carries the IMU.
+CameraReport record_camera(const Take& take, bool is_first, const std::string& name) {
+  Stopwatch watch;
+  CameraReport report;
+  const double path_length_m = record_groundtruth(take);
+  if (is_first) record_imu(take);
+  record_images(take);
+  report.images_s = watch.lap();
+  report.events = record_events(take);
+  report.events_s = watch.lap();
+  DatasetRecord record = facts(take, report.events, path_length_m);
+  record.name = name;
+  report.record = take.writer.finish(std::move(record));
+  return report;
 }
 
 }  // namespace
 
-std::int64_t SimulationReport::event_count() const {
+std::int64_t CameraReport::event_count() const {
   return record.counts ? record.counts->events_on + record.counts->events_off : 0;
 }
 
 SimulationReport simulate(const SimulationConfig& config, const std::filesystem::path& output) {
-  config.camera.check("camera");
   Stopwatch whole;
   Stopwatch watch;
   SimulationReport report;
   const InputLog inputs;
+  const std::vector<RigCamera> cameras = rig_cameras(config);
+  const std::vector<ChainCamera> chain = camera_chain(cameras, config.imu);
   const Spline motion =
       cut_motion(build_motion(config.trajectory), config.start_s, config.duration_s);
   const Scene scene = build_scene(config.scene);
   report.load_s = watch.lap();
 
   ResumableFolder folder(output, "dataset.yaml", fingerprint_of(config, inputs));
-  const EventLogs logs = open_logs(folder, 1, motion.end_s());
-  DatasetWriter writer(folder.path(), config.camera, {config.events.timestamp_unit});
-  const Take take{config, config.camera, config.events, scene, motion, writer, *logs.front()};
-  report.path_length_m = record_groundtruth(take);
-  record_imu(take);
-  record_images(take);
-  report.images_s = watch.lap();
-  report.events = record_events(take);
-  report.events_s = watch.lap();
-  DatasetRecord record = facts(take, report);
-  record.name = folder.target().filename().string();
-  report.record = writer.finish(std::move(record));
+  const EventLogs logs = open_logs(folder, cameras.size(), motion.end_s());
+  report.cameras.resize(cameras.size());
+  // The first camera comes last, because its dataset.yaml states the hashes of the others' files.
+  for (std::size_t i = cameras.size(); i-- > 0;) {
+    const RigCamera& camera = cameras[i];
+    const bool is_first = i == 0;
+    const Spline camera_motion = is_first ? motion : motion.attached(camera.camera0_from_camera);
+    DatasetWriterOptions options{camera.events.timestamp_unit, false, config.frames.tone, {}};
+    options.chain = is_first ? chain : std::vector<ChainCamera>{{camera.camera, {}, {}}};
+    const auto within = [&](const std::filesystem::path& root) {
+      return is_first ? root : root / camera.folder;
+    };
+    DatasetWriter writer(within(folder.path()), camera.camera, options);
+    const Take take{config, camera.camera, camera.events, camera.seed,
+                    scene,  camera_motion, writer,        *logs[i]};
+    report.cameras[i] =
+        record_camera(take, is_first, within(folder.target().filename()).generic_string());
+  }
   folder.commit();
   report.total_s = whole.lap();
   return report;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/io/dataset_record.h"
 #include "simulator/sensor/event_tile.h"
@@ -8,17 +9,21 @@
 
 namespace saccade {
 
-/// What a simulation produced and what it cost.
-struct SimulationReport {
-  DatasetRecord record;  ///< as in dataset.yaml
+/// What one camera recorded and what it cost.
+struct CameraReport {
+  DatasetRecord record;  ///< as in its dataset.yaml
   EventStatistics events;
-  double path_length_m = 0;
-  double load_s = 0;    ///< scene and trajectory
   double images_s = 0;  ///< frames, depth maps and motion fields, with writing
   double events_s = 0;  ///< events, with writing
-  double total_s = 0;   ///< everything, hashing included
 
   [[nodiscard]] std::int64_t event_count() const;
+};
+
+/// What a simulation produced and what it cost.
+struct SimulationReport {
+  std::vector<CameraReport> cameras;  ///< at least the first one, then those of the rig
+  double load_s = 0;                  ///< scene and trajectory
+  double total_s = 0;                 ///< everything, hashing included
 };
 
 /// Simulates `config` into the dataset folder `output` (an existing dataset there is replaced),

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "core/camera.h"
 #include "core/config/fields.h"
+#include "core/rigid3.h"
+#include "core/srgb.h"
 #include "simulator/motion/motion_options.h"
 #include "simulator/scene/scene_options.h"
 #include "simulator/sensor/event_options.h"
@@ -20,6 +23,14 @@ struct FrameOptions {
   /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
   /// recording.
   double exposure_s = 0;
+  ToneCurve tone;  ///< of the 8-bit pictures: keys `gain` and `gamma`; the EXR holds radiance
+};
+
+/// A further camera of a rig (list `rig`), fixed to the first one.
+struct RigCameraOptions {
+  PinholeCamera camera;
+  Rigid3 camera0_from_camera{};  ///< key T_camera0_camera, 4 x 4
+  EventOptions events;
 };
 
 /// Rates of the ground truth, from time 0 (section `groundtruth`); 0: none.
@@ -27,6 +38,7 @@ struct GroundtruthOptions {
   double pose_rate_hz = 1000;  ///< the last pose is at the recording's end, whatever the rate
   double depth_rate_hz = 10;   ///< besides at the time of every frame
   double flow_rate_hz = 0;
+  bool event_labels = false;  ///< labels.h5
 };
 
 /// Everything that `simulate` needs, with all its defaults.
@@ -37,6 +49,7 @@ struct SimulationConfig {
   std::optional<double> duration_s;  ///< default: to the trajectory's end
   PinholeCamera camera{240, 180, 200, 200, 119.5, 89.5, {}};
   EventOptions events;
+  std::vector<RigCameraOptions> rig;  ///< unless stated with the first camera's lens and pixels
   ImuOptions imu;
   FrameOptions frames;
   GroundtruthOptions groundtruth;
@@ -46,6 +59,7 @@ struct SimulationConfig {
 
 void describe(config::Fields& fields, PinholeCamera& camera);
 void describe(config::Fields& fields, FrameOptions& options);
+void describe(config::Fields& fields, RigCameraOptions& options);
 void describe(config::Fields& fields, GroundtruthOptions& options);
 void describe(config::Fields& fields, SimulationConfig& config);
 

@@ -13,6 +13,7 @@ struct Take {
   const SimulationConfig& config;
   const PinholeCamera& camera;
   const EventOptions& events;
+  std::uint64_t seed;  ///< of this camera's random numbers
   const Scene& scene;
   const Spline& world_from_camera;  ///< time 0 is the recording's start
   DatasetWriter& writer;

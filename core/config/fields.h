@@ -63,9 +63,11 @@ class Fields {
   Rule group(std::string_view key, const std::function<void(Fields&)>& describe_group,
              std::string_view help);
 
-  /// A list of sections; a stated list replaces the default one.
+  /// A list of sections; a stated list replaces the default one, and `item` holds the defaults of
+  /// its items.
   template <class T>
-  Rule list(std::string_view key, std::vector<T>& target, std::string_view help);
+  Rule list(std::string_view key, std::vector<T>& target, std::string_view help,
+            const std::type_identity_t<T>& item = {});
 
   /// A subtree of which only the YAML text is kept, unchecked (a resolved configuration inside
   /// dataset.yaml).
@@ -183,13 +185,11 @@ Rule Fields::section(std::string_view key, std::optional<T>& target, std::string
 }
 
 template <class T>
-Rule Fields::list(std::string_view key, std::vector<T>& target, std::string_view help) {
-  const auto resize = [&](std::size_t size) {
-    target.clear();
-    target.resize(size);
-  };
-  const auto item = [&](Fields& fields, std::size_t i) { describe(fields, target[i]); };
-  return each(key, target.size(), resize, item, help);
+Rule Fields::list(std::string_view key, std::vector<T>& target, std::string_view help,
+                  const std::type_identity_t<T>& item) {
+  const auto resize = [&](std::size_t size) { target.assign(size, item); };
+  const auto describe_item = [&](Fields& fields, std::size_t i) { describe(fields, target[i]); };
+  return each(key, target.size(), resize, describe_item, help);
 }
 
 }  // namespace saccade::config

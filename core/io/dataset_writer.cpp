@@ -4,7 +4,6 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/io/calibration_file.h"
 #include "core/io/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
@@ -65,7 +64,7 @@ void DatasetWriter::store(std::vector<StampedFile>& list, std::size_t index, dou
 
 void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& radiance) {
   const fs::path png = numbered("images", "frame", index, "png");
-  write_png(folder_ / png, srgb8_from_linear(radiance));
+  write_png(folder_ / png, codes_from_linear(radiance, options_.tone));
   write_exr(folder_ / numbered("images", "frame", index, "exr"), radiance, "Y");
   store(frames_, index, t_s, png);
 }
@@ -157,7 +156,8 @@ DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   write_list_if_any(folder_ / "depth.txt", depth_maps_);
   write_list_if_any(folder_ / "flow.txt", flow_maps_);
   write_calib_txt(folder_ / "calib.txt", camera_);
-  write_camera_yaml(folder_ / "camera.yaml", camera_);
+  const std::vector<ChainCamera> alone = {{camera_, {}, {}}};
+  write_camera_chain(folder_ / "camera.yaml", options_.chain.empty() ? alone : options_.chain);
   counts_.frames = static_cast<std::int64_t>(frames_.size());
   counts_.depth_maps = static_cast<std::int64_t>(depth_maps_.size());
   counts_.flow_maps = static_cast<std::int64_t>(flow_maps_.size());

@@ -12,17 +12,21 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/imu_sample.h"
+#include "core/io/calibration_file.h"
 #include "core/io/dataset_record.h"
 #include "core/io/event_file.h"
 #include "core/io/exr_file.h"
 #include "core/io/file_list.h"
+#include "core/srgb.h"
 #include "core/trajectory.h"
 
 namespace saccade {
 
 struct DatasetWriterOptions {
   TimestampUnit timestamp_unit = TimestampUnit::kMicroseconds;
-  bool events_text = false;  ///< events.txt beside events.h5
+  bool events_text = false;          ///< events.txt beside events.h5
+  ToneCurve tone{};                  ///< of the 8-bit frames
+  std::vector<ChainCamera> chain{};  ///< what camera.yaml holds; empty: the camera alone
 };
 
 /// Fills a dataset folder. Every file in it is complete or not there; the folder as a whole gets
@@ -42,8 +46,8 @@ class DatasetWriter {
   void write_events(std::span<const Event> events);
 
   /// Frame, depth map and motion field `index` (0, 1, 2 ... in order of time, none left out);
-  /// thread-safe for different indices. `radiance` is linear: EXR, and PNG sRGB-encoded. `depth`
-  /// [m], 0 = nothing.
+  /// thread-safe for different indices. `radiance` is linear: EXR as it is, and PNG through the
+  /// tone curve. `depth` [m], 0 = nothing.
   void write_frame(std::size_t index, double t_s, const ImageF& radiance);
   void write_depth(std::size_t index, double t_s, const ImageF& depth);
   void write_flow(std::size_t index, double t_s, const FlowField& flow);

@@ -87,6 +87,22 @@ TEST(Srgb, EveryCodeSurvivesTheRoundTrip) {
   }
 }
 
+TEST(Srgb, ToneCurveGoesThroughGainAndGamma) {
+  ImageF linear(4, 1);
+  linear(0, 0) = 0.25F;
+  linear(1, 0) = 0.5F;
+  linear(2, 0) = -1.0F;
+  linear(3, 0) = std::nanf("");
+  const auto codes = [&](const ToneCurve& curve) {
+    const ImageU8 image = codes_from_linear(linear, curve);
+    return std::vector<int>(image.pixels().begin(), image.pixels().end());
+  };
+  EXPECT_EQ(codes({}), (std::vector<int>{137, 188, 0, 0}));
+  EXPECT_EQ(codes({.gain = 2, .gamma = {}}), (std::vector<int>{188, 255, 0, 0}));
+  EXPECT_EQ(codes({.gain = 1, .gamma = 1}), (std::vector<int>{64, 128, 0, 0}));
+  EXPECT_EQ(codes({.gain = 2, .gamma = 2}), (std::vector<int>{180, 255, 0, 0}));
+}
+
 TEST(Srgb, CurveHasItsKnownValues) {
   EXPECT_NEAR(linear_from_srgb(0.5), 0.21404114048, 1e-10);
   EXPECT_NEAR(linear_from_srgb(0.02), 0.02 / 12.92, 1e-15);

@@ -76,8 +76,9 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 }
 
 TEST_F(SimulatePlane, WritesADatasetThatAgreesWithTheClosedForm) {
-  const SimulationReport report =
-      simulate(config("events: {timestamp_unit: ns}\ngroundtruth: {flow_rate_hz: 20}\n"), output());
+  const CameraReport report =
+      simulate(config("events: {timestamp_unit: ns}\ngroundtruth: {flow_rate_hz: 20}\n"), output())
+          .cameras.front();
   const Dataset dataset = Dataset::open(output());
   EXPECT_EQ(dataset.camera().cx, 30);
   const Events events = dataset.load_events();
