@@ -200,6 +200,14 @@ TEST(Readout, LeavesARareEventAlone) {
   EXPECT_EQ(record(readout(1e6, false, 1), events), events);
 }
 
+TEST(Readout, EventsOfOneStampAreOrderedHoweverTheStreamIsCut) {
+  // Bursts every 5 us keep a bus busy that sends three events per microsecond.
+  const SensedEvents events = random_events(20000, 2.7e6, 5000);
+  const SensedEvents recorded = record(readout(3e6, false, 0), events, events.size());
+  EXPECT_TRUE(std::ranges::is_sorted(recorded, SensedEventOrder{}));
+  EXPECT_EQ(record(readout(3e6, false, 0), events, 1), recorded);
+}
+
 TEST(Readout, ServesABurstAtItsRateAndLosesWhatFindsNoPlace) {
   SensedEvents events(100);
   for (std::size_t i = 0; i < events.size(); ++i) {
