@@ -15,6 +15,11 @@ namespace {
 
 constexpr std::uint64_t kMostShapes = 4'000'000;
 
+/// Half lengths from which leaves get a midrib and veins, and the width of these [texel].
+constexpr float kShortestRibbed = 3;
+constexpr float kShortestVeined = 7;
+constexpr double kThinnestVein = 1;
+
 /// Who draws random numbers; lattices of noise follow from kNoise on, one per octave.
 enum Stream : std::uint64_t { kBackground, kShapes, kLines, kText, kLetters, kNoise = 16 };
 
@@ -64,7 +69,7 @@ class Generator {
   [[nodiscard]] ImageF run() {
     Dice dice(random_, kBackground, 0);
     image_.fill(log_albedo(dice));
-    add_leaves();
+    add_covering_shapes();
     add_lines();
     add_text();
     draw_shapes(image_, shapes_, static_cast<float>(options_.edge_texels));
@@ -86,12 +91,14 @@ class Generator {
             static_cast<float>(-margin + dice.uniform() * (height_ + 2 * margin))};
   }
 
-  void add_leaves() {
-    const auto& [diameter, coverage, opacity] = options_.shapes;
+  void add_covering_shapes() {
+    const auto& [diameter, coverage, opacity, leaves] = options_.shapes;
     const double a = diameter[0];
     const double b = diameter[1];
-    // Mean of pi/4 d^2 under a density ~ d^-3 between a and b; the shapes fill about 0.7 of a disc.
-    const double mean_area = 0.7 * 0.785 * 2 * std::log(b / a) / (1 / (a * a) - 1 / (b * b));
+    // Mean of pi/4 d^2 under a density ~ d^-3 between a and b; the shapes fill about 0.7 of a disc,
+    // leaves 0.3.
+    const double filled = 0.7 * (1 - leaves) + 0.3 * leaves;
+    const double mean_area = filled * 0.785 * 2 * std::log(b / a) / (1 / (a * a) - 1 / (b * b));
     const double margin = 0.5 * b * scale_;
     const double drawn_m2 = (width_ + 2 * margin) * (height_ + 2 * margin) / (scale_ * scale_);
     const auto count = static_cast<std::uint64_t>(coverage * drawn_m2 / mean_area);
@@ -104,7 +111,12 @@ class Generator {
       shape.reach = static_cast<float>(0.5 * size * scale_);
       shape.log_albedo = log_albedo(dice);
       shape.opacity = static_cast<float>(dice.between(opacity));
-      const double kind = dice.uniform();
+      const double draw = dice.uniform();
+      if (draw < leaves) {
+        add_leaf(std::move(shape), dice);
+        continue;
+      }
+      const double kind = (draw - leaves) / (1 - leaves);
       if (kind < 0.3) {
         shape.half_width = shape.reach;
       } else if (kind < 0.65) {
@@ -114,6 +126,29 @@ class Generator {
       }
       shapes_.push_back(std::move(shape));
     }
+  }
+
+  /// A leaf with a midrib and, where they show, side veins of one other grey level.
+  void add_leaf(TextureShape leaf, Dice& dice) {
+    const Eigen::Vector2f axis = dice.direction().cast<float>();
+    const float length = leaf.reach;
+    leaf.half_axis = length * axis;
+    leaf.half_width = static_cast<float>(0.25 + 0.25 * dice.uniform()) * length;
+    leaf.arc_radius = (length * length + leaf.half_width * leaf.half_width) / (2 * leaf.half_width);
+    const Eigen::Vector2f center = leaf.center;
+    const Eigen::Vector2f across = leaf.half_width * Eigen::Vector2f(-axis.y(), axis.x());
+    shapes_.push_back(std::move(leaf));
+    const float level = log_albedo(dice);
+    const double width = std::max(0.07 * length, kThinnestVein);
+    if (length < kShortestRibbed) return;
+    add_stroke(center - length * axis, center + 0.9F * length * axis, width, level);
+    if (length < kShortestVeined) return;
+    for (const float place : {-0.5F, -0.1F, 0.3F})
+      for (const float side : {-0.6F, 0.6F}) {
+        const Eigen::Vector2f root = center + place * length * axis;
+        const Eigen::Vector2f reach = 0.3F * length * axis + (1 - place * place) * side * across;
+        add_stroke(root, root + reach, 0.7 * width, level);
+      }
   }
 
   static void add_rectangle_sides(TextureShape& shape, Dice& dice) {

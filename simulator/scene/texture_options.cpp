@@ -36,6 +36,7 @@ void describe(config::Fields& fields, TextureOptions& options) {
         group.value("coverage", shapes.coverage, "their area over the texture's").range(0, 50);
         group.value("opacity", shapes.opacity, "faintest and strongest").range(0, 1);
         ordered(group, "opacity", shapes.opacity);
+        group.value("leaves", shapes.leaves, "share of leaves with veins among them").range(0, 1);
       },
       "discs, rectangles and polygons that cover one another");
   fields.group(

@@ -26,6 +26,7 @@ struct TextureOptions {
     std::array<double, 2> diameter_m{0.02, 0.8};  ///< smallest, largest; density ~ diameter^-3
     double coverage = 3;                          ///< area of all shapes over area of the texture
     std::array<double, 2> opacity{0.3, 1};        ///< range: faint and strong edges
+    double leaves = 0;  ///< share of leaves with veins; the rest discs, rectangles, polygons
   } shapes;
   struct Lines {
     double per_m2 = 4;

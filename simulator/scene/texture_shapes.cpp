@@ -44,6 +44,15 @@ float distance_to_stroke(const TextureShape& shape, const Eigen::Vector2f& texel
   return (offset - along * shape.half_axis).norm() - shape.half_width;
 }
 
+/// A leaf is what two discs of radius `arc_radius` have in common.
+float distance_to_leaf(const TextureShape& shape, const Eigen::Vector2f& texel) {
+  const Eigen::Vector2f offset = texel - shape.center;
+  const Eigen::Vector2f across =
+      Eigen::Vector2f(-shape.half_axis.y(), shape.half_axis.x()).normalized();
+  const Eigen::Vector2f to_center = (shape.arc_radius - shape.half_width) * across;
+  return std::max((offset - to_center).norm(), (offset + to_center).norm()) - shape.arc_radius;
+}
+
 template <class Distance>
 void draw(ImageF& image, const TextureShape& shape, const Distance& distance, float edge,
           int first_row, int last_row) {
@@ -60,7 +69,9 @@ void draw(ImageF& image, const TextureShape& shape, const Distance& distance, fl
 }
 
 void draw(ImageF& image, const TextureShape& shape, float edge, int first_row, int last_row) {
-  if (shape.sides.empty())
+  if (shape.arc_radius > 0)
+    draw(image, shape, distance_to_leaf, edge, first_row, last_row);
+  else if (shape.sides.empty())
     draw(image, shape, distance_to_stroke, edge, first_row, last_row);
   else
     draw(image, shape, distance_to_polygon, edge, first_row, last_row);

@@ -75,6 +75,14 @@ TEST(TextureGenerator, EdgesBlendOverMoreThanATexel) {
   EXPECT_LT(largest, 0.95 * std::log(0.95 / 0.05));
 }
 
+TEST(TextureGenerator, LeavesAreAnotherTextureOfTheSameKind) {
+  TextureOptions leaves = small();
+  leaves.shapes.leaves = 1;
+  const ImageF image = generate_texture(leaves);
+  EXPECT_NE(image, generate_texture(small()));
+  EXPECT_GT(mean_difference(image, 16, 0), 1.15 * mean_difference(image, 1, 0));
+}
+
 TEST(TextureGenerator, EmptyLayersLeaveAnEvenSurface) {
   TextureOptions options = small();
   options.shapes.coverage = 0;
