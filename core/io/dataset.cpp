@@ -174,6 +174,15 @@ EventLabels Dataset::load_labels(double start_s, double end_s) const {
   return read_labels_h5(folder_ / "labels.h5", reader.info().count, begin, end);
 }
 
+std::vector<fs::path> Dataset::further_cameras() const {
+  std::vector<fs::path> folders;
+  while (true) {
+    fs::path next = folder_ / ("cam" + std::to_string(folders.size() + 1));
+    if (!fs::is_directory(next)) return folders;
+    folders.push_back(std::move(next));
+  }
+}
+
 bool Dataset::has_imu() const { return fs::exists(folder_ / "imu.txt"); }
 
 std::vector<ImuSample> Dataset::load_imu() const { return read_imu(folder_ / "imu.txt"); }
@@ -184,6 +193,11 @@ std::vector<ImuTruth> Dataset::load_imu_truth() const {
 
 std::vector<StampedTwist> Dataset::load_twists() const {
   return read_twists(folder_ / "twist.txt");
+}
+
+std::vector<ObjectPose> Dataset::load_objects() const {
+  const std::filesystem::path file = folder_ / "objects.txt";
+  return std::filesystem::exists(file) ? read_object_poses(file) : std::vector<ObjectPose>();
 }
 
 }  // namespace saccade

@@ -53,6 +53,8 @@ class Dataset {
   /// events.h5 or, without one, events.txt; empty when the folder holds neither.
   [[nodiscard]] const std::filesystem::path& events_file() const { return events_file_; }
   [[nodiscard]] bool has_imu() const;
+  /// Folders of a rig's further cameras, cam1, cam2 ..., each a dataset of its own.
+  [[nodiscard]] std::vector<std::filesystem::path> further_cameras() const;
 
   /// Events with start_s <= t < end_s, in EventOrder. Seconds count from the dataset's time zero.
   [[nodiscard]] Events load_events(double start_s = -std::numeric_limits<double>::infinity(),
@@ -73,6 +75,8 @@ class Dataset {
   /// (imu_groundtruth.txt, twist.txt).
   [[nodiscard]] std::vector<ImuTruth> load_imu_truth() const;
   [[nodiscard]] std::vector<StampedTwist> load_twists() const;
+  /// Poses of the moving objects (objects.txt); empty when there are none.
+  [[nodiscard]] std::vector<ObjectPose> load_objects() const;
 
  private:
   std::filesystem::path folder_;

@@ -120,7 +120,7 @@ ImuCalibration read_imu_yaml(const std::filesystem::path& file) {
 }
 
 void write_imu_yaml(const std::filesystem::path& file, const ImuCalibration& imu) {
-  write_atomically(file, config::print_documented(imu));
+  write_atomically(file, config::print(imu));
 }
 
 }  // namespace saccade

@@ -21,6 +21,7 @@ namespace {
 
 using ::testing::AllOf;
 using testing::ClosedFormPlane;
+using ::testing::ElementsAre;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
@@ -112,6 +113,8 @@ TEST_F(Rig, EveryCameraIsADatasetOfItsOwn) {
   EXPECT_EQ(right.facts().name, "out/cam1");
   EXPECT_TRUE(verify_hashes(output()).empty());
   EXPECT_TRUE(verify_hashes(output() / "cam1").empty());
+  EXPECT_THAT(left.further_cameras(), ElementsAre(output() / "cam1"));
+  EXPECT_TRUE(right.further_cameras().empty());
   EXPECT_TRUE(left.has_imu());
   EXPECT_FALSE(right.has_imu());
   EXPECT_EQ(right.load_twists().size(), right.groundtruth().size());
