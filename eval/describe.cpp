@@ -142,8 +142,7 @@ std::string describe_dataset(const fs::path& folder) {
   text += line("IMU", imu_text(dataset));
   text += line("event labels", labels_text(dataset));
   if (const std::size_t further = dataset.further_cameras().size(); further > 0)
-    text += line("rig", fmt::format("{} cameras; cam1 to cam{} are datasets of their own",
-                                    further + 1, further));
+    text += line("rig", fmt::format("{} cameras, this one and {} below it", further + 1, further));
   return text + record_lines(dataset);
 }
 
