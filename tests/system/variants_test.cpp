@@ -14,6 +14,8 @@ namespace saccade::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 std::string simulate_walls(const fs::path& folder, const std::vector<std::string>& overrides) {
   const std::string data = folder / "walls";
@@ -56,6 +58,18 @@ TEST(Variants, NanosecondsExposureAndSupersamplingChangeNothing) {
       simulate_walls(folder.path(), {"duration_s=0.3", "events.timestamp_unit=ns",
                                      "frames.exposure_s=0.005", "events.samples_per_pixel=4"});
   expect_tracked(track(folder.path(), data) + "/metrics.json");
+}
+
+TEST(Variants, AFurtherCameraOfARigIsADatasetLikeAny) {
+  const TemporaryFolder folder;
+  const std::string data = simulate_walls(
+      folder.path(),
+      {"duration_s=0.3",
+       "rig=[{T_camera0_camera: [[1, 0, 0, 0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]"});
+  EXPECT_THAT(saccade_ok({"info", data, "--verify"}),
+              AllOf(HasSubstr("2 cameras"), HasSubstr("all files match")));
+  EXPECT_THAT(saccade_ok({"info", data + "/cam1", "--verify"}), HasSubstr("all files match"));
+  expect_tracked(track(folder.path(), data + "/cam1") + "/metrics.json");
 }
 
 TEST(Variants, AWindowIsTrackedFromTheFrameAtItsStart) {

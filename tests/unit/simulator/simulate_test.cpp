@@ -10,9 +10,11 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/io/calibration_file.h"
 #include "core/io/dataset.h"
 #include "core/io/events_h5.h"
 #include "core/io/image_file.h"
+#include "core/io/imu_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/srgb.h"
@@ -100,6 +102,32 @@ TEST_F(SimulatePlane, WritesADatasetThatAgreesWithTheClosedForm) {
   EXPECT_EQ(report.record.counts->flow_maps, 6);
   EXPECT_EQ(report.record.counts->imu_samples, 251);
   EXPECT_TRUE(verify_hashes(output()).empty());
+}
+
+TEST_F(SimulatePlane, StatesTheMotionAndTheImuThatWereSimulated) {
+  simulate(config("imu: {rate_hz: 100, gyro_noise_density: 0.01, accel_bias: [0, 1, 0]}\n"
+                  "events: {contrast_on: 1, contrast_off: 1}\n"),
+           output());
+  const Dataset dataset = Dataset::open(output());
+  const std::vector<StampedTwist> twists = dataset.load_twists();
+  ASSERT_EQ(twists.size(), dataset.groundtruth().size());
+  const Eigen::Vector3d velocity(plane_.velocity.x(), plane_.velocity.y(), 0);
+  for (const StampedTwist& twist : twists) {
+    EXPECT_LT((twist.velocity - velocity).norm(), 1e-9);
+    EXPECT_LT(twist.angular_velocity.norm(), 1e-12);
+  }
+  const std::vector<ImuSample> readings = dataset.load_imu();
+  const std::vector<ImuTruth> truth = dataset.load_imu_truth();
+  ASSERT_EQ(readings.size(), 26U);
+  ASSERT_EQ(truth.size(), readings.size());
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_EQ(readings[k].t_ns, truth[k].ideal.t_ns);
+    EXPECT_LT((truth[k].ideal.specific_force - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-8);
+    EXPECT_LT((readings[k].specific_force - Eigen::Vector3d(0, 1, 9.81)).norm(), 1e-8);
+    EXPECT_NE(readings[k].angular_velocity, truth[k].ideal.angular_velocity);
+  }
+  EXPECT_EQ(read_imu_yaml(output() / "imu.yaml").gyroscope.density, 0.01);
+  EXPECT_TRUE(read_camera_chain(output() / "camera.yaml").front().camera_from_imu.has_value());
 }
 
 TEST_F(SimulatePlane, FramesShowTheRadianceAtTheirTime) {
