@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,13 @@ namespace saccade {
 struct StampedPose {
   double t_s = 0;
   Rigid3 world_from_camera;
+};
+
+/// Where a moving object is at one instant.
+struct ObjectPose {
+  double t_s = 0;
+  std::uint32_t object = 0;  ///< index into the scene's mesh list
+  Rigid3 world_from_object;
 };
 
 /// How the camera moves at one instant, in its own axes.

@@ -5,6 +5,7 @@
 
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
+#include "simulator/scene/moving_object.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {
@@ -13,6 +14,7 @@ double record_groundtruth(const Take& take) {
   const TimeNs end = ns_from_seconds(take.duration_s());
   std::vector<StampedPose> poses;
   std::vector<StampedTwist> twists;
+  std::vector<ObjectPose> objects;
   for (const TimeNs t :
        merge_times({end}, sample_times(take.config.groundtruth.pose_rate_hz, take.duration_s()))) {
     const double t_s = seconds_from_ns(t);
@@ -21,9 +23,12 @@ double record_groundtruth(const Take& take) {
     poses.push_back({t_s, pose});
     twists.push_back({t_s, pose.rotation().conjugate() * state.velocity_in_world,
                       state.angular_velocity_in_body});
+    for (const MovingObject& object : take.scene.moving_objects())
+      objects.push_back({t_s, object.object(), object.pose(t_s)});
   }
   take.writer.write_groundtruth(poses);
   write_twists(take.writer.folder() / "twist.txt", twists);
+  if (!objects.empty()) write_object_poses(take.writer.folder() / "objects.txt", objects);
   return Trajectory(std::move(poses)).path_length();
 }
 

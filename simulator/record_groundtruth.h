@@ -4,7 +4,8 @@
 
 namespace saccade {
 
-/// Writes the camera's poses and twists; returns the length of its path [m].
+/// Writes the poses and twists of the camera and the poses of moving objects; returns the length of
+/// its path [m].
 double record_groundtruth(const Take& take);
 
 /// Writes the inertial sensor's readings, with their truth and calibration, where it is on.

@@ -5,7 +5,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -16,6 +18,7 @@ namespace saccade {
 namespace {
 
 constexpr double kUnitTolerance = 1e-3;
+constexpr const char* kObject = "t object tx ty tz qx qy qz qw";
 constexpr const char* kTwist = "t vx vy vz wx wy wz";
 
 /// `tx ty tz qx qy qz qw`.
@@ -34,6 +37,12 @@ Rigid3 read_pose(TextRow& row) {
     row.fail(fmt::format("the quaternion's length is {:.6g}; a rotation's is 1 (within {})", norm,
                          kUnitTolerance));
   return {q, t};
+}
+
+std::string text_of(const Rigid3& pose) {
+  const Eigen::Vector3d& t = pose.translation();
+  const Eigen::Quaterniond& q = pose.rotation();
+  return fmt::format("{} {} {} {} {} {} {}", t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
 }
 
 /// Appends to poses or twists; their times must increase.
@@ -93,10 +102,8 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
 void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses) {
   fmt::memory_buffer text;
   for (const StampedPose& pose : poses) {
-    const Eigen::Vector3d& t = pose.world_from_camera.translation();
-    const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
-    fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {} {}\n", pose.t_s, t.x(),
-                   t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    fmt::format_to(std::back_inserter(text), "{:.9f} {}\n", pose.t_s,
+                   text_of(pose.world_from_camera));
   }
   write_atomically(file, {text.data(), text.size()});
 }
@@ -127,6 +134,38 @@ void write_twists(const std::filesystem::path& file, std::span<const StampedTwis
     fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {}\n", twist.t_s, v.x(), v.y(),
                    v.z(), w.x(), w.y(), w.z());
   }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+std::vector<ObjectPose> read_object_poses(const std::filesystem::path& file) {
+  std::vector<ObjectPose> poses;
+  for_each_row(file, [&](TextRow& row) {
+    ObjectPose pose;
+    pose.t_s = row.number("t");
+    const std::int64_t object = row.integer("object");
+    if (object < 0 || object > std::numeric_limits<std::uint32_t>::max())
+      row.fail(fmt::format("object {} is not an index into a list of meshes", object));
+    pose.object = static_cast<std::uint32_t>(object);
+    pose.world_from_object = read_pose(row);
+    row.expect_end(kObject);
+    const auto rank = [](const ObjectPose& p) { return std::pair(p.t_s, p.object); };
+    if (!poses.empty() && !(rank(poses.back()) < rank(pose)))
+      row.fail(
+          fmt::format("lines must be in order of time, then of the object: object {} at "
+                      "{:.9f} s comes after object {} at {:.9f} s",
+                      pose.object, pose.t_s, poses.back().object, poses.back().t_s));
+    poses.push_back(pose);
+    return true;
+  });
+  return poses;
+}
+
+void write_object_poses(const std::filesystem::path& file, std::span<const ObjectPose> poses) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "# {}\n", kObject);
+  for (const ObjectPose& pose : poses)
+    fmt::format_to(std::back_inserter(text), "{:.9f} {} {}\n", pose.t_s, pose.object,
+                   text_of(pose.world_from_object));
   write_atomically(file, {text.data(), text.size()});
 }
 

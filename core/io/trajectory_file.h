@@ -30,4 +30,10 @@ void write_tum_trajectory(const std::filesystem::path& file, std::span<const Sta
 [[nodiscard]] std::vector<StampedTwist> read_twists(const std::filesystem::path& file);
 void write_twists(const std::filesystem::path& file, std::span<const StampedTwist> twists);
 
+/// Lines `t object tx ty tz qx qy qz qw` (T_world_object) below a comment that names the columns:
+/// seconds with 9 decimals, the object's index in the scene's mesh list, its pose exact in double.
+/// In order of time, then of the object; InputError with `file:line`.
+[[nodiscard]] std::vector<ObjectPose> read_object_poses(const std::filesystem::path& file);
+void write_object_poses(const std::filesystem::path& file, std::span<const ObjectPose> poses);
+
 }  // namespace saccade

@@ -124,7 +124,7 @@ class LockstepTile final : public EventTile {
     std::array<Ray, kTilePixels * kRays> rays;
     std::array<TriangleId, kTilePixels * kRays> triangles;
     for (std::size_t k = 0; k < count; ++k)
-      rays[k] = {camera.position, camera.rotation * directions_[k]};
+      rays[k] = {camera.position, camera.rotation * directions_[k], t_s};
     for (std::size_t k = 0; k < count; k += kTilePixels) {
       const std::size_t n = std::min(kTilePixels, count - k);
       world_.scene.visible({&rays[k], n}, {&triangles[k], n});
@@ -156,7 +156,7 @@ class LockstepTile final : public EventTile {
     Sample sample{t_s, 0, lo.triangles};
     std::array<Ray, kRays> rays;
     for (std::size_t s = 0; s < kRays; ++s)
-      rays[s] = {camera.position, camera.rotation * directions_[i * kRays + s]};
+      rays[s] = {camera.position, camera.rotation * directions_[i * kRays + s], t_s};
     if (lo.triangles != hi.triangles) {
       world_.scene.visible(rays, sample.triangles);
       statistics_.rays += kRays;
