@@ -1,9 +1,11 @@
 #include "simulator/record_events.h"
 
+#include <optional>
 #include <string>
-#include <vector>
 
+#include "core/io/labels_h5.h"
 #include "core/progress.h"
+#include "simulator/sensor/event_labels.h"
 
 namespace saccade {
 namespace {
@@ -17,7 +19,9 @@ concept Resumable = requires(Camera camera, std::string state) {
   state = camera.state();
 };
 
-[[maybe_unused]] void append(EventLog& log, std::span<const SensedEvent> events) { log.append(events); }
+[[maybe_unused]] void append(EventLog& log, std::span<const SensedEvent> events) {
+  log.append(events);
+}
 
 [[maybe_unused]] void append(EventLog& log, std::span<const Event> events) {
   SensedEvents sensed;
@@ -44,13 +48,19 @@ void fill(Camera& camera, const Take& take) {
   log.complete(camera.statistics());
 }
 
-void write(const EventLog& log, DatasetWriter& writer) {
-  std::vector<Event> events;
-  log.replay([&](std::span<const SensedEvent> part) {
+/// The events of the log, and their labels where they are asked for.
+void write(const Take& take) {
+  std::optional<LabelsH5Writer> labels;
+  if (take.config.groundtruth.event_labels) labels.emplace(take.writer.folder() / "labels.h5");
+  const EventLabeller labeller(take.scene, take.world_from_camera, take.camera);
+  Events events;
+  take.log.replay([&](std::span<const SensedEvent> part) {
     events.clear();
     for (const SensedEvent& event : part) events.push_back(event.event());
-    writer.write_events(events);
+    take.writer.write_events(events);
+    if (labels) labels->append(labeller.label(part));
   });
+  if (labels) labels->close();
 }
 
 }  // namespace
@@ -60,7 +70,7 @@ EventStatistics record_events(const Take& take) {
     EventCamera camera(take.scene, take.world_from_camera, take.camera, take.events);
     fill(camera, take);
   }
-  write(take.log, take.writer);
+  write(take);
   return *take.log.statistics();
 }
 

@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
+constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
 
 /// Before every block.
 struct Header {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+
+#include "core/io/labels_h5.h"
+#include "core/spline.h"
+#include "simulator/scene/scene.h"
+#include "simulator/sensor/pixel_rays.h"
+#include "simulator/sensor/sensed_event.h"
+
+namespace saccade {
+
+/// What the ray through the pixel's centre sees at the recorded time of an event: its depth, its
+/// motion in the image, its object; and the event's origin. An event that latency or readout delays
+/// is labelled at the delayed time, as whoever reads the dataset looks it up.
+class EventLabeller {
+ public:
+  /// `scene` and `world_from_camera` must outlive the labeller.
+  EventLabeller(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera);
+
+  /// One label per event, in parallel.
+  [[nodiscard]] EventLabels label(std::span<const SensedEvent> events) const;
+
+ private:
+  void label_packet(std::span<const SensedEvent> events, std::size_t first,
+                    EventLabels& labels) const;
+
+  const Scene& scene_;
+  const Spline& motion_;
+  PixelRays rays_;
+};
+
+}  // namespace saccade
