@@ -208,5 +208,49 @@ TEST_F(SimulatePlane, ConfigurationPrintsAndReadsBackTheSame) {
   EXPECT_EQ(again.camera.cy, 22.5);
 }
 
+TEST_F(SimulatePlane, MovingPlaneBeforeACameraAtRest) {
+  // What the camera sees is the same when the plane makes the opposite motion instead.
+  SimulationConfig moving = config(
+      "events: {timestamp_unit: ns}\nstart_s: 0.01\n"
+      "frames: {exposure_s: 0.01}\n");
+  const Eigen::Vector2d way = plane_.duration_s * plane_.velocity;
+  const std::vector<double> rest{plane_.start.x(), plane_.start.y(), 0, 0, 0, 0, 1};
+  moving.trajectory.waypoints = {rest, rest};
+  moving.trajectory.waypoints[0].insert(moving.trajectory.waypoints[0].begin(), 5);
+  moving.trajectory.waypoints[1].insert(moving.trajectory.waypoints[1].begin(), 5.26);
+  MotionOptions slide;
+  slide.source = MotionSource::kSlider;
+  slide.duration_s = 0.25;
+  slide.slider.direction = {-way.x(), -way.y(), 0};
+  slide.slider.distance_m = way.norm();
+  moving.scene.meshes[0].trajectory = slide;
+  simulate(moving, output());
+  const Dataset dataset = Dataset::open(output());
+  const auto match =
+      testing::match_exact(plane_.events(0.15, 0.15, 1e-3), dataset.load_events(), 61, 46);
+  EXPECT_EQ(match.found, match.expected);
+  EXPECT_EQ(match.wrong_pixels, 0U);
+  EXPECT_LE(match.p99_us, 1);
+
+  const std::vector<ObjectPose> poses = dataset.load_objects();
+  ASSERT_EQ(poses.size(), dataset.groundtruth().size());
+  EXPECT_EQ(poses.front().world_from_object.translation().norm(), 0);
+  EXPECT_EQ(poses.back().t_s, 0.25);
+  EXPECT_LT((poses.back().world_from_object.translation().head<2>() + way).norm(), 1e-9);
+
+  simulate(config("frames: {exposure_s: 0.01}\n"), output("opposite"));
+  const Dataset opposite = Dataset::open(output("opposite"));
+  EXPECT_TRUE(opposite.load_objects().empty());
+  const ImageF a = dataset.load_frame(2);
+  const ImageF b = opposite.load_frame(2);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a.pixels()[i], b.pixels()[i], 1e-5);
+
+  set_thread_count(2);
+  simulate(moving, output("again"));
+  auto files = contents(output());
+  for (const auto& [name, bytes] : contents(output("again")))
+    EXPECT_TRUE(files[name] == bytes || name == "dataset.yaml") << name;
+}
+
 }  // namespace
 }  // namespace saccade

@@ -85,6 +85,36 @@ TEST(TrajectoryFile, RoundTripIsExact) {
   }
 }
 
+TEST(ObjectPoses, RoundTripIsExact) {
+  const TemporaryFolder folder;
+  const std::vector<ObjectPose> poses{{0, 2, {so3_exp({0.1, 0.2, 0.3}), {1, -2, 1.0 / 3}}},
+                                      {0, 5, {}},
+                                      {0.001, 2, {so3_exp({-1, 0.2, 2}), {4, 5, 6}}}};
+  write_object_poses(folder.path() / "objects.txt", poses);
+  const std::vector<ObjectPose> read = read_object_poses(folder.path() / "objects.txt");
+  ASSERT_EQ(read.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(read[i].t_s, poses[i].t_s);
+    EXPECT_EQ(read[i].object, poses[i].object);
+    const Rigid3& a = read[i].world_from_object;
+    const Rigid3& b = poses[i].world_from_object;
+    EXPECT_EQ(a.translation(), b.translation());
+    EXPECT_LT((a.rotation().coeffs() - b.rotation().coeffs()).norm(), 1e-15);
+  }
+}
+
+TEST(ObjectPoses, NamesTheLineOfWhatIsWrong) {
+  const TemporaryFolder folder;
+  const auto error_in = [&](const std::string& text) {
+    return error_of([&] { return read_object_poses(folder.write("objects.txt", text)); });
+  };
+  EXPECT_THAT(error_in("# t object\n0 -1 0 0 0 0 0 0 1\n"), HasSubstr("objects.txt:2: object -1"));
+  EXPECT_THAT(error_in("0 1 0 0 0 0 0 0 1\n0 1 0 0 0 0 0 0 1\n"),
+              HasSubstr("objects.txt:2: lines must be in order"));
+  EXPECT_THAT(error_in("0 1.5 0 0 0 0 0 0 1\n"), HasSubstr("object: expected a whole number"));
+  EXPECT_THAT(error_in("0 1 0 0 0 0 0 1\n"), HasSubstr("objects.txt:1: qw"));
+}
+
 TEST(TrajectoryFile, ReadsHandHeldMotion) {
   SACCADE_SHARED_DATA_OR_SKIP(file, "trajectories/poster_6dof_handheld.csv");
   const Trajectory t = read_trajectory(file);
