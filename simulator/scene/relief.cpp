@@ -117,6 +117,11 @@ Mesh generate_relief(const ReliefOptions& options, std::shared_ptr<const Texture
 
   Mesh mesh;
   mesh.materials.push_back({options.albedo, std::move(texture), 1, nullptr});
+  const std::size_t vertices = (std::size_t{columns} + 1) * (std::size_t{rows} + 1);
+  mesh.vertices.reserve(vertices);
+  mesh.normals.reserve(vertices);
+  mesh.uvs.reserve(vertices);
+  mesh.triangles.reserve(2 * std::size_t{columns} * std::size_t{rows});
   for (std::uint32_t j = 0; j <= rows; ++j)
     for (std::uint32_t i = 0; i <= columns; ++i) {
       const Eigen::Vector2d uv(static_cast<double>(i) / columns, static_cast<double>(j) / rows);
