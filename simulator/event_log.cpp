@@ -15,9 +15,6 @@ namespace saccade {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x31474f4c44434153;  // of this layout
-constexpr std::chrono::milliseconds kShortestInterval{200};
-/// A checkpoint may take this share of the time from one to the next.
-constexpr int kCheckpointShare = 20;
 
 /// An event in the journal.
 struct Packed {
@@ -36,12 +33,13 @@ std::uint64_t checksum_of(std::string_view bytes) {
 
 }  // namespace
 
-EventLog::EventLog(const std::filesystem::path& folder) : folder_(folder) {
+EventLog::EventLog(const std::filesystem::path& folder, const CheckpointPace& pace)
+    : folder_(folder), pace_(pace) {
   std::filesystem::create_directories(folder);
   if (std::filesystem::exists(folder / "checkpoint")) read_checkpoint();
   journal_.emplace(folder / "events.journal", head_.journal_length);
   journal_->read([](std::span<const std::byte>) {});  // whether it is damaged
-  next_ = Clock::now() + kShortestInterval;
+  next_ = Clock::now() + pace_.shortest;
 }
 
 void EventLog::read_checkpoint() {
@@ -73,6 +71,12 @@ void EventLog::append(std::span<const SensedEvent> events) {
   journal_->append(packed_);
 }
 
+void EventLog::append(std::span<const Event> events) {
+  SensedEvents sensed;
+  for (const Event& e : events) sensed.push_back({e.t_ns, e.x, e.y, e.polarity});
+  append(sensed);
+}
+
 bool EventLog::wants_checkpoint() const { return Clock::now() >= next_; }
 
 void EventLog::checkpoint(double reached_s, std::string_view state) {
@@ -98,7 +102,7 @@ void EventLog::write_checkpoint(std::string_view payload) {
   std::memcpy(text.data(), &head_, sizeof head_);
   write_atomically(folder_ / "checkpoint", text);
   const Clock::time_point end = Clock::now();
-  next_ = end + std::max<Clock::duration>(kShortestInterval, kCheckpointShare * (end - start));
+  next_ = end + std::max<Clock::duration>(pace_.shortest, pace_.time_share * (end - start));
 }
 
 void EventLog::replay(const std::function<void(std::span<const SensedEvent>)>& use) const {

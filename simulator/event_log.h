@@ -16,6 +16,12 @@
 
 namespace saccade {
 
+/// How often an unfinished recording is saved.
+struct CheckpointPace {
+  std::chrono::milliseconds shortest{200};  ///< from one checkpoint to the next
+  int time_share = 20;                      ///< saving takes at most 1 / this of the time
+};
+
 /// The events of a recording in the making, with what the event camera needs to go on from there,
 /// in a folder that outlives an interrupted program: `events.journal`, 16 bytes an event in blocks
 /// with checksums, and `checkpoint`, the camera's state at an instant with the journal's length
@@ -25,7 +31,7 @@ class EventLog {
  public:
   /// Goes on with what `folder` holds, which is created when it is not there. InputError when that
   /// is damaged.
-  explicit EventLog(const std::filesystem::path& folder);
+  explicit EventLog(const std::filesystem::path& folder, const CheckpointPace& pace = {});
 
   /// Time up to which the log holds all events that the state stands for [s]; 0 for a new one.
   [[nodiscard]] double reached_s() const { return head_.reached_s; }
@@ -36,6 +42,8 @@ class EventLog {
 
   /// Events in order.
   void append(std::span<const SensedEvent> events);
+  /// The same for events of the signal alone.
+  void append(std::span<const Event> events);
   /// True when so much time has passed since the last checkpoint that one costs little of it.
   [[nodiscard]] bool wants_checkpoint() const;
   /// Everything up to `reached_s` is appended and `state` goes on from there.
@@ -61,6 +69,7 @@ class EventLog {
   void write_checkpoint(std::string_view payload);
 
   std::filesystem::path folder_;
+  CheckpointPace pace_;
   Head head_;
   std::string state_;
   std::optional<EventStatistics> statistics_;

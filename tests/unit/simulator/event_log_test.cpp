@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
 #include "core/random.h"
+#include "simulator/recording_loop.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 
@@ -109,6 +111,61 @@ TEST_F(Log, RefusesWhatIsDamaged) {
   EXPECT_THAT(error_of(open), HasSubstr("events.journal: is shorter than it was"));
   fs::resize_file(folder_ / "checkpoint", 3);
   EXPECT_THAT(error_of(open), HasSubstr("checkpoint: is damaged"));
+}
+
+/// Delivers the events above in steps, and is killed after some of them.
+class FakeCamera {
+ public:
+  struct Killed {};
+  explicit FakeCamera(int deliveries) : deliveries_(deliveries) {}
+
+  void resume(const std::string& state) {
+    reached_ = std::stoll(state);
+    resumed_ = true;
+  }
+  [[nodiscard]] std::string state() const { return std::to_string(reached_); }
+  [[nodiscard]] bool resumed() const { return resumed_; }
+  [[nodiscard]] EventStatistics statistics() const { return {}; }
+
+  template <class Sink>
+  void record(double duration_s, const Sink& sink) {
+    constexpr TimeNs kStep = 7919;
+    const TimeNs end = ns_from_seconds(duration_s);
+    while (reached_ < end) {
+      if (deliveries_-- == 0) throw Killed();
+      const TimeNs begin = reached_;
+      reached_ = std::min(end, begin + kStep);
+      sink(std::span<const SensedEvent>(events_between(begin, reached_)),
+           seconds_from_ns(reached_));
+    }
+  }
+
+ private:
+  int deliveries_;
+  TimeNs reached_ = 0;
+  bool resumed_ = false;
+};
+
+TEST_F(Log, HoldsTheSameEventsHoweverOftenTheRecordingIsKilled) {
+  constexpr double kDuration_s = 1e-4;
+  const CheckpointPace always{std::chrono::milliseconds(0), 0};
+  int programs = 0;
+  for (bool complete = false; !complete; ++programs) {
+    ASSERT_LT(programs, 100);
+    EventLog log(folder_, always);
+    FakeCamera camera(2);
+    double shown_s = 0;
+    try {
+      record_into(log, camera, kDuration_s, [&](double t_s) { shown_s = t_s; });
+      complete = true;
+      EXPECT_EQ(shown_s, kDuration_s);
+      EXPECT_EQ(replayed(log), events_between(0, 100'000));
+    } catch (const FakeCamera::Killed&) {
+    }
+    EXPECT_EQ(camera.resumed(), programs > 0);
+  }
+  EXPECT_GT(programs, 5);
+  EXPECT_EQ(replayed(EventLog(folder_)), events_between(0, 100'000));
 }
 
 }  // namespace
