@@ -45,6 +45,33 @@ PackedLabels pack(const EventLabels& labels, std::size_t begin) {
   return packed;
 }
 
+/// The column `path` of a file; it must hold `count` values.
+H5Handle open_column(hid_t file, const std::string& path, const std::string& place,
+                     std::uint64_t count) {
+  const bool is_there =
+      H5Lexists(file, "labels", H5P_DEFAULT) > 0 && H5Lexists(file, path.c_str(), H5P_DEFAULT) > 0;
+  if (!is_there) throw InputError(place, "the dataset is missing");
+  H5Handle dataset = {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose};
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  const auto length = H5Sget_simple_extent_npoints(space);
+  if (H5Sget_simple_extent_ndims(space) != 1 || static_cast<std::uint64_t>(length) != count)
+    throw InputError(place, "has " + std::to_string(length) + " entries for " +
+                                std::to_string(count) + " events");
+  return dataset;
+}
+
+/// Fills `values` from the column's entry `begin` on.
+template <class T>
+void read_values(hid_t dataset, const std::string& place, hsize_t begin, hid_t type,
+                 std::vector<T>& values) {
+  const hsize_t size = values.size();
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  const H5Handle memory = {H5Screate_simple(1, &size, nullptr), H5Sclose};
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &size, nullptr);
+  if (H5Dread(dataset, type, memory, space, H5P_DEFAULT, values.data()) < 0)
+    throw InputError(place, "cannot be read (HDF5: " + h5_reason() + ")");
+}
+
 }  // namespace
 
 void EventLabels::resize(std::size_t count) {
@@ -126,27 +153,12 @@ EventLabels read_labels_h5(const std::filesystem::path& name, std::uint64_t coun
     throw InputError(name.string(), "is no HDF5 file, or is damaged (HDF5: " + h5_reason() + ")");
   EventLabels labels;
   labels.resize(end - begin);
-  const auto read = [&](const char* column, hid_t, hid_t type, auto& values) {
+  for_each_column(labels, [&](const char* column, hid_t, hid_t type, auto& values) {
     const std::string path = std::string("/labels/") + column;
     const std::string place = name.string() + ":" + path;
-    const bool is_there = H5Lexists(file, "labels", H5P_DEFAULT) > 0 &&
-                          H5Lexists(file, path.c_str(), H5P_DEFAULT) > 0;
-    if (!is_there) throw InputError(place, "the dataset is missing");
-    const H5Handle dataset = {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose};
-    const H5Handle space = {H5Dget_space(dataset), H5Sclose};
-    const auto length = H5Sget_simple_extent_npoints(space);
-    if (H5Sget_simple_extent_ndims(space) != 1 || static_cast<std::uint64_t>(length) != count)
-      throw InputError(place, "has " + std::to_string(length) + " entries for " +
-                                  std::to_string(count) + " events");
-    if (values.empty()) return;
-    const hsize_t start = begin;
-    const hsize_t size = end - begin;
-    const H5Handle memory = {H5Screate_simple(1, &size, nullptr), H5Sclose};
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &size, nullptr);
-    if (H5Dread(dataset, type, memory, space, H5P_DEFAULT, values.data()) < 0)
-      throw InputError(place, "cannot be read (HDF5: " + h5_reason() + ")");
-  };
-  for_each_column(labels, read);
+    const H5Handle dataset = open_column(file, path, place, count);
+    if (!values.empty()) read_values(dataset, place, begin, type, values);
+  });
   return labels;
 }
 

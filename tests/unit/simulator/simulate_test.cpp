@@ -144,6 +144,23 @@ TEST_F(SimulatePlane, FramesShowTheRadianceAtTheirTime) {
     }
 }
 
+TEST_F(SimulatePlane, LabelsEveryEvent) {
+  simulate(config("groundtruth: {event_labels: true}\n"), output());
+  const Dataset dataset = Dataset::open(output());
+  const EventLabels labels = dataset.load_labels();
+  ASSERT_EQ(labels.size(), dataset.load_events().size());
+  ASSERT_GT(labels.size(), 100U);
+  const Eigen::Vector2d flow = -100 / plane_.distance_m * plane_.velocity;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    EXPECT_NEAR(labels.depth[i], plane_.distance_m, 1e-6);
+    EXPECT_NEAR(labels.flow_x[i], flow.x(), 1e-4);
+    EXPECT_NEAR(labels.flow_y[i], flow.y(), 1e-4);
+    EXPECT_EQ(labels.object[i], 0);
+    EXPECT_EQ(labels.origin[i], 0);
+  }
+  EXPECT_TRUE(verify_hashes(output()).empty());
+}
+
 TEST_F(SimulatePlane, ExposureAveragesLinearRadiance) {
   simulate(config("frames: {rate_hz: 10, exposure_s: 0.05}\n"), output());
   const ImageF frame = Dataset::open(output()).load_frame(1);
