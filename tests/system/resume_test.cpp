@@ -27,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::vector<std::string> simulation(const fs::path& data,
                                     const std::vector<std::string>& more = {}) {
@@ -208,6 +207,32 @@ TEST_F(Resume, SeveralKillsOfOneSimulation) {
   for (const double target : {0.1, 0.3, 0.5, 0.7, 0.9}) kill_at(target);
   EXPECT_THAT(saccade_ok(simulation(data())), HasSubstr("resuming at"));
   expect_the_same();
+}
+
+TEST_F(Resume, ARigGoesOnWithTheCameraItWasAt) {
+  const std::vector<std::string> pair{
+      "--set", "rig=[{T_camera0_camera: [[1,0,0,0.1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]", "--set",
+      "duration_s=0.2"};
+  const TemporaryFolder other;
+  const fs::path uninterrupted = other.path() / "walls";
+  saccade_ok(simulation(uninterrupted, pair));
+  const fs::path content = unfinished() / "content";
+  const std::vector<std::function<bool()>> moments{
+      [&] { return files_in(content / "cam1/images") > 4; },
+      [&] { return fs::exists(content / "cam1/dataset.yaml"); },
+      [&] { return files_in(content / "images") > 4; },
+      [&] { return fs::exists(unfinished() / "journal/cam0/checkpoint"); }};
+  for (const auto& is_time : moments) {
+    Background run(simulation(data(), pair));
+    while (run.is_running() && !is_time())
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  saccade_ok(simulation(data(), pair));
+  EXPECT_EQ(hash_files(data()), hash_files(uninterrupted));
+  EXPECT_EQ(read_file(data() / "dataset.yaml"), read_file(uninterrupted / "dataset.yaml"));
+  EXPECT_THAT(saccade_ok({"info", data().string(), "--verify"}), HasSubstr("all files match"));
+  EXPECT_THAT(saccade_ok({"info", (data() / "cam1").string(), "--verify"}),
+              HasSubstr("all files match"));
 }
 
 TEST_F(Resume, AnotherConfigurationStartsClean) {
