@@ -23,7 +23,8 @@ std::vector<StampedPose> exposure_poses(const Take& take, const ViewRenderer& re
 }  // namespace
 
 void record_images(const Take& take) {
-  const ViewRenderer renderer(take.scene, take.camera, take.events.samples_per_pixel);
+  const ViewRenderer renderer(take.scene, take.camera, take.events.samples_per_pixel,
+                              take.events.texture_filter);
   const GroundtruthOptions& rates = take.config.groundtruth;
   const std::vector<TimeNs> frames = sample_times(take.config.frames.rate_hz, take.duration_s());
   const std::vector<TimeNs> depths =

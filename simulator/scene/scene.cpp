@@ -1,6 +1,7 @@
 #include "simulator/scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/check.h"
@@ -13,6 +14,18 @@ namespace {
 constexpr double kFarthest = 1e12;
 /// Rays through a shared edge must meet at least one of its triangles, whatever the rounding.
 constexpr double kEdgeTolerance = 1e-10;
+
+/// As Scene::look() has it; everything in the surface's frame.
+double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction, double distance,
+                const RaySpread& spread) {
+  const Eigen::Vector3d& normal = surface.plane.gradient;
+  const auto texels = [&](const Eigen::Vector3d& change) {
+    const Eigen::Vector3d shift =
+        distance * (change - normal.dot(change) / normal.dot(direction) * direction);
+    return std::hypot(surface.x.gradient.dot(shift), surface.y.gradient.dot(shift));
+  };
+  return std::max(0.0, std::log2(std::max(texels(spread.right), texels(spread.down))));
+}
 
 }  // namespace
 
@@ -86,6 +99,27 @@ SurfaceLook Scene::look(const Ray& ray, TriangleId triangle) const {
   const SurfaceLook seen = state_->in_frame_of(
       surface.body, ray, [&](const Ray& local) { return state_->look(local, surface); });
   return seen.distance > 0 ? seen : state_->background.look(ray.direction);
+}
+
+SurfaceLook Scene::look(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
+  SurfaceLook seen = look(ray, triangle);
+  if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
+  const TriangleSurface& surface = state_->surfaces[triangle];
+  if (surface.body == kStill) {
+    seen.level = level_of(surface, ray.direction, seen.distance, spread);
+  } else {
+    const Eigen::Matrix3d body_from_world =
+        state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
+    seen.level = level_of(surface, body_from_world * ray.direction, seen.distance,
+                          {body_from_world * spread.right, body_from_world * spread.down});
+  }
+  return seen;
+}
+
+Shade Scene::shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
+  SurfaceLook seen = look(ray, triangle, spread);
+  seen.irradiance = irradiance(ray, triangle, seen);
+  return {seen.radiance(), seen.distance};
 }
 
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceLook& look) const {

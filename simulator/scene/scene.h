@@ -23,17 +23,25 @@ struct Ray {
   double time_s = 0;  ///< at which it sees the moving objects
 };
 
-/// What the radiance of a visible point is made of: irradiance * factor * texture(x, y), without a
-/// texture irradiance * x.
+/// How much the direction of a ray differs from those of the next rays to the right and below, in
+/// the world and in units of the direction: the ray stands for the parallelogram between them.
+struct RaySpread {
+  Eigen::Vector3d right;
+  Eigen::Vector3d down;
+};
+
+/// What the radiance of a visible point is made of: irradiance * factor * texture(x, y, level),
+/// without a texture irradiance * x.
 struct SurfaceLook {
   const Texture* texture = nullptr;
   double x = 0, y = 0;    ///< texel coordinates; without a texture x is the albedo
   double factor = 1;      ///< multiplies the texture
   double irradiance = 1;  ///< under lights; else 1
   double distance = 0;    ///< along Ray::direction [its length]; 0 = background
+  double level = 0;       ///< of the texture's pyramid; <= 0: the texture itself
 
   [[nodiscard]] double radiance() const {
-    return irradiance * (texture != nullptr ? factor * texture->at_texel(x, y) : x);
+    return irradiance * (texture != nullptr ? factor * texture->at_texel(x, y, level) : x);
   }
 };
 
@@ -62,10 +70,19 @@ class Scene {
   /// Radiance and distance where `ray` meets the plane of `triangle` (inside it or, for a ray that
   /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
+  /// The same with the texture's mean over the ray's footprint.
+  [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const;
 
   /// Where `ray` meets the plane of `triangle`, as shade() has it, in terms of its texture and
   /// without the lights (irradiance 1).
   [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle) const;
+  /// The same at the level of the texture's pyramid whose texels are as large as the footprint of
+  /// the ray on the triangle's plane, along its longer side; 0 where it is smaller than a texel,
+  /// and for the background:
+  ///   level = max(0, log2 max(|J right|, |J down|)),   J = t grad(x, y) (1 - d n^T / (n . d))
+  /// with t the distance, d the direction and n the plane's normal. Continuous in the ray.
+  [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle,
+                                 const RaySpread& spread) const;
   /// Light that falls onto the point of a look(); 1 in an unlit scene and for the background.
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceLook& look) const;

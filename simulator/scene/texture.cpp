@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 namespace saccade {
@@ -56,6 +57,7 @@ IndexRange inside_indices(double from, double to, int size, Wrap wrap) {
   const int a = wrapped(first, size, wrap);
   const int b = wrapped(last, size, wrap);
   if (wrap == Wrap::kClamp) return {a, b};
+  if (wrap == Wrap::kRepeat) return b - a == last - first ? IndexRange{a, b} : all;
   const IndexRange folded{std::min(a, b), std::max(a, b)};
   return folded.last - folded.first == last - first ? folded : all;
 }
@@ -74,10 +76,45 @@ ImageF widened(ImageF image) {
   return wide;
 }
 
+/// The share of texel `i` that lies in from..to.
+double overlap(double from, double to, int i) {
+  return std::max(0.0, std::min(to, i + 1.0) - std::max(from, static_cast<double>(i)));
+}
+
+/// Means over width x height equal parts of the image, also where they cut texels.
+ImageF shrunk(const ImageF& image, int width, int height) {
+  const double step_x = static_cast<double>(image.width()) / width;
+  const double step_y = static_cast<double>(image.height()) / height;
+  ImageF means(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int j = static_cast<int>(y * step_y);
+           j < std::min((y + 1) * step_y, 1.0 * image.height()); ++j)
+        for (int i = static_cast<int>(x * step_x);
+             i < std::min((x + 1) * step_x, 1.0 * image.width()); ++i)
+          sum += overlap(x * step_x, (x + 1) * step_x, i) *
+                 overlap(y * step_y, (y + 1) * step_y, j) * static_cast<double>(image(i, j));
+      means(x, y) = static_cast<float>(sum / (step_x * step_y));
+    }
+  return means;
+}
+
+/// A texel coordinate of one picture in another of the same extent.
+double rescaled(double x, int from, int to) { return (x + 0.5) * to / from - 0.5; }
+
 }  // namespace
 
+struct Texture::Pyramid {
+  std::once_flag once;
+  std::vector<Texture> levels;
+};
+
 Texture::Texture(ImageF image, Wrap wrap_u, Wrap wrap_v)
-    : image_(widened(std::move(image))), wrap_u_(wrap_u), wrap_v_(wrap_v) {
+    : image_(widened(std::move(image))),
+      pyramid_(std::make_shared<Pyramid>()),
+      wrap_u_(wrap_u),
+      wrap_v_(wrap_v) {
   SACCADE_CHECK(image_.width() >= 2 && image_.height() >= 2);
   build_ranges();
 }
@@ -134,6 +171,52 @@ TexelRange Texture::range_within(int i0, int i1, int j0, int j1) const {
       range = hull(range,
                    level == 0 ? TexelRange{image_(i, j), image_(i, j)} : ranges_[level - 1](i, j));
   return range;
+}
+
+const std::vector<Texture>& Texture::coarser() const {
+  std::call_once(pyramid_->once, [this] {
+    ImageF finer = image_;
+    while (finer.width() > 1 || finer.height() > 1) {
+      finer = shrunk(finer, std::max(finer.width() / 2, 1), std::max(finer.height() / 2, 1));
+      pyramid_->levels.emplace_back(finer, wrap_u_, wrap_v_);
+    }
+  });
+  return pyramid_->levels;
+}
+
+double Texture::at_texel(double x, double y, double level) const {
+  if (!(level > 0)) return at_texel(x, y);
+  const std::vector<Texture>& levels = coarser();
+  const double inside = std::min(level, static_cast<double>(levels.size()));
+  const auto at_level = [&](std::size_t k) {
+    if (k == 0) return at_texel(x, y);
+    const Texture& texture = levels[k - 1];
+    return texture.at_texel(rescaled(x, width(), texture.width()),
+                            rescaled(y, height(), texture.height()));
+  };
+  const auto finer = static_cast<std::size_t>(inside);
+  const double fraction = inside - static_cast<double>(finer);
+  const double value = at_level(finer);
+  return fraction == 0 ? value : value + fraction * (at_level(finer + 1) - value);
+}
+
+TexelRange Texture::range(const TexelBox& box, double low_level, double high_level) const {
+  if (!(high_level > 0)) return range(box);
+  const std::vector<Texture>& levels = coarser();
+  const auto last = static_cast<double>(levels.size());
+  const auto first_level = static_cast<std::size_t>(std::clamp(std::floor(low_level), 0.0, last));
+  const auto last_level = static_cast<std::size_t>(std::min(std::ceil(high_level), last));
+  const auto at_level = [&](std::size_t k) {
+    if (k == 0) return range(box);
+    const Texture& texture = levels[k - 1];
+    return texture.range({rescaled(box.x0, width(), texture.width()),
+                          rescaled(box.x1, width(), texture.width()),
+                          rescaled(box.y0, height(), texture.height()),
+                          rescaled(box.y1, height(), texture.height())});
+  };
+  TexelRange all = at_level(first_level);
+  for (std::size_t k = first_level + 1; k <= last_level; ++k) all = hull(all, at_level(k));
+  return all;
 }
 
 double Texture::across_border(double x, double y) const {

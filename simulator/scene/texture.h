@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/image.h"
@@ -45,6 +46,10 @@ class Texture {
     return at_texel(u * width() - 0.5, (1 - v) * height() - 0.5);
   }
 
+  /// The picture seen through a square of 2^level texels: trilinear in a pyramid of box-filtered
+  /// pictures, continuous in all arguments; at level <= 0 the same as without one.
+  [[nodiscard]] double at_texel(double x, double y, double level) const;
+
   /// Texels (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), wrapped: between them at_texel() is
   /// bilinear.
   [[nodiscard]] std::array<float, 4> cell(std::int64_t i, std::int64_t j) const;
@@ -52,8 +57,13 @@ class Texture {
   /// Bounds of at_texel() over a box, tight up to a texel for small boxes and up to a quarter of
   /// the box for large ones (min-max pyramid).
   [[nodiscard]] TexelRange range(const TexelBox& box) const;
+  /// The same for at_texel(x, y, level) with levels `low_level` to `high_level`.
+  [[nodiscard]] TexelRange range(const TexelBox& box, double low_level, double high_level) const;
 
  private:
+  struct Pyramid;
+  /// Levels 1, 2 ... of the pyramid, made when they are first asked for.
+  [[nodiscard]] const std::vector<Texture>& coarser() const;
   [[nodiscard]] double across_border(double x, double y) const;
   [[nodiscard]] TexelRange range_within(int i0, int i1, int j0, int j1) const;
   void build_ranges();
@@ -61,6 +71,7 @@ class Texture {
   ImageF image_;
   /// Extremes of blocks of 2 x 2, 4 x 4, 8 x 8 ... texels; the last level is one block.
   std::vector<Image<TexelRange>> ranges_;
+  std::shared_ptr<Pyramid> pyramid_;  ///< shared by copies
   Wrap wrap_u_;
   Wrap wrap_v_;
 };

@@ -4,9 +4,13 @@
 #include <limits>
 
 namespace saccade {
-namespace {
+Twist camera_twist(const SplineState& state) {
+  Twist twist;
+  twist << state.world_from_body.rotation().conjugate() * state.velocity_in_world,
+      state.angular_velocity_in_body;
+  return twist;
+}
 
-/// d distort / d pixel (2x2) by central differences; smooth enough for 1e-8.
 Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
   if (!camera.is_distorted()) return Eigen::Matrix2d::Identity();
   constexpr double kStep_px = 1e-3;
@@ -17,15 +21,6 @@ Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera, const Eigen::Ve
         (camera.distort(pixel + step) - camera.distort(pixel - step)) / (2 * kStep_px);
   }
   return jacobian;
-}
-
-}  // namespace
-
-Twist camera_twist(const SplineState& state) {
-  Twist twist;
-  twist << state.world_from_body.rotation().conjugate() * state.velocity_in_world,
-      state.angular_velocity_in_body;
-  return twist;
 }
 
 Eigen::Vector2d point_motion(const PinholeCamera& camera, const Eigen::Vector3d& ray, double depth,

@@ -21,6 +21,11 @@ namespace saccade {
 [[nodiscard]] Eigen::Vector2d point_motion(const PinholeCamera& camera, const Eigen::Vector3d& ray,
                                            double depth, const Twist& twist);
 
+/// d distort / d pixel (2x2) at a pixel of the ideal image, by central differences: smooth enough
+/// for 1e-8.
+[[nodiscard]] Eigen::Matrix2d distortion_jacobian(const PinholeCamera& camera,
+                                                  const Eigen::Vector2d& pixel);
+
 /// Range of 1 / z over some pixels [1/m]; 0 stands for the background.
 struct InverseDepthRange {
   double low = 0;

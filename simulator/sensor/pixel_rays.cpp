@@ -1,8 +1,12 @@
 #include "simulator/sensor/pixel_rays.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
 
 #include "core/check.h"
+#include "simulator/sensor/image_motion.h"
 
 namespace saccade {
 namespace {
@@ -47,6 +51,14 @@ Tile PixelRays::tile(std::size_t index) const {
   tile.width = std::min(kTileSize, camera_.width - tile.x0);
   tile.height = std::min(kTileSize, camera_.height - tile.y0);
   return tile;
+}
+
+Eigen::Matrix2d PixelRays::spread(const Eigen::Vector3d& direction) const {
+  const double side_px = 1 / std::sqrt(static_cast<double>(rays_per_pixel_));
+  const Eigen::Matrix2d ideal_from_distorted =
+      distortion_jacobian(camera_, camera_.project(direction)).inverse();
+  return Eigen::Vector2d(1 / camera_.fx, 1 / camera_.fy).asDiagonal() *
+         (side_px * ideal_from_distorted);
 }
 
 }  // namespace saccade

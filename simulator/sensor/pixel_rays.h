@@ -50,6 +50,11 @@ class PixelRays {
             tile(index).pixels() * rays_per_pixel_};
   }
 
+  /// How much `direction`, the ray of an image point, differs from those of the next rays to the
+  /// right and below (columns: x and y of the camera frame), when each stands for its share of the
+  /// pixel.
+  [[nodiscard]] Eigen::Matrix2d spread(const Eigen::Vector3d& direction) const;
+
  private:
   PinholeCamera camera_;
   std::size_t rays_per_pixel_;

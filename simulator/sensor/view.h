@@ -8,6 +8,7 @@
 #include "core/io/exr_file.h"
 #include "core/spline.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/event_options.h"
 #include "simulator/sensor/pixel_rays.h"
 
 namespace saccade {
@@ -18,7 +19,8 @@ namespace saccade {
 class ViewRenderer {
  public:
   /// `scene` must outlive the renderer; `rays_per_pixel`: 1, 4 or 16.
-  ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel);
+  ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
+               TextureFilter filter = TextureFilter::kBilinear);
 
   /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur).
   [[nodiscard]] ImageF radiance(std::span<const StampedPose> poses) const;
@@ -34,7 +36,11 @@ class ViewRenderer {
   [[nodiscard]] const PinholeCamera& camera() const { return radiance_rays_.camera(); }
 
  private:
+  [[nodiscard]] RaySpread spread_in_world(const Eigen::Matrix3d& world_from_camera,
+                                          const Eigen::Vector3d& direction) const;
+
   const Scene& scene_;
+  TextureFilter filter_;
   PixelRays radiance_rays_;
   PixelRays centre_rays_;
 };

@@ -114,5 +114,76 @@ TEST(Texture, CellHoldsTheFourTexelsOfTheInterpolant) {
   }
 }
 
+TEST(TexturePyramid, LevelZeroIsTheTextureAndTheTopItsMean) {
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror})
+    for (const auto& [width, height] : {std::pair(37, 22), {64, 16}, {1, 5}, {3, 3}}) {
+      const ImageF picture = noise_picture(width, height);
+      const Texture texture(picture, wrap, wrap);
+      double mean = 0;
+      for (const float value : picture.pixels()) mean += static_cast<double>(value);
+      mean /= static_cast<double>(picture.size());
+      for (int k = 0; k < 20; ++k) {
+        const double x = -50 + 7.3 * k;
+        const double y = 40 - 5.1 * k;
+        EXPECT_EQ(texture.at_texel(x, y, 0), texture.at_texel(x, y));
+        EXPECT_EQ(texture.at_texel(x, y, -3), texture.at_texel(x, y));
+        EXPECT_NEAR(texture.at_texel(x, y, 20), mean, 1e-5) << width << " x " << height;
+      }
+    }
+}
+
+TEST(TexturePyramid, AContinuousSignalStaysOne) {
+  const Texture texture(noise_picture(37, 22), Wrap::kRepeat, Wrap::kMirror);
+  const Random random(5);
+  for (std::uint64_t k = 0; k < 2000; ++k) {
+    const auto draw = [&](std::uint64_t stream) { return random.uniform(stream, k); };
+    const double x = 200 * draw(0) - 100;
+    const double y = 200 * draw(1) - 100;
+    // Half of them just at a level of the pyramid.
+    const double level = k % 2 == 0 ? 6 * draw(2) : std::floor(6 * draw(2));
+    const double here = texture.at_texel(x, y, level);
+    EXPECT_NEAR(texture.at_texel(x + 1e-6, y, level), here, 1e-5);
+    EXPECT_NEAR(texture.at_texel(x, y - 1e-6, level), here, 1e-5);
+    EXPECT_NEAR(texture.at_texel(x, y, level + 1e-6), here, 1e-5);
+    EXPECT_NEAR(texture.at_texel(x, y, level - 1e-6), here, 1e-5);
+    EXPECT_NEAR(texture.at_texel(x + 37, y + 44, level), here, 1e-5) << "a period";
+    EXPECT_NEAR(texture.at_texel(x, -1 - y, level), here, 1e-5) << "the mirror";
+  }
+}
+
+TEST(TexturePyramid, LevelOfAPowerOfTwoIsTheMeanOfItsTexels) {
+  const ImageF picture = noise_picture(16, 8);
+  const Texture texture(picture);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 4; ++i) {
+      double mean = 0;
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x) mean += static_cast<double>(picture(4 * i + x, 4 * j + y)) / 16;
+      EXPECT_NEAR(texture.at_texel(4 * i + 1.5, 4 * j + 1.5, 2), mean, 1e-6);
+    }
+}
+
+TEST(TexturePyramid, RangeHoldsForItsLevels) {
+  const Texture texture(noise_picture(37, 22), Wrap::kRepeat, Wrap::kClamp);
+  const Random random(9);
+  for (std::uint64_t k = 0; k < 300; ++k) {
+    const auto draw = [&](std::uint64_t stream) { return random.uniform(stream, k); };
+    const double x = 100 * draw(0) - 50;
+    const double y = 60 * draw(1) - 30;
+    const TexelBox box{x, x + 9 * draw(2), y, y + 9 * draw(3)};
+    const double low = 6 * draw(4) - 1;
+    const double high = low + draw(5);
+    const TexelRange range = texture.range(box, low, high);
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const auto part = [&](std::uint64_t stream) { return random.uniform(stream, 20 * k + i); };
+      const double value =
+          texture.at_texel(box.x0 + (box.x1 - box.x0) * part(6),
+                           box.y0 + (box.y1 - box.y0) * part(7), low + (high - low) * part(8));
+      ASSERT_GE(value, range.low - 1e-6);
+      ASSERT_LE(value, range.high + 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saccade

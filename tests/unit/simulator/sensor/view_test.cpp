@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/closed_form_plane.h"
@@ -92,6 +93,68 @@ TEST(ViewRenderer, FlowIsTheMotionOfTheSeenPoint) {
       EXPECT_NEAR(flow.u(x, y), expected.x(), 1e-4 * (1 + expected.norm()));
       EXPECT_NEAR(flow.v(x, y), expected.y(), 1e-4 * (1 + expected.norm()));
     }
+}
+
+ImageF checkerboard(int size) {
+  ImageF image(size, size);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) image(x, y) = (x + y) % 2 == 0 ? 0.1F : 0.9F;
+  return image;
+}
+
+double spread_of(const ImageF& image) {
+  const auto [low, high] = std::minmax_element(image.pixels().begin(), image.pixels().end());
+  return static_cast<double>(*high - *low);
+}
+
+TEST(TextureFilter, FineTextureIsItsMeanInsteadOfAliasing) {
+  // 1024 texels on 4 m, seen at 3 m with 40 px of focal length: 19 texels a pixel.
+  const Scene scene = testing::scene_of(
+      {testing::rectangle({-2, -2, 3}, {4, 0, 0}, {0, 4, 0.5}, checkerboard(1024))});
+  const PinholeCamera camera{31, 23, 40, 40, 15, 11, {-0.1, 0, 0, 0, 0}};
+  const std::vector<StampedPose> pose{{0, {so3_exp({0.02, 0.03, 0.1}), {0.01, 0.02, 0}}}};
+  const ImageF point = ViewRenderer(scene, camera, 1).radiance(pose);
+  EXPECT_GT(spread_of(point), 0.5);
+  for (const int rays : {1, 4}) {
+    const ImageF mean = ViewRenderer(scene, camera, rays, TextureFilter::kMipmap).radiance(pose);
+    EXPECT_LT(spread_of(mean), 0.01) << rays;
+    EXPECT_NEAR(mean(15, 11), 0.5, 0.005) << rays;
+  }
+}
+
+TEST(TextureFilter, CoarseTextureStaysAsItIs) {
+  const Scene scene = testing::scene_of(
+      {testing::rectangle({-2, -2, 3}, {4, 0, 0}, {0, 4, 0.5}, checkerboard(16))});
+  const PinholeCamera camera{31, 23, 40, 40, 15, 11, {}};
+  const std::vector<StampedPose> pose{{0, {so3_exp({0.02, 0.03, 0.1}), {0.01, 0.02, 0}}}};
+  EXPECT_EQ(ViewRenderer(scene, camera, 1).radiance(pose),
+            ViewRenderer(scene, camera, 1, TextureFilter::kMipmap).radiance(pose));
+}
+
+TEST(TextureFilter, LevelIsTheLargerTexelStepToTheNextPixel) {
+  const Scene scene = testing::scene_of(
+      {testing::rectangle({-20, -20, 5}, {40, 0, 0}, {0, 40, 25}, checkerboard(1024))});
+  const PinholeCamera camera{31, 23, 40, 44, 15, 11, {-0.2, 0.05, 0.003, -0.002, 0}};
+  const PixelRays rays(camera, 1);
+  constexpr double kStep_px = 1e-4;
+  for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(3, 4), {15, 11}, {29, 20}}) {
+    const auto look = [&](double dx, double dy) {
+      const Eigen::Vector2d moved = pixel + Eigen::Vector2d(dx, dy);
+      const Ray ray{{0, 0, 0}, camera.ray(camera.undistort(moved))};
+      TriangleId triangle = kNothing;
+      scene.visible({&ray, 1}, {&triangle, 1});
+      const Eigen::Matrix2d s = rays.spread(ray.direction);
+      return scene.look(ray, triangle, {{s(0, 0), s(1, 0), 0}, {s(0, 1), s(1, 1), 0}});
+    };
+    const auto step = [&](double dx, double dy) {
+      const SurfaceLook a = look(-dx, -dy);
+      const SurfaceLook b = look(dx, dy);
+      return std::hypot(b.x - a.x, b.y - a.y) / (2 * kStep_px);
+    };
+    const double expected = std::log2(std::max(step(kStep_px, 0), step(0, kStep_px)));
+    EXPECT_GT(expected, 0.5);
+    EXPECT_NEAR(look(0, 0).level, expected, 1e-4);
+  }
 }
 
 }  // namespace
