@@ -41,7 +41,9 @@ struct SurfaceLook {
   double level = 0;       ///< of the texture's pyramid; <= 0: the texture itself
 
   [[nodiscard]] double radiance() const {
-    return irradiance * (texture != nullptr ? factor * texture->at_texel(x, y, level) : x);
+    if (texture == nullptr) return irradiance * x;
+    const double value = level > 0 ? texture->at_texel(x, y, level) : texture->at_texel(x, y);
+    return irradiance * (factor * value);
   }
 };
 

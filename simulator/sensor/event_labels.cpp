@@ -54,8 +54,12 @@ void EventLabeller::label_packet(std::span<const SensedEvent> events, std::size_
     const SensedEvent& event = events[first + k];
     const std::size_t i = first + k;
     const double depth = scene_.look(rays[k], triangles[k]).distance;
+    const MovingObject* object = scene_.moving_object(triangles[k]);
+    const Twist twist = object == nullptr
+                            ? camera_twist(states[k])
+                            : relative_twist(states[k], object->state(rays[k].time_s));
     const Eigen::Vector2d flow =
-        point_motion(rays_.camera(), centre_ray(rays_, event), depth, camera_twist(states[k]));
+        point_motion(rays_.camera(), centre_ray(rays_, event), depth, twist);
     labels.depth[i] = static_cast<float>(depth);
     labels.flow_x[i] = static_cast<float>(flow.x());
     labels.flow_y[i] = static_cast<float>(flow.y());

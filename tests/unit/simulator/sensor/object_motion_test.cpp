@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "simulator/scene/moving_object.h"
+#include "simulator/sensor/event_labels.h"
 #include "simulator/sensor/view.h"
 #include "tests/unit/simulator/plane_scene.h"
 
@@ -128,6 +129,33 @@ TEST(MovingView, FlowIsTheMotionOfTheSeenPointWhenBothMove) {
       EXPECT_NEAR(flow.v(x, y), expected.y(), 1e-4 * (1 + expected.norm()));
     }
   EXPECT_GT(compared, 200);
+}
+
+TEST(MovingView, LabelsOfEventsAgreeWithTheImages) {
+  SceneBuilder builder;
+  builder.add_moving(textured_plane(), Eigen::Affine3d::Identity(), wobble({0, 0, 2}, 0.3, 0.2, 0));
+  const Scene scene = std::move(builder).build(Background(0.5));
+  const Spline motion = wobble({0, 0, 0}, 0.2, 0.3, 2);
+  constexpr double kTime_s = 0.43;
+  const ViewRenderer view(scene, kCamera, 1);
+  const ImageF depth = view.depth({kTime_s, motion.pose(kTime_s)});
+  const FlowField flow = view.flow(motion.state(kTime_s), kTime_s);
+  SensedEvents events;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 41; ++x) {
+      SensedEvent event;
+      event.t_ns = ns_from_seconds(kTime_s);
+      event.x = static_cast<std::uint16_t>(x);
+      event.y = static_cast<std::uint16_t>(y);
+      events.push_back(event);
+    }
+  const EventLabels labels = EventLabeller(scene, motion, kCamera).label(events);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EXPECT_EQ(labels.object[i], depth.pixels()[i] > 0 ? 0 : -1);
+    EXPECT_NEAR(labels.depth[i], depth.pixels()[i], 1e-6);
+    EXPECT_NEAR(labels.flow_x[i], flow.u.pixels()[i], 1e-3);
+    EXPECT_NEAR(labels.flow_y[i], flow.v.pixels()[i], 1e-3);
+  }
 }
 
 TEST(ObjectMotion, BoundHoldsForEveryPointThatPassesThere) {
