@@ -71,12 +71,6 @@ void EventLog::append(std::span<const SensedEvent> events) {
   journal_->append(packed_);
 }
 
-void EventLog::append(std::span<const Event> events) {
-  SensedEvents sensed;
-  for (const Event& e : events) sensed.push_back({e.t_ns, e.x, e.y, e.polarity});
-  append(sensed);
-}
-
 bool EventLog::wants_checkpoint() const { return Clock::now() >= next_; }
 
 void EventLog::checkpoint(double reached_s, std::string_view state) {

@@ -42,8 +42,6 @@ class EventLog {
 
   /// Events in order.
   void append(std::span<const SensedEvent> events);
-  /// The same for events of the signal alone.
-  void append(std::span<const Event> events);
   /// True when so much time has passed since the last checkpoint that one costs little of it.
   [[nodiscard]] bool wants_checkpoint() const;
   /// Everything up to `reached_s` is appended and `state` goes on from there.

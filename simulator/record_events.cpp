@@ -14,7 +14,7 @@ std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 *
 
 /// Records what the log does not hold yet.
 void fill(const Take& take) {
-  EventCamera camera(take.scene, take.world_from_camera, take.camera, take.events);
+  EventCamera camera(take.scene, take.world_from_camera, take.camera, take.events, take.seed);
   double shown_s = take.log.reached_s();
   Progress progress("events", microseconds(take.duration_s()), "simulated us",
                     microseconds(shown_s));

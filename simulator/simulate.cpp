@@ -41,6 +41,9 @@ DatasetRecord facts(const Take& take, const EventStatistics& events, double path
   record.contrast_off = take.events.contrast.off;
   record.log_eps = take.events.log_eps;
   record.rays = static_cast<std::int64_t>(events.rays);
+  record.shadow_rays = static_cast<std::int64_t>(events.shadow_rays);
+  record.surface_looks = static_cast<std::int64_t>(events.surface_looks);
+  if (take.events.noise.readout.on()) record.lost_events = static_cast<std::int64_t>(events.lost);
   record.time_bound_us = 1e6 * events.time_bound_s;
   record.path_length_m = path_length_m;
   return record;

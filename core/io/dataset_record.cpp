@@ -51,7 +51,11 @@ void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("contrast_on", record.contrast_on, "threshold [log units]").above(0);
   fields.value("contrast_off", record.contrast_off, "threshold [log units]").above(0);
   fields.value("log_eps", record.log_eps, "eps of L = ln(eps + I)").above(0);
-  fields.value("rays", record.rays, "cast in all").at_least(0);
+  fields.value("rays", record.rays, "for visibility, in all").at_least(0);
+  fields.value("shadow_rays", record.shadow_rays, "towards lights").at_least(0);
+  fields.value("surface_looks", record.surface_looks, "at known triangles, without a ray")
+      .at_least(0);
+  fields.value("lost_events", record.lost_events, "that met a full readout").at_least(0);
   fields.value("rays_per_event", record.rays_per_event, "[-]").at_least(0);
   fields
       .value("time_bound_us", record.time_bound_us,

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/object_motion.h"
 
 namespace saccade {
 namespace {
@@ -22,43 +24,66 @@ constexpr double kOccludedRefinement = 2;
 constexpr std::size_t kTilesPerTask = 16;
 /// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
 constexpr double kTileRadius_px = 2.83;
+/// To the corners of the eight tiles around.
+constexpr double kNeighbourhood_px = 8.49;
 
 }  // namespace
 
 EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
-                         const PinholeCamera& camera, const EventOptions& options)
+                         const PinholeCamera& camera, const EventOptions& options,
+                         std::uint64_t seed)
     : motion_(world_from_camera),
       rays_(camera, options.samples_per_pixel),
-      world_{scene, rays_, options},
+      world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       speeds_(rays_.tile_count()),
-      refinements_(rays_.tile_count(), 1) {
+      refinements_(rays_.tile_count(), 1),
+      output_(options.noise, options.log_eps, camera.width, camera.height,
+              options.timestamp_step_ns(), seed) {
   tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
 }
 
 void EventCamera::record(double duration_s, const Sink& sink) {
-  SACCADE_CHECK(duration_s > 0);
-  double t_s = 0;
-  const PoseTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
-  for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, t_s); });
-  while (t_s < duration_s) {
-    const double fastest = bound_speeds(t_s);
+  SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
+  if (!started_) {
+    const PoseTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
+    for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, 0); });
+    started_ = true;
+  }
+  while (t_s_ < duration_s) {
+    const double fastest = bound_speeds(t_s_);
     const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
     // No sliver at the end: the rest is split evenly.
-    const double slabs_left = std::ceil((duration_s - t_s) / slab_s);
-    const double end_s = slabs_left <= 1 ? duration_s : t_s + (duration_s - t_s) / slabs_left;
-    const PoseTable poses(motion_, searched_s(), end_s);
+    const double slabs_left = std::ceil((duration_s - t_s_) / slab_s);
+    const double end_s = slabs_left <= 1 ? duration_s : t_s_ + (duration_s - t_s_) / slabs_left;
+    const PoseTable poses(motion_, t_s_, end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
-      const double motion_px = speeds_[i] * (end_s - t_s);
+      const double motion_px = speeds_[i] * (end_s - t_s_);
       const double steps = std::ceil(refinements_[i] * motion_px / world_.options.max_step_px);
       tile.advance(poses, end_s, std::max(1, static_cast<int>(steps)));
     });
-    deliver(searched_s(), end_s, sink);
-    t_s = end_s;
+    t_s_ = end_s;
+    deliver(t_s_ == duration_s, sink);
   }
-  const PoseTable poses(motion_, searched_s(), duration_s);
-  for_each_tile([&](EventTile& tile, std::size_t) { tile.finish(poses); });
-  deliver(std::numeric_limits<double>::infinity(), duration_s, sink);
+}
+
+std::string EventCamera::state() const {
+  StateWriter state;
+  state.value(t_s_);
+  for (const auto& tile : tiles_) tile->save(state);
+  state.values(pending_);
+  state.text(output_.state());
+  return state.take();
+}
+
+void EventCamera::resume(std::string_view bytes) {
+  StateReader state(bytes);
+  state.value(t_s_);
+  for (const auto& tile : tiles_) tile->load(state);
+  state.values(pending_);
+  output_.load(state.text());
+  if (!state.at_end()) throw InputError("saved state", "is too long; start the simulation afresh");
+  started_ = true;
 }
 
 template <class Work>
@@ -67,24 +92,19 @@ void EventCamera::for_each_tile(const Work& work) {
       tiles_.size(), [&](std::size_t i) { work(*tiles_[i], i); }, kTilesPerTask);
 }
 
-double EventCamera::searched_s() const {
-  double earliest = std::numeric_limits<double>::infinity();
-  for (const auto& tile : tiles_) earliest = std::min(earliest, tile->searched_s());
-  return earliest;
-}
-
 double EventCamera::bound_speeds(double t_s) {
   // The motion changes little within 10 ms; three looks bound it.
   std::array<Twist, 3> twists;
   for (std::size_t k = 0; k < twists.size(); ++k)
     twists[k] = camera_twist(motion_.state(t_s + 0.5 * static_cast<double>(k) * kLongestSlab_s));
   const PinholeCamera& camera = rays_.camera();
+  const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlab_s);
   for_each_tile([&](EventTile&, std::size_t i) {
     const Tile tile = rays_.tile(i);
     const Eigen::Vector3d centre = camera.ray(
         Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
     const InverseDepthRange range = neighbourhood(i);
-    ImageSpeed speed;
+    ImageSpeed speed = objects.bound(camera, centre, kNeighbourhood_px, range);
     for (const Twist& twist : twists) {
       const ImageSpeed now = image_speed_bound(camera, centre, kTileRadius_px, twist, range);
       speed.fastest = std::max(speed.fastest, now.fastest);
@@ -110,22 +130,30 @@ InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
   return range;
 }
 
-void EventCamera::deliver(double complete_s, double t_s, const Sink& sink) {
+void EventCamera::deliver(bool is_last, const Sink& sink) {
   for (const auto& tile : tiles_) tile->take_events(pending_);
-  std::sort(pending_.begin(), pending_.end(), EventOrder());
-  // Rounding can put a later event on the tick of complete_s or on the one before it.
-  const TimeNs unit = world_.options.timestamp_step_ns();
-  const double complete_ns = std::min(1e9 * complete_s, 9e18) - 2 * static_cast<double>(unit);
-  const auto end = std::partition_point(pending_.begin(), pending_.end(), [&](const Event& e) {
-    return static_cast<double>(e.t_ns) < complete_ns;
-  });
-  sink({pending_.begin(), end}, t_s);
+  std::sort(pending_.begin(), pending_.end(), SensedEventOrder());
+  // Rounding can put a later event on the tick of t_s_ or on the one before it.
+  const TimeNs complete_ns = is_last
+                                 ? std::numeric_limits<TimeNs>::max()
+                                 : ns_from_seconds(t_s_) - 2 * world_.options.timestamp_step_ns();
+  const auto end =
+      std::partition_point(pending_.begin(), pending_.end(),
+                           [&](const SensedEvent& event) { return event.t_ns < complete_ns; });
+  ready_.clear();
+  const auto collect = [&](std::span<const SensedEvent> events) {
+    ready_.insert(ready_.end(), events.begin(), events.end());
+  };
+  output_.push({pending_.begin(), end}, complete_ns, collect);
+  if (is_last) output_.finish(collect);
   pending_.erase(pending_.begin(), end);
+  sink(ready_, t_s_);
 }
 
 EventStatistics EventCamera::statistics() const {
   EventStatistics total;
   for (const auto& tile : tiles_) total.add(tile->statistics());
+  total.lost = output_.counts().lost;
   return total;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/camera.h"
@@ -10,6 +13,7 @@
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/event_tile.h"
+#include "simulator/sensor/noise/sensor_output.h"
 
 namespace saccade {
 
@@ -24,15 +28,23 @@ namespace saccade {
 /// the state at the slab's start, so the stream is the same for any number of threads.
 class EventCamera {
  public:
-  /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera.
+  /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera;
+  /// `seed` is that of its imperfections.
   EventCamera(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
-              const EventOptions& options);
+              const EventOptions& options, std::uint64_t seed = 1);
 
-  /// Receives the events up to a time [s], in EventOrder over all calls.
-  using Sink = std::function<void(std::span<const Event> events, double t_s)>;
+  /// Receives the events up to a time [s], in SensedEventOrder over all calls; state() may be
+  /// called.
+  using Sink = std::function<void(std::span<const SensedEvent> events, double t_s)>;
 
-  /// Records from time 0 to `duration_s` > 0. Call once.
+  /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
+
+  /// All that later events depend on, between two calls of the sink.
+  [[nodiscard]] std::string state() const;
+  /// Goes on where another camera, made with the same arguments, had got to. Before record();
+  /// throws InputError where the state does not fit.
+  void resume(std::string_view state);
 
   [[nodiscard]] EventStatistics statistics() const;
 
@@ -40,13 +52,11 @@ class EventCamera {
   /// work(tile, index) for all tiles, in parallel.
   template <class Work>
   void for_each_tile(const Work& work);
-  /// The time up to which all tiles' events are complete.
-  [[nodiscard]] double searched_s() const;
   /// Bound of the image speed of every tile over [t, t + longest slab], into speeds_; the largest.
   double bound_speeds(double t_s);
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
-  /// Takes the tiles' events and hands out those before `complete_s`.
-  void deliver(double complete_s, double t_s, const Sink& sink);
+  /// Takes the tiles' events and hands out those that no later one can precede.
+  void deliver(bool is_last, const Sink& sink);
 
   const Spline& motion_;
   PixelRays rays_;
@@ -54,7 +64,11 @@ class EventCamera {
   std::vector<std::unique_ptr<EventTile>> tiles_;
   std::vector<double> speeds_;       ///< per tile [px/s]
   std::vector<double> refinements_;  ///< per tile; max_step_px is divided by it
-  Events pending_;
+  double t_s_ = 0;                   ///< up to which all tiles have sensed
+  bool started_ = false;
+  SensedEvents pending_;  ///< found but not yet handed on
+  SensorOutput output_;
+  SensedEvents ready_;  ///< to be handed to the sink; kept for its memory
 };
 
 }  // namespace saccade

@@ -1,45 +1,26 @@
 #include "simulator/sensor/event_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/check.h"
+#include "simulator/sensor/noise/leak.h"
+#include "simulator/sensor/noise/mismatch.h"
+#include "simulator/sensor/pixel_sensor.h"
+#include "simulator/sensor/pixel_signal.h"
 
 namespace saccade {
 namespace {
 
-/// What a pixel sees at one instant through its kRays rays.
-template <std::size_t kRays>
-struct PixelSample {
-  double t_s = 0;
-  double log_intensity = 0;
-  std::array<TriangleId, kRays> triangles{};
+/// A pixel and what it fires at.
+struct TilePixel {
+  PixelTraits traits;
+  PixelState state;
+  Thresholds thresholds;
 };
-
-/// What all pixels of a tile see at one instant.
-template <std::size_t kRays>
-struct TileSample {
-  double t_s = 0;
-  std::array<double, kTilePixels> log_intensity{};
-  std::array<std::array<TriangleId, kRays>, kTilePixels> triangles{};
-
-  [[nodiscard]] PixelSample<kRays> pixel(std::size_t i) const {
-    return {t_s, log_intensity[i], triangles[i]};
-  }
-};
-
-using TileSlopes = std::array<double, kTilePixels>;
-
-/// |dL/dt| of every pixel between two instants; 0 when they are one.
-template <std::size_t kRays>
-TileSlopes slopes_between(const TileSample<kRays>& a, const TileSample<kRays>& b) {
-  const double per_s = b.t_s > a.t_s ? 1 / (b.t_s - a.t_s) : 0;
-  TileSlopes slopes;
-  for (std::size_t i = 0; i < kTilePixels; ++i)
-    slopes[i] = std::abs(b.log_intensity[i] - a.log_intensity[i]) * per_s;
-  return slopes;
-}
 
 template <std::size_t kRays>
 class LockstepTile final : public EventTile {
@@ -48,153 +29,189 @@ class LockstepTile final : public EventTile {
       : world_(world),
         tile_(world.rays.tile(index)),
         directions_(world.rays.rays(index)),
-        tolerance_s_(1e-6 * world.options.time_tolerance_us) {
-    search_.shortest_s = tolerance_s_;
+        tracer_(world.scene, statistics_) {
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
+    if (world.noise.on()) noisy_.resize(tile_.pixels());
   }
 
   void start(const PoseTable& poses, double t_s) override {
-    poses_ = &poses;
-    trace(t_s);
-    for (std::size_t i = 0; i < tile_.pixels(); ++i)
-      pixels_[i] = EventPixel(next_.log_intensity[i], world_.options.contrast);
-    from_ = to_ = next_;
+    tracer_.use(poses);
+    Views views;
+    trace(t_s, views);
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      const double level = sample(i, t_s, views).log_intensity;
+      TilePixel& pixel = pixels_[i];
+      const double drifted = pixel.traits.drift_per_s * t_s;
+      pixel.state = {EventPixel(level + drifted, pixel.traits.contrast), t_s};
+      update_thresholds(pixel);
+      if (!noisy_.empty())
+        noisy_[i] = {NoisyState::kNotBlind,
+                     world_.noise.spontaneous.start(pixel.traits.x, pixel.traits.y, t_s),
+                     PhotoreceptorFilter::settled(level)};
+    }
+    remember(t_s, views);
   }
 
   void advance(const PoseTable& poses, double t_s, int steps) override {
-    poses_ = &poses;
-    const double from_s = to_.t_s;
-    for (int k = 1; k < steps; ++k) step(from_s + (t_s - from_s) * k / steps);
-    step(t_s);
+    tracer_.use(poses);
+    const double from_s = t_s_;
+    Views views = views_at_start();
+    Views next;
+    for (int k = 1; k <= steps; ++k) {
+      const double next_s = k == steps ? t_s : from_s + (t_s - from_s) * k / steps;
+      trace(next_s, next);
+      for (std::size_t i = 0; i < tile_.pixels(); ++i) sense(i, views, next, next_s);
+      std::swap(views, next);
+      t_s_ = next_s;
+    }
+    remember(t_s, views);
   }
 
-  void finish(const PoseTable& poses) override {
-    poses_ = &poses;
-    search_step(slopes_);
-  }
-
-  [[nodiscard]] double searched_s() const override { return from_.t_s; }
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
 
+  void save(StateWriter& state) const override {
+    state.value(t_s_);
+    state.value(inverse_depths_.low);
+    state.value(inverse_depths_.high);
+    state.value(triangles_);
+    for (const TilePixel& pixel : pixels_) state.value(pixel.state);
+    state.values(noisy_);
+    state.value(statistics_);
+  }
+
+  void load(StateReader& state) override {
+    state.value(t_s_);
+    state.value(inverse_depths_.low);
+    state.value(inverse_depths_.high);
+    state.value(triangles_);
+    for (TilePixel& pixel : pixels_) {
+      state.value(pixel.state);
+      update_thresholds(pixel);
+    }
+    state.values(noisy_);
+    state.value(statistics_);
+  }
+
  private:
+  using Signal = PixelSignal<kRays>;
   using Sample = PixelSample<kRays>;
+  /// What the rays of the tile see, pixel by pixel.
+  using Views = std::array<RayView, kTilePixels * kRays>;
 
-  void step(double t_s) {
-    trace(t_s);
-    const TileSlopes slopes_after = slopes_between(to_, next_);
-    search_step(slopes_after);
-    slopes_before_ = slopes_;
-    slopes_ = slopes_after;
-    from_ = to_;
-    to_ = next_;
+  [[nodiscard]] PixelTraits traits(std::size_t i) const {
+    const auto x = static_cast<std::uint16_t>(tile_.x(i));
+    const auto y = static_cast<std::uint16_t>(tile_.y(i));
+    const Contrast contrast = pixel_contrast(world_.options, world_.seed, x, y);
+    return {x, y, contrast, leak_slope(world_.options.noise.leak, contrast.on, world_.seed, x, y)};
   }
 
-  /// All pixels' crossings between from_ and to_.
-  void search_step(const TileSlopes& slopes_after) {
-    const double step_s = to_.t_s - from_.t_s;
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      const Slopes slopes{slopes_before_[i], slopes_after[i]};
-      if (may_exit(pixels_[i].band(), from_.log_intensity[i], to_.log_intensity[i], step_s, slopes,
-                   search_))
-        walk(i, slopes);
-    }
+  void update_thresholds(TilePixel& pixel) const {
+    pixel.thresholds =
+        Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s, world_.options.log_eps);
   }
 
-  void walk(std::size_t i, const Slopes& slopes) {
-    const auto evaluate = [this, i](double t, const Sample& lo, const Sample& hi) {
-      return look(i, t, lo, hi);
-    };
-    const auto emit = [this, i](double t, int polarity) { record(i, t, polarity); };
-    const double width_s = walk_step(pixels_[i], world_.options.contrast, from_.pixel(i),
-                                     to_.pixel(i), slopes, tolerance_s_, search_, evaluate, emit);
-    statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
+  [[nodiscard]] Signal signal(std::size_t i) {
+    return Signal(tracer_, directions_.subspan(i * kRays).template first<kRays>(),
+                  world_.options.log_eps, 1e-6 * world_.options.time_tolerance_us);
   }
 
-  void record(std::size_t i, double t_s, int polarity) {
-    const double unit_ns = static_cast<double>(world_.options.timestamp_step_ns());
-    const auto units = static_cast<TimeNs>(std::llround(t_s * 1e9 / unit_ns));
-    events_.push_back({units * world_.options.timestamp_step_ns(),
-                       static_cast<std::uint16_t>(tile_.x(i)),
-                       static_cast<std::uint16_t>(tile_.y(i)), static_cast<std::int8_t>(polarity)});
-  }
-
-  /// All rays of the tile at time `t_s`, into next_.
-  void trace(double t_s) {
-    const CameraFrame camera = poses_->at(t_s);
-    const std::size_t count = directions_.size();
-    std::array<Ray, kTilePixels * kRays> rays;
-    std::array<TriangleId, kTilePixels * kRays> triangles;
-    for (std::size_t k = 0; k < count; ++k)
-      rays[k] = {camera.position, camera.rotation * directions_[k], t_s};
-    for (std::size_t k = 0; k < count; k += kTilePixels) {
-      const std::size_t n = std::min(kTilePixels, count - k);
-      world_.scene.visible({&rays[k], n}, {&triangles[k], n});
-    }
-    statistics_.rays += count;
-    next_.t_s = t_s;
-    double nearest = std::numeric_limits<double>::infinity();
-    double farthest = 0;
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      double sum = 0;
-      for (std::size_t s = 0; s < kRays; ++s) {
-        const std::size_t k = i * kRays + s;
-        next_.triangles[i][s] = triangles[k];
-        const Shade shade = world_.scene.shade(rays[k], triangles[k]);
-        sum += shade.radiance;
-        const double distance =
-            shade.distance > 0 ? shade.distance : std::numeric_limits<double>::infinity();
-        nearest = std::min(nearest, distance);
-        farthest = std::max(farthest, distance);
-      }
-      next_.log_intensity[i] = log_intensity(sum);
-    }
-    inverse_depths_ = {1 / farthest, 1 / nearest};
-  }
-
-  /// Pixel `i` at a time between two samples.
-  Sample look(std::size_t i, double t_s, const Sample& lo, const Sample& hi) {
-    const CameraFrame camera = poses_->at(t_s);
-    Sample sample{t_s, 0, lo.triangles};
-    std::array<Ray, kRays> rays;
-    for (std::size_t s = 0; s < kRays; ++s)
-      rays[s] = {camera.position, camera.rotation * directions_[i * kRays + s], t_s};
-    if (lo.triangles != hi.triangles) {
-      world_.scene.visible(rays, sample.triangles);
-      statistics_.rays += kRays;
-    } else {
-      statistics_.surface_looks += kRays;
-    }
-    double sum = 0;
-    for (std::size_t s = 0; s < kRays; ++s)
-      sum += world_.scene.shade(rays[s], sample.triangles[s]).radiance;
-    sample.log_intensity = log_intensity(sum);
+  [[nodiscard]] Sample sample(std::size_t i, double t_s, const Views& views) {
+    Sample sample;
+    sample.t_s = t_s;
+    std::copy_n(&views[i * kRays], kRays, sample.rays.begin());
+    signal(i).set_log_intensity(sample);
     return sample;
   }
 
-  [[nodiscard]] double log_intensity(double radiance_sum) const {
-    return std::log(world_.options.log_eps + radiance_sum / static_cast<double>(kRays));
+  void sense(std::size_t i, const Views& views, const Views& next, double next_s) {
+    ++statistics_.stretches;
+    if (is_certified(i, views, next, next_s)) {
+      ++statistics_.certified;
+      return;
+    }
+    TilePixel& pixel = pixels_[i];
+    const Signal pixel_signal = signal(i);
+    const auto emit = [&](double t_s, int polarity, EventOrigin origin, double log_intensity) {
+      record(pixel.traits, t_s, polarity, origin, log_intensity);
+    };
+    PixelSensor sensor(pixel_signal, pixel.traits, world_.options.log_eps, pixel.state,
+                       pixel.thresholds, emit);
+    const Sample lo = sample(i, t_s_, views);
+    const Sample hi = sample(i, next_s, next);
+    const double width_s = noisy_.empty() ? sensor.sense(lo, hi)
+                           : world_.noise.filter.on()
+                               ? sensor.sense_filtered(lo, hi, world_.noise, noisy_[i])
+                               : sensor.sense(lo, hi, world_.noise, noisy_[i]);
+    statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
+  }
+
+  /// Whether the step can be passed over: nothing can have fired.
+  [[nodiscard]] bool is_certified(std::size_t i, const Views& views, const Views& next,
+                                  double next_s) const {
+    if (!noisy_.empty() && (world_.noise.filter.on() || noisy_[i].blind_until_s >= t_s_ ||
+                            noisy_[i].spontaneous.next_s() < next_s))
+      return false;
+    RadianceRange sum{0, 0, 0, 0};
+    for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
+      if (views[k].triangle != next[k].triangle) return false;
+      sum.add(radiance_range(views[k], next[k], next_s - t_s_));
+    }
+    sum.scale(1.0 / kRays);
+    return pixels_[i].thresholds.certify(sum, next_s);
+  }
+
+  void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
+              double log_intensity) {
+    const double unit_ns = static_cast<double>(world_.options.timestamp_step_ns());
+    const auto units = static_cast<TimeNs>(std::llround(t_s * 1e9 / unit_ns));
+    events_.push_back({units * world_.options.timestamp_step_ns(), pixel.x, pixel.y,
+                       static_cast<std::int8_t>(polarity), origin,
+                       static_cast<float>(log_intensity)});
+  }
+
+  /// All rays of the tile.
+  void trace(double t_s, Views& views) {
+    for (std::size_t k = 0; k < directions_.size(); k += RayTracer::kPacket) {
+      const std::size_t n = std::min(RayTracer::kPacket, directions_.size() - k);
+      tracer_.trace(directions_.subspan(k, n), t_s, {&views[k], n});
+    }
+  }
+
+  /// The views that the last advance() ended with. Seen again, so that a tile that was loaded goes
+  /// on exactly as the one that was saved.
+  [[nodiscard]] Views views_at_start() {
+    Views views;
+    for (std::size_t k = 0; k < directions_.size(); ++k)
+      views[k] = tracer_.view(directions_[k], triangles_[k], t_s_);
+    return views;
+  }
+
+  void remember(double t_s, const Views& views) {
+    t_s_ = t_s;
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = 0;
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      triangles_[k] = views[k].triangle;
+      const double distance = views[k].look.distance > 0 ? views[k].look.distance
+                                                         : std::numeric_limits<double>::infinity();
+      nearest = std::min(nearest, distance);
+      farthest = std::max(farthest, distance);
+    }
+    inverse_depths_ = {1 / farthest, 1 / nearest};
   }
 
   const EventWorld& world_;
   Tile tile_;
   std::span<const Eigen::Vector3d> directions_;
-  double tolerance_s_;
-  ExcursionSearch search_;
-  const PoseTable* poses_ = nullptr;  ///< of the call in progress
+  RayTracer tracer_;
+  double t_s_ = 0;  ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;
-  std::array<EventPixel, kTilePixels> pixels_;
-  /// The last three traced instants; the search is between the first two.
-  TileSample<kRays> from_, to_, next_;
-  TileSlopes slopes_before_{};  ///< of the step before from_
-  TileSlopes slopes_{};         ///< of the step from from_ to to_
+  std::array<TriangleId, kTilePixels * kRays> triangles_{};  ///< seen at t_s_
+  std::array<TilePixel, kTilePixels> pixels_;
+  std::vector<NoisyState> noisy_;  ///< one per pixel, or none
 };
 
 }  // namespace
-
-void EventStatistics::add(const EventStatistics& other) {
-  rays += other.rays;
-  surface_looks += other.surface_looks;
-  time_bound_s = std::max(time_bound_s, other.time_bound_s);
-}
 
 std::unique_ptr<EventTile> make_event_tile(const EventWorld& world, std::size_t index) {
   switch (world.rays.rays_per_pixel()) {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "simulator/sensor/crossing.h"
 #include "simulator/sensor/event_options.h"
+#include "simulator/sensor/event_pixel.h"
 
 namespace saccade {
 

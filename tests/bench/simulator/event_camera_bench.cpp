@@ -26,7 +26,7 @@ void record_events(benchmark::State& state) {
   EventStatistics statistics;
   for (auto _ : state) {
     EventCamera camera(scene, motion, plane.camera, options);
-    camera.record(plane.duration_s, [&](std::span<const Event> some, double) {
+    camera.record(plane.duration_s, [&](std::span<const SensedEvent> some, double) {
       events += static_cast<std::int64_t>(some.size());
     });
     statistics.add(camera.statistics());

@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "core/spline.h"
 #include "simulator/scene/scene.h"
-#include "simulator/sensor/crossing.h"
+#include "simulator/sensor/event_pixel.h"
 
 namespace saccade::testing {
 

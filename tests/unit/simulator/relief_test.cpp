@@ -9,7 +9,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "simulator/scene/mesh_import.h"
-#include "unit/simulator/mesh_files.h"
+#include "tests/unit/simulator/mesh_files.h"
 
 namespace saccade {
 namespace {

@@ -74,8 +74,8 @@ void expect_agreement(const Scene& scene, const PinholeCamera& camera) {
       testing::brute_force(scene, motion, camera, options.contrast, options.log_eps, 1e-5);
   Events events;
   EventCamera sensor(scene, motion, camera, options);
-  sensor.record(motion.end_s(), [&](std::span<const Event> some, double) {
-    events.insert(events.end(), some.begin(), some.end());
+  sensor.record(motion.end_s(), [&](std::span<const SensedEvent> some, double) {
+    for (const SensedEvent& event : some) events.push_back(event.event());
   });
   const auto found = static_cast<double>(events.size());
   const auto expected = static_cast<double>(truth.size());

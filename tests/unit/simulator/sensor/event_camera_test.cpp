@@ -26,10 +26,10 @@ Recording record(const Scene& scene, const Spline& motion, const PinholeCamera& 
   Recording recording;
   EventCamera sensor(scene, motion, camera, options);
   double until_s = 0;
-  sensor.record(motion.end_s(), [&](std::span<const Event> events, double t_s) {
+  sensor.record(motion.end_s(), [&](std::span<const SensedEvent> events, double t_s) {
     EXPECT_GE(t_s, until_s);
     until_s = t_s;
-    recording.events.insert(recording.events.end(), events.begin(), events.end());
+    for (const SensedEvent& event : events) recording.events.push_back(event.event());
   });
   EXPECT_EQ(until_s, motion.end_s());
   recording.statistics = sensor.statistics();

@@ -1,0 +1,118 @@
+#include "simulator/sensor/ray_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// Rates are differences over this time: short against any motion, long against rounding.
+constexpr double kSoon_s = 1e-7;
+
+RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, TriangleId triangle) {
+  RayView view{triangle, now, 0, 0};
+  if (soon.texture != now.texture || (soon.distance == 0) != (now.distance == 0)) return view;
+  view.x_rate = (soon.x - now.x) / kSoon_s;
+  view.y_rate = (soon.y - now.y) / kSoon_s;
+  return view;
+}
+
+}  // namespace
+
+void EventStatistics::add(const EventStatistics& other) {
+  rays += other.rays;
+  shadow_rays += other.shadow_rays;
+  surface_looks += other.surface_looks;
+  stretches += other.stretches;
+  certified += other.certified;
+  lost += other.lost;
+  time_bound_s = std::max(time_bound_s, other.time_bound_s);
+}
+
+Ray RayTracer::ray_at(const Eigen::Vector3d& direction, double t_s) const {
+  const CameraFrame camera = poses_->at(t_s);
+  return {camera.position, camera.rotation * direction, t_s};
+}
+
+RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
+  ++statistics_.surface_looks;
+  const Ray now = ray_at(direction, t_s);
+  RayView view = with_rates(scene_.look(now, triangle),
+                            scene_.look(ray_at(direction, t_s + kSoon_s), triangle), triangle);
+  if (scene_.is_lit()) illuminate(now, view);
+  return view;
+}
+
+void RayTracer::illuminate(const Ray& ray, RayView& view) {
+  ++statistics_.shadow_rays;
+  view.look.irradiance = scene_.irradiance(ray, view.triangle, view.look);
+}
+
+void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
+                      std::span<RayView> views) {
+  SACCADE_CHECK(directions.size() <= kPacket && views.size() == directions.size());
+  const CameraFrame camera = poses_->at(t_s);
+  const CameraFrame soon = poses_->at(t_s + kSoon_s);
+  std::array<Ray, kPacket> rays;
+  std::array<TriangleId, kPacket> triangles;
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    rays[k] = {camera.position, camera.rotation * directions[k], t_s};
+  scene_.visible({rays.data(), directions.size()}, {triangles.data(), directions.size()});
+  statistics_.rays += directions.size();
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const Ray later{soon.position, soon.rotation * directions[k], t_s + kSoon_s};
+    views[k] = with_rates(scene_.look(rays[k], triangles[k]), scene_.look(later, triangles[k]),
+                          triangles[k]);
+    if (scene_.is_lit()) illuminate(rays[k], views[k]);
+  }
+}
+
+double RayTracer::inside(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {
+  return scene_.inside(ray_at(direction, t_s), triangle);
+}
+
+double RayTracer::change_s(const Eigen::Vector3d& direction, const Sighting& from,
+                           const Sighting& to, double tolerance_s) const {
+  TriangleId triangle = from.triangle;
+  double a_s = from.t_s, b_s = to.t_s;
+  double a = inside(direction, triangle, a_s);
+  double b = inside(direction, triangle, b_s);
+  if (!(b < 0)) {
+    triangle = to.triangle;
+    a = inside(direction, triangle, a_s);
+    b = inside(direction, triangle, b_s);
+  }
+  if ((a < 0) == (b < 0)) return std::numeric_limits<double>::quiet_NaN();
+  // False position, Illinois variant, on the smallest barycentric coordinate.
+  constexpr int kMostSteps = 20;
+  double t = a_s;
+  for (int k = 0, last = 0; k < kMostSteps && b_s - a_s > tolerance_s; ++k) {
+    const double before = t;
+    t = a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.001, 0.999);
+    const double value = inside(direction, triangle, t);
+    const bool is_first = (value < 0) == (a < 0);
+    (is_first ? a_s : b_s) = t;
+    (is_first ? a : b) = value;
+    if (last == (is_first ? 1 : -1)) (is_first ? b : a) *= 0.5;
+    last = is_first ? 1 : -1;
+    if (std::abs(t - before) < tolerance_s) break;
+  }
+  return a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.0, 1.0);
+}
+
+bool RayTracer::is_crease(const Eigen::Vector3d& direction, TriangleId a, TriangleId b,
+                          double t_s) const {
+  constexpr double kSamePoint = 1e-6;  // of the distance
+  constexpr double kAtEdge = 1e-3;     // barycentric
+  const Ray ray = ray_at(direction, t_s);
+  if (std::min(scene_.inside(ray, a), scene_.inside(ray, b)) < -kAtEdge) return false;
+  const double first = scene_.look(ray, a).distance;
+  const double second = scene_.look(ray, b).distance;
+  return std::abs(first - second) < kSamePoint * first;
+}
+
+}  // namespace saccade

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+
+#include "simulator/scene/scene.h"
+
+namespace saccade {
+
+/// What one ray of a pixel sees at an instant, and how that place moves over the texture.
+struct RayView {
+  TriangleId triangle = kNothing;
+  SurfaceLook look;
+  double x_rate = 0,
+         y_rate = 0;  ///< [texel/s]; without a texture x_rate is that of the albedo [1/s]
+};
+
+/// Bounds of a radiance and of its rate of change over a stretch of time.
+struct RadianceRange {
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+  double low = -kUnknown, high = kUnknown;
+  double rate_low = -kUnknown, rate_high = kUnknown;  ///< [1/s]
+
+  /// Of the mean of several rays, from their sum.
+  void add(const RadianceRange& other);
+  void scale(double factor);
+
+  /// Bound of how far ln(eps + I) strays from its chord over `length_s`: a quarter of the spread of
+  /// its rates times the length, or the spread of its values.
+  [[nodiscard]] double log_error(double log_eps, double length_s) const;
+
+  /// Rises or falls throughout, but for a thousandth of its steepest rate.
+  [[nodiscard]] bool is_monotone() const;
+};
+
+/// Of a ray that sees the same triangle at both ends of a stretch of `length_s` > 0 and all through
+/// it. Over the texture the ray follows the cubic with the given ends; it strays from the chord by
+/// at most 4/27 of the sum of both ends' differences from the chord's rate, times the length. A box
+/// within one cell of the texture is bounded by the bilinear function there, which also bounds the
+/// rate; a larger one by its texels.
+[[nodiscard]] RadianceRange radiance_range(const RayView& from, const RayView& to, double length_s);
+
+/// The cubic at `fraction` of the stretch. The irradiance is the line between both ends'.
+[[nodiscard]] RayView interpolate(const RayView& from, const RayView& to, double length_s,
+                                  double fraction);
+
+/// Whether the cubic is as good as the true path: the path is nearly straight.
+[[nodiscard]] bool is_straight(const RayView& from, const RayView& to, double length_s);
+
+/// Where to divide the stretch of a ray so that its parts become monotone: the crossing of a
+/// texel's border nearest to the middle; within one cell the radiance's extremum; else the middle.
+/// A fraction within [0.02, 0.98].
+[[nodiscard]] double dividing_fraction(const RayView& from, const RayView& to, double length_s);
+
+}  // namespace saccade
