@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "simulator/recording_loop.h"
 #include "simulator/sensor/event_labels.h"
+#include "simulator/sensor/frame_camera.h"
 
 namespace saccade {
 namespace {
@@ -13,8 +14,9 @@ namespace {
 std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 * t_s); }
 
 /// Records what the log does not hold yet.
+template <class Camera>
 void fill(const Take& take) {
-  EventCamera camera(take.scene, take.world_from_camera, take.camera, take.events, take.seed);
+  Camera camera(take.scene, take.world_from_camera, take.camera, take.events, take.seed);
   double shown_s = take.log.reached_s();
   Progress progress("events", microseconds(take.duration_s()), "simulated us",
                     microseconds(shown_s));
@@ -42,7 +44,12 @@ void write(const Take& take) {
 }  // namespace
 
 EventStatistics record_events(const Take& take) {
-  if (!take.log.statistics()) fill(take);
+  if (!take.log.statistics()) {
+    if (take.events.sampling == Sampling::kFrames)
+      fill<FrameCamera>(take);
+    else
+      fill<EventCamera>(take);
+  }
   write(take);
   return *take.log.statistics();
 }

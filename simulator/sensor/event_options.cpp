@@ -41,6 +41,10 @@ void describe(config::Fields& fields, EventOptions& options) {
       .value("frames_lambda_px", options.frames_lambda_px,
              "greatest image motion between two frames of sampling: frames [px]")
       .range(0.01, 10);
+  fields
+      .value("frames_rate_hz", options.frames_rate_hz,
+             "frames per second of sampling: frames; 0: as the motion asks for")
+      .range(0, 1e6);
   fields.choice("texture_filter", options.texture_filter,
                 {{"bilinear", TextureFilter::kBilinear}, {"mipmap", TextureFilter::kMipmap}},
                 "the point that a ray meets, or the mean over its footprint");

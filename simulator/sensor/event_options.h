@@ -32,6 +32,7 @@ struct EventOptions {
   double max_step_px = 0.5;  ///< image motion between two looks at a pixel
   Sampling sampling = Sampling::kAsynchronous;
   double frames_lambda_px = 0.5;  ///< greatest image motion between two frames
+  double frames_rate_hz = 0;      ///< frames per second in place of that; 0: by the motion
   TextureFilter texture_filter = TextureFilter::kBilinear;
   NoiseOptions noise;
 

@@ -6,28 +6,12 @@
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/object_motion.h"
+#include "simulator/sensor/tile_trace.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kTilesPerTask = 16;
-
-/// The rays of a tile in the world and what they meet: `use(index, ray, triangle)`.
-template <class Use>
-void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
-                const StampedPose& pose, const Use& use) {
-  const Eigen::Matrix3d rotation = pose.world_from_camera.rotation_matrix();
-  const Eigen::Vector3d& origin = pose.world_from_camera.translation();
-  std::array<Ray, kTilePixels> rays;
-  std::array<TriangleId, kTilePixels> triangles;
-  for (std::size_t first = 0; first < directions.size(); first += kTilePixels) {
-    const std::size_t n = std::min(kTilePixels, directions.size() - first);
-    for (std::size_t k = 0; k < n; ++k)
-      rays[k] = {origin, rotation * directions[first + k], pose.t_s};
-    scene.visible({rays.data(), n}, {triangles.data(), n});
-    for (std::size_t k = 0; k < n; ++k) use(first + k, rays[k], triangles[k]);
-  }
-}
 
 }  // namespace
 
@@ -52,7 +36,8 @@ ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
         sums[k / per_pixel] +=
             filter_ == TextureFilter::kBilinear
                 ? scene_.shade(ray, triangle).radiance
-                : scene_.shade(ray, triangle, spread_in_world(rotation, rays[k])).radiance;
+                : scene_.shade(ray, triangle, spread_in_world(radiance_rays_, rotation, rays[k]))
+                      .radiance;
       });
     }
     for (std::size_t i = 0; i < tile.pixels(); ++i)
@@ -60,13 +45,6 @@ ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
   };
   parallel_for(radiance_rays_.tile_count(), render, kTilesPerTask);
   return image;
-}
-
-RaySpread ViewRenderer::spread_in_world(const Eigen::Matrix3d& world_from_camera,
-                                        const Eigen::Vector3d& direction) const {
-  const Eigen::Matrix<double, 3, 2> spread =
-      world_from_camera.leftCols<2>() * radiance_rays_.spread(direction);
-  return {spread.col(0), spread.col(1)};
 }
 
 ImageF ViewRenderer::depth(const StampedPose& pose) const {

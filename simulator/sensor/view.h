@@ -36,9 +36,6 @@ class ViewRenderer {
   [[nodiscard]] const PinholeCamera& camera() const { return radiance_rays_.camera(); }
 
  private:
-  [[nodiscard]] RaySpread spread_in_world(const Eigen::Matrix3d& world_from_camera,
-                                          const Eigen::Vector3d& direction) const;
-
   const Scene& scene_;
   TextureFilter filter_;
   PixelRays radiance_rays_;

@@ -104,6 +104,15 @@ TEST_F(SimulatePlane, WritesADatasetThatAgreesWithTheClosedForm) {
   EXPECT_TRUE(verify_hashes(output()).empty());
 }
 
+TEST_F(SimulatePlane, SamplesWholeFramesWhenAskedTo) {
+  const CameraReport report =
+      simulate(config("events: {sampling: frames, frames_rate_hz: 100}\n"), output())
+          .cameras.front();
+  EXPECT_EQ(report.record.rays, 26 * 61 * 46);
+  EXPECT_NEAR(*report.record.time_bound_us, 1e4, 1e-6);
+  EXPECT_GT(report.event_count(), 1000);
+}
+
 TEST_F(SimulatePlane, StatesTheMotionAndTheImuThatWereSimulated) {
   simulate(config("imu: {rate_hz: 100, gyro_noise_density: 0.01, accel_bias: [0, 1, 0]}\n"
                   "events: {contrast_on: 1, contrast_off: 1}\n"),
