@@ -41,7 +41,7 @@ DatasetRecord facts(const Take& take, const EventStatistics& events, double path
   record.contrast_off = take.events.contrast.off;
   record.log_eps = take.events.log_eps;
   record.rays = static_cast<std::int64_t>(events.rays);
-  record.shadow_rays = static_cast<std::int64_t>(events.shadow_rays);
+  record.lit_points = static_cast<std::int64_t>(events.lit_points);
   record.surface_looks = static_cast<std::int64_t>(events.surface_looks);
   if (take.events.noise.readout.on()) record.lost_events = static_cast<std::int64_t>(events.lost);
   record.time_bound_us = 1e6 * events.time_bound_s;

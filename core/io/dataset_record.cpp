@@ -52,7 +52,7 @@ void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("contrast_off", record.contrast_off, "threshold [log units]").above(0);
   fields.value("log_eps", record.log_eps, "eps of L = ln(eps + I)").above(0);
   fields.value("rays", record.rays, "for visibility, in all").at_least(0);
-  fields.value("shadow_rays", record.shadow_rays, "towards lights").at_least(0);
+  fields.value("lit_points", record.lit_points, "whose light was found").at_least(0);
   fields.value("surface_looks", record.surface_looks, "at known triangles, without a ray")
       .at_least(0);
   fields.value("lost_events", record.lost_events, "that met a full readout").at_least(0);

@@ -1,7 +1,11 @@
 #include "simulator/scene/illumination.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "core/check.h"
 
 namespace saccade {
 namespace {
@@ -28,19 +32,39 @@ WayToLight way_to(const LightOptions& light, const SurfacePoint& point) {
 Illumination::Illumination(double ambient, const std::vector<LightOptions>& lights,
                            double shadow_offset)
     : ambient_(ambient), lights_(lights), shadow_offset_(shadow_offset) {
+  SACCADE_CHECK(lights.size() <= kMostLamps);
   for (LightOptions& light : lights_) light.direction.normalize();
 }
 
-double Illumination::at(const SurfacePoint& point, const Visibility& blockers) const {
-  double sum = ambient_;
-  for (const LightOptions& light : lights_) {
-    const WayToLight way = way_to(light, point);
-    if (!(way.irradiance > 0) || point.plane_normal.dot(way.direction) <= 0) continue;
-    const Ray ray{point.position + shadow_offset_ * point.plane_normal, way.direction,
-                  point.time_s};
-    if (light.shadows && blockers.is_blocked(ray, way.distance)) continue;
-    sum += way.irradiance;
+void Illumination::find_lamps(std::span<const SurfacePoint> points, const Visibility& blockers,
+                              std::span<LampSet> lamps) const {
+  std::fill(lamps.begin(), lamps.end(), LampSet{0});
+  std::array<Ray, kPacket> rays;
+  std::array<float, kPacket> distances;
+  std::array<std::size_t, kPacket> owners;
+  std::array<bool, kPacket> blocked;
+  for (std::size_t lamp = 0; lamp < lights_.size(); ++lamp) {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const SurfacePoint& point = points[i];
+      const WayToLight way = way_to(lights_[lamp], point);
+      if (!(way.irradiance > 0) || point.plane_normal.dot(way.direction) <= 0) continue;
+      rays[n] = {point.position + shadow_offset_ * point.plane_normal, way.direction, point.time_s};
+      distances[n] = static_cast<float>(way.distance);
+      owners[n++] = i;
+    }
+    blocked.fill(false);
+    if (lights_[lamp].shadows)
+      blockers.find_blocked({rays.data(), n}, {distances.data(), n}, {blocked.data(), n});
+    for (std::size_t k = 0; k < n; ++k)
+      if (!blocked[k]) lamps[owners[k]] |= LampSet{1} << lamp;
   }
+}
+
+double Illumination::from_lamps(const SurfacePoint& point, LampSet lamps) const {
+  double sum = ambient_;
+  for (std::size_t lamp = 0; lamp < lights_.size(); ++lamp)
+    if ((lamps >> lamp & 1) != 0) sum += std::max(0.0, way_to(lights_[lamp], point).irradiance);
   return sum;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,9 +24,13 @@ class Illumination {
   /// `shadow_offset`: how far shadow rays start above their surface [m].
   Illumination(double ambient, const std::vector<LightOptions>& lights, double shadow_offset);
 
+  /// The lamps that each of at most 16 points faces and that nothing hides from it.
+  void find_lamps(std::span<const SurfacePoint> points, const Visibility& blockers,
+                  std::span<LampSet> lamps) const;
+
   /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
-  /// without the distance) over the lights that are not in shadow.
-  [[nodiscard]] double at(const SurfacePoint& point, const Visibility& blockers) const;
+  /// without the distance) over `lamps`.
+  [[nodiscard]] double from_lamps(const SurfacePoint& point, LampSet lamps) const;
 
  private:
   double ambient_;

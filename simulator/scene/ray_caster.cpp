@@ -183,19 +183,23 @@ void RayCaster::nearer(std::span<const Ray> rays, std::span<TriangleId> triangle
   }
 }
 
-bool RayCaster::is_blocked(const Ray& ray, double distance) const {
-  RTCRay embree{};
-  embree.org_x = static_cast<float>(ray.origin.x());
-  embree.org_y = static_cast<float>(ray.origin.y());
-  embree.org_z = static_cast<float>(ray.origin.z());
-  embree.dir_x = static_cast<float>(ray.direction.x());
-  embree.dir_y = static_cast<float>(ray.direction.y());
-  embree.dir_z = static_cast<float>(ray.direction.z());
-  embree.tfar = static_cast<float>(distance);
-  embree.mask = ~0U;
-  Context context(&ray, RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  rtcOccluded1(state_->scene.get(), &context.embree, &embree);
-  return embree.tfar < 0;
+void RayCaster::find_blocked(std::span<const Ray> rays, std::span<const float> distances,
+                             std::span<bool> blocked) const {
+  SACCADE_CHECK(rays.size() <= kPacket && distances.size() == rays.size() &&
+                blocked.size() == rays.size());
+  if (rays.empty()) return;
+  alignas(64) RTCRay16 packet = empty_packet().ray;
+  alignas(64) std::array<int, kPacket> valid{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (blocked[i]) continue;
+    set_ray(packet, i, rays[i]);
+    packet.tfar[i] = distances[i];
+    valid[i] = -1;
+  }
+  Context context(rays.data(), state_->flags);
+  rtcOccluded16(valid.data(), state_->scene.get(), &context.embree, &packet);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (valid[i] != 0) blocked[i] = packet.tfar[i] < 0;
 }
 
 }  // namespace saccade

@@ -45,8 +45,10 @@ class RayCaster {
   void nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,
               std::span<float> distances) const;
 
-  /// Whether anything stands within `distance` [length of the direction] of the ray's origin.
-  [[nodiscard]] bool is_blocked(const Ray& ray, double distance) const;
+  /// Marks those of at most 16 rays, not marked yet, within whose `distances` [length of the
+  /// direction] anything stands.
+  void find_blocked(std::span<const Ray> rays, std::span<const float> distances,
+                    std::span<bool> blocked) const;
 
  private:
   struct State;

@@ -1,6 +1,7 @@
 #include "simulator/scene/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,10 @@ namespace {
 constexpr double kFarthest = 1e12;
 /// Rays through a shared edge must meet at least one of its triangles, whatever the rounding.
 constexpr double kEdgeTolerance = 1e-10;
+
+/// Triangles this share of the scene's size before a plane count as lying in it: what single
+/// precision leaves of neighbours in one plane.
+constexpr double kSamePlane = 3e-7;
 
 /// As Scene::look() has it; everything in the surface's frame.
 double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction, double distance,
@@ -89,7 +94,7 @@ void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) 
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
   SurfaceLook seen = look(ray, triangle);
-  seen.irradiance = irradiance(ray, triangle, seen);
+  illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
   return {seen.radiance(), seen.distance};
 }
 
@@ -118,14 +123,49 @@ SurfaceLook Scene::look(const Ray& ray, TriangleId triangle, const RaySpread& sp
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
   SurfaceLook seen = look(ray, triangle, spread);
-  seen.irradiance = irradiance(ray, triangle, seen);
+  illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
   return {seen.radiance(), seen.distance};
 }
 
+TexelMap Scene::texel_map(TriangleId triangle, const Eigen::Vector3d& position,
+                          const Eigen::Matrix3d& world_from_camera) const {
+  SACCADE_CHECK(triangle < state_->surfaces.size() && state_->surfaces[triangle].body == kStill);
+  const TriangleSurface& surface = state_->surfaces[triangle];
+  const Eigen::Vector3d& normal = surface.plane.gradient;
+  const double depth = -surface.plane.at(position);
+  const auto row = [&](const AffineForm& form) -> Eigen::Vector3d {
+    return world_from_camera.transpose() * (form.at(position) * normal + depth * form.gradient);
+  };
+  return {row(surface.x), row(surface.y),  world_from_camera.transpose() * normal,
+          depth,          surface.texture, surface.factor};
+}
+
+void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                       std::span<SurfaceLook> looks) const {
+  SACCADE_CHECK(rays.size() <= kPacket && triangles.size() == rays.size() &&
+                looks.size() == rays.size());
+  if (!state_->illumination) return;
+  std::array<SurfacePoint, kPacket> points;
+  std::array<LampSet, kPacket> lamps;
+  std::array<std::size_t, kPacket> owners;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!(looks[i].distance > 0)) continue;
+    points[n] = state_->surface_point(rays[i], looks[i].distance, triangles[i]);
+    owners[n++] = i;
+  }
+  state_->illumination->find_lamps({points.data(), n}, *state_->visibility, {lamps.data(), n});
+  for (std::size_t k = 0; k < n; ++k) {
+    SurfaceLook& look = looks[owners[k]];
+    look.lamps = lamps[k];
+    look.irradiance = state_->illumination->from_lamps(points[k], lamps[k]);
+  }
+}
+
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceLook& look) const {
-  if (!state_->illumination || look.distance == 0) return 1;
-  return state_->illumination->at(state_->surface_point(ray, look.distance, triangle),
-                                  *state_->visibility);
+  if (!state_->illumination || !(look.distance > 0)) return 1;
+  return state_->illumination->from_lamps(state_->surface_point(ray, look.distance, triangle),
+                                          look.lamps);
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
@@ -143,6 +183,30 @@ double Scene::inside(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return -1;
   return state_->in_frame_of(state_->surfaces[triangle].body, ray,
                              [&](const Ray& local) { return state_->inside(local, triangle); });
+}
+
+const OccluderTree& Scene::State::occluders() {
+  std::call_once(tree_built, [this] {
+    tree.emplace(still_corners);
+    still_corners = {};
+  });
+  return *tree;
+}
+
+bool Scene::is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const {
+  if (triangle == kNothing)
+    return !state_->occluders().may_show(sweep, {Eigen::Vector3d::Zero(), 1});
+  if (triangle >= state_->surfaces.size() - state_->cutouts.size()) return false;
+  const TriangleSurface& surface = state_->surfaces[triangle];
+  if (surface.body != kStill) return false;
+  for (const SightPyramid& pyramid : sweep)
+    for (const Eigen::Vector3d& corner : pyramid.corners)
+      if (state_->inside({pyramid.eye, corner}, triangle) < 0) return false;
+  // On the eye's side of the plane; what lies in the plane itself, to single precision, is not.
+  AffineForm front = surface.plane;
+  if (front.at(sweep.front().eye) < 0) front = {-front.gradient, -front.offset};
+  front.offset -= kSamePlane * state_->size_m;
+  return !state_->occluders().may_show(sweep, front);
 }
 
 std::span<const MovingObject> Scene::moving_objects() const {

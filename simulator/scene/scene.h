@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -30,6 +31,17 @@ struct RaySpread {
   Eigen::Vector3d down;
 };
 
+/// What is in view through a rectangle of the image: from the eye through its corners, which are in
+/// order around it.
+struct SightPyramid {
+  Eigen::Vector3d eye;
+  std::array<Eigen::Vector3d, 4> corners;  ///< directions
+};
+
+/// Lamps by their place in the list of lights, one bit each.
+using LampSet = std::uint64_t;
+constexpr std::size_t kMostLamps = 64;
+
 /// What the radiance of a visible point is made of: irradiance * factor * texture(x, y, level),
 /// without a texture irradiance * x.
 struct SurfaceLook {
@@ -39,12 +51,23 @@ struct SurfaceLook {
   double irradiance = 1;  ///< under lights; else 1
   double distance = 0;    ///< along Ray::direction [its length]; 0 = background
   double level = 0;       ///< of the texture's pyramid; <= 0: the texture itself
+  LampSet lamps = 0;      ///< that light the point
 
   [[nodiscard]] double radiance() const {
     if (texture == nullptr) return irradiance * x;
     const double value = level > 0 ? texture->at_texel(x, y, level) : texture->at_texel(x, y);
     return irradiance * (factor * value);
   }
+};
+
+/// Texel coordinates on the plane of a triangle that stands still, for all rays of a camera at one
+/// instant: the ray d meets x = (x . d) / (w . d), y = (y . d) / (w . d) at the distance depth / (w
+/// . d).
+struct TexelMap {
+  Eigen::Vector3d x, y, w;
+  double depth;
+  const Texture* texture;  ///< nullptr: x is the albedo
+  double factor;
 };
 
 /// What a camera ray sees.
@@ -85,7 +108,15 @@ class Scene {
   /// with t the distance, d the direction and n the plane's normal. Continuous in the ray.
   [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle,
                                  const RaySpread& spread) const;
-  /// Light that falls onto the point of a look(); 1 in an unlit scene and for the background.
+  /// look() at once for all rays of a camera at `position`, given in its own frame. `triangle`
+  /// stands still.
+  [[nodiscard]] TexelMap texel_map(TriangleId triangle, const Eigen::Vector3d& position,
+                                   const Eigen::Matrix3d& world_from_camera) const;
+  /// Finds the lamps that light the points of at most 16 looks along `rays` at `triangles`, and the
+  /// irradiance: 1 in an unlit scene and for the background.
+  void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                  std::span<SurfaceLook> looks) const;
+  /// The irradiance of a look if just `look.lamps` light it: without shadow rays.
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceLook& look) const;
   [[nodiscard]] bool is_lit() const;
@@ -97,6 +128,12 @@ class Scene {
   /// The one that a triangle belongs to; nullptr where it stands still, and for kNothing.
   [[nodiscard]] const MovingObject* moving_object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
+
+  /// Whether nothing but `triangle` can be seen in a pyramid of sight that moves evenly through
+  /// those of `sweep` (at most 4): it is opaque, stands still and fills them, and no other triangle
+  /// that stands still reaches into them before its plane. For kNothing: whether none is in them at
+  /// all.
+  [[nodiscard]] bool is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const;
 
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.

@@ -117,6 +117,11 @@ Scene SceneBuilder::build(const Background& background) && {
   state->interiors = std::move(all.interiors);
   state->cutouts = std::move(all.cutouts);
   state->visibility.emplace(make_visibility(*state));
+  Body& still = bodies_.front();
+  if (!still.is_empty()) state->size_m = extent_of(still.box());
+  state->still_corners = std::move(still.opaque.corners);
+  state->still_corners.insert(state->still_corners.end(), still.cut_out.corners.begin(),
+                              still.cut_out.corners.end());
   return Scene(std::move(state));
 }
 

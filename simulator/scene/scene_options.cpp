@@ -2,6 +2,7 @@
 
 #include "core/config/fields.h"
 #include "simulator/scene/file_source.h"
+#include "simulator/scene/scene.h"
 
 namespace saccade {
 
@@ -62,7 +63,8 @@ void describe(config::Fields& fields, SceneOptions& options) {
                 "none: the albedo is the radiance");
   if (options.lighting == Lighting::kLambertian) {
     fields.value("ambient", options.ambient, "light that comes evenly from everywhere").at_least(0);
-    fields.list("lights", options.lights, "lamps and suns");
+    fields.list("lights", options.lights, "lamps and suns, at most 64");
+    fields.expect(options.lights.size() <= kMostLamps, "lights", "must be at most 64");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -10,20 +11,11 @@
 #include "simulator/scene/background.h"
 #include "simulator/scene/illumination.h"
 #include "simulator/scene/mesh.h"
+#include "simulator/scene/occluder_tree.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/visibility.h"
 
 namespace saccade {
-
-/// a . p + b of a point p.
-struct AffineForm {
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  double offset = 0;
-
-  [[nodiscard]] double at(const Eigen::Vector3d& point) const {
-    return gradient.dot(point) + offset;
-  }
-};
 
 /// The body of triangles that stand still; others are indices into the moving objects.
 constexpr std::uint32_t kStill = std::numeric_limits<std::uint32_t>::max();
@@ -64,6 +56,12 @@ struct Scene::State {
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
   std::optional<Visibility> visibility;
+  double size_m = 0;                   ///< of everything that stands still
+  std::vector<Corners> still_corners;  ///< what the tree is made from when it is first asked
+  std::once_flag tree_built;
+  std::optional<OccluderTree> tree;
+
+  [[nodiscard]] const OccluderTree& occluders();
 
   /// use(ray) with the ray in the frame of a body.
   template <class Use>

@@ -95,14 +95,18 @@ void Visibility::nearest(std::span<const Ray> rays, std::span<TriangleId> triang
     replace_by_nearer(objects_[k], casters_[k], rays, triangles, distances);
 }
 
-bool Visibility::is_blocked(const Ray& ray, double distance) const {
-  if (still_ && still_->is_blocked(ray, distance)) return true;
+void Visibility::find_blocked(std::span<const Ray> rays, std::span<const float> distances,
+                              std::span<bool> blocked) const {
+  std::fill(blocked.begin(), blocked.end(), false);
+  if (still_) still_->find_blocked(rays, distances, blocked);
   for (std::size_t k = 0; k < objects_.size(); ++k) {
     Whereabouts where(objects_[k]);
-    if (where.meets(ray, distance) && casters_[k].is_blocked(where.local(ray), distance))
-      return true;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (blocked[i] || !where.meets(rays[i], static_cast<double>(distances[i]))) continue;
+      const Ray local = where.local(rays[i]);
+      casters_[k].find_blocked({&local, 1}, distances.subspan(i, 1), blocked.subspan(i, 1));
+    }
   }
-  return false;
 }
 
 }  // namespace saccade

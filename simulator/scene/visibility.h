@@ -28,8 +28,10 @@ class Visibility {
   /// The nearest triangle along each of at most 16 coherent rays.
   void nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
 
-  /// Whether anything stands within `distance` [length of the direction] of the ray's origin.
-  [[nodiscard]] bool is_blocked(const Ray& ray, double distance) const;
+  /// For each of at most 16 rays whether anything stands within its `distances` [length of the
+  /// direction].
+  void find_blocked(std::span<const Ray> rays, std::span<const float> distances,
+                    std::span<bool> blocked) const;
 
   [[nodiscard]] std::span<const MovingObject> objects() const { return objects_; }
 

@@ -35,8 +35,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
     : motion_(world_from_camera),
       rays_(camera, options.samples_per_pixel),
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
-      speeds_(rays_.tile_count()),
-      refinements_(rays_.tile_count(), 1),
+      motions_(rays_.tile_count()),
       output_(options.noise, options.log_eps, camera.width, camera.height,
               options.timestamp_step_ns(), seed) {
   tiles_.reserve(rays_.tile_count());
@@ -58,9 +57,9 @@ void EventCamera::record(double duration_s, const Sink& sink) {
     const double end_s = slabs_left <= 1 ? duration_s : t_s_ + (duration_s - t_s_) / slabs_left;
     const PoseTable poses(motion_, t_s_, end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
-      const double motion_px = speeds_[i] * (end_s - t_s_);
-      const double steps = std::ceil(refinements_[i] * motion_px / world_.options.max_step_px);
-      tile.advance(poses, end_s, std::max(1, static_cast<int>(steps)));
+      TileMotion motion = motions_[i];
+      motion.pixels *= end_s - t_s_;
+      tile.advance({poses, end_s}, motion);
     });
     t_s_ = end_s;
     deliver(t_s_ == duration_s, sink);
@@ -105,15 +104,18 @@ double EventCamera::bound_speeds(double t_s) {
         Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
     const InverseDepthRange range = neighbourhood(i);
     ImageSpeed speed = objects.bound(camera, centre, kNeighbourhood_px, range);
+    motions_[i].has_objects = speed.fastest > 0;
     for (const Twist& twist : twists) {
       const ImageSpeed now = image_speed_bound(camera, centre, kTileRadius_px, twist, range);
       speed.fastest = std::max(speed.fastest, now.fastest);
       speed.parallax = std::max(speed.parallax, now.parallax);
     }
-    speeds_[i] = speed.fastest;
-    refinements_[i] = speed.parallax > kOccluding * speed.fastest ? kOccludedRefinement : 1;
+    motions_[i].pixels = speed.fastest;
+    motions_[i].refinement = speed.parallax > kOccluding * speed.fastest ? kOccludedRefinement : 1;
   });
-  return *std::max_element(speeds_.begin(), speeds_.end());
+  double fastest = 0;
+  for (const TileMotion& motion : motions_) fastest = std::max(fastest, motion.pixels);
+  return fastest;
 }
 
 InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {

@@ -52,7 +52,7 @@ class EventCamera {
   /// work(tile, index) for all tiles, in parallel.
   template <class Work>
   void for_each_tile(const Work& work);
-  /// Bound of the image speed of every tile over [t, t + longest slab], into speeds_; the largest.
+  /// Bound of the image speed of every tile over [t, t + longest slab], into motions_; the largest.
   double bound_speeds(double t_s);
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
   /// Takes the tiles' events and hands out those that no later one can precede.
@@ -62,8 +62,7 @@ class EventCamera {
   PixelRays rays_;
   EventWorld world_;
   std::vector<std::unique_ptr<EventTile>> tiles_;
-  std::vector<double> speeds_;       ///< per tile [px/s]
-  std::vector<double> refinements_;  ///< per tile; max_step_px is divided by it
+  std::vector<TileMotion> motions_;  ///< per tile, in px per second
   double t_s_ = 0;                   ///< up to which all tiles have sensed
   bool started_ = false;
   SensedEvents pending_;  ///< found but not yet handed on

@@ -15,6 +15,12 @@
 namespace saccade {
 namespace {
 
+/// Around a tile, for what a proof over three instants of a slab leaves out between them [px].
+constexpr double kMargin_px = 0.5;
+/// Longer steps, in multiples of max_step_px, where visibility is proven and the paths over the
+/// texture alone set the pace.
+constexpr double kLongSteps = 2;
+
 /// A pixel and what it fires at.
 struct TilePixel {
   PixelTraits traits;
@@ -29,6 +35,8 @@ class LockstepTile final : public EventTile {
       : world_(world),
         tile_(world.rays.tile(index)),
         directions_(world.rays.rays(index)),
+        outline_(world.rays.outline(index, kMargin_px)),
+        lanes_(directions_.first(tile_.pixels())),
         tracer_(world.scene, statistics_) {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
     if (world.noise.on()) noisy_.resize(tile_.pixels());
@@ -49,22 +57,20 @@ class LockstepTile final : public EventTile {
                      world_.noise.spontaneous.start(pixel.traits.x, pixel.traits.y, t_s),
                      PhotoreceptorFilter::settled(level)};
     }
-    remember(t_s, views);
+    t_s_ = t_s;
+    remember(views);
   }
 
-  void advance(const PoseTable& poses, double t_s, int steps) override {
-    tracer_.use(poses);
-    const double from_s = t_s_;
-    Views views = views_at_start();
-    Views next;
-    for (int k = 1; k <= steps; ++k) {
-      const double next_s = k == steps ? t_s : from_s + (t_s - from_s) * k / steps;
-      trace(next_s, next);
-      for (std::size_t i = 0; i < tile_.pixels(); ++i) sense(i, views, next, next_s);
-      std::swap(views, next);
-      t_s_ = next_s;
-    }
-    remember(t_s, views);
+  void advance(const Slab& slab, const TileMotion& motion) override {
+    tracer_.use(slab.poses);
+    const bool is_alone = !motion.has_objects && sees_one_triangle(slab.end_s);
+    const double step_px = world_.options.max_step_px * (is_alone ? kLongSteps : 1);
+    const double steps = std::ceil((is_alone ? 1 : motion.refinement) * motion.pixels / step_px);
+    const StepTimes times{t_s_, slab.end_s, std::max(1, static_cast<int>(steps))};
+    if (is_alone && is_plane(triangles_[0]))
+      advance_on_plane(times);
+    else
+      advance_in_scene(times, is_alone);
   }
 
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
@@ -98,6 +104,75 @@ class LockstepTile final : public EventTile {
   /// What the rays of the tile see, pixel by pixel.
   using Views = std::array<RayView, kTilePixels * kRays>;
 
+  /// The end of step k, 1..count.
+  struct StepTimes {
+    double from_s, to_s;
+    int count;
+
+    [[nodiscard]] double end_s(int k) const {
+      return k == count ? to_s : from_s + (to_s - from_s) * k / count;
+    }
+  };
+
+  void advance_in_scene(const StepTimes& times, bool is_alone) {
+    // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
+    Views views;
+    see(t_s_, views);
+    Views next;
+    for (int k = 1; k <= times.count; ++k) {
+      const double next_s = times.end_s(k);
+      is_alone ? see(next_s, next) : trace(next_s, next);
+      for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+        ++statistics_.stretches;
+        if (is_idle(i, next_s) && is_certified(i, views, next, next_s))
+          ++statistics_.certified;
+        else
+          sense(i, sample(i, t_s_, views), sample(i, next_s, next));
+      }
+      std::swap(views, next);
+      t_s_ = next_s;
+    }
+    remember(views);
+  }
+
+  /// Whether the quick way is open: one ray per pixel on an opaque textured plane.
+  [[nodiscard]] bool is_plane(TriangleId triangle) const {
+    return kRays == 1 && triangle != kNothing && !world_.noise.filter.on() &&
+           world_.options.texture_filter == TextureFilter::kBilinear &&
+           world_.scene.look({Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, triangle)
+                   .texture != nullptr;
+  }
+
+  void advance_on_plane(const StepTimes& times) {
+    const TriangleId triangle = triangles_[0];
+    const TexelMap map = tracer_.texel_map(triangle, t_s_);
+    const auto view = [&](const PlaneLanes& lanes, std::size_t i) {
+      return RayView{triangle,
+                     {map.texture, lanes.x[i], lanes.y[i], map.factor, 1, lanes.distance[i]},
+                     lanes.x_rate[i],
+                     lanes.y_rate[i]};
+    };
+    PlaneLanes lanes, next;
+    tracer_.see(lanes_, triangle, t_s_, lanes);
+    for (int k = 1; k <= times.count; ++k) {
+      const double next_s = times.end_s(k);
+      tracer_.see(lanes_, triangle, next_s, next);
+      const LaneBoxes boxes(lanes, next, next_s - t_s_);
+      for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+        ++statistics_.stretches;
+        if (is_idle(i, next_s) && is_certified(i, boxes, map, next_s))
+          ++statistics_.certified;
+        else
+          sense(i, sample_of(view(lanes, i), t_s_), sample_of(view(next, i), next_s));
+      }
+      std::swap(lanes, next);
+      t_s_ = next_s;
+    }
+    Views views;
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) views[i] = view(lanes, i);
+    remember(views);
+  }
+
   [[nodiscard]] PixelTraits traits(std::size_t i) const {
     const auto x = static_cast<std::uint16_t>(tile_.x(i));
     const auto y = static_cast<std::uint16_t>(tile_.y(i));
@@ -123,12 +198,15 @@ class LockstepTile final : public EventTile {
     return sample;
   }
 
-  void sense(std::size_t i, const Views& views, const Views& next, double next_s) {
-    ++statistics_.stretches;
-    if (is_certified(i, views, next, next_s)) {
-      ++statistics_.certified;
-      return;
-    }
+  [[nodiscard]] Sample sample_of(const RayView& view, double t_s) const {
+    Sample sample;
+    sample.t_s = t_s;
+    sample.rays.fill(view);
+    sample.log_intensity = log_intensity(sample.radiance(), world_.options.log_eps);
+    return sample;
+  }
+
+  void sense(std::size_t i, const Sample& lo, const Sample& hi) {
     TilePixel& pixel = pixels_[i];
     const Signal pixel_signal = signal(i);
     const auto emit = [&](double t_s, int polarity, EventOrigin origin, double log_intensity) {
@@ -136,8 +214,6 @@ class LockstepTile final : public EventTile {
     };
     PixelSensor sensor(pixel_signal, pixel.traits, world_.options.log_eps, pixel.state,
                        pixel.thresholds, emit);
-    const Sample lo = sample(i, t_s_, views);
-    const Sample hi = sample(i, next_s, next);
     const double width_s = noisy_.empty() ? sensor.sense(lo, hi)
                            : world_.noise.filter.on()
                                ? sensor.sense_filtered(lo, hi, world_.noise, noisy_[i])
@@ -145,12 +221,15 @@ class LockstepTile final : public EventTile {
     statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
-  /// Whether the step can be passed over: nothing can have fired.
+  /// Whether only a crossing could make the pixel fire before `next_s`.
+  [[nodiscard]] bool is_idle(std::size_t i, double next_s) const {
+    return noisy_.empty() || (!world_.noise.filter.on() && noisy_[i].blind_until_s < t_s_ &&
+                              noisy_[i].spontaneous.next_s() >= next_s);
+  }
+
+  /// Whether the bounds of the radiance up to `next_s` prove that nothing crosses.
   [[nodiscard]] bool is_certified(std::size_t i, const Views& views, const Views& next,
                                   double next_s) const {
-    if (!noisy_.empty() && (world_.noise.filter.on() || noisy_[i].blind_until_s >= t_s_ ||
-                            noisy_[i].spontaneous.next_s() < next_s))
-      return false;
     RadianceRange sum{0, 0, 0, 0};
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
       if (views[k].triangle != next[k].triangle) return false;
@@ -158,6 +237,14 @@ class LockstepTile final : public EventTile {
     }
     sum.scale(1.0 / kRays);
     return pixels_[i].thresholds.certify(sum, next_s);
+  }
+
+  [[nodiscard]] bool is_certified(std::size_t i, const LaneBoxes& boxes, const TexelMap& map,
+                                  double next_s) const {
+    const TexelRange range =
+        map.texture->range({boxes.x0[i], boxes.x1[i], boxes.y0[i], boxes.y1[i]});
+    return pixels_[i].thresholds.certify({map.factor * range.low, map.factor * range.high, 0, 0},
+                                         next_s);
   }
 
   void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
@@ -177,17 +264,21 @@ class LockstepTile final : public EventTile {
     }
   }
 
-  /// The views that the last advance() ended with. Seen again, so that a tile that was loaded goes
-  /// on exactly as the one that was saved.
-  [[nodiscard]] Views views_at_start() {
-    Views views;
-    for (std::size_t k = 0; k < directions_.size(); ++k)
-      views[k] = tracer_.view(directions_[k], triangles_[k], t_s_);
-    return views;
+  /// All rays of the tile on the triangles that they saw last.
+  void see(double t_s, Views& views) {
+    const std::size_t n = directions_.size();
+    tracer_.see(directions_, {triangles_.data(), n}, t_s, {views.data(), n});
   }
 
-  void remember(double t_s, const Views& views) {
-    t_s_ = t_s;
+  /// Whether one triangle is all that can be seen in and around the tile up to `t_s`.
+  [[nodiscard]] bool sees_one_triangle(double t_s) const {
+    const auto end = triangles_.begin() + static_cast<std::ptrdiff_t>(directions_.size());
+    return !tracer_.is_lit() &&
+           std::all_of(triangles_.begin(), end, [&](TriangleId t) { return t == triangles_[0]; }) &&
+           tracer_.is_alone(triangles_[0], outline_, t_s_, t_s);
+  }
+
+  void remember(const Views& views) {
     double nearest = std::numeric_limits<double>::infinity();
     double farthest = 0;
     for (std::size_t k = 0; k < directions_.size(); ++k) {
@@ -203,6 +294,8 @@ class LockstepTile final : public EventTile {
   const EventWorld& world_;
   Tile tile_;
   std::span<const Eigen::Vector3d> directions_;
+  std::array<Eigen::Vector3d, 4> outline_;
+  DirectionLanes lanes_;  ///< for one ray per pixel
   RayTracer tracer_;
   double t_s_ = 0;  ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;

@@ -26,6 +26,19 @@ struct EventWorld {
   PixelNoise noise;
 };
 
+/// A short time over which tiles sense.
+struct Slab {
+  const PoseTable& poses;  ///< cover it
+  double end_s = 0;
+};
+
+/// How far points can move around a tile during a slab.
+struct TileMotion {
+  double pixels = 0;         ///< image motion, at most [px]
+  double refinement = 1;     ///< that divides the steps
+  bool has_objects = false;  ///< that move may come into view
+};
+
 /// 4 x 4 event pixels that are traced in lockstep, one packet of rays per step. Where the bounds of
 /// a pixel's radiance over a step prove that nothing can have fired, nothing more is done; else its
 /// signal is searched alone, on the surfaces that both ends of the step see.
@@ -35,8 +48,10 @@ class EventTile {
 
   /// Takes the references at time `t_s`, which the poses cover.
   virtual void start(const PoseTable& poses, double t_s) = 0;
-  /// Senses up to `t_s` in `steps` >= 1 equal steps; the poses cover the whole way.
-  virtual void advance(const PoseTable& poses, double t_s, int steps) = 0;
+  /// Senses to the end of the slab, in equal steps of at most `max_step_px`. Where a single
+  /// triangle provably fills the tile's surroundings all the time, no ray is traced and the steps
+  /// are longer.
+  virtual void advance(const Slab& slab, const TileMotion& motion) = 0;
 
   /// Of the surfaces that the pixels see now.
   [[nodiscard]] virtual InverseDepthRange inverse_depths() const = 0;

@@ -120,7 +120,7 @@ FrameCamera::Levels FrameCamera::look(std::size_t tile, const Instant& instant,
         block.fastest_px_s = std::max(block.fastest_px_s, motion.norm());
       });
   block.statistics.rays += directions.size();
-  if (scene_.is_lit()) block.statistics.shadow_rays += directions.size();
+  if (scene_.is_lit()) block.statistics.lit_points += directions.size();
   for (double& level : levels)
     level = std::log(options_.log_eps + level / static_cast<double>(per_pixel));
   return levels;

@@ -44,6 +44,16 @@ PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel)
   }
 }
 
+std::array<Eigen::Vector3d, 4> PixelRays::outline(std::size_t index, double margin_px) const {
+  const Tile block = tile(index);
+  const double left = block.x0 - 0.5 - margin_px;
+  const double top = block.y0 - 0.5 - margin_px;
+  const double right = block.x0 + block.width - 0.5 + margin_px;
+  const double bottom = block.y0 + block.height - 0.5 + margin_px;
+  const auto corner = [&](double x, double y) { return camera_.ray(camera_.undistort({x, y})); };
+  return {corner(left, top), corner(right, top), corner(right, bottom), corner(left, bottom)};
+}
+
 Tile PixelRays::tile(std::size_t index) const {
   Tile tile;
   tile.x0 = kTileSize * (static_cast<int>(index) % tiles_x_);

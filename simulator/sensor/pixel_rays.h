@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -43,6 +44,9 @@ class PixelRays {
   }
   /// Tiles are numbered row by row.
   [[nodiscard]] Tile tile(std::size_t index) const;
+
+  /// Directions through the corners of tile `index`, `margin_px` outside it, in order around it.
+  [[nodiscard]] std::array<Eigen::Vector3d, 4> outline(std::size_t index, double margin_px) const;
 
   /// Rays of tile `index`: pixel by pixel, row-major, each with all its rays.
   [[nodiscard]] std::span<const Eigen::Vector3d> rays(std::size_t index) const {

@@ -50,8 +50,11 @@ RadianceRange PixelSignal<kRays>::range_across_change(std::size_t ray, const Sam
   if (length_s <= tolerance_s_) return {};
   const RayView& from = lo.rays[ray];
   const RayView& to = hi.rays[ray];
-  const RayView from_later = tracer_.view(directions_[ray], from.triangle, hi.t_s);
-  const RayView to_earlier = tracer_.view(directions_[ray], to.triangle, lo.t_s);
+  // Their light is that of the end at which they are seen.
+  RayView from_later = tracer_.unlit_view(directions_[ray], from.triangle, hi.t_s);
+  RayView to_earlier = tracer_.unlit_view(directions_[ray], to.triangle, lo.t_s);
+  from_later.look.irradiance = from.look.irradiance;
+  to_earlier.look.irradiance = to.look.irradiance;
   return hull(radiance_range(from, from_later, length_s), radiance_range(to_earlier, to, length_s));
 }
 
@@ -59,10 +62,14 @@ template <std::size_t kRays>
 RayView PixelSignal<kRays>::between(std::size_t ray, const Sample& lo, const Sample& hi,
                                     double t_s) const {
   const RayView& from = lo.rays[ray];
+  const RayView& to = hi.rays[ray];
   const double length_s = hi.t_s - lo.t_s;
-  if (!tracer_.is_lit() && is_straight(from, hi.rays[ray], length_s))
-    return interpolate(from, hi.rays[ray], length_s, (t_s - lo.t_s) / length_s);
-  RayView view = tracer_.view(directions_[ray], from.triangle, t_s);
+  if (!tracer_.is_lit() && is_straight(from, to, length_s))
+    return interpolate(from, to, length_s, (t_s - lo.t_s) / length_s);
+  // Where the same lamps light both ends, they light what is between.
+  RayView view = from.look.lamps == to.look.lamps
+                     ? tracer_.view(directions_[ray], from.triangle, from.look.lamps, t_s)
+                     : tracer_.view(directions_[ray], from.triangle, t_s);
   follow(from, view);
   return view;
 }

@@ -39,7 +39,7 @@ class PixelSignal {
   [[nodiscard]] Sample at(double t_s, const Sample& lo, const Sample& hi) const;
 
   void set_log_intensity(Sample& sample) const {
-    sample.log_intensity = std::log(log_eps_ + sample.radiance());
+    sample.log_intensity = saccade::log_intensity(sample.radiance(), log_eps_);
   }
 
  private:

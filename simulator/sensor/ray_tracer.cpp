@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/check.h"
 
@@ -25,7 +26,7 @@ RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, TriangleId t
 
 void EventStatistics::add(const EventStatistics& other) {
   rays += other.rays;
-  shadow_rays += other.shadow_rays;
+  lit_points += other.lit_points;
   surface_looks += other.surface_looks;
   stretches += other.stretches;
   certified += other.certified;
@@ -39,36 +40,108 @@ Ray RayTracer::ray_at(const Eigen::Vector3d& direction, double t_s) const {
 }
 
 RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
-  ++statistics_.surface_looks;
-  const Ray now = ray_at(direction, t_s);
-  RayView view = with_rates(scene_.look(now, triangle),
-                            scene_.look(ray_at(direction, t_s + kSoon_s), triangle), triangle);
-  if (scene_.is_lit()) illuminate(now, view);
+  RayView view = unlit_view(direction, triangle, t_s);
+  if (scene_.is_lit()) {
+    const Ray ray = ray_at(direction, t_s);
+    illuminate({&ray, 1}, {&view, 1});
+  }
   return view;
 }
 
-void RayTracer::illuminate(const Ray& ray, RayView& view) {
-  ++statistics_.shadow_rays;
-  view.look.irradiance = scene_.irradiance(ray, view.triangle, view.look);
+RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, LampSet lamps,
+                        double t_s) {
+  RayView view = unlit_view(direction, triangle, t_s);
+  if (!scene_.is_lit()) return view;
+  view.look.lamps = lamps;
+  view.look.irradiance = scene_.irradiance(ray_at(direction, t_s), triangle, view.look);
+  return view;
+}
+
+RayView RayTracer::unlit_view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
+  ++statistics_.surface_looks;
+  return with_rates(scene_.look(ray_at(direction, t_s), triangle),
+                    scene_.look(ray_at(direction, t_s + kSoon_s), triangle), triangle);
+}
+
+void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) {
+  std::array<TriangleId, kPacket> triangles;
+  std::array<SurfaceLook, kPacket> looks;
+  const std::size_t n = rays.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    triangles[k] = views[k].triangle;
+    looks[k] = views[k].look;
+  }
+  scene_.illuminate(rays, {triangles.data(), n}, {looks.data(), n});
+  for (std::size_t k = 0; k < n; ++k) views[k].look = looks[k];
+  statistics_.lit_points += n;
 }
 
 void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
                       std::span<RayView> views) {
-  SACCADE_CHECK(directions.size() <= kPacket && views.size() == directions.size());
+  SACCADE_CHECK(directions.size() <= kPacket);
   const CameraFrame camera = poses_->at(t_s);
-  const CameraFrame soon = poses_->at(t_s + kSoon_s);
   std::array<Ray, kPacket> rays;
   std::array<TriangleId, kPacket> triangles;
   for (std::size_t k = 0; k < directions.size(); ++k)
     rays[k] = {camera.position, camera.rotation * directions[k], t_s};
   scene_.visible({rays.data(), directions.size()}, {triangles.data(), directions.size()});
   statistics_.rays += directions.size();
+  see(directions, {triangles.data(), directions.size()}, t_s, views);
+}
+
+void RayTracer::see(std::span<const Eigen::Vector3d> directions,
+                    std::span<const TriangleId> triangles, double t_s, std::span<RayView> views) {
+  SACCADE_CHECK(triangles.size() == directions.size() && views.size() == directions.size());
+  const CameraFrame camera = poses_->at(t_s);
+  const CameraFrame soon = poses_->at(t_s + kSoon_s);
+  std::optional<PlaneView> plane;
   for (std::size_t k = 0; k < directions.size(); ++k) {
-    const Ray later{soon.position, soon.rotation * directions[k], t_s + kSoon_s};
-    views[k] = with_rates(scene_.look(rays[k], triangles[k]), scene_.look(later, triangles[k]),
-                          triangles[k]);
-    if (scene_.is_lit()) illuminate(rays[k], views[k]);
+    const TriangleId triangle = triangles[k];
+    if (triangle == kNothing || scene_.moving_object(triangle) != nullptr) {
+      views[k] = with_rates(
+          scene_.look({camera.position, camera.rotation * directions[k], t_s}, triangle),
+          scene_.look({soon.position, soon.rotation * directions[k], t_s + kSoon_s}, triangle),
+          triangle);
+      continue;
+    }
+    if (!plane || plane->triangle() != triangle)
+      plane.emplace(scene_.texel_map(triangle, camera.position, camera.rotation),
+                    scene_.texel_map(triangle, soon.position, soon.rotation), kSoon_s, triangle);
+    views[k] = plane->at(directions[k]);
   }
+  if (!scene_.is_lit()) return;
+  std::array<Ray, kPacket> rays;
+  for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+    const std::size_t n = std::min(kPacket, directions.size() - first);
+    for (std::size_t k = 0; k < n; ++k)
+      rays[k] = {camera.position, camera.rotation * directions[first + k], t_s};
+    illuminate({rays.data(), n}, views.subspan(first, n));
+  }
+}
+
+void RayTracer::see(const DirectionLanes& directions, TriangleId triangle, double t_s,
+                    PlaneLanes& lanes) const {
+  const CameraFrame camera = poses_->at(t_s);
+  const CameraFrame soon = poses_->at(t_s + kSoon_s);
+  look(directions, scene_.texel_map(triangle, camera.position, camera.rotation),
+       scene_.texel_map(triangle, soon.position, soon.rotation), kSoon_s, lanes);
+}
+
+bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
+                         double from_s, double to_s) const {
+  const std::array<SightPyramid, 3> sweep{pyramid_at(outline, from_s),
+                                          pyramid_at(outline, 0.5 * (from_s + to_s)),
+                                          pyramid_at(outline, to_s)};
+  return scene_.is_alone(triangle, sweep);
+}
+
+SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
+                                   double t_s) const {
+  const CameraFrame camera = poses_->at(t_s);
+  SightPyramid pyramid{camera.position, {}};
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    pyramid.corners[k] = camera.rotation * outline[k];
+  return pyramid;
 }
 
 double RayTracer::inside(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {

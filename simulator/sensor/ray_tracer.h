@@ -8,6 +8,7 @@
 
 #include "simulator/motion/pose_table.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/plane_lanes.h"
 #include "simulator/sensor/ray_view.h"
 
 namespace saccade {
@@ -15,7 +16,7 @@ namespace saccade {
 /// What was spent and reached.
 struct EventStatistics {
   std::uint64_t rays = 0;           ///< visibility rays
-  std::uint64_t shadow_rays = 0;    ///< towards lights
+  std::uint64_t lit_points = 0;     ///< whose light was found, with a shadow ray to each lamp
   std::uint64_t surface_looks = 0;  ///< evaluations of a known triangle, without a visibility ray
   std::uint64_t stretches = 0;      ///< steps of pixels
   std::uint64_t certified = 0;      ///< of them those in which nothing can have fired
@@ -50,8 +51,33 @@ class RayTracer {
   /// What at most kPacket rays of one instant see.
   void trace(std::span<const Eigen::Vector3d> directions, double t_s, std::span<RayView> views);
 
+  /// What rays of one instant see, the visible triangles given.
+  void see(std::span<const Eigen::Vector3d> directions, std::span<const TriangleId> triangles,
+           double t_s, std::span<RayView> views);
+
+  [[nodiscard]] TexelMap texel_map(TriangleId triangle, double t_s) const {
+    const CameraFrame camera = poses_->at(t_s);
+    return scene_.texel_map(triangle, camera.position, camera.rotation);
+  }
+
+  /// Whether from `from_s` to `to_s` nothing but `triangle` can be seen within the `outline` of
+  /// some rays, moving objects apart.
+  [[nodiscard]] bool is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
+                              double from_s, double to_s) const;
+
+  /// What the pixels of a tile see of a textured triangle that stands still, taken to be visible to
+  /// all; without light.
+  void see(const DirectionLanes& directions, TriangleId triangle, double t_s,
+           PlaneLanes& lanes) const;
+
   /// What a ray sees of a triangle, taken to be visible.
   [[nodiscard]] RayView view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s);
+  /// The same if just these lamps light the place: without shadow rays.
+  [[nodiscard]] RayView view(const Eigen::Vector3d& direction, TriangleId triangle, LampSet lamps,
+                             double t_s);
+  /// The same with irradiance 1.
+  [[nodiscard]] RayView unlit_view(const Eigen::Vector3d& direction, TriangleId triangle,
+                                   double t_s);
 
   /// When the visible triangle changes between two sightings, to `tolerance_s`, if through an edge
   /// the first is left or else the second entered; NaN if neither.
@@ -66,7 +92,10 @@ class RayTracer {
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double inside(const Eigen::Vector3d& direction, TriangleId triangle,
                               double t_s) const;
-  void illuminate(const Ray& ray, RayView& view);
+  [[nodiscard]] SightPyramid pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
+                                        double t_s) const;
+  /// Finds the light for at most kPacket views.
+  void illuminate(std::span<const Ray> rays, std::span<RayView> views);
 
   const Scene& scene_;
   EventStatistics& statistics_;

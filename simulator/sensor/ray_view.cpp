@@ -28,6 +28,10 @@ Interval product(const Interval& a, const Interval& b) {
   return result;
 }
 
+/// So far behind a border it is divided [texel]: a signal that only touches a threshold in the very
+/// corner of its course, where two texels are alike, does not depend on the last bit.
+constexpr double kPast = 1e-5;
+
 /// One coordinate of the cubic over a stretch: u (1 - u)^2 and u^2 (u - 1) weigh the differences of
 /// the ends' rates from the chord's.
 struct Track {
@@ -157,19 +161,7 @@ RadianceRange illuminated(const Interval& values, const Interval& rates, const R
 
 }  // namespace
 
-void RadianceRange::add(const RadianceRange& other) {
-  low += other.low;
-  high += other.high;
-  rate_low += other.rate_low;
-  rate_high += other.rate_high;
-}
-
-void RadianceRange::scale(double factor) {
-  low *= factor;
-  high *= factor;
-  rate_low *= factor;
-  rate_high *= factor;
-}
+double log_intensity(double radiance, double log_eps) { return std::log(log_eps + radiance); }
 
 double RadianceRange::log_error(double log_eps, double length_s) const {
   const double least = log_eps + std::max(low, 0.0);
@@ -179,11 +171,6 @@ double RadianceRange::log_error(double log_eps, double length_s) const {
   const double slowest = rate_low / (rate_low > 0 ? most : least);
   const double straying = 0.25 * (fastest - slowest) * length_s;
   return straying < spread ? straying : spread;  // also when one is not a number
-}
-
-bool RadianceRange::is_monotone() const {
-  const double slack = 1e-3 * std::max(std::abs(rate_low), std::abs(rate_high));
-  return slack < kUnknown && (rate_low >= -slack || rate_high <= slack);
 }
 
 RadianceRange radiance_range(const RayView& from, const RayView& to, double length_s) {
@@ -222,7 +209,7 @@ RayView interpolate(const RayView& from, const RayView& to, double length_s, dou
 }
 
 bool is_straight(const RayView& from, const RayView& to, double length_s) {
-  constexpr double kStraight = 0.05;  // texel; the cubic's own error is orders of magnitude smaller
+  constexpr double kStraight = 0.02;  // texel; the cubic's own error is orders of magnitude smaller
   return x_track(from, to, length_s).stray() + y_track(from, to, length_s).stray() < kStraight;
 }
 
@@ -234,9 +221,10 @@ double dividing_fraction(const RayView& from, const RayView& to, double length_s
   const CellIndex index = middle_cell(x, y);
   double best = -1;
   const auto consider = [&](const Track& track, double border) {
-    double u = (border - track.from) / (track.to - track.from);
+    const double past = border + std::copysign(kPast, track.to - track.from);
+    double u = (past - track.from) / (track.to - track.from);
     if (!(u > 0 && u < 1)) return;
-    u += (border - track.at(u)) / (track.rate_at(u) * length_s);
+    u += (past - track.at(u)) / (track.rate_at(u) * length_s);
     if (u > kNearest && u < 1 - kNearest && std::abs(u - 0.5) < std::abs(best - 0.5)) best = u;
   };
   consider(x, index.i);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "simulator/scene/scene.h"
@@ -14,6 +16,10 @@ struct RayView {
          y_rate = 0;  ///< [texel/s]; without a texture x_rate is that of the albedo [1/s]
 };
 
+/// L = ln(eps + I). Not inline: every caller must round alike, or a signal that returns to a former
+/// level would meet its former threshold in one place and miss it in another.
+[[nodiscard]] double log_intensity(double radiance, double log_eps);
+
 /// Bounds of a radiance and of its rate of change over a stretch of time.
 struct RadianceRange {
   static constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -22,15 +28,28 @@ struct RadianceRange {
   double rate_low = -kUnknown, rate_high = kUnknown;  ///< [1/s]
 
   /// Of the mean of several rays, from their sum.
-  void add(const RadianceRange& other);
-  void scale(double factor);
+  void add(const RadianceRange& other) {
+    low += other.low;
+    high += other.high;
+    rate_low += other.rate_low;
+    rate_high += other.rate_high;
+  }
+  void scale(double factor) {
+    low *= factor;
+    high *= factor;
+    rate_low *= factor;
+    rate_high *= factor;
+  }
 
   /// Bound of how far ln(eps + I) strays from its chord over `length_s`: a quarter of the spread of
   /// its rates times the length, or the spread of its values.
   [[nodiscard]] double log_error(double log_eps, double length_s) const;
 
   /// Rises or falls throughout, but for a thousandth of its steepest rate.
-  [[nodiscard]] bool is_monotone() const;
+  [[nodiscard]] bool is_monotone() const {
+    const double slack = 1e-3 * std::max(std::abs(rate_low), std::abs(rate_high));
+    return slack < kUnknown && (rate_low >= -slack || rate_high <= slack);
+  }
 };
 
 /// Of a ray that sees the same triangle at both ends of a stretch of `length_s` > 0 and all through

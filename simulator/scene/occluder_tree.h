@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "simulator/scene/ray_caster.h"
+#include "simulator/scene/scene.h"
+
+namespace saccade {
+
+/// a . p + b of a point p.
+struct AffineForm {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  double offset = 0;
+
+  [[nodiscard]] double at(const Eigen::Vector3d& point) const {
+    return gradient.dot(point) + offset;
+  }
+};
+
+/// Triangles in a tree of boxes, to prove that none of them can come into view. Conservative: a
+/// triangle counts as long as no side of the pyramids separates it. Thread-safe once built.
+class OccluderTree {
+ public:
+  explicit OccluderTree(std::span<const Corners> triangles);
+
+  /// Whether some triangle may reach into a pyramid of sight that moves evenly through those of
+  /// `sweep`, above zero of `front`.
+  [[nodiscard]] bool may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const;
+
+ private:
+  /// A box; its children follow, or as a leaf it holds triangles first..first + count.
+  struct Node {
+    Eigen::AlignedBox3f box;
+    std::uint32_t first = 0;  ///< of a leaf its first triangle, else its second child
+    std::uint32_t count = 0;  ///< 0: no leaf; the first child is the next node
+  };
+
+  void build(std::uint32_t first, std::uint32_t count);
+
+  std::vector<Corners> triangles_;  ///< in the order of the leaves
+  std::vector<Node> nodes_;
+};
+
+}  // namespace saccade
