@@ -50,6 +50,13 @@ class Texture {
   /// pictures, continuous in all arguments; at level <= 0 the same as without one.
   [[nodiscard]] double at_texel(double x, double y, double level) const;
 
+  /// The pictures of the pyramid, this one included. Picture k of W_k x H_k texels has at (x + 0.5)
+  /// W_k / W - 0.5, and likewise in y, what this one has at x.
+  [[nodiscard]] std::size_t level_count() const { return coarser().size() + 1; }
+  [[nodiscard]] const Texture& level(std::size_t k) const {
+    return k == 0 ? *this : coarser()[k - 1];
+  }
+
   /// Texels (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), wrapped: between them at_texel() is
   /// bilinear.
   [[nodiscard]] std::array<float, 4> cell(std::int64_t i, std::int64_t j) const;

@@ -37,7 +37,7 @@ class LockstepTile final : public EventTile {
         directions_(world.rays.rays(index)),
         outline_(world.rays.outline(index, kMargin_px)),
         lanes_(directions_.first(tile_.pixels())),
-        tracer_(world.scene, statistics_) {
+        tracer_(world.scene, statistics_, footprints(world)) {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
     if (world.noise.on()) noisy_.resize(tile_.pixels());
   }
@@ -103,6 +103,10 @@ class LockstepTile final : public EventTile {
   using Sample = PixelSample<kRays>;
   /// What the rays of the tile see, pixel by pixel.
   using Views = std::array<RayView, kTilePixels * kRays>;
+
+  [[nodiscard]] static const PixelRays* footprints(const EventWorld& world) {
+    return world.options.texture_filter == TextureFilter::kMipmap ? &world.rays : nullptr;
+  }
 
   /// The end of step k, 1..count.
   struct StepTimes {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "simulator/sensor/tile_trace.h"
 
 namespace saccade {
 namespace {
@@ -19,6 +20,7 @@ RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, TriangleId t
   if (soon.texture != now.texture || (soon.distance == 0) != (now.distance == 0)) return view;
   view.x_rate = (soon.x - now.x) / kSoon_s;
   view.y_rate = (soon.y - now.y) / kSoon_s;
+  view.level_rate = (soon.level - now.level) / kSoon_s;
   return view;
 }
 
@@ -37,6 +39,13 @@ void EventStatistics::add(const EventStatistics& other) {
 Ray RayTracer::ray_at(const Eigen::Vector3d& direction, double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
   return {camera.position, camera.rotation * direction, t_s};
+}
+
+SurfaceLook RayTracer::surface_look(const Eigen::Vector3d& direction, TriangleId triangle,
+                                    const CameraFrame& camera, double t_s) const {
+  const Ray ray{camera.position, camera.rotation * direction, t_s};
+  if (footprints_ == nullptr) return scene_.look(ray, triangle);
+  return scene_.look(ray, triangle, spread_in_world(*footprints_, camera.rotation, direction));
 }
 
 RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
@@ -59,8 +68,9 @@ RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, L
 
 RayView RayTracer::unlit_view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
   ++statistics_.surface_looks;
-  return with_rates(scene_.look(ray_at(direction, t_s), triangle),
-                    scene_.look(ray_at(direction, t_s + kSoon_s), triangle), triangle);
+  const double soon_s = t_s + kSoon_s;
+  return with_rates(surface_look(direction, triangle, poses_->at(t_s), t_s),
+                    surface_look(direction, triangle, poses_->at(soon_s), soon_s), triangle);
 }
 
 void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) {
@@ -97,11 +107,10 @@ void RayTracer::see(std::span<const Eigen::Vector3d> directions,
   std::optional<PlaneView> plane;
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const TriangleId triangle = triangles[k];
-    if (triangle == kNothing || scene_.moving_object(triangle) != nullptr) {
-      views[k] = with_rates(
-          scene_.look({camera.position, camera.rotation * directions[k], t_s}, triangle),
-          scene_.look({soon.position, soon.rotation * directions[k], t_s + kSoon_s}, triangle),
-          triangle);
+    if (footprints_ != nullptr || triangle == kNothing ||
+        scene_.moving_object(triangle) != nullptr) {
+      views[k] = with_rates(surface_look(directions[k], triangle, camera, t_s),
+                            surface_look(directions[k], triangle, soon, t_s + kSoon_s), triangle);
       continue;
     }
     if (!plane || plane->triangle() != triangle)

@@ -8,6 +8,7 @@
 
 #include "simulator/motion/pose_table.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/plane_lanes.h"
 #include "simulator/sensor/ray_view.h"
 
@@ -39,9 +40,10 @@ class RayTracer {
   /// Rays that are traced together at most.
   static constexpr std::size_t kPacket = 16;
 
-  /// Both outlive the tracer.
-  RayTracer(const Scene& scene, EventStatistics& statistics)
-      : scene_(scene), statistics_(statistics) {}
+  /// All outlive the tracer. With `footprints` textures are filtered over the share of a pixel that
+  /// each of its rays stands for; nullptr: they are seen at points.
+  RayTracer(const Scene& scene, EventStatistics& statistics, const PixelRays* footprints = nullptr)
+      : scene_(scene), statistics_(statistics), footprints_(footprints) {}
 
   /// The motion during what follows; outlives it.
   void use(const PoseTable& poses) { poses_ = &poses; }
@@ -94,11 +96,15 @@ class RayTracer {
                               double t_s) const;
   [[nodiscard]] SightPyramid pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
                                         double t_s) const;
+  /// Of the ray `direction` at an instant, at which the camera is `camera`.
+  [[nodiscard]] SurfaceLook surface_look(const Eigen::Vector3d& direction, TriangleId triangle,
+                                         const CameraFrame& camera, double t_s) const;
   /// Finds the light for at most kPacket views.
   void illuminate(std::span<const Ray> rays, std::span<RayView> views);
 
   const Scene& scene_;
   EventStatistics& statistics_;
+  const PixelRays* footprints_;
   const PoseTable* poses_ = nullptr;
 };
 

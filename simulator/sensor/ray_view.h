@@ -13,7 +13,8 @@ struct RayView {
   TriangleId triangle = kNothing;
   SurfaceLook look;
   double x_rate = 0,
-         y_rate = 0;  ///< [texel/s]; without a texture x_rate is that of the albedo [1/s]
+         y_rate = 0;      ///< [texel/s]; without a texture x_rate is that of the albedo [1/s]
+  double level_rate = 0;  ///< of the level of the texture's pyramid [1/s]
 };
 
 /// L = ln(eps + I). Not inline: every caller must round alike, or a signal that returns to a former
@@ -56,7 +57,7 @@ struct RadianceRange {
 /// it. Over the texture the ray follows the cubic with the given ends; it strays from the chord by
 /// at most 4/27 of the sum of both ends' differences from the chord's rate, times the length. A box
 /// within one cell of the texture is bounded by the bilinear function there, which also bounds the
-/// rate; a larger one by its texels.
+/// rate; a larger one by its texels. Filtered textures likewise, on both levels around the path's.
 [[nodiscard]] RadianceRange radiance_range(const RayView& from, const RayView& to, double length_s);
 
 /// The cubic at `fraction` of the stretch. The irradiance is the line between both ends'.
@@ -67,8 +68,8 @@ struct RadianceRange {
 [[nodiscard]] bool is_straight(const RayView& from, const RayView& to, double length_s);
 
 /// Where to divide the stretch of a ray so that its parts become monotone: the crossing of a
-/// texel's border nearest to the middle; within one cell the radiance's extremum; else the middle.
-/// A fraction within [0.02, 0.98].
+/// texel's (or level's) border nearest to the middle; within one cell the radiance's extremum; else
+/// the middle. A fraction within [0.02, 0.98].
 [[nodiscard]] double dividing_fraction(const RayView& from, const RayView& to, double length_s);
 
 }  // namespace saccade

@@ -47,8 +47,7 @@ std::vector<Crop> make_crops(const Scenario& scenario, const EventOptions& optio
     camera.height = kCropHeight;
     camera.cx -= crop.x0;
     camera.cy -= crop.y0;
-    crop.truth = testing::brute_force(scenario.scene, scenario.motion, camera, options.contrast,
-                                      options.log_eps, 5e-6);
+    crop.truth = testing::brute_force(scenario.scene, scenario.motion, camera, options, 5e-6);
     crops.push_back(std::move(crop));
   }
   return crops;

@@ -66,12 +66,11 @@ PinholeCamera crop_at(double x, double y) {
   return {kWidth, kHeight, 200, 200, 119.5 - x + 0.5 * kWidth, 89.5 - y + 0.5 * kHeight, {}};
 }
 
-void expect_agreement(const Scene& scene, const PinholeCamera& camera) {
+void expect_agreement(const Scene& scene, const PinholeCamera& camera, EventOptions options = {},
+                      std::size_t least_events = 2000) {
   const Spline motion = lively_motion();
-  EventOptions options;
   options.timestamp_unit = TimestampUnit::kNanoseconds;
-  const Events truth =
-      testing::brute_force(scene, motion, camera, options.contrast, options.log_eps, 1e-5);
+  const Events truth = testing::brute_force(scene, motion, camera, options, 1e-5);
   Events events;
   EventCamera sensor(scene, motion, camera, options);
   sensor.record(motion.end_s(), [&](std::span<const SensedEvent> some, double) {
@@ -87,7 +86,7 @@ void expect_agreement(const Scene& scene, const PinholeCamera& camera) {
       events.size(), truth.size(), at_10_us / found, at_10_us / expected, at_1_us / found,
       at_1_us / expected, static_cast<double>(sensor.statistics().rays) / found,
       static_cast<double>(sensor.statistics().surface_looks) / found);
-  EXPECT_GT(truth.size(), 2000U);
+  EXPECT_GT(truth.size(), least_events);
   EXPECT_GE(at_10_us, 0.999 * found);
   EXPECT_GE(at_10_us, 0.999 * expected);
   EXPECT_GE(at_1_us, 0.99 * found);
@@ -107,6 +106,39 @@ TEST(EventCameraAgainstBruteForce, CurvedMesh) {
       testing::scene_of({testing::rectangle({-6, -5, 4}, {12, 0, 1}, {0, 10, 0}, patches(1)),
                          ball({0.1, 0.1, 2.2}, 0.45, 60, patches(4))});
   expect_agreement(scene, crop_at(150, 100));
+}
+
+/// Fine textures, seen at levels from 0 to 2, one of them at a slant.
+Scene fine_planes() {
+  ImageF fine(512, 512);
+  const ImageF coarse = patches(5);
+  for (int y = 0; y < 512; ++y)
+    for (int x = 0; x < 512; ++x) fine(x, y) = coarse(x % 128, y % 128);
+  return testing::scene_of(
+      {testing::rectangle({-3, -2.5, 4}, {6, 0, 3}, {0, 5, 0}, fine),
+       testing::rectangle({-0.5, -0.6, 2}, {0.9, 0.3, 0.2}, {-0.3, 0.9, 0}, patches(2)),
+       testing::rectangle({0.1, -0.2, 1.2}, {0.3, 0.05, 0}, {-0.05, 0.3, 0.1}, patches(3))});
+}
+
+PinholeCamera quarter(PinholeCamera camera) {
+  camera.width = 10;
+  camera.height = 8;
+  return camera;
+}
+
+TEST(EventCameraAgainstBruteForce, FilteredTextures) {
+  EventOptions options;
+  options.contrast = {0.05, 0.05};
+  options.texture_filter = TextureFilter::kMipmap;
+  expect_agreement(fine_planes(), crop_at(135, 90), options, 1500);
+}
+
+TEST(EventCameraAgainstBruteForce, FilteredTexturesThroughSeveralRays) {
+  EventOptions options;
+  options.contrast = {0.05, 0.05};
+  options.texture_filter = TextureFilter::kMipmap;
+  options.samples_per_pixel = 4;
+  expect_agreement(fine_planes(), quarter(crop_at(135, 90)), options, 200);
 }
 
 }  // namespace
