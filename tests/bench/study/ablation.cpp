@@ -75,11 +75,10 @@ void print_run(const char* name, double lambda_px, const Scenario& scenario,
     return static_cast<double>(part) / static_cast<double>(whole);
   };
   const EventStatistics statistics = camera.statistics();
-  std::printf("%s\t%g\t%zu\t%.3f\t%.3f\t%.5f\t%.5f\t%.5f\t%.5f\t%.3f\n", name, lambda_px,
-              events.size(), share(statistics.rays, events.size()),
-              share(statistics.surface_looks, events.size()), share(at_10_us, truth),
-              share(at_10_us, found), share(at_1_us, truth), share(at_1_us, found),
-              elapsed.count());
+  std::printf("%s %g %zu %.3f %.3f %.5f %.5f %.5f %.5f %.3f\n", name, lambda_px, events.size(),
+              share(statistics.rays, events.size()), share(statistics.surface_looks, events.size()),
+              share(at_10_us, truth), share(at_10_us, found), share(at_1_us, truth),
+              share(at_1_us, found), elapsed.count());
   std::fflush(stdout);
 }
 
@@ -91,8 +90,8 @@ void print_ablation(const Scenario& scenario) {
   options.timestamp_unit = TimestampUnit::kNanoseconds;
   const std::vector<Crop> crops = make_crops(scenario, options);
   std::printf(
-      "# sampling\tlambda_px\tevents\trays_per_event\tlooks_per_event\trecall_10us\t"
-      "precision_10us\trecall_1us\tprecision_1us\tseconds\n");
+      "# sampling lambda_px events rays_per_event looks_per_event recall_10us "
+      "precision_10us recall_1us precision_1us seconds\n");
   print_run<EventCamera>("asynchronous", 0, scenario, options, crops);
   for (const double lambda_px : kLambdas_px) {
     options.frames_lambda_px = lambda_px;

@@ -2,16 +2,22 @@
 // it.
 //   sampling_study ablation CONFIG [KEY=VALUE...]
 //   sampling_study speed RUNS CONFIG [KEY=VALUE...]
+//   sampling_study record RUNS CONFIG [KEY=VALUE...]
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/progress.h"
+#include "simulator/recording_loop.h"
+#include "simulator/sensor/event_camera.h"
 #include "simulator/simulate.h"
 #include "tests/bench/study/ablation.h"
 #include "tests/bench/study/raw_embree.h"
@@ -19,44 +25,68 @@
 namespace saccade::study {
 namespace {
 
-/// Times of the events of whole simulations, written to a folder that is removed; the middle one of
-/// `runs`, the shortest and the longest.
+/// Time of all processors together that sensing the events takes, without writing them: unlike the
+/// time on the clock it hardly depends on what else the machine does.
+double sensing_processor_s(const Scenario& scenario) {
+  const std::clock_t start = std::clock();
+  const SimulationConfig& config = scenario.config;
+  EventCamera camera(scenario.scene, scenario.motion, config.camera, config.events, config.seed);
+  camera.record(scenario.motion.end_s(), [](std::span<const SensedEvent>, double) {});
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+/// Times of the events of `runs` whole simulations, which are written to a folder that is removed:
+/// the middle one, the shortest and the longest.
 void print_speed(int runs, const Scenario& scenario) {
   SimulationConfig config = scenario.config;
   config.frames.rate_hz = 0;
   config.groundtruth.depth_rate_hz = 0;
   const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("sampling_study_" + std::to_string(std::rand()));
+      std::filesystem::temp_directory_path() / ("sampling_study_" + std::to_string(getpid()));
   std::vector<double> seconds;
   double events = 0;
   EventStatistics statistics;
+  double processor_s = std::numeric_limits<double>::infinity();
   for (int k = 0; k < runs; ++k) {
-    const CameraReport report = simulate(config, folder / "run").cameras.front();
+    const CameraReport report = simulate(config, folder).cameras.front();
     std::filesystem::remove_all(folder);
     seconds.push_back(report.events_s);
     events = static_cast<double>(report.event_count());
     statistics = report.events;
+    processor_s = std::min(processor_s, sensing_processor_s(scenario));
   }
   std::sort(seconds.begin(), seconds.end());
   const double median_s = seconds[seconds.size() / 2];
   const RayRates rates = measure_ray_rates(scenario);
-  std::printf(
-      "# "
-      "width\ttriangles\tevents\trays_per_event\tlooks_per_event\tseconds\tMevents_per_s\tlowest\t"
-      "highest\tMrays_per_s\tMvisible_per_s\tMembree_per_s\n");
   const auto rays = static_cast<double>(statistics.rays);
-  std::printf("%d\t%zu\t%.0f\t%.3f\t%.3f\t%.3f\t%.3f\t%.3f\t%.3f\t%.2f\t%.1f\t%.1f\n",
+  std::printf(
+      "# width triangles events rays_per_event looks_per_event seconds least greatest "
+      "sensing_processor_s Mevents_per_s Mrays_per_s Mvisible_per_s Membree_per_s\n");
+  std::printf("%d %zu %.0f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.2f %.1f %.1f\n",
               config.camera.width, scenario.scene.triangle_count(), events, rays / events,
-              static_cast<double>(statistics.surface_looks) / events, median_s,
-              1e-6 * events / median_s, 1e-6 * events / seconds.back(),
-              1e-6 * events / seconds.front(), 1e-6 * rays / median_s, 1e-6 * rates.visible,
-              1e-6 * rates.embree);
+              static_cast<double>(statistics.surface_looks) / events, median_s, seconds.front(),
+              seconds.back(), processor_s, 1e-6 * events / median_s, 1e-6 * rays / median_s,
+              1e-6 * rates.visible, 1e-6 * rates.embree);
+}
+
+/// Senses and logs the events again and again, for a profiler.
+void record(int runs, const Scenario& scenario) {
+  const SimulationConfig& config = scenario.config;
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("sampling_study_" + std::to_string(getpid()));
+  for (int k = 0; k < runs; ++k) {
+    EventCamera camera(scenario.scene, scenario.motion, config.camera, config.events, config.seed);
+    EventLog log(folder);
+    record_into(log, camera, scenario.motion.end_s(), [](double) {});
+    std::filesystem::remove_all(folder);
+  }
 }
 
 int usage() {
   std::fprintf(stderr,
                "usage: sampling_study ablation CONFIG [KEY=VALUE...]\n"
-               "       sampling_study speed RUNS CONFIG [KEY=VALUE...]\n");
+               "       sampling_study speed RUNS CONFIG [KEY=VALUE...]\n"
+               "       sampling_study record RUNS CONFIG [KEY=VALUE...]\n");
   return 2;
 }
 
@@ -69,6 +99,8 @@ int run(const std::vector<std::string>& arguments) {
     print_ablation(load(1));
   } else if (arguments.size() >= 3 && arguments[0] == "speed" && std::stoi(arguments[1]) > 0) {
     print_speed(std::stoi(arguments[1]), load(2));
+  } else if (arguments.size() >= 3 && arguments[0] == "record" && std::stoi(arguments[1]) > 0) {
+    record(std::stoi(arguments[1]), load(2));
   } else {
     return usage();
   }

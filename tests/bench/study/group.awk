@@ -1,0 +1,19 @@
+# perf report --sort dso,symbol -> one line per part of the event simulation: scene part percent
+/^#/ || NF < 3 { next }
+{
+  percent = $1 + 0
+  name = $2 " " substr($0, index($0, "]") + 2)
+}
+name ~ /embree|RayCaster|Visibility/ { part["trace"] += percent; next }
+name ~ /EventLog|BlockJournal|H5|hdf5|libz|deflate|Sha|sha256|Crc|DatasetWriter|EventFile/ { part["write"] += percent; next }
+name ~ /sort|partition|SensedEvent/ { part["sort"] += percent; next }
+name ~ /radiance_range|range_across|Texture::range|RadianceRange|Thresholds|certif|Occluder|is_alone/ { part["bounds"] += percent; next }
+name ~ /find_exit|refine|PixelSignal|PixelSensor|interpolate|dividing|change_s|is_crease|EventPixel|libm/ { part["roots"] += percent; next }
+name ~ /Scene|RayTracer|Texture|sample|illuminat|Illumination|Background/ { part["look"] += percent; next }
+name ~ /Tile|EventCamera|FrameCamera|Function_handler|PoseTable|ObjectMotion|image_speed|interaction|Spline|tbb|parallel/ { part["schedule"] += percent; next }
+{ part["other"] += percent }
+END {
+  for (p in part) total += part[p]
+  n = split("trace look bounds roots schedule sort write other", order, " ")
+  for (i = 1; i <= n; ++i) printf "%s %s %.1f\n", scene, order[i], 100 * part[order[i]] / total
+}
