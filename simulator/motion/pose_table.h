@@ -25,6 +25,8 @@ class PoseTable {
   /// `from_s` < `to_s`, within the spline's span.
   PoseTable(const Spline& world_from_body, double from_s, double to_s);
 
+  [[nodiscard]] double to_s() const { return from_s_ + length_s_; }
+
   /// `t_s` within the stretch.
   [[nodiscard]] CameraFrame at(double t_s) const {
     const double position = (t_s - from_s_) * pieces_per_s_;

@@ -23,6 +23,10 @@ class MovingObject {
   [[nodiscard]] Eigen::Vector3d centre() const { return box_.center(); }
   [[nodiscard]] double radius() const { return 0.5 * box_.diagonal().norm(); }
 
+  /// When it starts to move and when it comes to rest.
+  [[nodiscard]] double start_s() const { return world_from_object_.start_s(); }
+  [[nodiscard]] double end_s() const { return world_from_object_.end_s(); }
+
   [[nodiscard]] Rigid3 pose(double t_s) const { return world_from_object_.pose(t_s); }
   /// Without any motion outside the spline's span.
   [[nodiscard]] SplineState state(double t_s) const;

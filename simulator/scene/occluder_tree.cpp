@@ -54,8 +54,10 @@ class Region {
 
 }  // namespace
 
-OccluderTree::OccluderTree(std::span<const Corners> triangles)
-    : triangles_(triangles.begin(), triangles.end()) {
+OccluderTree::OccluderTree(std::span<const Corners> triangles, std::span<const TriangleId> ids) {
+  SACCADE_CHECK(triangles.size() == ids.size());
+  triangles_.reserve(triangles.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) triangles_.push_back({triangles[i], ids[i]});
   nodes_.reserve(triangles_.size());
   if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
 }
@@ -66,9 +68,11 @@ void OccluderTree::build(std::uint32_t first, std::uint32_t count) {
   Eigen::AlignedBox3f box, centres;
   const auto begin = triangles_.begin() + first;
   const auto end = begin + count;
-  const auto centre = [](const Corners& t) -> Eigen::Vector3f { return t[0] + t[1] + t[2]; };
+  const auto centre = [](const Occluder& occluder) -> Eigen::Vector3f {
+    return occluder.corners[0] + occluder.corners[1] + occluder.corners[2];
+  };
   for (auto triangle = begin; triangle != end; ++triangle) {
-    for (const Eigen::Vector3f& corner : *triangle) box.extend(corner);
+    for (const Eigen::Vector3f& corner : triangle->corners) box.extend(corner);
     centres.extend(centre(*triangle));
   }
   nodes_[index].box = box;
@@ -80,7 +84,7 @@ void OccluderTree::build(std::uint32_t first, std::uint32_t count) {
   Eigen::Index axis = 0;
   centres.sizes().maxCoeff(&axis);
   const std::uint32_t half = count / 2;
-  std::nth_element(begin, begin + half, end, [&](const Corners& a, const Corners& b) {
+  std::nth_element(begin, begin + half, end, [&](const Occluder& a, const Occluder& b) {
     return centre(a)[axis] < centre(b)[axis];
   });
   build(first, half);
@@ -88,8 +92,10 @@ void OccluderTree::build(std::uint32_t first, std::uint32_t count) {
   build(first + half, count - half);
 }
 
-bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const {
-  if (nodes_.empty()) return false;
+template <class Use>
+void OccluderTree::visit(std::span<const SightPyramid> sweep, const AffineForm& front,
+                         const Use& use) const {
+  if (nodes_.empty()) return;
   const Region region(sweep, front);
   const auto over_box = [](const Eigen::AlignedBox3f& box) {
     const Eigen::Vector3d middle = box.center().cast<double>();
@@ -117,9 +123,29 @@ bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineFor
       continue;
     }
     for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      if (!region.excludes(over_triangle(triangles_[k]))) return true;
+      if (!region.excludes(over_triangle(triangles_[k].corners)) && !use(triangles_[k].id)) return;
   }
-  return false;
+}
+
+bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const {
+  bool any = false;
+  visit(sweep, front, [&](TriangleId) {
+    any = true;
+    return false;
+  });
+  return any;
+}
+
+bool OccluderTree::collect(std::span<const SightPyramid> sweep, const AffineForm& front,
+                           std::size_t most, std::vector<TriangleId>& found) const {
+  found.clear();
+  bool all = true;
+  visit(sweep, front, [&](TriangleId id) {
+    all = found.size() < most;
+    if (all) found.push_back(id);
+    return all;
+  });
+  return all;
 }
 
 }  // namespace saccade

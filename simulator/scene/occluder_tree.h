@@ -26,13 +26,27 @@ struct AffineForm {
 /// triangle counts as long as no side of the pyramids separates it. Thread-safe once built.
 class OccluderTree {
  public:
-  explicit OccluderTree(std::span<const Corners> triangles);
+  /// `ids`: one per triangle.
+  OccluderTree(std::span<const Corners> triangles, std::span<const TriangleId> ids);
 
   /// Whether some triangle may reach into a pyramid of sight that moves evenly through those of
   /// `sweep`, above zero of `front`.
   [[nodiscard]] bool may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const;
 
+  /// All such triangles, in a fixed order, into `found`; false where there are more than `most`.
+  [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, const AffineForm& front,
+                             std::size_t most, std::vector<TriangleId>& found) const;
+
  private:
+  struct Occluder {
+    Corners corners;
+    TriangleId id;
+  };
+
+  /// use(id) for all such triangles, until it returns false.
+  template <class Use>
+  void visit(std::span<const SightPyramid> sweep, const AffineForm& front, const Use& use) const;
+
   /// A box; its children follow, or as a leaf it holds triangles first..first + count.
   struct Node {
     Eigen::AlignedBox3f box;
@@ -42,7 +56,7 @@ class OccluderTree {
 
   void build(std::uint32_t first, std::uint32_t count);
 
-  std::vector<Corners> triangles_;  ///< in the order of the leaves
+  std::vector<Occluder> triangles_;  ///< in the order of the leaves
   std::vector<Node> nodes_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -187,8 +188,9 @@ double Scene::inside(const Ray& ray, TriangleId triangle) const {
 
 const OccluderTree& Scene::State::occluders() {
   std::call_once(tree_built, [this] {
-    tree.emplace(still_corners);
+    tree.emplace(still_corners, still_ids);
     still_corners = {};
+    still_ids = {};
   });
   return *tree;
 }
@@ -207,6 +209,37 @@ bool Scene::is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) c
   if (front.at(sweep.front().eye) < 0) front = {-front.gradient, -front.offset};
   front.offset -= kSamePlane * state_->size_m;
   return !state_->occluders().may_show(sweep, front);
+}
+
+bool Scene::collect(std::span<const SightPyramid> sweep, double farthest_m, std::size_t most,
+                    std::vector<TriangleId>& found) const {
+  const SightPyramid& pyramid = sweep.front();
+  const Eigen::Vector3d axis = (pyramid.corners[0] + pyramid.corners[2]).normalized();
+  // The pyramids are narrow and move little, so that a plane before the first one stands for all.
+  constexpr double kRoom = 1.2;
+  const AffineForm front =
+      std::isfinite(farthest_m)
+          ? AffineForm{-axis, axis.dot(pyramid.eye) +
+                                  kRoom * farthest_m *
+                                      axis.dot(0.5 * (pyramid.corners[0] + pyramid.corners[2]))}
+          : AffineForm{Eigen::Vector3d::Zero(), 1};
+  return state_->occluders().collect(sweep, front, most, found);
+}
+
+TrianglePass Scene::triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
+                                  const Eigen::Matrix3d& world_from_camera) const {
+  const AffineForm& plane = state_->surfaces[triangle].plane;
+  const TriangleInterior& interior = state_->interiors[triangle];
+  const double depth = -plane.at(position);
+  const double side = depth < 0 ? -1 : 1;
+  const auto row = [&](const AffineForm& form) -> Eigen::Vector3d {
+    return side * (world_from_camera.transpose() *
+                   (form.at(position) * plane.gradient + depth * form.gradient));
+  };
+  const Eigen::Vector3d second = row(interior.second);
+  const Eigen::Vector3d third = row(interior.third);
+  const Eigen::Vector3d w = side * (world_from_camera.transpose() * plane.gradient);
+  return {{w - second - third, second, third}, w, side * depth};
 }
 
 std::span<const MovingObject> Scene::moving_objects() const {

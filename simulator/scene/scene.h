@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -68,6 +69,15 @@ struct TexelMap {
   double depth;
   const Texture* texture;  ///< nullptr: x is the albedo
   double factor;
+};
+
+/// Where the rays of a camera pass a triangle: the ray d meets its plane at the distance depth / (w
+/// . d), inside the edges where no edge . d is negative. Turned so that w . d > 0 before the
+/// camera.
+struct TrianglePass {
+  std::array<Eigen::Vector3d, 3> edges;
+  Eigen::Vector3d w;
+  double depth;
 };
 
 /// What a camera ray sees.
@@ -134,6 +144,16 @@ class Scene {
   /// that stands still reaches into them before its plane. For kNothing: whether none is in them at
   /// all.
   [[nodiscard]] bool is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const;
+
+  /// The triangles that stand still and may reach into such pyramids nearer than `farthest_m` of z
+  /// depth, into `found`; false where there are more than `most`.
+  [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, double farthest_m,
+                             std::size_t most, std::vector<TriangleId>& found) const;
+
+  /// How all rays of a camera at `position`, given in its own frame, pass a triangle that stands
+  /// still.
+  [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
+                                           const Eigen::Matrix3d& world_from_camera) const;
 
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -122,6 +123,11 @@ Scene SceneBuilder::build(const Background& background) && {
   state->still_corners = std::move(still.opaque.corners);
   state->still_corners.insert(state->still_corners.end(), still.cut_out.corners.begin(),
                               still.cut_out.corners.end());
+  state->still_ids.resize(state->still_corners.size());
+  const auto cut_out =
+      state->still_ids.end() - static_cast<std::ptrdiff_t>(still.cut_out.corners.size());
+  std::iota(state->still_ids.begin(), cut_out, still.first_opaque);
+  std::iota(cut_out, state->still_ids.end(), still.first_cut_out);
   return Scene(std::move(state));
 }
 

@@ -1,5 +1,7 @@
 #include "simulator/scene/scene_options.h"
 
+#include "simulator/scene/scene.h"
+
 #include "core/config/fields.h"
 #include "simulator/scene/file_source.h"
 #include "simulator/scene/scene.h"

@@ -58,6 +58,7 @@ struct Scene::State {
   std::optional<Visibility> visibility;
   double size_m = 0;                   ///< of everything that stands still
   std::vector<Corners> still_corners;  ///< what the tree is made from when it is first asked
+  std::vector<TriangleId> still_ids;   ///< of the same
   std::once_flag tree_built;
   std::optional<OccluderTree> tree;
 

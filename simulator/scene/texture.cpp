@@ -141,11 +141,7 @@ void Texture::build_ranges() {
   }
 }
 
-std::array<float, 4> Texture::cell(std::int64_t i, std::int64_t j) const {
-  if (i >= 0 && j >= 0 && i + 1 < width() && j + 1 < height()) {
-    const float* row = &image_(static_cast<int>(i), static_cast<int>(j));
-    return {row[0], row[1], row[width()], row[width() + 1]};
-  }
+std::array<float, 4> Texture::cell_across_border(std::int64_t i, std::int64_t j) const {
   const int x0 = wrapped(i, width(), wrap_u_);
   const int x1 = wrapped(i + 1, width(), wrap_u_);
   const int y0 = wrapped(j, height(), wrap_v_);

@@ -59,7 +59,11 @@ class Texture {
 
   /// Texels (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), wrapped: between them at_texel() is
   /// bilinear.
-  [[nodiscard]] std::array<float, 4> cell(std::int64_t i, std::int64_t j) const;
+  [[nodiscard]] std::array<float, 4> cell(std::int64_t i, std::int64_t j) const {
+    if (i < 0 || j < 0 || i + 1 >= width() || j + 1 >= height()) return cell_across_border(i, j);
+    const float* row = &image_(static_cast<int>(i), static_cast<int>(j));
+    return {row[0], row[1], row[width()], row[width() + 1]};
+  }
 
   /// Bounds of at_texel() over a box, tight up to a texel for small boxes and up to a quarter of
   /// the box for large ones (min-max pyramid).
@@ -72,6 +76,7 @@ class Texture {
   /// Levels 1, 2 ... of the pyramid, made when they are first asked for.
   [[nodiscard]] const std::vector<Texture>& coarser() const;
   [[nodiscard]] double across_border(double x, double y) const;
+  [[nodiscard]] std::array<float, 4> cell_across_border(std::int64_t i, std::int64_t j) const;
   [[nodiscard]] TexelRange range_within(int i0, int i1, int j0, int j1) const;
   void build_ranges();
 

@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "simulator/scene/moving_object.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/object_motion.h"
 
@@ -52,9 +53,10 @@ void EventCamera::record(double duration_s, const Sink& sink) {
   while (t_s_ < duration_s) {
     const double fastest = bound_speeds(t_s_);
     const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
+    const double until_s = even_until_s(duration_s);
     // No sliver at the end: the rest is split evenly.
-    const double slabs_left = std::ceil((duration_s - t_s_) / slab_s);
-    const double end_s = slabs_left <= 1 ? duration_s : t_s_ + (duration_s - t_s_) / slabs_left;
+    const double slabs_left = std::ceil((until_s - t_s_) / slab_s);
+    const double end_s = slabs_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slabs_left;
     const PoseTable poses(motion_, t_s_, end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
       TileMotion motion = motions_[i];
@@ -64,6 +66,14 @@ void EventCamera::record(double duration_s, const Sink& sink) {
     t_s_ = end_s;
     deliver(t_s_ == duration_s, sink);
   }
+}
+
+double EventCamera::even_until_s(double duration_s) const {
+  double until_s = duration_s;
+  for (const MovingObject& object : world_.scene.moving_objects())
+    for (const double kink_s : {object.start_s(), object.end_s()})
+      if (kink_s > t_s_ && kink_s < until_s) until_s = kink_s;
+  return until_s;
 }
 
 std::string EventCamera::state() const {

@@ -54,6 +54,8 @@ class EventCamera {
   void for_each_tile(const Work& work);
   /// Bound of the image speed of every tile over [t, t + longest slab], into motions_; the largest.
   double bound_speeds(double t_s);
+  /// The next time, `duration_s` at the latest, at which an object starts to move or comes to rest.
+  [[nodiscard]] double even_until_s(double duration_s) const;
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
   /// Takes the tiles' events and hands out those that no later one can precede.
   void deliver(bool is_last, const Sink& sink);

@@ -110,8 +110,11 @@ double pyramid_dividing_fraction(const RayView& from, const RayView& to, double 
   Division division;
   division.consider(level, k);
   division.consider(level, k + 1);
-  for (const double each : {k, k + 1})
-    division.consider_cell(on_level(from, each), on_level(to, each), length_s);
+  for (const double each : {k, k + 1}) {
+    const RayView start = on_level(from, each);
+    const RayView end = on_level(to, each);
+    division.consider_cell(x_track(start, end, length_s), y_track(start, end, length_s));
+  }
   if (division.found()) return division.fraction();
   if (!is_within(level_values(level), k)) return 0.5;
   const double a = value_rate(from, k);

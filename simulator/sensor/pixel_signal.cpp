@@ -90,6 +90,15 @@ auto PixelSignal<kRays>::at(double t_s, const Sample& lo, const Sample& hi) cons
 }
 
 template <std::size_t kRays>
+auto PixelSignal<kRays>::look(double t_s) const -> Sample {
+  Sample sample;
+  sample.t_s = t_s;
+  tracer_.trace(directions_, t_s, sample.rays);
+  set_log_intensity(sample);
+  return sample;
+}
+
+template <std::size_t kRays>
 auto PixelSignal<kRays>::divide(const Sample& lo, const Sample& hi, int depth) const -> Sample {
   constexpr int kGuesses = 8;  // deeper than this, halves: what is there is not what was guessed
   const double length_s = hi.t_s - lo.t_s;

@@ -36,6 +36,8 @@ class PixelSignal {
 
   [[nodiscard]] RadianceRange range(const Sample& lo, const Sample& hi) const;
   [[nodiscard]] Sample divide(const Sample& lo, const Sample& hi, int depth) const;
+  /// With rays, whatever is seen before and after.
+  [[nodiscard]] Sample look(double t_s) const;
   [[nodiscard]] Sample at(double t_s, const Sample& lo, const Sample& hi) const;
 
   void set_log_intensity(Sample& sample) const {

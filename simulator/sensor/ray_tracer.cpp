@@ -15,12 +15,13 @@ namespace {
 /// Rates are differences over this time: short against any motion, long against rounding.
 constexpr double kSoon_s = 1e-7;
 
-RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, TriangleId triangle) {
+RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, double soon_s,
+                   TriangleId triangle) {
   RayView view{triangle, now, 0, 0};
   if (soon.texture != now.texture || (soon.distance == 0) != (now.distance == 0)) return view;
-  view.x_rate = (soon.x - now.x) / kSoon_s;
-  view.y_rate = (soon.y - now.y) / kSoon_s;
-  view.level_rate = (soon.level - now.level) / kSoon_s;
+  view.x_rate = (soon.x - now.x) / soon_s;
+  view.y_rate = (soon.y - now.y) / soon_s;
+  view.level_rate = (soon.level - now.level) / soon_s;
   return view;
 }
 
@@ -66,11 +67,16 @@ RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, L
   return view;
 }
 
+double RayTracer::difference_s(double t_s) const {
+  return t_s + kSoon_s <= poses_->to_s() ? kSoon_s : -kSoon_s;
+}
+
 RayView RayTracer::unlit_view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
   ++statistics_.surface_looks;
-  const double soon_s = t_s + kSoon_s;
+  const double soon_s = difference_s(t_s);
   return with_rates(surface_look(direction, triangle, poses_->at(t_s), t_s),
-                    surface_look(direction, triangle, poses_->at(soon_s), soon_s), triangle);
+                    surface_look(direction, triangle, poses_->at(t_s + soon_s), t_s + soon_s),
+                    soon_s, triangle);
 }
 
 void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) {
@@ -86,36 +92,44 @@ void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) 
   statistics_.lit_points += n;
 }
 
-void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
-                      std::span<RayView> views) {
-  SACCADE_CHECK(directions.size() <= kPacket);
+void RayTracer::find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
+                               std::span<TriangleId> triangles) {
+  SACCADE_CHECK(directions.size() <= kPacket && triangles.size() == directions.size());
   const CameraFrame camera = poses_->at(t_s);
   std::array<Ray, kPacket> rays;
-  std::array<TriangleId, kPacket> triangles;
   for (std::size_t k = 0; k < directions.size(); ++k)
     rays[k] = {camera.position, camera.rotation * directions[k], t_s};
-  scene_.visible({rays.data(), directions.size()}, {triangles.data(), directions.size()});
+  scene_.visible({rays.data(), directions.size()}, triangles);
   statistics_.rays += directions.size();
-  see(directions, {triangles.data(), directions.size()}, t_s, views);
+}
+
+void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
+                      std::span<RayView> views) {
+  std::array<TriangleId, kPacket> triangles;
+  const std::span<TriangleId> seen(triangles.data(), directions.size());
+  find_triangles(directions, t_s, seen);
+  see(directions, seen, t_s, views);
 }
 
 void RayTracer::see(std::span<const Eigen::Vector3d> directions,
                     std::span<const TriangleId> triangles, double t_s, std::span<RayView> views) {
   SACCADE_CHECK(triangles.size() == directions.size() && views.size() == directions.size());
   const CameraFrame camera = poses_->at(t_s);
-  const CameraFrame soon = poses_->at(t_s + kSoon_s);
+  const double soon_s = difference_s(t_s);
+  const CameraFrame soon = poses_->at(t_s + soon_s);
   std::optional<PlaneView> plane;
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const TriangleId triangle = triangles[k];
     if (footprints_ != nullptr || triangle == kNothing ||
         scene_.moving_object(triangle) != nullptr) {
-      views[k] = with_rates(surface_look(directions[k], triangle, camera, t_s),
-                            surface_look(directions[k], triangle, soon, t_s + kSoon_s), triangle);
+      views[k] =
+          with_rates(surface_look(directions[k], triangle, camera, t_s),
+                     surface_look(directions[k], triangle, soon, t_s + soon_s), soon_s, triangle);
       continue;
     }
     if (!plane || plane->triangle() != triangle)
       plane.emplace(scene_.texel_map(triangle, camera.position, camera.rotation),
-                    scene_.texel_map(triangle, soon.position, soon.rotation), kSoon_s, triangle);
+                    scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, triangle);
     views[k] = plane->at(directions[k]);
   }
   if (!scene_.is_lit()) return;
@@ -128,12 +142,14 @@ void RayTracer::see(std::span<const Eigen::Vector3d> directions,
   }
 }
 
-void RayTracer::see(const DirectionLanes& directions, TriangleId triangle, double t_s,
-                    PlaneLanes& lanes) const {
+TexelMap RayTracer::see(const DirectionLanes& directions, TriangleId triangle, double t_s,
+                        PlaneLanes& lanes) const {
   const CameraFrame camera = poses_->at(t_s);
-  const CameraFrame soon = poses_->at(t_s + kSoon_s);
-  look(directions, scene_.texel_map(triangle, camera.position, camera.rotation),
-       scene_.texel_map(triangle, soon.position, soon.rotation), kSoon_s, lanes);
+  const double soon_s = difference_s(t_s);
+  const CameraFrame soon = poses_->at(t_s + soon_s);
+  const TexelMap map = scene_.texel_map(triangle, camera.position, camera.rotation);
+  look(directions, map, scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, lanes);
+  return map;
 }
 
 bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
@@ -142,6 +158,15 @@ bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 
                                           pyramid_at(outline, 0.5 * (from_s + to_s)),
                                           pyramid_at(outline, to_s)};
   return scene_.is_alone(triangle, sweep);
+}
+
+bool RayTracer::collect(const std::array<Eigen::Vector3d, 4>& outline, double farthest_m,
+                        double from_s, double to_s, std::size_t most,
+                        std::vector<TriangleId>& found) const {
+  const std::array<SightPyramid, 3> sweep{pyramid_at(outline, from_s),
+                                          pyramid_at(outline, 0.5 * (from_s + to_s)),
+                                          pyramid_at(outline, to_s)};
+  return scene_.collect(sweep, farthest_m, most, found);
 }
 
 SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -50,27 +51,36 @@ class RayTracer {
 
   [[nodiscard]] bool is_lit() const { return scene_.is_lit(); }
 
-  /// What at most kPacket rays of one instant see.
+  /// The visible triangles of at most kPacket rays of one instant.
+  void find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
+                      std::span<TriangleId> triangles);
+  /// What rays of one instant see.
   void trace(std::span<const Eigen::Vector3d> directions, double t_s, std::span<RayView> views);
 
   /// What rays of one instant see, the visible triangles given.
   void see(std::span<const Eigen::Vector3d> directions, std::span<const TriangleId> triangles,
            double t_s, std::span<RayView> views);
 
-  [[nodiscard]] TexelMap texel_map(TriangleId triangle, double t_s) const {
-    const CameraFrame camera = poses_->at(t_s);
-    return scene_.texel_map(triangle, camera.position, camera.rotation);
+  /// Whether a triangle can be seen by lanes: it stands still, in an unlit scene.
+  [[nodiscard]] bool is_plane(TriangleId triangle) const {
+    return triangle != kNothing && !is_lit() && scene_.moving_object(triangle) == nullptr;
   }
+  /// What the pixels of a tile see of such a triangle, taken to be visible to all.
+  TexelMap see(const DirectionLanes& directions, TriangleId triangle, double t_s,
+               PlaneLanes& lanes) const;
 
   /// Whether from `from_s` to `to_s` nothing but `triangle` can be seen within the `outline` of
   /// some rays, moving objects apart.
   [[nodiscard]] bool is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
                               double from_s, double to_s) const;
 
-  /// What the pixels of a tile see of a textured triangle that stands still, taken to be visible to
-  /// all; without light.
-  void see(const DirectionLanes& directions, TriangleId triangle, double t_s,
-           PlaneLanes& lanes) const;
+  /// The triangles that stand still and may come into view within the `outline` of some rays,
+  /// nearer than `farthest_m`, into `found`; false where there are more than `most`.
+  [[nodiscard]] bool collect(const std::array<Eigen::Vector3d, 4>& outline, double farthest_m,
+                             double from_s, double to_s, std::size_t most,
+                             std::vector<TriangleId>& found) const;
+
+  [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
 
   /// What a ray sees of a triangle, taken to be visible.
   [[nodiscard]] RayView view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s);
@@ -94,6 +104,9 @@ class RayTracer {
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double inside(const Eigen::Vector3d& direction, TriangleId triangle,
                               double t_s) const;
+  /// How far from `t_s` the look lies that gives the rates: backwards at the end of the stretch,
+  /// where an object may come to rest.
+  [[nodiscard]] double difference_s(double t_s) const;
   [[nodiscard]] SightPyramid pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
                                         double t_s) const;
   /// Of the ray `direction` at an instant, at which the camera is `camera`.

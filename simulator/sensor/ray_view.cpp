@@ -71,27 +71,22 @@ RayView interpolate(const RayView& from, const RayView& to, double length_s, dou
 }
 
 bool is_straight(const RayView& from, const RayView& to, double length_s) {
-  constexpr double kStraight = 0.02;  // texel; the cubic's own error is orders of magnitude smaller
   constexpr double kLevelStraight = 1e-5;  // of kinks the cubic knows nothing
   if (is_filtered(from, to) && level_track(from, to, length_s).stray() > kLevelStraight)
     return false;
-  return x_track(from, to, length_s).stray() + y_track(from, to, length_s).stray() < kStraight;
+  return x_track(from, to, length_s).stray() + y_track(from, to, length_s).stray() <
+         kStraight_texel;
 }
 
 double dividing_fraction(const RayView& from, const RayView& to, double length_s) {
   if (from.look.texture == nullptr || from.look.texture != to.look.texture) return 0.5;
   if (is_filtered(from, to)) return pyramid_dividing_fraction(from, to, length_s);
-  Division division;
-  division.consider_cell(from, to, length_s);
-  if (division.found()) return division.fraction();
   const Track x = x_track(from, to, length_s);
   const Track y = y_track(from, to, length_s);
-  const CellIndex index = middle_cell(x, y);
-  if (!is_within(x.values(), index.i) || !is_within(y.values(), index.j)) return 0.5;
-  const Cell cell = cell_of(*from.look.texture, index, {x.from, x.to}, {y.from, y.to});
-  const double a = cell.slope_x(cell.y.low) * from.x_rate + cell.slope_y(cell.x.low) * from.y_rate;
-  const double b = cell.slope_x(cell.y.high) * to.x_rate + cell.slope_y(cell.x.high) * to.y_rate;
-  return Division::inside(a / (a - b));
+  Division division;
+  division.consider_cell(x, y);
+  if (division.found()) return division.fraction();
+  return extremum_in_cell(*from.look.texture, x, y);
 }
 
 }  // namespace saccade

@@ -12,6 +12,10 @@ namespace saccade {
 /// that exact [texel].
 constexpr double kOverhang = 1e-3;
 
+/// Paths that stray less than this from their chord are as good as their cubics, whose own error is
+/// orders of magnitude smaller.
+constexpr double kStraight_texel = 0.005;
+
 struct Interval {
   double low, high;
 
@@ -171,9 +175,8 @@ class Division {
     if (u > kNearest && u < 1 - kNearest && std::abs(u - 0.5) < std::abs(best_ - 0.5)) best_ = u;
   }
 
-  void consider_cell(const RayView& from, const RayView& to, double length_s) {
-    const Track x = x_track(from, to, length_s);
-    const Track y = y_track(from, to, length_s);
+  /// The borders of the cell in the middle.
+  void consider_cell(const Track& x, const Track& y) {
     const CellIndex index = middle_cell(x, y);
     consider(x, index.i);
     consider(x, index.i + 1);
@@ -192,5 +195,18 @@ class Division {
  private:
   double best_ = -1;
 };
+
+/// Fraction of a stretch within one cell at which the radiance turns; the middle if it does not or
+/// the path leaves the cell.
+inline double extremum_in_cell(const Texture& texture, const Track& x, const Track& y) {
+  const CellIndex index = middle_cell(x, y);
+  if (!is_within(x.values(), index.i) || !is_within(y.values(), index.j)) return 0.5;
+  const Cell cell = cell_of(texture, index, {x.from, x.to}, {y.from, y.to});
+  const double a =
+      cell.slope_x(cell.y.low) * x.rate_at(0) + cell.slope_y(cell.x.low) * y.rate_at(0);
+  const double b =
+      cell.slope_x(cell.y.high) * x.rate_at(1) + cell.slope_y(cell.x.high) * y.rate_at(1);
+  return Division::inside(a / (a - b));
+}
 
 }  // namespace saccade

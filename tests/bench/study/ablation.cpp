@@ -7,7 +7,7 @@
 
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/frame_camera.h"
-#include "tests/unit/simulator/brute_force.h"
+#include "tests/support/brute_force.h"
 
 namespace saccade::study {
 namespace {

@@ -1,26 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <utility>
 
 #include "simulator/scene/scene_builder.h"
 #include "tests/support/closed_form_plane.h"
+#include "tests/support/meshes.h"
 
 namespace saccade::testing {
-
-/// A rectangle from `corner` along `right` and `down`, two triangles, its texture's first texel at
-/// the corner.
-inline Mesh rectangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& right,
-                      const Eigen::Vector3d& down, ImageF texture) {
-  Mesh mesh;
-  mesh.vertices = {corner, corner + right, corner + right + down, corner + down};
-  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  mesh.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
-  Material material;
-  material.texture = std::make_shared<const Texture>(std::move(texture));
-  mesh.materials = {material};
-  return mesh;
-}
 
 inline Scene scene_of(const std::vector<Mesh>& meshes) {
   SceneBuilder builder;
