@@ -6,9 +6,9 @@
 }
 name ~ /embree|RayCaster|Visibility/ { part["trace"] += percent; next }
 name ~ /EventLog|BlockJournal|H5|hdf5|libz|deflate|Sha|sha256|Crc|DatasetWriter|EventFile/ { part["write"] += percent; next }
-name ~ /sort|partition|SensedEvent/ { part["sort"] += percent; next }
-name ~ /radiance_range|range_across|Texture::range|RadianceRange|Thresholds|certif|Occluder|is_alone/ { part["bounds"] += percent; next }
-name ~ /find_exit|refine|PixelSignal|PixelSensor|interpolate|dividing|change_s|is_crease|EventPixel|libm/ { part["roots"] += percent; next }
+name ~ /picture_range|radiance_range|range_across|Texture::range|Texture::cell|RadianceRange|Thresholds|certif|Occluder|is_alone|pyramid/ { part["bounds"] += percent; next }
+name ~ /find_exit|refine|PixelSignal|PixelSensor|interpolate|is_straight|dividing|change_s|is_crease|EventPixel|libm/ { part["roots"] += percent; next }
+name ~ /sort|partition|SensedEvent|deliver/ { part["sort"] += percent; next }
 name ~ /Scene|RayTracer|Texture|sample|illuminat|Illumination|Background/ { part["look"] += percent; next }
 name ~ /Tile|EventCamera|FrameCamera|Function_handler|PoseTable|ObjectMotion|image_speed|interaction|Spline|tbb|parallel/ { part["schedule"] += percent; next }
 { part["other"] += percent }

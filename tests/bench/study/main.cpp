@@ -61,12 +61,13 @@ void print_speed(int runs, const Scenario& scenario) {
   const auto rays = static_cast<double>(statistics.rays);
   std::printf(
       "# width triangles events rays_per_event looks_per_event seconds least greatest "
-      "sensing_processor_s Mevents_per_s Mrays_per_s Mvisible_per_s Membree_per_s\n");
-  std::printf("%d %zu %.0f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.2f %.1f %.1f\n",
+      "Mevents_per_s sensing_cpu_s Mevents_per_cpu_s Mrays_per_cpu_s Mvisible_per_cpu_s "
+      "Membree_per_cpu_s\n");
+  std::printf("%d %zu %.0f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.2f %.1f %.1f\n",
               config.camera.width, scenario.scene.triangle_count(), events, rays / events,
               static_cast<double>(statistics.surface_looks) / events, median_s, seconds.front(),
-              seconds.back(), processor_s, 1e-6 * events / median_s, 1e-6 * rays / median_s,
-              1e-6 * rates.visible, 1e-6 * rates.embree);
+              seconds.back(), 1e-6 * events / median_s, processor_s, 1e-6 * events / processor_s,
+              1e-6 * rays / processor_s, 1e-6 * rates.visible, 1e-6 * rates.embree);
 }
 
 /// Senses and logs the events again and again, for a profiler.

@@ -31,8 +31,8 @@ set logscale y
 set xrange [3e4:2e6]
 set title "Walls: pixels"
 set xlabel "pixels"
-set ylabel "millions per second"
-rates = "10 11 12 13"
+set ylabel "millions per processor second"
+rates = "11 12 13 14"
 names = "events 'rays of the simulation' 'rays of Scene::visible' 'rays of Embree alone'"
 plot for [i=1:4] tables."/resolution.txt" using ($1**2 * ($1 == 1280 ? 0.5625 : 0.75)):(column(int(word(rates, i)))) with linespoints lw 2 pt 7 title word(names, i)
 set title "Dunes: triangles"
