@@ -72,12 +72,13 @@ class LockstepTile final : public EventTile {
   void advance(const Slab& slab, const TileMotion& motion) override {
     tracer_.use(slab.poses);
     const bool is_alone = !motion.has_objects && sees_one_triangle(slab.end_s);
-    candidates_.clear();
-    if (!is_alone && !tracer_.collect(outline_, 1 / inverse_depths_.low, t_s_, slab.end_s,
-                                      kMostCandidates, candidates_))
-      candidates_.clear();
+    const bool foresees = !is_alone && !motion.has_objects &&
+                          tracer_.collect(outline_, 1 / inverse_depths_.low, t_s_, slab.end_s,
+                                          kMostCandidates, candidates_);
+    if (!foresees) candidates_.clear();
     const double step_px = world_.options.max_step_px * (is_alone ? kLongSteps : 1);
-    const double steps = std::ceil((is_alone ? 1 : motion.refinement) * motion.pixels / step_px);
+    const double refinement = is_alone || foresees ? 1 : motion.refinement;
+    const double steps = std::ceil(refinement * motion.pixels / step_px);
     const int count = std::max(1, static_cast<int>(steps));
     const double from_s = t_s_;
     TileLook look, next;
@@ -221,19 +222,20 @@ class LockstepTile final : public EventTile {
   void find_passing(double from_s, double to_s) {
     passing_.clear();
     if (candidates_.empty()) return;
-    const CameraFrame from = tracer_.camera_at(from_s);
-    const CameraFrame to = tracer_.camera_at(to_s);
-    const Scene& scene = world_.scene;
+    const std::array<CameraFrame, 3> cameras{tracer_.camera_at(from_s),
+                                             tracer_.camera_at(0.5 * (from_s + to_s)),
+                                             tracer_.camera_at(to_s)};
     for (const TriangleId candidate : candidates_) {
-      const PassingTriangle passing{candidate,
-                                    scene.triangle_pass(candidate, from.position, from.rotation),
-                                    scene.triangle_pass(candidate, to.position, to.rotation)};
+      PassingTriangle passing{candidate, {}};
+      for (std::size_t m = 0; m < cameras.size(); ++m)
+        passing.at[m] =
+            world_.scene.triangle_pass(candidate, cameras[m].position, cameras[m].rotation);
       if (!passing.misses(outline_)) passing_.push_back(passing);
     }
   }
 
   /// Collects the times, in order, at which triangles pass through a ray of a pixel between two
-  /// looks that both see others; whether there are any.
+  /// looks that both see others, or leave it between two that see them; whether there are any.
   [[nodiscard]] bool any_passes(std::size_t i, const TileLook& look, const TileLook& next) {
     passing_s_.clear();
     if (passing_.empty()) return false;
@@ -244,10 +246,16 @@ class LockstepTile final : public EventTile {
       const double hidden_beyond = is_open ? std::numeric_limits<double>::infinity()
                                            : std::max(lo.look.distance, hi.look.distance);
       for (const PassingTriangle& passing : passing_) {
-        if (passing.triangle == lo.triangle || passing.triangle == hi.triangle) continue;
-        const double fraction = passing.passing_fraction(directions_[k], hidden_beyond);
-        if (fraction > 0 && fraction < 1)
-          passing_s_.push_back(look.t_s + fraction * (next.t_s - look.t_s));
+        if (passing.triangle == lo.triangle || passing.triangle == hi.triangle) {
+          if (lo.triangle == hi.triangle && passing.leaves(directions_[k]))
+            passing_s_.push_back(0.5 * (look.t_s + next.t_s));
+          continue;
+        }
+        for (std::size_t half = 0; half < 2; ++half) {
+          const double fraction = passing.passing_fraction(directions_[k], hidden_beyond, half);
+          if (fraction > 0 && fraction < 1)
+            passing_s_.push_back(look.t_s + fraction * (next.t_s - look.t_s));
+        }
       }
     }
     std::sort(passing_s_.begin(), passing_s_.end());

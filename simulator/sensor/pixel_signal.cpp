@@ -50,6 +50,9 @@ RadianceRange PixelSignal<kRays>::range_across_change(std::size_t ray, const Sam
   if (length_s <= tolerance_s_) return {};
   const RayView& from = lo.rays[ray];
   const RayView& to = hi.rays[ray];
+  if (!tracer_.is_covered(directions_[ray], {from.triangle, lo.t_s}, {to.triangle, hi.t_s},
+                          0.1 * tolerance_s_))
+    return {};
   // Their light is that of the end at which they are seen.
   RayView from_later = tracer_.unlit_view(directions_[ray], from.triangle, hi.t_s);
   RayView to_earlier = tracer_.unlit_view(directions_[ray], to.triangle, lo.t_s);

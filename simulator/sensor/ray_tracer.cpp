@@ -12,6 +12,8 @@
 namespace saccade {
 namespace {
 
+/// How far outside its edges a ray still counts as meeting a triangle at its border [barycentric].
+constexpr double kAtEdge = 1e-3;
 /// Rates are differences over this time: short against any motion, long against rounding.
 constexpr double kSoon_s = 1e-7;
 
@@ -211,10 +213,20 @@ double RayTracer::change_s(const Eigen::Vector3d& direction, const Sighting& fro
   return a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.0, 1.0);
 }
 
+bool RayTracer::is_covered(const Eigen::Vector3d& direction, const Sighting& from,
+                           const Sighting& to, double tolerance_s) const {
+  if (from.triangle == kNothing || to.triangle == kNothing) return true;
+  if (inside(direction, from.triangle, to.t_s) >= 0 ||
+      inside(direction, to.triangle, from.t_s) >= 0)
+    return true;
+  const double t_s = change_s(direction, from, to, tolerance_s);
+  return !std::isnan(t_s) && std::min(inside(direction, from.triangle, t_s),
+                                      inside(direction, to.triangle, t_s)) > -kAtEdge;
+}
+
 bool RayTracer::is_crease(const Eigen::Vector3d& direction, TriangleId a, TriangleId b,
                           double t_s) const {
   constexpr double kSamePoint = 1e-6;  // of the distance
-  constexpr double kAtEdge = 1e-3;     // barycentric
   const Ray ray = ray_at(direction, t_s);
   if (std::min(scene_.inside(ray, a), scene_.inside(ray, b)) < -kAtEdge) return false;
   const double first = scene_.look(ray, a).distance;

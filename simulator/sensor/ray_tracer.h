@@ -96,6 +96,11 @@ class RayTracer {
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const Sighting& from,
                                 const Sighting& to, double tolerance_s) const;
 
+  /// Whether at every time between two sightings a ray meets one of both triangles or the other, so
+  /// that nothing behind them shows in between.
+  [[nodiscard]] bool is_covered(const Eigen::Vector3d& direction, const Sighting& from,
+                                const Sighting& to, double tolerance_s) const;
+
   /// Whether a ray meets the edges of both triangles in one point, as with neighbours in a mesh.
   [[nodiscard]] bool is_crease(const Eigen::Vector3d& direction, TriangleId a, TriangleId b,
                                double t_s) const;

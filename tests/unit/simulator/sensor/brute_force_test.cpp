@@ -94,8 +94,8 @@ TEST(EventCameraAgainstBruteForce, BarsThinnerThanAPixel) {
   meshes.push_back(wall());
   const Scene scene = testing::scene_of(meshes);
   for (const std::uint64_t seed : {1, 2, 3})
-    expect_agreement(scene, testing::lively_motion(0.06, 1, 0.7, seed), crop_at(119, 89), 0.97,
-                     0.96);
+    expect_agreement(scene, testing::lively_motion(0.06, 1, 0.7, seed), crop_at(119, 89), 0.99,
+                     0.99);
 }
 
 TEST(EventCameraAgainstBruteForce, MovingBarsThinnerThanAPixel) {
@@ -106,7 +106,7 @@ TEST(EventCameraAgainstBruteForce, MovingBarsThinnerThanAPixel) {
     builder.add_moving(meshes[k], Eigen::Affine3d::Identity(),
                        testing::lively_motion(0.06, 1.5, 0.5, 20 + k));
   const Scene scene = std::move(builder).build(Background(0.5));
-  expect_agreement(scene, testing::lively_motion(0.06, 0.5, 0.5, 5), crop_at(119, 89), 0.97, 0.96);
+  expect_agreement(scene, testing::lively_motion(0.06, 0.5, 0.5, 5), crop_at(119, 89), 0.99, 0.99);
 }
 
 /// Boxes, balls and quads at random, some cut out, some moving, some lit.
