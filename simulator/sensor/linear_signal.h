@@ -33,9 +33,9 @@ class LinearSignal {
 
   /// dI/dt = (eps + I) dL/dt, so radiance and rate are extreme at the ends.
   [[nodiscard]] RadianceRange range(const Sample& lo, const Sample& hi) const {
-    const auto [low, high] = std::minmax(std::exp(lo.log_intensity), std::exp(hi.log_intensity));
+    const auto [low, high] = std::minmax({std::exp(lo.log_intensity), std::exp(hi.log_intensity)});
     const double slope = (hi.log_intensity - lo.log_intensity) / (hi.t_s - lo.t_s);
-    const auto [rate_low, rate_high] = std::minmax(slope * low, slope * high);
+    const auto [rate_low, rate_high] = std::minmax({slope * low, slope * high});
     return {low - log_eps_, high - log_eps_, rate_low, rate_high};
   }
 
