@@ -4,7 +4,8 @@
 
 namespace saccade::study {
 
-/// Coherent primary rays per processor second, in packets of 4 x 4 pixels from the middle of the motion.
+/// Coherent primary rays per processor second, in packets of 4 x 4 pixels from the middle of the
+/// motion.
 struct RayRates {
   double embree;   ///< rtcIntersect16 alone, on packets that are ready
   double visible;  ///< Scene::visible(), from rays in double precision
