@@ -26,19 +26,31 @@ void fill(const Take& take) {
   });
 }
 
+/// Events that are labelled together: whole packets of rays.
+constexpr std::size_t kLabelBatch = 4096;
+
 /// The events of the log, and their labels where they are asked for.
 void write(const Take& take) {
   std::optional<LabelsH5Writer> labels;
   if (take.config.groundtruth.event_labels) labels.emplace(take.writer.folder() / "labels.h5");
   const EventLabeller labeller(take.scene, take.world_from_camera, take.camera);
   Events events;
+  SensedEvents unlabelled;
   take.log.replay([&](std::span<const SensedEvent> part) {
     events.clear();
     for (const SensedEvent& event : part) events.push_back(event.event());
     take.writer.write_events(events);
-    if (labels) labels->append(labeller.label(part));
+    if (!labels) return;
+    // Packets of rays are filled alike however the log is cut: what a ray at an edge meets may
+    // depend on its neighbours.
+    unlabelled.insert(unlabelled.end(), part.begin(), part.end());
+    const auto whole = static_cast<std::ptrdiff_t>(unlabelled.size() / kLabelBatch * kLabelBatch);
+    labels->append(labeller.label({unlabelled.begin(), unlabelled.begin() + whole}));
+    unlabelled.erase(unlabelled.begin(), unlabelled.begin() + whole);
   });
-  if (labels) labels->close();
+  if (!labels) return;
+  labels->append(labeller.label(unlabelled));
+  labels->close();
 }
 
 }  // namespace
