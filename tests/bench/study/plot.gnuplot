@@ -1,13 +1,13 @@
 # gnuplot -e "tables='FOLDER'" plot.gnuplot: from the tables of tests/bench/study/run to docs/images
 scenes = "walls planes office dunes"
 set terminal svg size 860,620 font "sans,13" background "white"
-set key bottom right
+set key bottom right samplen 1
 set grid
 
 set output "docs/images/sampling_ablation.svg"
 set multiplot layout 2,2 title "Crossings found within 10 us, by cost"
 set logscale x
-set xrange [3:5000]
+set xrange [2:30000]
 set yrange [0:1.05]
 set xlabel "rays per event"
 set ylabel "recall at 10 us"
@@ -25,10 +25,10 @@ set output "docs/images/simulation_growth.svg"
 set multiplot layout 1,2
 set format x "10^{%T}"
 unset key
-set key bottom left
-set yrange [0.01:1000]
+set key bottom right maxrows 4
+set yrange [0.001:1000]
 set logscale y
-set xrange [3e4:2e6]
+set xrange [1e4:1e7]
 set title "Walls: pixels"
 set xlabel "pixels"
 set ylabel "millions per processor second"
@@ -37,6 +37,6 @@ names = "events 'rays of the simulation' 'rays of Scene::visible' 'rays of Embre
 plot for [i=1:4] tables."/resolution.txt" using ($1**2 * ($1 == 1280 ? 0.5625 : 0.75)):(column(int(word(rates, i)))) with linespoints lw 2 pt 7 title word(names, i)
 set title "Dunes: triangles"
 set xlabel "triangles"
-set xrange [500:2e6]
+set xrange [100:1e7]
 plot for [i=1:4] tables."/triangles.txt" using 2:(column(int(word(rates, i)))) with linespoints lw 2 pt 7 title word(names, i)
 unset multiplot
