@@ -37,8 +37,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
       rays_(camera, options.samples_per_pixel),
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       motions_(rays_.tile_count()),
-      output_(options.noise, options.log_eps, camera.width, camera.height,
-              options.timestamp_step_ns(), seed) {
+      delivery_(options, camera, seed) {
   tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
 }
@@ -64,7 +63,8 @@ void EventCamera::record(double duration_s, const Sink& sink) {
       tile.advance({poses, end_s}, motion);
     });
     t_s_ = end_s;
-    deliver(t_s_ == duration_s, sink);
+    for (const auto& tile : tiles_) tile->take_events(delivery_.pending());
+    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
   }
 }
 
@@ -80,8 +80,7 @@ std::string EventCamera::state() const {
   StateWriter state;
   state.value(t_s_);
   for (const auto& tile : tiles_) tile->save(state);
-  state.values(pending_);
-  state.text(output_.state());
+  delivery_.save(state);
   return state.take();
 }
 
@@ -89,8 +88,7 @@ void EventCamera::resume(std::string_view bytes) {
   StateReader state(bytes);
   state.value(t_s_);
   for (const auto& tile : tiles_) tile->load(state);
-  state.values(pending_);
-  output_.load(state.text());
+  delivery_.load(state);
   if (!state.at_end()) throw InputError("saved state", "is too long; start the simulation afresh");
   started_ = true;
 }
@@ -142,30 +140,10 @@ InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
   return range;
 }
 
-void EventCamera::deliver(bool is_last, const Sink& sink) {
-  for (const auto& tile : tiles_) tile->take_events(pending_);
-  std::sort(pending_.begin(), pending_.end(), SensedEventOrder());
-  // Rounding can put a later event on the tick of t_s_ or on the one before it.
-  const TimeNs complete_ns = is_last
-                                 ? std::numeric_limits<TimeNs>::max()
-                                 : ns_from_seconds(t_s_) - 2 * world_.options.timestamp_step_ns();
-  const auto end =
-      std::partition_point(pending_.begin(), pending_.end(),
-                           [&](const SensedEvent& event) { return event.t_ns < complete_ns; });
-  ready_.clear();
-  const auto collect = [&](std::span<const SensedEvent> events) {
-    ready_.insert(ready_.end(), events.begin(), events.end());
-  };
-  output_.push({pending_.begin(), end}, complete_ns, collect);
-  if (is_last) output_.finish(collect);
-  pending_.erase(pending_.begin(), end);
-  sink(ready_, t_s_);
-}
-
 EventStatistics EventCamera::statistics() const {
   EventStatistics total;
   for (const auto& tile : tiles_) total.add(tile->statistics());
-  total.lost = output_.counts().lost;
+  total.lost = delivery_.lost();
   return total;
 }
 

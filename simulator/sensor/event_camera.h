@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,9 +10,9 @@
 #include "core/camera.h"
 #include "core/spline.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/event_delivery.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/event_tile.h"
-#include "simulator/sensor/noise/sensor_output.h"
 
 namespace saccade {
 
@@ -35,7 +34,7 @@ class EventCamera {
 
   /// Receives the events up to a time [s], in SensedEventOrder over all calls; state() may be
   /// called.
-  using Sink = std::function<void(std::span<const SensedEvent> events, double t_s)>;
+  using Sink = EventDelivery::Sink;
 
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
@@ -57,8 +56,6 @@ class EventCamera {
   /// The next time, `duration_s` at the latest, at which an object starts to move or comes to rest.
   [[nodiscard]] double even_until_s(double duration_s) const;
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
-  /// Takes the tiles' events and hands out those that no later one can precede.
-  void deliver(bool is_last, const Sink& sink);
 
   const Spline& motion_;
   PixelRays rays_;
@@ -67,9 +64,7 @@ class EventCamera {
   std::vector<TileMotion> motions_;  ///< per tile, in px per second
   double t_s_ = 0;                   ///< up to which all tiles have sensed
   bool started_ = false;
-  SensedEvents pending_;  ///< found but not yet handed on
-  SensorOutput output_;
-  SensedEvents ready_;  ///< to be handed to the sink; kept for its memory
+  EventDelivery delivery_;
 };
 
 }  // namespace saccade
