@@ -242,6 +242,10 @@ TrianglePass Scene::triangle_pass(TriangleId triangle, const Eigen::Vector3d& po
   return {{w - second - third, second, third}, w, side * depth};
 }
 
+bool Scene::is_cut_out(TriangleId triangle) const {
+  return triangle >= state_->surfaces.size() - state_->cutouts.size() && triangle != kNothing;
+}
+
 std::span<const MovingObject> Scene::moving_objects() const {
   return state_->visibility->objects();
 }

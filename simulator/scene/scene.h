@@ -155,6 +155,9 @@ class Scene {
   [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
                                            const Eigen::Matrix3d& world_from_camera) const;
 
+  /// Whether rays may go through holes of the triangle.
+  [[nodiscard]] bool is_cut_out(TriangleId triangle) const;
+
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.
   [[nodiscard]] bool meets(const Ray& ray, TriangleId triangle) const;

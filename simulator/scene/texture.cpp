@@ -1,6 +1,7 @@
 #include "simulator/scene/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -149,23 +150,27 @@ std::array<float, 4> Texture::cell_across_border(std::int64_t i, std::int64_t j)
   return {image_(x0, y0), image_(x1, y0), image_(x0, y1), image_(x1, y1)};
 }
 
-TexelRange Texture::range(const TexelBox& box) const {
+TexelRange Texture::range_across_border(const TexelBox& box) const {
   const IndexRange across = inside_indices(box.x0, box.x1, width(), wrap_u_);
   const IndexRange down = inside_indices(box.y0, box.y1, height(), wrap_v_);
   return range_within(across.first, across.last, down.first, down.last);
 }
 
 TexelRange Texture::range_within(int i0, int i1, int j0, int j1) const {
-  constexpr int kMost = 4;  // values looked at per side
-  const int extent = std::max(i1 - i0, j1 - j0);
-  std::size_t level = 0;
-  while ((extent >> level) >= kMost) ++level;
-  const auto shift = static_cast<int>(level);
+  constexpr unsigned kMost = 4;  // values looked at per side
+  const auto extent = static_cast<unsigned>(std::max(i1 - i0, j1 - j0));
+  const int level = std::bit_width(extent / kMost);
   TexelRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (int j = j0 >> shift; j <= j1 >> shift; ++j)
-    for (int i = i0 >> shift; i <= i1 >> shift; ++i)
-      range = hull(range,
-                   level == 0 ? TexelRange{image_(i, j), image_(i, j)} : ranges_[level - 1](i, j));
+  if (level == 0) {
+    for (int j = j0; j <= j1; ++j) {
+      const float* row = &image_(0, j);
+      for (int i = i0; i <= i1; ++i) range = hull(range, {row[i], row[i]});
+    }
+    return range;
+  }
+  const Image<TexelRange>& blocks = ranges_[static_cast<std::size_t>(level - 1)];
+  for (int j = j0 >> level; j <= j1 >> level; ++j)
+    for (int i = i0 >> level; i <= i1 >> level; ++i) range = hull(range, blocks(i, j));
   return range;
 }
 

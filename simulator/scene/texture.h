@@ -67,7 +67,13 @@ class Texture {
 
   /// Bounds of at_texel() over a box, tight up to a texel for small boxes and up to a quarter of
   /// the box for large ones (min-max pyramid).
-  [[nodiscard]] TexelRange range(const TexelBox& box) const;
+  [[nodiscard]] TexelRange range(const TexelBox& box) const {
+    const bool is_inside =
+        box.x0 >= 0 && box.y0 >= 0 && box.x1 < width() - 1 && box.y1 < height() - 1;
+    return is_inside ? range_within(static_cast<int>(box.x0), static_cast<int>(box.x1) + 1,
+                                    static_cast<int>(box.y0), static_cast<int>(box.y1) + 1)
+                     : range_across_border(box);
+  }
   /// The same for at_texel(x, y, level) with levels `low_level` to `high_level`.
   [[nodiscard]] TexelRange range(const TexelBox& box, double low_level, double high_level) const;
 
@@ -77,6 +83,7 @@ class Texture {
   [[nodiscard]] const std::vector<Texture>& coarser() const;
   [[nodiscard]] double across_border(double x, double y) const;
   [[nodiscard]] std::array<float, 4> cell_across_border(std::int64_t i, std::int64_t j) const;
+  [[nodiscard]] TexelRange range_across_border(const TexelBox& box) const;
   [[nodiscard]] TexelRange range_within(int i0, int i1, int j0, int j1) const;
   void build_ranges();
 

@@ -7,6 +7,7 @@
 
 #include "simulator/sensor/event_pixel.h"
 #include "simulator/sensor/ray_view.h"
+#include "simulator/sensor/texel_path.h"
 
 namespace saccade {
 
@@ -32,12 +33,17 @@ class Thresholds {
     return sample.log_intensity + drift_ * sample.t_s;
   }
 
-  /// Whether no radiance of `range` is outside the band at any time up to `end_s`, with exp(-x) >=
-  /// 1
-  /// - x for the drift.
-  [[nodiscard]] bool certify(const RadianceRange& range, double end_s) const {
+  /// The radiances, between both bounds, that are inside the band at any time up to `end_s`, with
+  /// exp(-x) >= 1 - x for the drift.
+  [[nodiscard]] Interval radiances(double end_s) const {
     const double drifted = drift_ == 0 ? 1 : 1 - drift_ * end_s;
-    return range.low + log_eps_ > lower_ && range.high + log_eps_ < upper_ * drifted;
+    return {lower_ - log_eps_, upper_ * drifted - log_eps_};
+  }
+
+  /// Whether no radiance of `range` is outside the band at any time up to `end_s`.
+  [[nodiscard]] bool certify(const RadianceRange& range, double end_s) const {
+    const Interval inside = radiances(end_s);
+    return range.low > inside.low && range.high < inside.high;
   }
 
   /// Whether the signal rises or falls throughout.
@@ -134,6 +140,17 @@ template <class Signal, class Sample>
   }
   if (auto exit = find_exit(signal, thresholds, lo, middle, depth + 1)) return exit;
   return find_exit(signal, thresholds, middle, hi, depth + 1);
+}
+
+/// find_exit(), for signals without a quicker way of their own.
+template <class Signal, class Sample>
+[[nodiscard]] std::optional<Bracket<Sample>> first_exit(const Signal& signal,
+                                                        const Thresholds& thresholds,
+                                                        const Sample& lo, const Sample& hi) {
+  if constexpr (requires { signal.first_exit(thresholds, lo, hi); })
+    return signal.first_exit(thresholds, lo, hi);
+  else
+    return find_exit(signal, thresholds, lo, hi);
 }
 
 }  // namespace saccade

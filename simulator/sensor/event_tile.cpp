@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/pixel_signal.h"
 #include "simulator/sensor/plane_signal.h"
+#include "simulator/sensor/staying.h"
 
 namespace saccade {
 namespace {
@@ -27,6 +29,9 @@ constexpr double kLongSteps = 2;
 /// Where no more triangles than this are in reach of a tile, each of its pixels looks when one of
 /// them passes between two steps.
 constexpr std::size_t kMostCandidates = 64;
+
+/// Nearer than this to an edge a pixel's view may change [px].
+constexpr double kEdge_px = 0.05;
 
 /// A pixel and what it fires at.
 struct TilePixel {
@@ -44,7 +49,6 @@ class LockstepTile final : public EventTile {
         directions_(world.rays.rays(index)),
         outline_(world.rays.outline(index, kMargin_px)),
         tolerance_s_(1e-6 * world.options.time_tolerance_us),
-        lanes_(directions_.first(tile_.pixels())),
         is_bilinear_(world.options.texture_filter == TextureFilter::kBilinear),
         tracer_(world.scene, statistics_, footprints(world)) {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
@@ -78,20 +82,19 @@ class LockstepTile final : public EventTile {
     if (!foresees) candidates_.clear();
     const double step_px = world_.options.max_step_px * (is_alone ? kLongSteps : 1);
     const double refinement = is_alone || foresees ? 1 : motion.refinement;
-    const double steps = std::ceil(refinement * motion.pixels / step_px);
-    const int count = std::max(1, static_cast<int>(steps));
-    const double from_s = t_s_;
+    const int count =
+        std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
+    const Steps steps{t_s_, slab.end_s, count};
+    is_alone_ = is_alone;
     TileLook look, next;
     // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
     see(triangles_, t_s_, look);
-    for (int k = 1; k <= count; ++k) {
-      const double t_s = k == count ? slab.end_s : from_s + (slab.end_s - from_s) * k / count;
-      is_alone ? see(triangles_, t_s, next) : trace(t_s, next);
-      sense_step(look, next);
-      std::swap(look, next);
-      t_s_ = t_s;
-    }
-    remember(look);
+    is_alone ? see(triangles_, slab.end_s, next) : trace(slab.end_s, next);
+    PixelSet all;
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) all.set(i);
+    statistics_.stretches += tile_.pixels();
+    sense_between({0, count}, steps, look, next, all);
+    remember(next);
   }
 
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
@@ -123,58 +126,98 @@ class LockstepTile final : public EventTile {
   using Signal = PixelSignal<kRays>;
   using Sample = PixelSample<kRays>;
   using Triangles = std::array<TriangleId, kTilePixels * kRays>;
+  using PixelSet = std::bitset<kTilePixels>;
+
+  /// Equal steps through a slab.
+  struct Steps {
+    double from_s, to_s;
+    int count;
+
+    [[nodiscard]] double operator()(int k) const {
+      return k == count ? to_s : from_s + (to_s - from_s) * k / count;
+    }
+  };
+  struct StepRange {
+    int from, to;
+  };
 
   [[nodiscard]] static const PixelRays* footprints(const EventWorld& world) {
     return world.options.texture_filter == TextureFilter::kMipmap ? &world.rays : nullptr;
   }
 
-  /// What the rays of the tile see at an instant: all of them one texture, or each for itself.
+  /// What the rays of the tile see at an instant.
   struct TileLook {
     double t_s;
-    bool on_plane;
-    TriangleId triangle;  ///< on the plane
-    TexelMap map;
-    PlaneLanes lanes;
-    std::array<RayView, kTilePixels * kRays> views;  ///< else; pixel by pixel
-
-    [[nodiscard]] RayView view(std::size_t k) const {
-      if (!on_plane) return views[k];
-      return {triangle,
-              {map.texture, lanes.x[k], lanes.y[k], map.factor, 1, lanes.distance[k]},
-              lanes.x_rate[k],
-              lanes.y_rate[k]};
-    }
+    std::array<RayView, kTilePixels * kRays> views;  ///< pixel by pixel
   };
 
-  void sense_step(const TileLook& look, const TileLook& next) {
-    const double length_s = next.t_s - look.t_s;
-    const bool on_plane = look.on_plane && next.on_plane && look.triangle == next.triangle;
+  /// Senses `pixels` between two looks: at once where they see one surface all the time, else in
+  /// the two halves of the steps.
+  void sense_between(const StepRange& range, const Steps& steps, const TileLook& look,
+                     const TileLook& next, PixelSet pixels) {
     find_passing(look.t_s, next.t_s);
-    std::optional<LaneBoxes> boxes;
-    if (on_plane) boxes.emplace(look.lanes, next.lanes, length_s);
+    if (kRays == 1 && is_bilinear_ && (is_alone_ || !passing_.empty()))
+      pixels = sense_steady(look, next, pixels);
+    if (pixels.none()) return;
+    if (range.to - range.from == 1) return sense_step(look, next, pixels);
+    const int middle = (range.from + range.to) / 2;
+    TileLook between;
+    is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between);
+    statistics_.stretches += pixels.count();
+    sense_between({range.from, middle}, steps, look, between, pixels);
+    sense_between({middle, range.to}, steps, between, next, pixels);
+  }
+
+  /// Senses those pixels that see one textured plane all the time, on cubic paths over it. Returns
+  /// the others.
+  PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
+    std::optional<PlaneView> middle;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      ++statistics_.stretches;
+      const RayView& lo = look.views[i];
+      const RayView& hi = next.views[i];
+      if (!pixels[i] || lo.triangle != hi.triangle || !tracer_.is_plane(lo.triangle) ||
+          lo.look.texture == nullptr)
+        continue;
+      if (!is_alone_ && !stays_in_sight(i, lo.triangle)) continue;
+      if (!middle || middle->triangle() != lo.triangle)
+        middle.emplace(tracer_.plane_view(lo.triangle, 0.5 * (look.t_s + next.t_s)));
+      const PlaneSignal plane(lo.look, world_.options.log_eps, tolerance_s_);
+      const PlaneSample from = PlaneSignal::place(look.t_s, lo);
+      const PlaneSample to = PlaneSignal::place(next.t_s, hi);
+      if (!plane.is_cubic(from, middle->at(directions_[i]), to)) continue;
+      if (noisy_.empty())
+        sense(i, plane, from, to);
+      else
+        sense(i, plane, plane.looked_up(from), plane.looked_up(to));
+      pixels.reset(i);
+    }
+    return pixels;
+  }
+
+  /// Whether a pixel that sees `triangle` before and after a stretch sees nothing else within it.
+  [[nodiscard]] bool stays_in_sight(std::size_t i, TriangleId triangle) const {
+    const double margin = kEdge_px / world_.rays.camera().fx;
+    const auto seen = std::find_if(passing_.begin(), passing_.end(),
+                                   [&](const auto& each) { return each.triangle == triangle; });
+    if (seen == passing_.end() || world_.scene.is_cut_out(triangle)) return false;
+    if (!TriangleSight(*seen, directions_[i], margin).stays_inside()) return false;
+    return std::all_of(passing_.begin(), passing_.end(), [&](const PassingTriangle& other) {
+      if (other.triangle == triangle) return true;
+      const TriangleSight sight(other, directions_[i], margin);
+      return sight.stays_outside() || sight.stays_behind(*seen);
+    });
+  }
+
+  void sense_step(const TileLook& look, const TileLook& next, const PixelSet& pixels) {
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      if (!pixels[i]) continue;
       if (any_passes(i, look, next))
         sense_passing(i, sample(look, i), sample(next, i));
-      else if (is_idle(i, look.t_s, next.t_s) &&
-               (on_plane ? is_certified(i, *boxes, next.map, next.t_s)
-                         : is_certified(i, look, next)))
+      else if (is_idle(i, look.t_s, next.t_s) && is_certified(i, look, next))
         ++statistics_.certified;
-      else if (on_plane)
-        sense_on_plane(i, look, next);
       else
         sense(i, signal(i), sample(look, i), sample(next, i));
     }
-  }
-
-  void sense_on_plane(std::size_t i, const TileLook& look, const TileLook& next) {
-    const PlaneSignal plane(tracer_, directions_[i], next.triangle, next.map,
-                            world_.options.log_eps, tolerance_s_);
-    const auto sample = [&](const TileLook& at) {
-      const PlaneLanes& lanes = at.lanes;
-      return plane.sample(at.t_s, lanes.x[i], lanes.y[i], lanes.x_rate[i], lanes.y_rate[i]);
-    };
-    sense(i, plane, sample(look), sample(next));
   }
 
   [[nodiscard]] PixelTraits traits(std::size_t i) const {
@@ -197,7 +240,7 @@ class LockstepTile final : public EventTile {
   [[nodiscard]] Sample sample(const TileLook& look, std::size_t i) const {
     Sample sample;
     sample.t_s = look.t_s;
-    for (std::size_t k = 0; k < kRays; ++k) sample.rays[k] = look.view(i * kRays + k);
+    for (std::size_t k = 0; k < kRays; ++k) sample.rays[k] = look.views[i * kRays + k];
     sample.log_intensity = log_intensity(sample.radiance(), world_.options.log_eps);
     return sample;
   }
@@ -240,8 +283,8 @@ class LockstepTile final : public EventTile {
     passing_s_.clear();
     if (passing_.empty()) return false;
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
-      const RayView lo = look.view(k);
-      const RayView hi = next.view(k);
+      const RayView& lo = look.views[k];
+      const RayView& hi = next.views[k];
       const bool is_open = lo.look.distance == 0 || hi.look.distance == 0;
       const double hidden_beyond = is_open ? std::numeric_limits<double>::infinity()
                                            : std::max(lo.look.distance, hi.look.distance);
@@ -284,21 +327,13 @@ class LockstepTile final : public EventTile {
   [[nodiscard]] bool is_certified(std::size_t i, const TileLook& look, const TileLook& next) const {
     RadianceRange sum{0, 0, 0, 0};
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
-      const RayView from = look.view(k);
-      const RayView to = next.view(k);
+      const RayView& from = look.views[k];
+      const RayView& to = next.views[k];
       if (from.triangle != to.triangle) return false;
       sum.add(radiance_range(from, to, next.t_s - look.t_s));
     }
     sum.scale(1.0 / kRays);
     return pixels_[i].thresholds.certify(sum, next.t_s);
-  }
-
-  [[nodiscard]] bool is_certified(std::size_t i, const LaneBoxes& boxes, const TexelMap& map,
-                                  double next_s) const {
-    const TexelRange range =
-        map.texture->range({boxes.x0[i], boxes.x1[i], boxes.y0[i], boxes.y1[i]});
-    return pixels_[i].thresholds.certify({map.factor * range.low, map.factor * range.high, 0, 0},
-                                         next_s);
   }
 
   void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
@@ -323,15 +358,8 @@ class LockstepTile final : public EventTile {
   /// The visible triangles are known.
   void see(const Triangles& triangles, double t_s, TileLook& look) {
     look.t_s = t_s;
-    look.on_plane = false;
-    if (kRays == 1 && is_bilinear_ && are_equal(triangles) && tracer_.is_plane(triangles[0])) {
-      look.triangle = triangles[0];
-      look.map = tracer_.see(lanes_, look.triangle, t_s, look.lanes);
-      look.on_plane = look.map.texture != nullptr;
-    }
     const std::size_t n = directions_.size();
-    if (!look.on_plane)
-      tracer_.see(directions_, {triangles.data(), n}, t_s, {look.views.data(), n});
+    tracer_.see(directions_, {triangles.data(), n}, t_s, {look.views.data(), n});
   }
 
   [[nodiscard]] bool are_equal(const Triangles& triangles) const {
@@ -350,7 +378,7 @@ class LockstepTile final : public EventTile {
     double nearest = std::numeric_limits<double>::infinity();
     double farthest = 0;
     for (std::size_t k = 0; k < directions_.size(); ++k) {
-      const RayView view = look.view(k);
+      const RayView& view = look.views[k];
       triangles_[k] = view.triangle;
       const double distance =
           view.look.distance > 0 ? view.look.distance : std::numeric_limits<double>::infinity();
@@ -365,10 +393,10 @@ class LockstepTile final : public EventTile {
   std::span<const Eigen::Vector3d> directions_;
   std::array<Eigen::Vector3d, 4> outline_;
   double tolerance_s_;
-  DirectionLanes lanes_;  ///< for one ray per pixel
   bool is_bilinear_;
   RayTracer tracer_;
-  double t_s_ = 0;  ///< up to which the tile has sensed
+  bool is_alone_ = false;  ///< the triangle that is seen, within the slab
+  double t_s_ = 0;         ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;
   Triangles triangles_{};  ///< seen at t_s_
   std::array<TilePixel, kTilePixels> pixels_;

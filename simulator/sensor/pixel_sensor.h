@@ -42,7 +42,7 @@ class PixelSensor {
   double sense(const Sample& lo, const Sample& hi) {
     Sample a = lo;
     while (a.t_s < hi.t_s) {
-      const auto exit = find_exit(signal_, thresholds_, a, hi);
+      const auto exit = first_exit(signal_, thresholds_, a, hi);
       if (!exit) break;
       a = cross(*exit, true).after;
     }
@@ -156,7 +156,7 @@ double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, cons
     }
     const double next_s = noisy.spontaneous.next_s();
     const Sample b = next_s <= a.t_s ? a : next_s < hi.t_s ? signal_.at(next_s, a, hi) : hi;
-    const auto exit = b.t_s > a.t_s ? find_exit(signal_, thresholds_, a, b) : std::nullopt;
+    const auto exit = b.t_s > a.t_s ? first_exit(signal_, thresholds_, a, b) : std::nullopt;
     if (exit) {
       const Crossing crossing = cross(*exit, noise.refractory_s == 0);
       rest(crossing.t_s);

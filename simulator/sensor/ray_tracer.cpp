@@ -144,14 +144,12 @@ void RayTracer::see(std::span<const Eigen::Vector3d> directions,
   }
 }
 
-TexelMap RayTracer::see(const DirectionLanes& directions, TriangleId triangle, double t_s,
-                        PlaneLanes& lanes) const {
+PlaneView RayTracer::plane_view(TriangleId triangle, double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
   const double soon_s = difference_s(t_s);
   const CameraFrame soon = poses_->at(t_s + soon_s);
-  const TexelMap map = scene_.texel_map(triangle, camera.position, camera.rotation);
-  look(directions, map, scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, lanes);
-  return map;
+  return {scene_.texel_map(triangle, camera.position, camera.rotation),
+          scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, triangle};
 }
 
 bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,

@@ -10,7 +10,7 @@
 #include "simulator/motion/pose_table.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/plane_lanes.h"
+#include "simulator/sensor/plane_view.h"
 #include "simulator/sensor/ray_view.h"
 
 namespace saccade {
@@ -61,13 +61,12 @@ class RayTracer {
   void see(std::span<const Eigen::Vector3d> directions, std::span<const TriangleId> triangles,
            double t_s, std::span<RayView> views);
 
-  /// Whether a triangle can be seen by lanes: it stands still, in an unlit scene.
+  /// Whether a triangle stands still in an unlit scene.
   [[nodiscard]] bool is_plane(TriangleId triangle) const {
     return triangle != kNothing && !is_lit() && scene_.moving_object(triangle) == nullptr;
   }
-  /// What the pixels of a tile see of such a triangle, taken to be visible to all.
-  TexelMap see(const DirectionLanes& directions, TriangleId triangle, double t_s,
-               PlaneLanes& lanes) const;
+  /// How all rays see such a triangle at an instant, taken to be visible.
+  [[nodiscard]] PlaneView plane_view(TriangleId triangle, double t_s) const;
 
   /// Whether from `from_s` to `to_s` nothing but `triangle` can be seen within the `outline` of
   /// some rays, moving objects apart.

@@ -33,47 +33,56 @@ inline Interval product(const Interval& a, const Interval& b) {
   return result;
 }
 
-/// One coordinate of the cubic over a stretch: u (1 - u)^2 and u^2 (u - 1) weigh the differences of
-/// the ends' rates from the chord's.
+/// One coordinate of the cubic over a stretch, u = 0..1: u (1 - u)^2 and u^2 (u - 1) weigh the
+/// differences of the ends' slopes from the chord's.
 struct Track {
   double from, to;
-  double chord_rate, from_excess, to_excess;  ///< [1/s]
+  double chord;                   ///< [texel]
+  double from_excess, to_excess;  ///< of the slopes over u [texel]
   double length_s;
 
   Track(double from_value, double from_rate, double to_value, double to_rate, double seconds)
       : from(from_value),
         to(to_value),
-        chord_rate((to_value - from_value) / seconds),
-        from_excess(from_rate - chord_rate),
-        to_excess(to_rate - chord_rate),
+        chord(to_value - from_value),
+        from_excess(from_rate * seconds - chord),
+        to_excess(to_rate * seconds - chord),
         length_s(seconds) {}
 
   [[nodiscard]] double stray() const {
-    return 4.0 / 27 * length_s * (std::abs(from_excess) + std::abs(to_excess));
+    return 4.0 / 27 * (std::abs(from_excess) + std::abs(to_excess));
   }
+
+  /// A part of the cubic as long as `du` strays less than this times du^2 from its own chord.
+  [[nodiscard]] double bend() const { return 0.5 * (std::abs(from_excess) + std::abs(to_excess)); }
 
   [[nodiscard]] Interval values() const {
     return {std::min(from, to) - stray(), std::max(from, to) + stray()};
   }
 
-  /// The weights' own derivatives stay within [-1/3, 1].
-  [[nodiscard]] Interval rates() const {
+  /// Over u. The weights' own derivatives stay within [-1/3, 1].
+  [[nodiscard]] Interval slopes() const {
     const auto reach = [](double excess) {
       return Interval{std::min(excess, -excess / 3), std::max(excess, -excess / 3)};
     };
     const Interval a = reach(from_excess);
     const Interval b = reach(to_excess);
-    return {chord_rate + a.low + b.low, chord_rate + a.high + b.high};
+    return {chord + a.low + b.low, chord + a.high + b.high};
+  }
+  /// The same over time [1/s].
+  [[nodiscard]] Interval rates() const {
+    const Interval slope = slopes();
+    return {slope.low / length_s, slope.high / length_s};
   }
 
   [[nodiscard]] double at(double u) const {
-    return from + u * (to - from) +
-           length_s * u * (1 - u) * ((1 - u) * from_excess - u * to_excess);
+    return from + u * (chord + (1 - u) * ((1 - u) * from_excess - u * to_excess));
   }
 
-  [[nodiscard]] double rate_at(double u) const {
-    return chord_rate + (1 - u) * (1 - 3 * u) * from_excess + u * (3 * u - 2) * to_excess;
+  [[nodiscard]] double slope_at(double u) const {
+    return chord + (1 - u) * (1 - 3 * u) * from_excess + u * (3 * u - 2) * to_excess;
   }
+  [[nodiscard]] double rate_at(double u) const { return slope_at(u) / length_s; }
 };
 
 inline Track x_track(const RayView& from, const RayView& to, double length_s) {
@@ -168,10 +177,10 @@ class Division {
 
   /// The time at which `track` is past `border`, one step of Newton's method from the chord.
   void consider(const Track& track, double border) {
-    const double past = border + std::copysign(kPast, track.to - track.from);
-    double u = (past - track.from) / (track.to - track.from);
+    const double past = border + std::copysign(kPast, track.chord);
+    double u = (past - track.from) / track.chord;
     if (!(u > 0 && u < 1)) return;
-    u += (past - track.at(u)) / (track.rate_at(u) * track.length_s);
+    u += (past - track.at(u)) / track.slope_at(u);
     if (u > kNearest && u < 1 - kNearest && std::abs(u - 0.5) < std::abs(best_ - 0.5)) best_ = u;
   }
 
