@@ -5,56 +5,57 @@
 #include <cmath>
 #include <cstdint>
 
-#include "simulator/sensor/texel_path.h"
+#include "simulator/sensor/plane_path.h"
 
 namespace saccade {
 
-/// The borders between texels that one coordinate of a path crosses, in order.
+/// The borders between texels that one coordinate of a path crosses on a part of it, in order. All
+/// of them are found at once, so that the compiler can vectorise it.
 class Borders {
  public:
-  explicit Borders(const Track& track) : track_(track) {
-    const Interval slopes = track.slopes();
-    step_ = slopes.low > 0 ? 1 : slopes.high < 0 ? -1 : 0;
-    const double first = std::floor(track.from);
-    index_ = static_cast<std::int64_t>(first) - (step_ < 0 && track.from == first ? 1 : 0);
-    is_steady_ = step_ != 0 || is_within(track.values(), first);
-    inverse_ = 1 / track.chord;
-    is_even_ = track.bend() * track.bend() < kEven_texel * std::abs(track.chord);
-    seek(0);
+  Borders(const PlaneTrack& track, double u0, double u1) {
+    const TrackPart part(track, u0, u1);
+    step_ = part.slopes.low > 0 ? 1 : part.slopes.high < 0 ? -1 : 0;
+    const double start = std::floor(part.from);
+    is_steady_ = step_ != 0 || is_within(part.values, start);
+    first_ = static_cast<std::int64_t>(start);
+    const auto last = static_cast<std::int64_t>(std::floor(part.to));
+    const std::int64_t count = std::abs(last - first_);
+    if (step_ == 0 || count == 0) {
+      crossings_[0] = u1;
+      return;
+    }
+    is_steady_ = count <= kMost;
+    if (is_steady_) find(track, u0, u1, static_cast<int>(count));
   }
 
-  /// Whether the coordinate never turns back over a border.
+  /// Whether the coordinate never turns back over a border, nor crosses too many.
   [[nodiscard]] bool is_steady() const { return is_steady_; }
-  /// Of the texel that it is past now.
-  [[nodiscard]] std::int64_t index() const { return index_; }
-  /// Where it leaves that; 1 at the latest.
-  [[nodiscard]] double next() const { return next_; }
-  void pass() {
-    index_ += step_;
-    seek(next_);
-  }
+  /// The texel that it is past after `k` crossings.
+  [[nodiscard]] std::int64_t index(int k) const { return first_ + step_ * k; }
+  /// Where it leaves that, at the latest at the end of the part.
+  [[nodiscard]] double crossing(int k) const { return crossings_[static_cast<std::size_t>(k)]; }
 
  private:
-  /// From the chord and one step of Newton's method, for which the chord's slope will do where the
-  /// path is nearly even.
-  void seek(double from) {
-    next_ = 1;
-    const auto border = static_cast<double>(step_ > 0 ? index_ + 1 : index_);
-    if (step_ == 0 || step_ * (border - track_.to) >= 0) return;
-    const double u = (border - track_.from) * inverse_;
-    const double ahead = border - track_.at(u);
-    next_ = std::clamp(u + (is_even_ ? ahead * inverse_ : ahead / track_.slope_at(u)), from, 1.0);
+  static constexpr int kMost = 16;
+
+  /// From the chord and one step of Newton's method.
+  void find(const PlaneTrack& track, double u0, double u1, int count) {
+    const double inverse = 1 / track.chord();
+    const auto border = static_cast<double>(step_ > 0 ? first_ + 1 : first_);
+    for (int k = 0; k < count; ++k) {
+      const double value = border + step_ * k;
+      const double u = std::clamp((value - track.from()) * inverse, u0, u1);
+      crossings_[static_cast<std::size_t>(k)] =
+          std::clamp(u + (value - track.at(u)) / track.slope_at(u), u0, u1);
+    }
+    crossings_[static_cast<std::size_t>(count)] = u1;
   }
 
-  static constexpr double kEven_texel = 1e-4;
-
-  const Track& track_;
-  double inverse_;
-  double next_ = 1;
-  std::int64_t index_;
+  std::array<double, kMost + 1> crossings_;
+  std::int64_t first_;
   int step_;
   bool is_steady_;
-  bool is_even_;
 };
 
 /// Whether a path between two points of a cell, which strays less than `stray` texels from their
@@ -78,35 +79,44 @@ class Borders {
   return !(values.low - margin > band.low && values.high + margin < band.high);
 }
 
-/// Goes along a path over a texture from cell to cell and calls `look(u0, u1)` for each stretch on
-/// which the texture may leave the open interval `band`, until that returns false. False, and
-/// nothing is done, where the path turns back over a texel's border.
+/// Goes along a part of a path over a texture from cell to cell and calls `look(u0, u1)` for each
+/// stretch on which the texture may leave the open interval `band`, until that returns false: then
+/// false. Where the path may turn back over a texel's border, in halves.
 template <class Look>
-bool walk_cells(const Texture& texture, const Track& x, const Track& y, const Interval& band,
-                const Look& look) {
-  constexpr double kRounding_texel = 1e-4;
-  Borders across(x);
-  Borders down(y);
-  if (!across.is_steady() || !down.is_steady()) return false;
-  const double bend = std::max(x.bend(), y.bend());
-  double u0 = 0;
-  while (true) {
-    const double u1 = std::min(across.next(), down.next());
-    const std::array<float, 4> corners = texture.cell(across.index(), down.index());
+bool walk_cells(const Texture& texture, const PlanePath& path, double from, double to,
+                const Interval& band, const Look& look) {
+  constexpr double kRounding_texel = 1e-3;
+  constexpr double kShortest = 1.0 / 64;
+  Borders across(path.x, from, to);
+  Borders down(path.y, from, to);
+  if (!across.is_steady() || !down.is_steady()) {
+    if (to - from < kShortest) return look(from, to);
+    const double middle = 0.5 * (from + to);
+    return walk_cells(texture, path, from, middle, band, look) &&
+           walk_cells(texture, path, middle, to, band, look);
+  }
+  const double bend = 0.125 * std::max(path.x.bend(), path.y.bend());
+  double u0 = from;
+  for (int right = 0, below = 0; u0 < to;) {
+    const double u1 = std::min(across.crossing(right), down.crossing(below));
+    const std::array<float, 4> corners = texture.cell(across.index(right), down.index(below));
     const float low = std::min(std::min(corners[0], corners[1]), std::min(corners[2], corners[3]));
     const float high = std::max(std::max(corners[0], corners[1]), std::max(corners[2], corners[3]));
     if (!(low > band.low && high < band.high)) {
-      const auto i = static_cast<double>(across.index());
-      const auto j = static_cast<double>(down.index());
+      const auto i = static_cast<double>(across.index(right));
+      const auto j = static_cast<double>(down.index(below));
       const double stray = bend * (u1 - u0) * (u1 - u0) + kRounding_texel;
-      if (may_leave(corners, x.at(u0) - i, y.at(u0) - j, x.at(u1) - i, y.at(u1) - j, stray, band) &&
+      if (may_leave(corners, path.x.at(u0) - i, path.y.at(u0) - j, path.x.at(u1) - i,
+                    path.y.at(u1) - j, stray, band) &&
           !look(u0, u1))
-        return true;
+        return false;
     }
-    if (u1 >= 1) return true;
-    (across.next() <= down.next() ? across : down).pass();
+    const bool is_right = across.crossing(right) <= down.crossing(below);
+    right += is_right ? 1 : 0;
+    below += is_right ? 0 : 1;
     u0 = u1;
   }
+  return true;
 }
 
 }  // namespace saccade

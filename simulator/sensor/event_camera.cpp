@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kLongestSlab_s = 0.010;
+constexpr double kLongestSlab_s = 0.020;
 constexpr double kShortestSlab_s = 1e-4;
 constexpr double kSlabMotion_px = kTileSize;
 /// Where surfaces slide over one another, at more than this share of their motion, one can show for
@@ -100,10 +100,10 @@ void EventCamera::for_each_tile(const Work& work) {
 }
 
 double EventCamera::bound_speeds(double t_s) {
-  // The motion changes little within 10 ms; three looks bound it.
-  std::array<Twist, 3> twists;
+  // The motion changes little within 5 ms, so that a few looks bound it.
+  std::array<Twist, 5> twists;
   for (std::size_t k = 0; k < twists.size(); ++k)
-    twists[k] = camera_twist(motion_.state(t_s + 0.5 * static_cast<double>(k) * kLongestSlab_s));
+    twists[k] = camera_twist(motion_.state(t_s + 0.25 * static_cast<double>(k) * kLongestSlab_s));
   const PinholeCamera& camera = rays_.camera();
   const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlab_s);
   for_each_tile([&](EventTile&, std::size_t i) {

@@ -168,7 +168,7 @@ class LockstepTile final : public EventTile {
     sense_between({middle, range.to}, steps, between, next, pixels);
   }
 
-  /// Senses those pixels that see one textured plane all the time, on cubic paths over it. Returns
+  /// Senses those pixels that see one textured plane all the time. Returns
   /// the others.
   PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
     std::optional<PlaneView> middle;
@@ -181,14 +181,11 @@ class LockstepTile final : public EventTile {
       if (!is_alone_ && !stays_in_sight(i, lo.triangle)) continue;
       if (!middle || middle->triangle() != lo.triangle)
         middle.emplace(tracer_.plane_view(lo.triangle, 0.5 * (look.t_s + next.t_s)));
-      const PlaneSignal plane(lo.look, world_.options.log_eps, tolerance_s_);
-      const PlaneSample from = PlaneSignal::place(look.t_s, lo);
-      const PlaneSample to = PlaneSignal::place(next.t_s, hi);
-      if (!plane.is_cubic(from, middle->at(directions_[i]), to)) continue;
-      if (noisy_.empty())
-        sense(i, plane, from, to);
-      else
-        sense(i, plane, plane.looked_up(from), plane.looked_up(to));
+      const PlanePath path(look.t_s, next.t_s - look.t_s, lo, middle->at(directions_[i]), hi);
+      if (!path.is_exact(tolerance_s_)) continue;
+      const PlaneSignal plane(path, lo.look, world_.options.log_eps, tolerance_s_);
+      const bool is_noisy = !noisy_.empty();
+      sense(i, plane, plane.from(is_noisy), plane.to(next.t_s, is_noisy));
       pixels.reset(i);
     }
     return pixels;

@@ -7,132 +7,108 @@
 #include "simulator/sensor/cell_walk.h"
 #include "simulator/sensor/crossing.h"
 #include "simulator/sensor/ray_view.h"
-#include "simulator/sensor/texel_path.h"
 
 namespace saccade {
 
-/// What a pixel with a single ray sees at an instant of a textured plane.
+/// What a pixel with a single ray sees at an instant of its path over a texture.
 struct PlaneSample {
   double t_s = 0;
-  double log_intensity = 0;       ///< ln(eps + radiance)
-  double x = 0, y = 0;            ///< texel coordinates
-  double x_rate = 0, y_rate = 0;  ///< [texel/s]
+  double log_intensity = 0;  ///< ln(eps + radiance)
+  double u = 0;              ///< along the path
 };
 
-/// The log intensity of a pixel that sees one unlit texture for a while, on the cubic path between
-/// the ends of a stretch.
+/// The log intensity of a pixel that sees one unlit texture for a while: PixelSignal's most
+/// frequent case.
 class PlaneSignal {
  public:
   using Sample = PlaneSample;
 
-  /// `look`: at the texture, anywhere on it.
-  PlaneSignal(const SurfaceLook& look, double log_eps, double tolerance_s)
-      : texture_(*look.texture),
+  /// `path` outlives the signal; `look`: at the texture, anywhere on it.
+  PlaneSignal(const PlanePath& path, const SurfaceLook& look, double log_eps, double tolerance_s)
+      : path_(path),
+        texture_(*look.texture),
         factor_(look.factor),
         log_eps_(log_eps),
         tolerance_s_(tolerance_s) {}
 
   [[nodiscard]] double tolerance_s() const { return tolerance_s_; }
 
-  /// An end of the stretch, of which only the place is known yet.
-  [[nodiscard]] static Sample place(double t_s, const RayView& view) {
-    return {t_s, kUnknown, view.look.x, view.look.y, view.x_rate, view.y_rate};
-  }
-  /// The same with its log intensity.
-  [[nodiscard]] Sample looked_up(Sample sample) const {
-    if (std::isnan(sample.log_intensity))
-      sample.log_intensity = log_intensity_at(sample.x, sample.y);
-    return sample;
-  }
+  /// The ends of the path. Their log intensities are not known yet, unless `is_known` demands it.
+  [[nodiscard]] Sample from(bool is_known) const { return end(path_.from_s, 0, is_known); }
+  [[nodiscard]] Sample to(double t_s, bool is_known) const { return end(t_s, 1, is_known); }
 
-  /// Whether the path half way is where the cubic has it, up to a small share of what the image
-  /// moves within the tolerance.
-  [[nodiscard]] bool is_cubic(const Sample& lo, const RayView& middle, const Sample& hi) const {
-    constexpr double kShare = 0.02;
-    constexpr double kLeast_texel = 1e-6;
-    const Track x = x_track(lo, hi);
-    const Track y = y_track(lo, hi);
-    const double error =
-        std::max(std::abs(x.at(0.5) - middle.look.x), std::abs(y.at(0.5) - middle.look.y));
-    const double rate = std::max(std::abs(middle.x_rate), std::abs(middle.y_rate));
-    return error <= std::max(kShare * tolerance_s_ * rate, kLeast_texel);
+  [[nodiscard]] Sample at(double t_s, const Sample& /*lo*/, const Sample& /*hi*/) const {
+    return sample(t_s, path_.fraction(t_s));
   }
 
   [[nodiscard]] RadianceRange range(const Sample& lo, const Sample& hi) const {
-    const Track x = x_track(lo, hi);
-    const Track y = y_track(lo, hi);
-    const Interval across = x.values();
-    const Interval down = y.values();
-    const CellIndex index = middle_cell(x, y);
-    if (is_within(across, index.i) && is_within(down, index.j)) {
-      const Cell cell = cell_of(texture_, index, across, down);
+    const TrackPart x(path_.x, lo.u, hi.u);
+    const TrackPart y(path_.y, lo.u, hi.u);
+    const CellIndex index{x.middle_texel(), y.middle_texel()};
+    if (is_within(x.values, index.i) && is_within(y.values, index.j)) {
+      const Cell cell = cell_of(texture_, index, x.values, y.values);
       const Interval values = cell.values();
-      const Interval along_x = product(cell.slopes_x(), x.rates());
-      const Interval along_y = product(cell.slopes_y(), y.rates());
-      return {factor_ * values.low, factor_ * values.high, factor_ * (along_x.low + along_y.low),
-              factor_ * (along_x.high + along_y.high)};
+      const Interval along_x = product(cell.slopes_x(), x.slopes);
+      const Interval along_y = product(cell.slopes_y(), y.slopes);
+      const double scale = factor_ / path_.length_s;
+      return {factor_ * values.low, factor_ * values.high, scale * (along_x.low + along_y.low),
+              scale * (along_x.high + along_y.high)};
     }
-    const TexelRange texels = texture_.range({across.low, across.high, down.low, down.high});
+    const TexelRange texels =
+        texture_.range({x.values.low, x.values.high, y.values.low, y.values.high});
     return {factor_ * texels.low, factor_ * texels.high, -RadianceRange::kUnknown,
             RadianceRange::kUnknown};
   }
 
+  /// At the border of a texel next to the middle, or where the radiance turns within one.
   [[nodiscard]] Sample divide(const Sample& lo, const Sample& hi, int /*depth*/) const {
-    return at(lo.t_s + dividing_fraction(lo, hi) * (hi.t_s - lo.t_s), lo, hi);
-  }
-
-  [[nodiscard]] Sample at(double t_s, const Sample& lo, const Sample& hi) const {
-    const Track x = x_track(lo, hi);
-    const Track y = y_track(lo, hi);
-    const double u = (t_s - lo.t_s) / (hi.t_s - lo.t_s);
-    const double x_now = x.at(u);
-    const double y_now = y.at(u);
-    return {t_s, log_intensity_at(x_now, y_now), x_now, y_now, x.rate_at(u), y.rate_at(u)};
+    const Track x = track(path_.x, lo.u, hi.u);
+    const Track y = track(path_.y, lo.u, hi.u);
+    Division division;
+    division.consider_cell(x, y);
+    const double fraction =
+        division.found() ? division.fraction() : extremum_in_cell(texture_, x, y);
+    const double u = lo.u + fraction * (hi.u - lo.u);
+    return sample(path_.time_s(u), u);
   }
 
   /// find_exit() that looks only into the cells in which the texture may cross a threshold.
   [[nodiscard]] std::optional<Bracket<Sample>> first_exit(const Thresholds& thresholds,
                                                           const Sample& lo,
                                                           const Sample& hi) const {
-    const double length_s = hi.t_s - lo.t_s;
     const Interval radiances = thresholds.radiances(hi.t_s);
     const Interval texels{radiances.low / factor_, radiances.high / factor_};
-    const auto sample_at = [&](double u) {
-      return u <= 0 ? looked_up(lo) : u >= 1 ? looked_up(hi) : at(lo.t_s + u * length_s, lo, hi);
-    };
     std::optional<Bracket<Sample>> exit;
     const auto look = [&](double u0, double u1) {
-      exit = find_exit(*this, thresholds, sample_at(u0), sample_at(u1));
+      const Sample a = u0 <= lo.u ? known(lo) : sample(path_.time_s(u0), u0);
+      const Sample b = u1 >= hi.u ? known(hi) : sample(path_.time_s(u1), u1);
+      if (a.t_s < b.t_s) exit = find_exit(*this, thresholds, a, b);
       return !exit;
     };
-    if (!walk_cells(texture_, x_track(lo, hi), y_track(lo, hi), texels, look))
-      exit = find_exit(*this, thresholds, looked_up(lo), looked_up(hi));
+    walk_cells(texture_, path_, lo.u, hi.u, texels, look);
     return exit;
   }
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-  [[nodiscard]] double log_intensity_at(double x, double y) const {
-    return log_intensity(SurfaceLook{&texture_, x, y, factor_}.radiance(), log_eps_);
+  [[nodiscard]] static Track track(const PlaneTrack& whole, double u0, double u1) {
+    return {whole.at(u0), whole.slope_at(u0), whole.at(u1), whole.slope_at(u1), u1 - u0};
   }
 
-  [[nodiscard]] static Track x_track(const Sample& lo, const Sample& hi) {
-    return {lo.x, lo.x_rate, hi.x, hi.x_rate, hi.t_s - lo.t_s};
+  [[nodiscard]] Sample end(double t_s, double u, bool is_known) const {
+    const Sample place{t_s, kUnknown, u};
+    return is_known ? known(place) : place;
   }
-  [[nodiscard]] static Track y_track(const Sample& lo, const Sample& hi) {
-    return {lo.y, lo.y_rate, hi.y, hi.y_rate, hi.t_s - lo.t_s};
+  [[nodiscard]] Sample known(const Sample& place) const {
+    return std::isnan(place.log_intensity) ? sample(place.t_s, place.u) : place;
   }
-
-  [[nodiscard]] double dividing_fraction(const Sample& lo, const Sample& hi) const {
-    const Track x = x_track(lo, hi);
-    const Track y = y_track(lo, hi);
-    Division division;
-    division.consider_cell(x, y);
-    if (division.found()) return division.fraction();
-    return extremum_in_cell(texture_, x, y);
+  [[nodiscard]] Sample sample(double t_s, double u) const {
+    const SurfaceLook look{&texture_, path_.x.at(u), path_.y.at(u), factor_};
+    return {t_s, log_intensity(look.radiance(), log_eps_), u};
   }
 
+  const PlanePath& path_;
   const Texture& texture_;
   double factor_;
   double log_eps_;

@@ -154,19 +154,22 @@ PlaneView RayTracer::plane_view(TriangleId triangle, double t_s) const {
 
 bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
                          double from_s, double to_s) const {
-  const std::array<SightPyramid, 3> sweep{pyramid_at(outline, from_s),
-                                          pyramid_at(outline, 0.5 * (from_s + to_s)),
-                                          pyramid_at(outline, to_s)};
+  const auto sweep = sweep_of(outline, from_s, to_s);
   return scene_.is_alone(triangle, sweep);
 }
 
 bool RayTracer::collect(const std::array<Eigen::Vector3d, 4>& outline, double farthest_m,
                         double from_s, double to_s, std::size_t most,
                         std::vector<TriangleId>& found) const {
-  const std::array<SightPyramid, 3> sweep{pyramid_at(outline, from_s),
-                                          pyramid_at(outline, 0.5 * (from_s + to_s)),
-                                          pyramid_at(outline, to_s)};
+  const auto sweep = sweep_of(outline, from_s, to_s);
   return scene_.collect(sweep, farthest_m, most, found);
+}
+
+std::array<SightPyramid, 4> RayTracer::sweep_of(const std::array<Eigen::Vector3d, 4>& outline,
+                                                double from_s, double to_s) const {
+  const double step_s = (to_s - from_s) / 3;
+  return {pyramid_at(outline, from_s), pyramid_at(outline, from_s + step_s),
+          pyramid_at(outline, to_s - step_s), pyramid_at(outline, to_s)};
 }
 
 SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,

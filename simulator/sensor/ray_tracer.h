@@ -111,6 +111,8 @@ class RayTracer {
   /// How far from `t_s` the look lies that gives the rates: backwards at the end of the stretch,
   /// where an object may come to rest.
   [[nodiscard]] double difference_s(double t_s) const;
+  [[nodiscard]] std::array<SightPyramid, 4> sweep_of(const std::array<Eigen::Vector3d, 4>& outline,
+                                                     double from_s, double to_s) const;
   [[nodiscard]] SightPyramid pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
                                         double t_s) const;
   /// Of the ray `direction` at an instant, at which the camera is `camera`.

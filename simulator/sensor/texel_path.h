@@ -53,9 +53,6 @@ struct Track {
     return 4.0 / 27 * (std::abs(from_excess) + std::abs(to_excess));
   }
 
-  /// A part of the cubic as long as `du` strays less than this times du^2 from its own chord.
-  [[nodiscard]] double bend() const { return 0.5 * (std::abs(from_excess) + std::abs(to_excess)); }
-
   [[nodiscard]] Interval values() const {
     return {std::min(from, to) - stray(), std::max(from, to) + stray()};
   }
