@@ -58,42 +58,88 @@ class Borders {
   bool is_steady_;
 };
 
-/// Whether a path between two points of a cell, which strays less than `stray` texels from their
-/// chord, may leave the open interval `band`. Along the chord the bilinear function is a parabola.
-[[nodiscard]] inline bool may_leave(const std::array<float, 4>& corners, double x0, double y0,
-                                    double x1, double y1, double stray, const Interval& band) {
-  const double along_x = corners[1] - corners[0];
-  const double along_y = corners[2] - corners[0];
-  const double twist = corners[3] - corners[2] - along_x;
-  const double margin = stray * (std::abs(along_x) + std::abs(along_y) + std::abs(twist));
-  const double p = x1 - x0;
-  const double q = y1 - y0;
-  const double first = corners[0] + x0 * along_x + y0 * (along_y + twist * x0);
-  const double slope = p * (along_x + twist * y0) + q * (along_y + twist * x0);
-  const double bend = twist * p * q;
-  Interval values{first, first};
-  values.include(first + slope + bend);
-  const double turn = -0.5 * slope;  // over the bend
-  if (turn * bend > 0 && std::abs(turn) < std::abs(bend))
-    values.include(first - turn * turn / bend);
-  return !(values.low - margin > band.low && values.high + margin < band.high);
-}
+/// The texture along a path while that stays within one cell.
+class CellCourse {
+ public:
+  CellCourse(const PlanePath& path, const std::array<float, 4>& corners, std::int64_t i,
+             std::int64_t j, double u0, double u1)
+      : path_(path),
+        corner_(corners[0]),
+        along_x_(corners[1] - corners[0]),
+        along_y_(corners[2] - corners[0]),
+        twist_(corners[3] - corners[2] - along_x_),
+        i_(static_cast<double>(i)),
+        j_(static_cast<double>(j)),
+        u0_(u0),
+        u1_(u1) {}
 
-/// Goes along a part of a path over a texture from cell to cell and calls `look(u0, u1)` for each
-/// stretch on which the texture may leave the open interval `band`, until that returns false: then
-/// false. Where the path may turn back over a texel's border, in halves.
-template <class Look>
+  [[nodiscard]] double from() const { return u0_; }
+  [[nodiscard]] double to() const { return u1_; }
+
+  [[nodiscard]] double value(double u) const {
+    return value_at(path_.x.at(u) - i_, path_.y.at(u) - j_);
+  }
+  [[nodiscard]] double slope(double u) const {
+    return (along_x_ + twist_ * (path_.y.at(u) - j_)) * path_.x.slope_at(u) +
+           (along_y_ + twist_ * (path_.x.at(u) - i_)) * path_.y.slope_at(u);
+  }
+
+  /// Bounds, and whether the values rise or fall throughout. Along the chord the bilinear function
+  /// is a parabola; the path strays less than `stray` texels from it.
+  struct Shape {
+    double first, last;
+    Interval values;
+    bool is_monotone;
+  };
+  [[nodiscard]] Shape shape(double stray) const {
+    const double x0 = path_.x.at(u0_) - i_;
+    const double y0 = path_.y.at(u0_) - j_;
+    const double p = path_.x.at(u1_) - i_ - x0;
+    const double q = path_.y.at(u1_) - j_ - y0;
+    const double steepest = std::abs(along_x_) + std::abs(along_y_) + std::abs(twist_);
+    const double margin = stray * steepest;
+    const double rise = p * (along_x_ + twist_ * y0) + q * (along_y_ + twist_ * x0);
+    const double bend = twist_ * p * q;
+    const double first = value_at(x0, y0);
+    const double last = first + rise + bend;
+    Interval values{std::min(first, last), std::max(first, last)};
+    const double turn = -0.5 * rise;  // over the bend
+    if (turn * bend > 0 && std::abs(turn) < std::abs(bend))
+      values.include(first - turn * turn / bend);
+    // Both ends' slopes, beyond what the path's straying can change.
+    const double end_rise = rise + 2 * bend;
+    const bool is_monotone =
+        rise * end_rise > 0 && std::min(std::abs(rise), std::abs(end_rise)) > 8 * margin;
+    return {first, last, {values.low - margin, values.high + margin}, is_monotone};
+  }
+
+ private:
+  [[nodiscard]] double value_at(double x, double y) const {
+    return corner_ + x * along_x_ + y * (along_y_ + twist_ * x);
+  }
+
+  const PlanePath& path_;
+  double corner_, along_x_, along_y_, twist_;
+  double i_, j_;
+  double u0_, u1_;
+};
+
+/// Goes along a part of a path over a texture from cell to cell and calls `look(course,
+/// shape)` for each one in which the texture may leave the open interval `band`, until that returns
+/// false: then false. Where the path may turn back over a texel's border, in halves, and at last
+/// `look_closer(u0, u1)`.
+template <class Look, class LookCloser>
 bool walk_cells(const Texture& texture, const PlanePath& path, double from, double to,
-                const Interval& band, const Look& look) {
+                const Interval& band, const Look& look, const LookCloser& look_closer) {
   constexpr double kRounding_texel = 1e-3;
   constexpr double kShortest = 1.0 / 64;
   Borders across(path.x, from, to);
   Borders down(path.y, from, to);
   if (!across.is_steady() || !down.is_steady()) {
-    if (to - from < kShortest) return look(from, to);
+    if (to - from < kShortest) return look_closer(from, to);
     const double middle = 0.5 * (from + to);
-    return walk_cells(texture, path, from, middle, band, look) &&
-           walk_cells(texture, path, middle, to, band, look);
+    return walk_cells(texture, path, from, middle, band, look, look_closer) &&
+           walk_cells(texture, path, middle, to, band, look, look_closer);
   }
   const double bend = 0.125 * std::max(path.x.bend(), path.y.bend());
   double u0 = from;
@@ -103,12 +149,9 @@ bool walk_cells(const Texture& texture, const PlanePath& path, double from, doub
     const float low = std::min(std::min(corners[0], corners[1]), std::min(corners[2], corners[3]));
     const float high = std::max(std::max(corners[0], corners[1]), std::max(corners[2], corners[3]));
     if (!(low > band.low && high < band.high)) {
-      const auto i = static_cast<double>(across.index(right));
-      const auto j = static_cast<double>(down.index(below));
-      const double stray = bend * (u1 - u0) * (u1 - u0) + kRounding_texel;
-      if (may_leave(corners, path.x.at(u0) - i, path.y.at(u0) - j, path.x.at(u1) - i,
-                    path.y.at(u1) - j, stray, band) &&
-          !look(u0, u1))
+      const CellCourse course(path, corners, across.index(right), down.index(below), u0, u1);
+      const CellCourse::Shape shape = course.shape(bend * (u1 - u0) * (u1 - u0) + kRounding_texel);
+      if (!(shape.values.low > band.low && shape.values.high < band.high) && !look(course, shape))
         return false;
     }
     const bool is_right = across.crossing(right) <= down.crossing(below);

@@ -79,13 +79,21 @@ class PlaneSignal {
     const Interval radiances = thresholds.radiances(hi.t_s);
     const Interval texels{radiances.low / factor_, radiances.high / factor_};
     std::optional<Bracket<Sample>> exit;
-    const auto look = [&](double u0, double u1) {
+    const auto look_closer = [&](double u0, double u1) {
       const Sample a = u0 <= lo.u ? known(lo) : sample(path_.time_s(u0), u0);
       const Sample b = u1 >= hi.u ? known(hi) : sample(path_.time_s(u1), u1);
       if (a.t_s < b.t_s) exit = find_exit(*this, thresholds, a, b);
       return !exit;
     };
-    walk_cells(texture_, path_, lo.u, hi.u, texels, look);
+    const auto look = [&](const CellCourse& course, const CellCourse::Shape& shape) {
+      if (!shape.is_monotone || !is_inside(texels, shape.first))
+        return look_closer(course.from(), course.to());
+      if (is_inside(texels, shape.last)) return true;
+      exit =
+          bracket(thresholds, course, shape, shape.last > shape.first ? texels.high : texels.low);
+      return !exit && look_closer(course.from(), course.to());
+    };
+    walk_cells(texture_, path_, lo.u, hi.u, texels, look, look_closer);
     return exit;
   }
 
@@ -94,6 +102,33 @@ class PlaneSignal {
 
   [[nodiscard]] static Track track(const PlaneTrack& whole, double u0, double u1) {
     return {whole.at(u0), whole.slope_at(u0), whole.at(u1), whole.slope_at(u1), u1 - u0};
+  }
+
+  [[nodiscard]] static bool is_inside(const Interval& band, double value) {
+    return value > band.low && value < band.high;
+  }
+
+  /// Two instants around the place in a cell where the texture, rising or falling, reaches `level`;
+  /// nothing where the signal says otherwise.
+  [[nodiscard]] std::optional<Bracket<Sample>> bracket(const Thresholds& thresholds,
+                                                       const CellCourse& course,
+                                                       const CellCourse::Shape& shape,
+                                                       double level) const {
+    constexpr int kSteps = 3;
+    double u = course.from() +
+               (course.to() - course.from()) * ((level - shape.first) / (shape.last - shape.first));
+    for (int k = 0; k < kSteps; ++k)
+      u = std::clamp(u + (level - course.value(u)) / course.slope(u), course.from(), course.to());
+    const double reach = 0.4 * tolerance_s_ / path_.length_s;
+    const double before = std::max(u - reach, course.from());
+    const double after = std::min(u + reach, course.to());
+    const Bracket<Sample> found{sample(path_.time_s(before), before),
+                                sample(path_.time_s(after), after)};
+    const Band& band = thresholds.band();
+    if (!(found.lo.t_s < found.hi.t_s) || !band.holds(thresholds.signal(found.lo)) ||
+        band.holds(thresholds.signal(found.hi)))
+      return std::nullopt;
+    return found;
   }
 
   [[nodiscard]] Sample end(double t_s, double u, bool is_known) const {
