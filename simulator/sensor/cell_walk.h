@@ -10,23 +10,19 @@
 namespace saccade {
 
 /// The borders between texels that one coordinate of a path crosses on a part of it, in order. All
-/// of them are found at once, so that the compiler can vectorise it.
+/// of them are found at once, in whole lanes for the compiler to vectorise.
 class Borders {
  public:
   Borders(const PlaneTrack& track, double u0, double u1) {
     const TrackPart part(track, u0, u1);
     step_ = part.slopes.low > 0 ? 1 : part.slopes.high < 0 ? -1 : 0;
     const double start = std::floor(part.from);
-    is_steady_ = step_ != 0 || is_within(part.values, start);
     first_ = static_cast<std::int64_t>(start);
-    const auto last = static_cast<std::int64_t>(std::floor(part.to));
-    const std::int64_t count = std::abs(last - first_);
-    if (step_ == 0 || count == 0) {
-      crossings_[0] = u1;
-      return;
-    }
-    is_steady_ = count <= kMost;
-    if (is_steady_) find(track, u0, u1, static_cast<int>(count));
+    if (step_ != 0)
+      count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMost + 1.0));
+    is_steady_ = step_ != 0 ? count_ <= kMost : is_within(part.values, start);
+    if (is_steady_ && count_ > 0) find(track, u0, u1);
+    crossings_[is_steady_ ? static_cast<std::size_t>(count_) : 0] = u1;
   }
 
   /// Whether the coordinate never turns back over a border, nor crosses too many.
@@ -35,26 +31,35 @@ class Borders {
   [[nodiscard]] std::int64_t index(int k) const { return first_ + step_ * k; }
   /// Where it leaves that, at the latest at the end of the part.
   [[nodiscard]] double crossing(int k) const { return crossings_[static_cast<std::size_t>(k)]; }
+  /// The number of crossings up to `u`.
+  [[nodiscard]] int passed(double u) const {
+    int k = 0;
+    while (k < count_ && crossing(k) <= u) ++k;
+    return k;
+  }
 
  private:
   static constexpr int kMost = 16;
+  static constexpr int kLanes = 8;
 
   /// From the chord and one step of Newton's method.
-  void find(const PlaneTrack& track, double u0, double u1, int count) {
+  void find(const PlaneTrack& track, double u0, double u1) {
     const double inverse = 1 / track.chord();
     const auto border = static_cast<double>(step_ > 0 ? first_ + 1 : first_);
-    for (int k = 0; k < count; ++k) {
-      const double value = border + step_ * k;
-      const double u = std::clamp((value - track.from()) * inverse, u0, u1);
-      crossings_[static_cast<std::size_t>(k)] =
-          std::clamp(u + (value - track.at(u)) / track.slope_at(u), u0, u1);
-    }
-    crossings_[static_cast<std::size_t>(count)] = u1;
+    for (int k = 0; k < count_; k += kLanes)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const double value = border + step_ * (k + lane);
+        double u = (value - track.from()) * inverse;
+        u += (value - track.at(u)) / track.slope_at(u);
+        u = u > u0 ? u : u0;
+        crossings_[static_cast<std::size_t>(k + lane)] = u < u1 ? u : u1;
+      }
   }
 
-  std::array<double, kMost + 1> crossings_;
+  std::array<double, kMost + kLanes> crossings_;
   std::int64_t first_;
   int step_;
+  int count_ = 0;
   bool is_steady_;
 };
 
@@ -124,42 +129,66 @@ class CellCourse {
   double u0_, u1_;
 };
 
-/// Goes along a part of a path over a texture from cell to cell and calls `look(course,
-/// shape)` for each one in which the texture may leave the open interval `band`, until that returns
-/// false: then false. Where the path may turn back over a texel's border, in halves, and at last
-/// `look_closer(u0, u1)`.
-template <class Look, class LookCloser>
-bool walk_cells(const Texture& texture, const PlanePath& path, double from, double to,
-                const Interval& band, const Look& look, const LookCloser& look_closer) {
-  constexpr double kRounding_texel = 1e-3;
-  constexpr double kShortest = 1.0 / 64;
-  Borders across(path.x, from, to);
-  Borders down(path.y, from, to);
-  if (!across.is_steady() || !down.is_steady()) {
+/// A path over a texture, cell by cell.
+class CellWalk {
+ public:
+  /// Both outlive the walk.
+  CellWalk(const Texture& texture, const PlanePath& path) : CellWalk(texture, path, 0, 1) {}
+
+  /// Goes along a part of the path and calls `look(course, shape)` for each cell in which the
+  /// texture may leave the open interval `band`, until that returns false: then false. Where the
+  /// path may turn back over a texel's border, in halves, and at last `look_closer(u0, u1)`.
+  template <class Look, class LookCloser>
+  bool go(double from, double to, const Interval& band, const Look& look,
+          const LookCloser& look_closer) const {
+    if (across_.is_steady() && down_.is_steady()) return go_steadily(from, to, band, look);
     if (to - from < kShortest) return look_closer(from, to);
     const double middle = 0.5 * (from + to);
-    return walk_cells(texture, path, from, middle, band, look, look_closer) &&
-           walk_cells(texture, path, middle, to, band, look, look_closer);
+    return CellWalk(texture_, path_, from, middle).go(from, middle, band, look, look_closer) &&
+           CellWalk(texture_, path_, middle, to).go(middle, to, band, look, look_closer);
   }
-  const double bend = 0.125 * std::max(path.x.bend(), path.y.bend());
-  double u0 = from;
-  for (int right = 0, below = 0; u0 < to;) {
-    const double u1 = std::min(across.crossing(right), down.crossing(below));
-    const std::array<float, 4> corners = texture.cell(across.index(right), down.index(below));
-    const float low = std::min(std::min(corners[0], corners[1]), std::min(corners[2], corners[3]));
-    const float high = std::max(std::max(corners[0], corners[1]), std::max(corners[2], corners[3]));
-    if (!(low > band.low && high < band.high)) {
-      const CellCourse course(path, corners, across.index(right), down.index(below), u0, u1);
-      const CellCourse::Shape shape = course.shape(bend * (u1 - u0) * (u1 - u0) + kRounding_texel);
-      if (!(shape.values.low > band.low && shape.values.high < band.high) && !look(course, shape))
-        return false;
+
+ private:
+  static constexpr double kRounding_texel = 1e-3;
+  static constexpr double kShortest = 1.0 / 64;
+
+  CellWalk(const Texture& texture, const PlanePath& path, double from, double to)
+      : texture_(texture),
+        path_(path),
+        across_(path.x, from, to),
+        down_(path.y, from, to),
+        bend_(0.125 * std::max(path.x.bend(), path.y.bend())) {}
+
+  template <class Look>
+  bool go_steadily(double from, double to, const Interval& band, const Look& look) const {
+    int right = across_.passed(from);
+    int below = down_.passed(from);
+    for (double u0 = from; u0 < to;) {
+      const bool is_right = across_.crossing(right) <= down_.crossing(below);
+      const double u1 = std::min(is_right ? across_.crossing(right) : down_.crossing(below), to);
+      const std::array<float, 4> corners = texture_.cell(across_.index(right), down_.index(below));
+      const float low =
+          std::min(std::min(corners[0], corners[1]), std::min(corners[2], corners[3]));
+      const float high =
+          std::max(std::max(corners[0], corners[1]), std::max(corners[2], corners[3]));
+      if (!(low > band.low && high < band.high)) {
+        const CellCourse course(path_, corners, across_.index(right), down_.index(below), u0, u1);
+        const CellCourse::Shape shape =
+            course.shape(bend_ * (u1 - u0) * (u1 - u0) + kRounding_texel);
+        if (!(shape.values.low > band.low && shape.values.high < band.high) && !look(course, shape))
+          return false;
+      }
+      right += is_right ? 1 : 0;
+      below += is_right ? 0 : 1;
+      u0 = u1;
     }
-    const bool is_right = across.crossing(right) <= down.crossing(below);
-    right += is_right ? 1 : 0;
-    below += is_right ? 0 : 1;
-    u0 = u1;
+    return true;
   }
-  return true;
-}
+
+  const Texture& texture_;
+  const PlanePath& path_;
+  Borders across_, down_;
+  double bend_;
+};
 
 }  // namespace saccade

@@ -27,6 +27,7 @@ class PlaneSignal {
   PlaneSignal(const PlanePath& path, const SurfaceLook& look, double log_eps, double tolerance_s)
       : path_(path),
         texture_(*look.texture),
+        walk_(texture_, path_),
         factor_(look.factor),
         log_eps_(log_eps),
         tolerance_s_(tolerance_s) {}
@@ -93,7 +94,7 @@ class PlaneSignal {
           bracket(thresholds, course, shape, shape.last > shape.first ? texels.high : texels.low);
       return !exit && look_closer(course.from(), course.to());
     };
-    walk_cells(texture_, path_, lo.u, hi.u, texels, look, look_closer);
+    walk_.go(lo.u, hi.u, texels, look, look_closer);
     return exit;
   }
 
@@ -145,6 +146,7 @@ class PlaneSignal {
 
   const PlanePath& path_;
   const Texture& texture_;
+  CellWalk walk_;
   double factor_;
   double log_eps_;
   double tolerance_s_;
