@@ -9,8 +9,6 @@
 #include <span>
 
 #include "core/check.h"
-#include "simulator/sensor/noise/leak.h"
-#include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/passing.h"
 #include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/pixel_signal.h"
@@ -62,8 +60,7 @@ class LockstepTile final : public EventTile {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       const double level = sample(look, i).log_intensity;
       TilePixel& pixel = pixels_[i];
-      const double drifted = pixel.traits.drift_per_s * t_s;
-      pixel.state = {EventPixel(level + drifted, pixel.traits.contrast), t_s};
+      pixel.state = start_pixel(pixel.traits, level, t_s);
       update_thresholds(pixel);
       if (!noisy_.empty())
         noisy_[i] = {NoisyState::kNotBlind,
@@ -220,8 +217,7 @@ class LockstepTile final : public EventTile {
   [[nodiscard]] PixelTraits traits(std::size_t i) const {
     const auto x = static_cast<std::uint16_t>(tile_.x(i));
     const auto y = static_cast<std::uint16_t>(tile_.y(i));
-    const Contrast contrast = pixel_contrast(world_.options, world_.seed, x, y);
-    return {x, y, contrast, leak_slope(world_.options.noise.leak, contrast.on, world_.seed, x, y)};
+    return pixel_traits(world_.options, world_.seed, x, y);
   }
 
   void update_thresholds(TilePixel& pixel) const {

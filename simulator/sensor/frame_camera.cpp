@@ -7,8 +7,6 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/noise/leak.h"
-#include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/object_motion.h"
 #include "simulator/sensor/tile_trace.h"
 
@@ -55,9 +53,7 @@ FrameCamera::Block FrameCamera::make_block(std::size_t index) const {
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     const auto x = static_cast<std::uint16_t>(tile.x(i));
     const auto y = static_cast<std::uint16_t>(tile.y(i));
-    const Contrast contrast = pixel_contrast(options_, seed_, x, y);
-    block.pixels[i].traits = {x, y, contrast,
-                              leak_slope(options_.noise.leak, contrast.on, seed_, x, y)};
+    block.pixels[i].traits = pixel_traits(options_, seed_, x, y);
   }
   return block;
 }
@@ -130,7 +126,7 @@ void FrameCamera::start_pixels(Block& block, const Levels& levels) const {
   for (std::size_t i = 0; i < block.pixels.size(); ++i) {
     Pixel& pixel = block.pixels[i];
     pixel.log_intensity = levels[i];
-    pixel.state = {EventPixel(levels[i], pixel.traits.contrast), 0};
+    pixel.state = start_pixel(pixel.traits, levels[i], 0);
     update_thresholds(pixel);
     if (!block.noisy.empty())
       block.noisy[i] = {NoisyState::kNotBlind,

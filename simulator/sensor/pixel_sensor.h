@@ -5,22 +5,10 @@
 
 #include "simulator/sensor/crossing.h"
 #include "simulator/sensor/pixel_noise.h"
+#include "simulator/sensor/pixel_traits.h"
 #include "simulator/sensor/sensed_event.h"
 
 namespace saccade {
-
-/// What distinguishes a pixel from the others for its whole life.
-struct PixelTraits {
-  std::uint16_t x = 0, y = 0;
-  Contrast contrast;
-  double drift_per_s = 0;  ///< of the signal against the leaking reference [1/s]
-};
-
-/// What every pixel remembers. Trivially copyable, without padding.
-struct PixelState {
-  EventPixel level;
-  double reference_s = 0;  ///< since when the reference is what it is
-};
 
 /// A pixel at work: turns stretches of its signal, one after the other, into events.
 /// `Emit(t_s, polarity, origin, log_intensity)`.
@@ -71,10 +59,25 @@ class PixelSensor {
   bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
                           NoisyState& noisy);
   void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+  /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
+  /// stays, prove that nothing happens over a stretch.
+  [[nodiscard]] bool is_silent(const RadianceRange& range, double from_s, double to_s,
+                               const NoisyState& noisy) const;
+  /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
+  [[nodiscard]] bool is_silent(const FilteredPiece& piece, const LinearPiece& input,
+                               const NoisyState& noisy) const;
   /// Drops the candidates that fall into the blind time.
   void skip_candidates(double until_s, const PixelNoise& noise, NoisyState& noisy) const {
     while (noisy.spontaneous.next_s() < until_s)
       (void)noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+  }
+  /// Whether values from `low` to `high` stay within the band, however the leak moves it meanwhile.
+  [[nodiscard]] bool is_within_band(double low, double from_s, double high, double to_s) const {
+    // Rounding may not make a certificate of what is exactly at a threshold.
+    constexpr double kGuard = 1e-12;
+    const Band& band = state_.level.band();
+    return low + traits_.drift_per_s * from_s > band.lower + kGuard &&
+           high + traits_.drift_per_s * to_s < band.upper - kGuard;
   }
   void update_thresholds() {
     thresholds_ = Thresholds(state_.level.band(), traits_.drift_per_s, log_eps_);
@@ -94,6 +97,9 @@ class PixelSensor {
 constexpr double kPieceError = 1e-3;
 /// The greatest change within a piece, for which its cutoff is constant [log units].
 constexpr double kPieceChange = 0.05;
+/// A stretch in which nothing happens is passed over up to what the filter remembers at its end,
+/// where it is so many times as long as that.
+constexpr double kLongMemories = 1.5;
 
 template <class Signal, class Emit>
 auto PixelSensor<Signal, Emit>::cross(const Bracket<Sample>& exit, bool repeatedly) -> Crossing {
@@ -175,12 +181,22 @@ template <class Signal, class Emit>
 double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample& hi,
                                                  const PixelNoise& noise, NoisyState& noisy,
                                                  int depth) {
-  const double change = std::abs(hi.log_intensity - lo.log_intensity);
-  const bool is_step = hi.t_s - lo.t_s <= signal_.tolerance_s();
-  if (is_step || (change <= kPieceChange &&
-                  signal_.range(lo, hi).log_error(log_eps_, hi.t_s - lo.t_s) <= kPieceError)) {
+  const double length_s = hi.t_s - lo.t_s;
+  if (length_s <= signal_.tolerance_s()) {  // a step
     sense_piece(lo, hi, noise, noisy);
     return widest_s_;
+  }
+  const RadianceRange range = signal_.range(lo, hi);
+  if (std::abs(hi.log_intensity - lo.log_intensity) <= kPieceChange &&
+      range.log_error(log_eps_, length_s) <= kPieceError) {
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  const double memory_s = noise.filter.memory_s(range.low);
+  if (length_s > kLongMemories * memory_s && is_silent(range, lo.t_s, hi.t_s, noisy)) {
+    const Sample remembered = signal_.at(hi.t_s - memory_s, lo, hi);
+    noisy.filter = PhotoreceptorFilter::settled(remembered.log_intensity);
+    return sense_filtered(remembered, hi, noise, noisy, depth + 1);
   }
   const Sample middle = signal_.divide(lo, hi, depth);
   if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s)) {  // no double left between them
@@ -196,6 +212,8 @@ void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
                                             const PixelNoise& noise, NoisyState& noisy) {
   const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
   const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
+  noisy.filter = piece.end_state();
+  if (is_silent(piece, input, noisy)) return;
   const FilteredPiece seen = piece.drifting(traits_.drift_per_s);
   const double drifted = traits_.drift_per_s * lo.t_s;
   const auto signal = [&](double t_s) { return seen.value(t_s) + drifted; };
@@ -227,7 +245,25 @@ void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
     }
     if (fires && noise.refractory_s > 0) noisy.blind_until_s = t_s + noise.refractory_s;
   }
-  noisy.filter = piece.end_state();
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::is_silent(const RadianceRange& range, double from_s, double to_s,
+                                          const NoisyState& noisy) const {
+  if (noisy.blind_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
+  const auto [state_low, state_high] = std::minmax(noisy.filter.first, noisy.filter.output);
+  const double low = std::min(state_low, std::log(log_eps_ + std::max(range.low, 0.0)));
+  const double high = std::max(state_high, std::log(log_eps_ + range.high));
+  return is_within_band(low, from_s, high, to_s);
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::is_silent(const FilteredPiece& piece, const LinearPiece& input,
+                                          const NoisyState& noisy) const {
+  if (noisy.blind_until_s >= input.t0_s) return noisy.blind_until_s >= input.t1_s;
+  if (noisy.spontaneous.next_s() < input.t1_s) return false;
+  const FilteredPiece::Reach reach = piece.reach();
+  return is_within_band(reach.low, input.t0_s, reach.high, input.t1_s);
 }
 
 }  // namespace saccade

@@ -33,7 +33,7 @@ double log_intensity(double radiance, double log_eps) { return std::log(log_eps 
 double RadianceRange::log_error(double log_eps, double length_s) const {
   const double least = log_eps + std::max(low, 0.0);
   const double most = log_eps + high;
-  const double spread = std::log(most / least);
+  const double spread = most / least - 1;  // at least its logarithm, and as good where it is small
   const double fastest = rate_high / (rate_high > 0 ? least : most);
   const double slowest = rate_low / (rate_low > 0 ? most : least);
   const double straying = 0.25 * (fastest - slowest) * length_s;

@@ -10,16 +10,18 @@ second=$(realpath "$2")
 shift 2
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 configs=("$@")
-[[ ${#configs[@]} -gt 0 ]] || configs=(walls planes moving_box)
+[[ ${#configs[@]} -gt 0 ]] || configs=(walls planes moving_box office dunes)
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# simulate COMMAND CONFIG FOLDER: a short stretch before a small camera, with and without imperfections of the sensor.
+# simulate COMMAND CONFIG FOLDER: a short stretch before a small camera, with ideal pixels and with each preset's.
 simulate() {
   "$1" simulate "configs/simulation/$2.yaml" -o "$3/ideal" -q --set duration_s=0.05 --set "$camera"
   "$1" simulate "configs/simulation/$2.yaml" -o "$3/noisy" -q --set duration_s=0.05 --set "$camera" \
     --set events.preset=davis240c --set events.samples_per_pixel=4
+  "$1" simulate "configs/simulation/$2.yaml" -o "$3/filtered" -q --set duration_s=0.05 --set "$camera" \
+    --set events.preset=dvxplorer --set events.texture_filter=mipmap --set groundtruth.event_labels=true
 }
 camera="camera={width: 48, height: 36, fx: 40, fy: 40, cx: 23.5, cy: 17.5}"
 

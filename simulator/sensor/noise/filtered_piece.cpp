@@ -1,7 +1,7 @@
 #include "simulator/sensor/noise/filtered_piece.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/check.h"
 
@@ -38,9 +38,6 @@ double close_bracket(const Function& f, double lo, double hi, double tolerance) 
 /// 1 - e^-a.
 double rise(double a) { return -std::expm1(-a); }
 
-/// (1 - e^-a) / a.
-double mean_decay(double a) { return a > 0 ? rise(a) / a : 1; }
-
 }  // namespace
 
 FilteredPiece::FilteredPiece(const FilterState& state, const LinearPiece& input, double rate,
@@ -51,27 +48,44 @@ FilteredPiece::FilteredPiece(const FilterState& state, const LinearPiece& input,
       input_(input.start),
       slope_(duration_s_ > 0 ? (input.end - input.start) / duration_s_ : 0),
       rate_(rate),
-      order_(order) {
+      order_(order),
+      whole_(elapsed(duration_s_, rate)) {
   SACCADE_CHECK(duration_s_ >= 0 && rate > 0 && (order == 1 || order == 2));
   if (order == 1) state_.first = state_.output;
 }
 
-double FilteredPiece::first_after(double tau_s) const {
-  const double a = rate_ * tau_s;
-  return state_.first + (input_ - state_.first) * rise(a) + slope_ * tau_s * (1 - mean_decay(a));
+FilteredPiece::Elapsed FilteredPiece::elapsed(double tau_s, double rate) {
+  const double a = rate * tau_s;
+  const double risen = rise(a);
+  return {tau_s, a, risen, a > 0 ? risen / a : 1};
+}
+
+double FilteredPiece::first_after(const Elapsed& e) const {
+  return state_.first + (input_ - state_.first) * e.rise + slope_ * e.tau_s * (1 - e.mean_decay);
+}
+
+double FilteredPiece::value_after(const Elapsed& e) const {
+  if (order_ == 1) return first_after(e);
+  const double decay = 1 - e.rise;
+  return state_.output + (input_ - state_.output) * e.rise + (state_.first - input_) * e.a * decay +
+         slope_ * e.tau_s * (1 + decay - 2 * e.mean_decay);
+}
+
+FilterState FilteredPiece::state_after(const Elapsed& e) const {
+  return {first_after(e), value_after(e)};
+}
+
+FilteredPiece::Reach FilteredPiece::reach() const {
+  const double end = input_ + slope_ * duration_s_;
+  const double low = std::min({state_.first, input_, end, state_.output});
+  const double high = std::max({state_.first, input_, end, state_.output});
+  return {state_.output + (low - state_.output) * whole_.rise,
+          state_.output + (high - state_.output) * whole_.rise};
 }
 
 double FilteredPiece::first_slope_after(double tau_s) const {
   const double a = rate_ * tau_s;
   return slope_ * rise(a) + rate_ * (input_ - state_.first) * std::exp(-a);
-}
-
-double FilteredPiece::value_after(double tau_s) const {
-  if (order_ == 1) return first_after(tau_s);
-  const double a = rate_ * tau_s;
-  const double decay = std::exp(-a);
-  return state_.output + (input_ - state_.output) * rise(a) + (state_.first - input_) * a * decay +
-         slope_ * tau_s * (1 + decay - 2 * mean_decay(a));
 }
 
 double FilteredPiece::slope_after(double tau_s) const {
@@ -80,11 +94,6 @@ double FilteredPiece::slope_after(double tau_s) const {
   const double decay = std::exp(-a);
   return slope_ * (rise(a) - a * decay) +
          rate_ * decay * ((state_.first - state_.output) - a * (state_.first - input_));
-}
-
-FilterState FilteredPiece::state(double t_s) const {
-  const double tau_s = t_s - t0_s_;
-  return {first_after(tau_s), value_after(tau_s)};
 }
 
 /// The stage's slope s + e^-a (w (x0 - y1_0) - s) vanishes where e^a = 1 + w (y1_0 - x0) / s.

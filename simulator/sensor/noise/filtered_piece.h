@@ -38,9 +38,20 @@ class FilteredPiece {
 
   /// At a time of the piece.
   [[nodiscard]] double value(double t_s) const { return value_after(t_s - t0_s_); }
-  [[nodiscard]] FilterState state(double t_s) const;
+  [[nodiscard]] FilterState state(double t_s) const {
+    return state_after(elapsed(t_s - t0_s_, rate_));
+  }
   /// What the next piece is entered with.
-  [[nodiscard]] FilterState end_state() const { return state(t0_s_ + duration_s_); }
+  [[nodiscard]] FilterState end_state() const { return state_after(whole_); }
+
+  /// Between which values the output provably stays. Every stage averages its input with positive
+  /// weights, so within the hull [l, h] of the first stage and the input
+  ///   y0 + min(0, l - y0)(1 - e^-a) <= y <= y0 + max(0, h - y0)(1 - e^-a)   with a of the end.
+  struct Reach {
+    double low;
+    double high;
+  };
+  [[nodiscard]] Reach reach() const;
 
   /// The times inside the piece at which the output turns, ascending; at most 1 for order 1, at
   /// most 2 for order 2.
@@ -62,9 +73,22 @@ class FilteredPiece {
   [[nodiscard]] FilteredPiece drifting(double slope) const;
 
  private:
-  [[nodiscard]] double value_after(double tau_s) const;
+  /// A time since t0 and what the stages have forgotten by then.
+  struct Elapsed {
+    double tau_s;
+    double a;           ///< w tau
+    double rise;        ///< 1 - e^-a
+    double mean_decay;  ///< (1 - e^-a) / a
+  };
+  [[nodiscard]] static Elapsed elapsed(double tau_s, double rate);
+
+  [[nodiscard]] FilterState state_after(const Elapsed& elapsed) const;
+  [[nodiscard]] double first_after(const Elapsed& elapsed) const;
+  [[nodiscard]] double value_after(const Elapsed& elapsed) const;
+  [[nodiscard]] double value_after(double tau_s) const {
+    return value_after(elapsed(tau_s, rate_));
+  }
   [[nodiscard]] double slope_after(double tau_s) const;
-  [[nodiscard]] double first_after(double tau_s) const;
   [[nodiscard]] double first_slope_after(double tau_s) const;
   /// Where the first stage turns, if it does in any time.
   [[nodiscard]] std::optional<double> first_turn() const;
@@ -77,6 +101,7 @@ class FilteredPiece {
   double slope_;  ///< s
   double rate_;
   int order_;
+  Elapsed whole_;
 };
 
 }  // namespace saccade

@@ -12,4 +12,8 @@ namespace saccade {
 [[nodiscard]] double leak_slope(const LeakOptions& options, double contrast_on, std::uint64_t seed,
                                 std::uint16_t x, std::uint16_t y);
 
+/// The share of its period for which the leak of a pixel has been at work when a recording starts,
+/// uniform in [0, 1): so leak events come at their rate from the start on.
+[[nodiscard]] double leak_phase(std::uint64_t seed, std::uint16_t x, std::uint16_t y);
+
 }  // namespace saccade

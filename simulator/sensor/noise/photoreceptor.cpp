@@ -7,10 +7,18 @@
 
 namespace saccade {
 
-double PhotoreceptorFilter::cutoff_hz(double log_intensity) const {
-  const double brightness = (radiance_from_log(log_intensity, log_eps_) + options_.dark_radiance) /
-                            (options_.bright_radiance + options_.dark_radiance);
+double PhotoreceptorFilter::cutoff_at(double radiance) const {
+  const double brightness =
+      (radiance + options_.dark_radiance) / (options_.bright_radiance + options_.dark_radiance);
   return std::min(options_.max_cutoff_hz, options_.cutoff_hz * brightness);
+}
+
+double PhotoreceptorFilter::cutoff_hz(double log_intensity) const {
+  return cutoff_at(radiance_from_log(log_intensity, log_eps_));
+}
+
+double PhotoreceptorFilter::memory_s(double least) const {
+  return kMemory / (2 * std::numbers::pi * cutoff_at(std::max(least, 0.0)));
 }
 
 FilteredPiece PhotoreceptorFilter::piece(const FilterState& state, const LinearPiece& input) const {

@@ -24,6 +24,10 @@ class PhotoreceptorFilter {
 
   /// f_c(I) [Hz].
   [[nodiscard]] double cutoff_hz(double log_intensity) const;
+  /// For how long the output remembers [s], at radiances of at least `least`: kMemory time
+  /// constants of the slowest. Two outputs of the same input that were d apart, and their first
+  /// stages too, are (1 + kMemory) e^-kMemory d apart then, which is d / 2000.
+  [[nodiscard]] double memory_s(double least) const;
   /// The state of a pixel that has seen one intensity for long.
   [[nodiscard]] static FilterState settled(double log_intensity) {
     return {log_intensity, log_intensity};
@@ -32,6 +36,10 @@ class PhotoreceptorFilter {
   [[nodiscard]] FilteredPiece piece(const FilterState& state, const LinearPiece& input) const;
 
  private:
+  static constexpr double kMemory = 10;
+
+  [[nodiscard]] double cutoff_at(double radiance) const;
+
   BandwidthOptions options_;
   double log_eps_;
 };

@@ -158,6 +158,25 @@ TEST(FilteredPiece, TurnsAreItsExtrema) {
   EXPECT_GT(seen[2], 100);
 }
 
+TEST(FilteredPiece, StaysWithinItsReach) {
+  RandomPieces pieces(6);
+  for (int trial = 0; trial < 4000; ++trial) {
+    const int order = 1 + trial % 2;
+    const LinearPiece input = pieces.input(0.01);
+    const FilteredPiece piece(pieces.state(), input, pieces.rate(input, -9, 6), order);
+    const FilteredPiece::Reach reach = piece.reach();
+    for (int i = 0; i <= 100; ++i) {
+      const double y = piece.value(input.t0_s + (input.t1_s - input.t0_s) * i / 100);
+      ASSERT_GE(y, reach.low - 1e-12);
+      ASSERT_LE(y, reach.high + 1e-12);
+    }
+  }
+  // Narrow where there is little time.
+  const FilteredPiece::Reach brief = FilteredPiece({0, 0}, {0, 0.01, 1, 1}, 1, 2).reach();
+  EXPECT_EQ(brief.low, 0);
+  EXPECT_NEAR(brief.high, -std::expm1(-0.01), 1e-15);
+}
+
 TEST(FilteredPiece, FirstCrossingIsTheFirst) {
   RandomPieces pieces(4);
   constexpr double kTolerance_s = 1e-10;
@@ -237,6 +256,23 @@ TEST(PhotoreceptorFilter, CutoffGrowsWithTheRadianceUpToItsLimit) {
   EXPECT_NEAR(at(0.5), 300 * 0.6 / 1.1, 1e-9);
   EXPECT_EQ(at(100), 500);
   EXPECT_EQ(filter.cutoff_hz(-100), at(0));
+}
+
+TEST(PhotoreceptorFilter, ForgetsItsStateWithinItsMemory) {
+  BandwidthOptions options;
+  options.cutoff_hz = 300;
+  const double dark = 0.02;
+  const double log_dark = std::log(kLogEps + dark);
+  for (const int order : {1, 2}) {
+    options.order = order;
+    const PhotoreceptorFilter filter(options, kLogEps);
+    const double memory_s = filter.memory_s(dark);
+    EXPECT_NEAR(memory_s * 2 * std::numbers::pi * filter.cutoff_hz(log_dark), 10, 1e-9);
+    const LinearPiece input{0, memory_s, log_dark, log_dark};
+    const double a = filter.piece({1, 1}, input).end_state().output;
+    const double b = filter.piece({0, 0}, input).end_state().output;
+    EXPECT_LT(a - b, 1.0 / 2000) << order;
+  }
 }
 
 TEST(PhotoreceptorFilter, AttenuatesASineAsItsPolesDo) {
