@@ -138,7 +138,6 @@ bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineFor
 
 bool OccluderTree::collect(std::span<const SightPyramid> sweep, const AffineForm& front,
                            std::size_t most, std::vector<TriangleId>& found) const {
-  found.clear();
   bool all = true;
   visit(sweep, front, [&](TriangleId id) {
     all = found.size() < most;

@@ -33,7 +33,8 @@ class OccluderTree {
   /// `sweep`, above zero of `front`.
   [[nodiscard]] bool may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const;
 
-  /// All such triangles, in a fixed order, into `found`; false where there are more than `most`.
+  /// Adds all such triangles to `found`, in a fixed order; false where it would hold more than
+  /// `most`.
   [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, const AffineForm& front,
                              std::size_t most, std::vector<TriangleId>& found) const;
 

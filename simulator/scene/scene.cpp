@@ -33,6 +33,16 @@ double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction
   return std::max(0.0, std::log2(std::max(texels(spread.right), texels(spread.down))));
 }
 
+/// What is nearer than `farthest_m` of z depth. Such pyramids are narrow and move little, so that a
+/// plane before the first one, with some room, stands for all.
+AffineForm nearer_than(double farthest_m, const SightPyramid& pyramid) {
+  constexpr double kRoom = 1.2;
+  if (!std::isfinite(farthest_m)) return {Eigen::Vector3d::Zero(), 1};
+  const Eigen::Vector3d middle = 0.5 * (pyramid.corners[0] + pyramid.corners[2]);
+  const Eigen::Vector3d axis = middle.normalized();
+  return {-axis, axis.dot(pyramid.eye) + kRoom * farthest_m * axis.dot(middle)};
+}
+
 }  // namespace
 
 bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
@@ -91,6 +101,35 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
   state_->visibility->nearest(rays, triangles);
+}
+
+TriangleId Scene::visible_exactly(const Ray& ray) const {
+  constexpr double kAround = 1e-5;  // of the direction's length: far above single precision
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  const double half = kAround * ray.direction.norm();
+  const Eigen::Vector3d right = half * ray.direction.unitOrthogonal();
+  const Eigen::Vector3d down = half * ray.direction.cross(right).normalized();
+  const SightPyramid around{ray.origin,
+                            {ray.direction - right - down, ray.direction + right - down,
+                             ray.direction + right + down, ray.direction - right + down},
+                            ray.time_s};
+  std::vector<TriangleId> triangles;
+  static_cast<void>(
+      collect({&around, 1}, std::numeric_limits<double>::infinity(), kAll, triangles));
+  return nearest_of(triangles, ray);
+}
+
+TriangleId Scene::nearest_of(std::span<const TriangleId> triangles, const Ray& ray) const {
+  TriangleId nearest = kNothing;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TriangleId triangle : triangles) {
+    if (!meets(ray, triangle)) continue;
+    const double distance = look(ray, triangle).distance;
+    if (!(distance < least)) continue;
+    nearest = triangle;
+    least = distance;
+  }
+  return nearest;
 }
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
@@ -186,18 +225,18 @@ double Scene::inside(const Ray& ray, TriangleId triangle) const {
                              [&](const Ray& local) { return state_->inside(local, triangle); });
 }
 
-const OccluderTree& Scene::State::occluders() {
-  std::call_once(tree_built, [this] {
-    tree.emplace(still_corners, still_ids);
-    still_corners = {};
-    still_ids = {};
+const OccluderTree& Scene::State::occluders(std::size_t body) {
+  std::call_once(trees_built, [this] {
+    for (const OccluderSource& source : occluder_sources)
+      trees.emplace_back(source.corners, source.ids);
+    occluder_sources = {};
   });
-  return *tree;
+  return trees[body];
 }
 
 bool Scene::is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const {
   if (triangle == kNothing)
-    return !state_->occluders().may_show(sweep, {Eigen::Vector3d::Zero(), 1});
+    return !state_->occluders(0).may_show(sweep, {Eigen::Vector3d::Zero(), 1});
   if (triangle >= state_->surfaces.size() - state_->cutouts.size()) return false;
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (surface.body != kStill) return false;
@@ -208,42 +247,68 @@ bool Scene::is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) c
   AffineForm front = surface.plane;
   if (front.at(sweep.front().eye) < 0) front = {-front.gradient, -front.offset};
   front.offset -= kSamePlane * state_->size_m;
-  return !state_->occluders().may_show(sweep, front);
+  return !state_->occluders(0).may_show(sweep, front);
 }
 
 bool Scene::collect(std::span<const SightPyramid> sweep, double farthest_m, std::size_t most,
                     std::vector<TriangleId>& found) const {
-  const SightPyramid& pyramid = sweep.front();
-  const Eigen::Vector3d axis = (pyramid.corners[0] + pyramid.corners[2]).normalized();
-  // The pyramids are narrow and move little, so that a plane before the first one stands for all.
-  constexpr double kRoom = 1.2;
-  const AffineForm front =
-      std::isfinite(farthest_m)
-          ? AffineForm{-axis, axis.dot(pyramid.eye) +
-                                  kRoom * farthest_m *
-                                      axis.dot(0.5 * (pyramid.corners[0] + pyramid.corners[2]))}
-          : AffineForm{Eigen::Vector3d::Zero(), 1};
-  return state_->occluders().collect(sweep, front, most, found);
+  found.clear();
+  if (!state_->occluders(0).collect(sweep, nearer_than(farthest_m, sweep.front()), most, found))
+    return false;
+  std::vector<SightPyramid> local(sweep.size());
+  for (std::size_t k = 0; k < moving_objects().size(); ++k) {
+    for (std::size_t m = 0; m < sweep.size(); ++m) {
+      const CameraFrame frame = moving_objects()[k].frame(sweep[m].time_s);
+      local[m].eye = frame.rotation.transpose() * (sweep[m].eye - frame.position);
+      for (std::size_t c = 0; c < local[m].corners.size(); ++c)
+        local[m].corners[c] = frame.rotation.transpose() * sweep[m].corners[c];
+    }
+    if (!state_->occluders(k + 1).collect(local, nearer_than(farthest_m, local.front()), most,
+                                          found))
+      return false;
+  }
+  return true;
 }
 
 TrianglePass Scene::triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
-                                  const Eigen::Matrix3d& world_from_camera) const {
-  const AffineForm& plane = state_->surfaces[triangle].plane;
-  const TriangleInterior& interior = state_->interiors[triangle];
-  const double depth = -plane.at(position);
-  const double side = depth < 0 ? -1 : 1;
-  const auto row = [&](const AffineForm& form) -> Eigen::Vector3d {
-    return side * (world_from_camera.transpose() *
-                   (form.at(position) * plane.gradient + depth * form.gradient));
-  };
-  const Eigen::Vector3d second = row(interior.second);
-  const Eigen::Vector3d third = row(interior.third);
-  const Eigen::Vector3d w = side * (world_from_camera.transpose() * plane.gradient);
-  return {{w - second - third, second, third}, w, side * depth};
+                                  const Eigen::Matrix3d& world_from_camera, double time_s) const {
+  const std::uint32_t body = state_->surfaces[triangle].body;
+  if (body == kStill) return state_->triangle_pass(triangle, position, world_from_camera);
+  const CameraFrame frame = moving_objects()[body].frame(time_s);
+  return state_->triangle_pass(triangle, frame.rotation.transpose() * (position - frame.position),
+                               frame.rotation.transpose() * world_from_camera);
 }
 
 bool Scene::is_cut_out(TriangleId triangle) const {
   return triangle >= state_->surfaces.size() - state_->cutouts.size() && triangle != kNothing;
+}
+
+CutoutLook Scene::cutout_look(const Ray& ray, TriangleId triangle) const {
+  SACCADE_CHECK(is_cut_out(triangle));
+  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
+    const double distance = distance_to(state_->surfaces[triangle].plane, local);
+    if (!(distance > 0 && distance < kFarthest)) return CutoutLook();
+    const Cutout& cutout =
+        state_->cutouts[triangle - (state_->surfaces.size() - state_->cutouts.size())];
+    const Eigen::Vector3d point = local.origin + distance * local.direction;
+    return CutoutLook{cutout.x.at(point), cutout.y.at(point), distance,
+                      cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point))};
+  });
+}
+
+TrianglePass Scene::State::triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
+                                         const Eigen::Matrix3d& body_from_camera) const {
+  const AffineForm& plane = surfaces[triangle].plane;
+  const TriangleInterior& interior = interiors[triangle];
+  const double depth = -plane.at(position);
+  const auto row = [&](const AffineForm& form) -> Eigen::Vector3d {
+    return body_from_camera.transpose() *
+           (form.at(position) * plane.gradient + depth * form.gradient);
+  };
+  const Eigen::Vector3d second = row(interior.second);
+  const Eigen::Vector3d third = row(interior.third);
+  const Eigen::Vector3d w = body_from_camera.transpose() * plane.gradient;
+  return {{w - second - third, second, third}, w, depth};
 }
 
 std::span<const MovingObject> Scene::moving_objects() const {

@@ -37,6 +37,7 @@ struct RaySpread {
 struct SightPyramid {
   Eigen::Vector3d eye;
   std::array<Eigen::Vector3d, 4> corners;  ///< directions
+  double time_s = 0;                       ///< at which it sees the moving objects
 };
 
 /// Lamps by their place in the list of lights, one bit each.
@@ -72,8 +73,8 @@ struct TexelMap {
 };
 
 /// Where the rays of a camera pass a triangle: the ray d meets its plane at the distance depth / (w
-/// . d), inside the edges where no edge . d is negative. Turned so that w . d > 0 before the
-/// camera.
+/// . d), inside the edges where all edge . d have one sign. All of it is smooth in time, also while
+/// the plane goes through the camera.
 struct TrianglePass {
   std::array<Eigen::Vector3d, 3> edges;
   Eigen::Vector3d w;
@@ -84,6 +85,13 @@ struct TrianglePass {
 struct Shade {
   double radiance = 0;  ///< linear light [-]
   double distance = 0;  ///< along Ray::direction [its length]; 0 = background
+};
+
+/// Where a ray meets the plane of a triangle that is cut out.
+struct CutoutLook {
+  double x = 0, y = 0;  ///< texel coordinates of its alpha map
+  double distance = 0;  ///< along Ray::direction [its length]; 0: not met
+  double opacity = 0;   ///< opaque from 0.5 on
 };
 
 class MovingObject;
@@ -101,6 +109,12 @@ class Scene {
   /// The nearest opaque triangle along each of at most 16 coherent rays; `triangles` has the same
   /// size.
   void visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
+
+  /// The same for one ray, in double precision throughout: exact next to edges, but many times
+  /// slower. Builds the trees of collect() when first asked.
+  [[nodiscard]] TriangleId visible_exactly(const Ray& ray) const;
+  /// The nearest of `triangles` along a ray, in double precision; kNothing where it meets none.
+  [[nodiscard]] TriangleId nearest_of(std::span<const TriangleId> triangles, const Ray& ray) const;
 
   /// Radiance and distance where `ray` meets the plane of `triangle` (inside it or, for a ray that
   /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
@@ -145,18 +159,20 @@ class Scene {
   /// all.
   [[nodiscard]] bool is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const;
 
-  /// The triangles that stand still and may reach into such pyramids nearer than `farthest_m` of z
-  /// depth, into `found`; false where there are more than `most`.
+  /// The triangles, also of moving objects, that may reach into such pyramids nearer than
+  /// `farthest_m` of z depth, into `found`; false where there are more than `most`.
   [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, double farthest_m,
                              std::size_t most, std::vector<TriangleId>& found) const;
 
-  /// How all rays of a camera at `position`, given in its own frame, pass a triangle that stands
-  /// still.
+  /// How all rays of a camera at `position`, given in its own frame, pass a triangle at `time_s`.
   [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
-                                           const Eigen::Matrix3d& world_from_camera) const;
+                                           const Eigen::Matrix3d& world_from_camera,
+                                           double time_s) const;
 
   /// Whether rays may go through holes of the triangle.
   [[nodiscard]] bool is_cut_out(TriangleId triangle) const;
+  /// Of such a triangle.
+  [[nodiscard]] CutoutLook cutout_look(const Ray& ray, TriangleId triangle) const;
 
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.

@@ -61,6 +61,15 @@ struct SceneBuilder::Body {
 
   [[nodiscard]] bool is_empty() const { return opaque.corners.empty() && cut_out.corners.empty(); }
   [[nodiscard]] Eigen::AlignedBox3f box() const { return box_of(opaque).merged(box_of(cut_out)); }
+  [[nodiscard]] OccluderSource occluders() && {
+    OccluderSource source{std::move(opaque.corners), {}};
+    source.ids.resize(source.corners.size() + cut_out.corners.size());
+    const auto first = source.ids.begin() + static_cast<std::ptrdiff_t>(source.corners.size());
+    std::iota(source.ids.begin(), first, first_opaque);
+    std::iota(first, source.ids.end(), first_cut_out);
+    source.corners.insert(source.corners.end(), cut_out.corners.begin(), cut_out.corners.end());
+    return source;
+  }
 };
 
 SceneBuilder::SceneBuilder() : bodies_(1) {}
@@ -118,16 +127,9 @@ Scene SceneBuilder::build(const Background& background) && {
   state->interiors = std::move(all.interiors);
   state->cutouts = std::move(all.cutouts);
   state->visibility.emplace(make_visibility(*state));
-  Body& still = bodies_.front();
+  const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());
-  state->still_corners = std::move(still.opaque.corners);
-  state->still_corners.insert(state->still_corners.end(), still.cut_out.corners.begin(),
-                              still.cut_out.corners.end());
-  state->still_ids.resize(state->still_corners.size());
-  const auto cut_out =
-      state->still_ids.end() - static_cast<std::ptrdiff_t>(still.cut_out.corners.size());
-  std::iota(state->still_ids.begin(), cut_out, still.first_opaque);
-  std::iota(cut_out, state->still_ids.end(), still.first_cut_out);
+  for (Body& body : bodies_) state->occluder_sources.push_back(std::move(body).occluders());
   return Scene(std::move(state));
 }
 

@@ -42,6 +42,12 @@ struct Cutout {
   const Texture* opacity;
 };
 
+/// The triangles of a body, in its frame.
+struct OccluderSource {
+  std::vector<Corners> corners;
+  std::vector<TriangleId> ids;
+};
+
 /// Corners' unit normals in the body's frame.
 using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 
@@ -56,13 +62,14 @@ struct Scene::State {
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
   std::optional<Visibility> visibility;
-  double size_m = 0;                   ///< of everything that stands still
-  std::vector<Corners> still_corners;  ///< what the tree is made from when it is first asked
-  std::vector<TriangleId> still_ids;   ///< of the same
-  std::once_flag tree_built;
-  std::optional<OccluderTree> tree;
+  double size_m = 0;  ///< of everything that stands still
+  /// What the trees are made from when one is first asked.
+  std::vector<OccluderSource> occluder_sources;
+  std::once_flag trees_built;
+  std::vector<OccluderTree> trees;
 
-  [[nodiscard]] const OccluderTree& occluders();
+  /// Of what stands still (0), then of the moving objects, each in its own frame.
+  [[nodiscard]] const OccluderTree& occluders(std::size_t body);
 
   /// use(ray) with the ray in the frame of a body.
   template <class Use>
@@ -77,6 +84,9 @@ struct Scene::State {
   [[nodiscard]] SurfaceLook look(const Ray& ray, const TriangleSurface& surface) const;
   /// As Scene::inside().
   [[nodiscard]] double inside(const Ray& ray, TriangleId triangle) const;
+  /// As Scene::triangle_pass(), in the body's frame.
+  [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
+                                           const Eigen::Matrix3d& body_from_camera) const;
   /// In the body's frame.
   [[nodiscard]] SurfacePoint local_point(const Ray& ray, double distance,
                                          TriangleId triangle) const;

@@ -119,6 +119,7 @@ double EventCamera::bound_speeds(double t_s) {
       speed.parallax = std::max(speed.parallax, now.parallax);
     }
     motions_[i].pixels = speed.fastest;
+    motions_[i].farthest_m = 1 / range.low;
     motions_[i].refinement = speed.parallax > kOccluding * speed.fastest ? kOccludedRefinement : 1;
   });
   double fastest = 0;

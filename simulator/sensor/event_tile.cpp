@@ -26,7 +26,7 @@ constexpr double kLongSteps = 2;
 
 /// Where no more triangles than this are in reach of a tile, each of its pixels looks when one of
 /// them passes between two steps.
-constexpr std::size_t kMostCandidates = 64;
+constexpr std::size_t kMostCandidates = 256;
 
 /// Nearer than this to an edge a pixel's view may change [px].
 constexpr double kEdge_px = 0.05;
@@ -73,9 +73,8 @@ class LockstepTile final : public EventTile {
   void advance(const Slab& slab, const TileMotion& motion) override {
     tracer_.use(slab.poses);
     const bool is_alone = !motion.has_objects && sees_one_triangle(slab.end_s);
-    const bool foresees = !is_alone && !motion.has_objects &&
-                          tracer_.collect(outline_, 1 / inverse_depths_.low, t_s_, slab.end_s,
-                                          kMostCandidates, candidates_);
+    const bool foresees = !is_alone && tracer_.collect(outline_, motion.farthest_m, t_s_,
+                                                       slab.end_s, kMostCandidates, candidates_);
     if (!foresees) candidates_.clear();
     const double step_px = world_.options.max_step_px * (is_alone ? kLongSteps : 1);
     const double refinement = is_alone || foresees ? 1 : motion.refinement;
@@ -257,17 +256,22 @@ class LockstepTile final : public EventTile {
   /// The candidates that may pass through some ray of the tile between two looks.
   void find_passing(double from_s, double to_s) {
     passing_.clear();
+    within_reach_.clear();
+    tracer_.use(std::span<const TriangleId>());
     if (candidates_.empty()) return;
-    const std::array<CameraFrame, 3> cameras{tracer_.camera_at(from_s),
-                                             tracer_.camera_at(0.5 * (from_s + to_s)),
-                                             tracer_.camera_at(to_s)};
+    const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
+    std::array<CameraFrame, 3> cameras;
+    for (std::size_t m = 0; m < cameras.size(); ++m) cameras[m] = tracer_.camera_at(times_s[m]);
     for (const TriangleId candidate : candidates_) {
       PassingTriangle passing{candidate, {}};
       for (std::size_t m = 0; m < cameras.size(); ++m)
-        passing.at[m] =
-            world_.scene.triangle_pass(candidate, cameras[m].position, cameras[m].rotation);
-      if (!passing.misses(outline_)) passing_.push_back(passing);
+        passing.at[m] = world_.scene.triangle_pass(candidate, cameras[m].position,
+                                                   cameras[m].rotation, times_s[m]);
+      if (passing.misses(outline_)) continue;
+      passing_.push_back(passing);
+      within_reach_.push_back(candidate);
     }
+    tracer_.use(within_reach_);
   }
 
   /// Collects the times, in order, at which triangles pass through a ray of a pixel between two
@@ -278,24 +282,50 @@ class LockstepTile final : public EventTile {
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
       const RayView& lo = look.views[k];
       const RayView& hi = next.views[k];
-      const bool is_open = lo.look.distance == 0 || hi.look.distance == 0;
+      const bool is_open = lo.look.distance == 0 || hi.look.distance == 0 ||
+                           world_.scene.is_cut_out(lo.triangle) ||
+                           world_.scene.is_cut_out(hi.triangle);
       const double hidden_beyond = is_open ? std::numeric_limits<double>::infinity()
                                            : std::max(lo.look.distance, hi.look.distance);
       for (const PassingTriangle& passing : passing_) {
-        if (passing.triangle == lo.triangle || passing.triangle == hi.triangle) {
-          if (lo.triangle == hi.triangle && passing.leaves(directions_[k]))
-            passing_s_.push_back(0.5 * (look.t_s + next.t_s));
-          continue;
-        }
-        for (std::size_t half = 0; half < 2; ++half) {
-          const double fraction = passing.passing_fraction(directions_[k], hidden_beyond, half);
-          if (fraction > 0 && fraction < 1)
-            passing_s_.push_back(look.t_s + fraction * (next.t_s - look.t_s));
-        }
+        const bool at_lo = passing.triangle == lo.triangle;
+        const bool at_hi = passing.triangle == hi.triangle;
+        if (at_lo && at_hi && passing.leaves(directions_[k]))
+          passing_s_.push_back(0.5 * (look.t_s + next.t_s));
+        const bool is_cut_out = world_.scene.is_cut_out(passing.triangle);
+        if ((at_lo || at_hi) && !is_cut_out) continue;
+        if (passing.is_hidden(directions_[k], hidden_beyond)) continue;
+        passing.find_passages(directions_[k], [&](double begin, double end) {
+          const double from_s = look.t_s + begin * (next.t_s - look.t_s);
+          const double to_s = look.t_s + end * (next.t_s - look.t_s);
+          if (!is_cut_out) {
+            find_sightings(directions_[k], passing.triangle, from_s, to_s);
+            return;
+          }
+          for (const OpaqueStretch& stretch :
+               tracer_.find_holes(directions_[k], passing.triangle, from_s, to_s)) {
+            const bool is_known =
+                (at_lo && stretch.from_s == look.t_s) || (at_hi && stretch.to_s == next.t_s);
+            if (stretch.is_opaque && !is_known)
+              find_sightings(directions_[k], passing.triangle, stretch.from_s, stretch.to_s);
+            if (!stretch.is_opaque && stretch.from_s > look.t_s && stretch.to_s < next.t_s)
+              passing_s_.push_back(0.5 * (stretch.from_s + stretch.to_s));
+          }
+        });
       }
     }
     std::sort(passing_s_.begin(), passing_s_.end());
     return !passing_s_.empty();
+  }
+
+  /// Adds to passing_s_ when a triangle is seen within its edges: early, half way or late; what is
+  /// behind it there may come before it.
+  void find_sightings(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
+                      double to_s) {
+    for (const double fraction : {0.02, 0.5, 0.98}) {
+      const double t_s = from_s + fraction * (to_s - from_s);
+      if (tracer_.sees(direction, triangle, t_s)) passing_s_.push_back(t_s);
+    }
   }
 
   /// sense() with looks at passing_s_.
@@ -395,6 +425,7 @@ class LockstepTile final : public EventTile {
   std::array<TilePixel, kTilePixels> pixels_;
   std::vector<TriangleId> candidates_;    ///< that may come into view within the slab
   std::vector<PassingTriangle> passing_;  ///< of them, within the step
+  std::vector<TriangleId> within_reach_;  ///< the same
   std::vector<double> passing_s_;         ///< of the pixel that is at work
   std::vector<NoisyState> noisy_;         ///< one per pixel, or none
 };

@@ -36,6 +36,7 @@ struct Slab {
 struct TileMotion {
   double pixels = 0;         ///< image motion, at most [px]
   double refinement = 1;     ///< that divides the steps
+  double farthest_m = 0;     ///< of the surfaces around, z depth
   bool has_objects = false;  ///< that move may come into view
 };
 

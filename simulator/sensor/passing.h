@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -12,55 +12,92 @@
 namespace saccade {
 
 /// A triangle that may pass through rays of a tile between two looks, with its edges at both and
-/// half way, where the motion may have turned. Its ways over the image are taken to be even in both
-/// halves.
+/// half way. Each edge's form along a ray is taken to be the parabola through these, and even
+/// between its quarters: exact enough for what is seen edge-on, too, because the forms are smooth
+/// while the triangle turns from one side to the other.
 struct PassingTriangle {
   TriangleId triangle;
   std::array<TrianglePass, 3> at;
 
-  /// Whether one edge keeps all rays within `outline` out all the time.
+  /// Whether, turned either way, some edge keeps all rays within `outline` out all the time.
   [[nodiscard]] bool misses(const std::array<Eigen::Vector3d, 4>& outline) const {
-    const auto is_outside = [&](const auto& form) {
+    const auto is_negative = [&](double sign, const auto& form) {
       return std::all_of(at.begin(), at.end(), [&](const TrianglePass& pass) {
         return std::all_of(outline.begin(), outline.end(), [&](const Eigen::Vector3d& corner) {
-          return form(pass).dot(corner) < 0;
+          return sign * form(pass).dot(corner) < 0;
         });
       });
     };
-    if (is_outside([](const TrianglePass& pass) { return pass.w; })) return true;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (is_outside([k](const TrianglePass& pass) { return pass.edges[k]; })) return true;
-    return false;
+    const auto is_outside = [&](double sign) {
+      if (is_negative(sign, [](const TrianglePass& pass) { return pass.w; })) return true;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (is_negative(sign, [k](const TrianglePass& pass) { return pass.edges[k]; })) return true;
+      return false;
+    };
+    return is_outside(1) && is_outside(-1);
   }
 
   /// Whether the ray `direction`, inside the edges at both looks, is outside half way.
   [[nodiscard]] bool leaves(const Eigen::Vector3d& direction) const {
+    const double sign = at[1].w.dot(direction) < 0 ? -1 : 1;
     return std::any_of(at[1].edges.begin(), at[1].edges.end(),
-                       [&](const Eigen::Vector3d& edge) { return edge.dot(direction) < 0; });
+                       [&](const Eigen::Vector3d& edge) { return sign * edge.dot(direction) < 0; });
   }
 
-  /// The middle of the share of half `half` (0 or 1) in which the ray `direction` is inside the
-  /// edges and meets the triangle nearer than `hidden_beyond`, as a fraction of the whole; NaN
-  /// where it never is.
-  [[nodiscard]] double passing_fraction(const Eigen::Vector3d& direction, double hidden_beyond,
-                                        std::size_t half) const {
-    constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-    const TrianglePass& from = at[half];
-    const TrianglePass& to = at[half + 1];
-    const double a = from.w.dot(direction) / from.depth;  // inverse distances
-    const double b = to.w.dot(direction) / to.depth;
-    if (!(a > 0 && b > 0) || std::max(a, b) * hidden_beyond < 1) return kNever;
-    double low = 0;
-    double high = 1;
-    for (std::size_t k = 0; k < from.edges.size(); ++k) {
-      // Weights over distances are affine in the image.
-      const double x = from.edges[k].dot(direction) / from.depth;
-      const double y = to.edges[k].dot(direction) / to.depth;
-      if (x < 0 && y < 0) return kNever;
-      if (x < 0) low = std::max(low, x / (x - y));
-      if (y < 0) high = std::min(high, x / (x - y));
+  /// Whether the ray `direction` meets the plane behind `hidden_beyond`, or behind the camera, at
+  /// both looks and half way. Where it grazes the plane, its distance is anyone's guess.
+  [[nodiscard]] bool is_hidden(const Eigen::Vector3d& direction, double hidden_beyond) const {
+    constexpr double kGrazing = 1e-2;
+    constexpr double kRoom = 1.001;
+    return std::all_of(at.begin(), at.end(), [&](const TrianglePass& pass) {
+      const double w = pass.w.dot(direction);
+      const double distance = pass.depth / w;
+      return std::abs(w) > kGrazing && !(distance > 0 && distance < kRoom * hidden_beyond);
+    });
+  }
+
+  /// use(begin, end), as fractions of the whole, with each time during which the ray `direction` is
+  /// inside the edges.
+  template <class Use>
+  void find_passages(const Eigen::Vector3d& direction, const Use& use) const {
+    for (const double sign : {1.0, -1.0}) {
+      std::array<std::array<double, 5>, 3> edges;
+      bool is_outside = false;
+      for (std::size_t k = 0; k < 3 && !is_outside; ++k) {
+        edges[k] =
+            quarters(sign * at[0].edges[k].dot(direction), sign * at[1].edges[k].dot(direction),
+                     sign * at[2].edges[k].dot(direction));
+        is_outside = std::all_of(edges[k].begin(), edges[k].end(), [](double x) { return x < 0; });
+      }
+      if (is_outside) continue;
+      double begin = 0;
+      double end = -1;  // nothing is open
+      for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+        double low = 0;
+        double high = 1;
+        for (const std::array<double, 5>& edge : edges)
+          clip(edge[quarter], edge[quarter + 1], low, high);
+        if (low >= high) continue;
+        const double from = 0.25 * (static_cast<double>(quarter) + low);
+        if (end >= begin && from > end) use(begin, end);
+        if (end < begin || from > end) begin = from;
+        end = 0.25 * (static_cast<double>(quarter) + high);
+      }
+      if (end >= begin) use(begin, end);
     }
-    return low < high ? 0.5 * (static_cast<double>(half) + 0.5 * (low + high)) : kNever;
+  }
+
+ private:
+  /// Of the parabola through three values.
+  [[nodiscard]] static std::array<double, 5> quarters(double a, double b, double c) {
+    return {a, 0.125 * (3 * a + 6 * b - c), b, 0.125 * (3 * c + 6 * b - a), c};
+  }
+
+  /// Keeps of [low, high] where the line from x at 0 to y at 1 is not negative.
+  static void clip(double x, double y, double& low, double& high) {
+    if (x < 0 && y < 0) high = -1;
+    if (x < 0 && y >= 0) low = std::max(low, x / (x - y));
+    if (y < 0 && x >= 0) high = std::min(high, x / (x - y));
   }
 };
 

@@ -109,7 +109,13 @@ void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
                       std::span<RayView> views) {
   std::array<TriangleId, kPacket> triangles;
   const std::span<TriangleId> seen(triangles.data(), directions.size());
-  find_triangles(directions, t_s, seen);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const Ray ray = ray_at(directions[k], t_s);
+    seen[k] = scene_.nearest_of(within_reach_, ray);
+    if (seen[k] != kNothing) continue;
+    seen[k] = scene_.visible_exactly(ray);
+    ++statistics_.rays;
+  }
   see(directions, seen, t_s, views);
 }
 
@@ -175,10 +181,45 @@ std::array<SightPyramid, 4> RayTracer::sweep_of(const std::array<Eigen::Vector3d
 SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
                                    double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
-  SightPyramid pyramid{camera.position, {}};
+  SightPyramid pyramid{camera.position, {}, t_s};
   for (std::size_t k = 0; k < outline.size(); ++k)
     pyramid.corners[k] = camera.rotation * outline[k];
   return pyramid;
+}
+
+std::vector<OpaqueStretch> RayTracer::find_holes(const Eigen::Vector3d& direction,
+                                                 TriangleId triangle, double from_s,
+                                                 double to_s) const {
+  constexpr double kLooksPerTexel = 4;
+  constexpr double kMostLooks = 64;
+  const auto look = [&](double t_s) {
+    return scene_.cutout_look(ray_at(direction, t_s), triangle);
+  };
+  const CutoutLook first = look(from_s);
+  const CutoutLook last = look(to_s);
+  const double texels = std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
+  const double steps = std::clamp(std::ceil(kLooksPerTexel * texels), 4.0, kMostLooks);
+  double begin_s = from_s;
+  double before_s = from_s;
+  double before = first.opacity - 0.5;
+  std::vector<OpaqueStretch> stretches;
+  for (double k = 1; k <= steps; ++k) {
+    const double t_s = from_s + (to_s - from_s) * k / steps;
+    const double now = (k == steps ? last : look(t_s)).opacity - 0.5;
+    if ((now < 0) != (before < 0)) {
+      const double end_s = before_s + (t_s - before_s) * before / (before - now);
+      stretches.push_back({begin_s, end_s, before >= 0});
+      begin_s = end_s;
+    }
+    before_s = t_s;
+    before = now;
+  }
+  stretches.push_back({begin_s, to_s, before >= 0});
+  return stretches;
+}
+
+bool RayTracer::sees(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {
+  return scene_.nearest_of(within_reach_, ray_at(direction, t_s)) == triangle;
 }
 
 double RayTracer::inside(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {

@@ -34,6 +34,12 @@ struct Sighting {
   double t_s;
 };
 
+/// A stretch of time in which a triangle that is cut out stops a ray or lets it through.
+struct OpaqueStretch {
+  double from_s, to_s;
+  bool is_opaque;
+};
+
 /// How the rays of a camera see the scene at any time of a stretch of its motion. Counts what it
 /// does.
 class RayTracer {
@@ -49,12 +55,17 @@ class RayTracer {
   /// The motion during what follows; outlives it.
   void use(const PoseTable& poses) { poses_ = &poses; }
 
+  /// All triangles that rays can meet in what follows, as far as a search found them; none: not
+  /// known. Outlives it.
+  void use(std::span<const TriangleId> within_reach) { within_reach_ = within_reach; }
+
   [[nodiscard]] bool is_lit() const { return scene_.is_lit(); }
 
   /// The visible triangles of at most kPacket rays of one instant.
   void find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
                       std::span<TriangleId> triangles);
-  /// What rays of one instant see.
+  /// What rays of one instant see, found in double precision: the nearest of the triangles within
+  /// reach, or where they meet none of these, of the scene.
   void trace(std::span<const Eigen::Vector3d> directions, double t_s, std::span<RayView> views);
 
   /// What rays of one instant see, the visible triangles given.
@@ -73,11 +84,20 @@ class RayTracer {
   [[nodiscard]] bool is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
                               double from_s, double to_s) const;
 
-  /// The triangles that stand still and may come into view within the `outline` of some rays,
-  /// nearer than `farthest_m`, into `found`; false where there are more than `most`.
+  /// The triangles that may come into view within the `outline` of some rays, nearer than
+  /// `farthest_m`, into `found`; false where there are more than `most`.
   [[nodiscard]] bool collect(const std::array<Eigen::Vector3d, 4>& outline, double farthest_m,
                              double from_s, double to_s, std::size_t most,
                              std::vector<TriangleId>& found) const;
+
+  /// The stretches, in order, in which a triangle that is cut out stops a ray or lets it through
+  /// while the ray is inside its edges.
+  [[nodiscard]] std::vector<OpaqueStretch> find_holes(const Eigen::Vector3d& direction,
+                                                      TriangleId triangle, double from_s,
+                                                      double to_s) const;
+
+  /// Whether the ray meets `triangle` first of those within reach.
+  [[nodiscard]] bool sees(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const;
 
   [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
 
@@ -125,6 +145,7 @@ class RayTracer {
   EventStatistics& statistics_;
   const PixelRays* footprints_;
   const PoseTable* poses_ = nullptr;
+  std::span<const TriangleId> within_reach_;
 };
 
 }  // namespace saccade

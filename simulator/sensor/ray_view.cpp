@@ -9,14 +9,18 @@
 namespace saccade {
 namespace {
 
-/// Multiplies the albedo's range by the light. Between both ends the irradiance is taken to stay
-/// near their line: shadows' edges are jumps and not foreseen.
+/// Multiplies the albedo's range by the light. Under the same lamps the irradiance is taken to stay
+/// near the line between both ends; where they differ, it jumps at the edge of a shadow.
 RadianceRange illuminated(const Interval& values, const Interval& rates, const RayView& from,
                           const RayView& to, double length_s) {
   const double factor = from.look.texture != nullptr ? from.look.factor : 1;
   const double a = factor * from.look.irradiance;
   const double b = factor * to.look.irradiance;
   if (a == b) return {a * values.low, a * values.high, a * rates.low, a * rates.high};
+  if (from.look.lamps != to.look.lamps) {
+    const Interval radiance = product(values, {std::min(a, b), std::max(a, b)});
+    return {radiance.low, radiance.high, -RadianceRange::kUnknown, RadianceRange::kUnknown};
+  }
   const double slack = 0.25 * std::abs(b - a);
   const Interval light{std::min(a, b) - slack, std::max(a, b) + slack};
   const Interval light_rate{(b - a - 2 * slack) / length_s, (b - a + 2 * slack) / length_s};
@@ -79,7 +83,9 @@ bool is_straight(const RayView& from, const RayView& to, double length_s) {
 }
 
 double dividing_fraction(const RayView& from, const RayView& to, double length_s) {
-  if (from.look.texture == nullptr || from.look.texture != to.look.texture) return 0.5;
+  if (from.look.texture == nullptr || from.look.texture != to.look.texture ||
+      from.look.lamps != to.look.lamps)
+    return 0.5;
   if (is_filtered(from, to)) return pyramid_dividing_fraction(from, to, length_s);
   const Track x = x_track(from, to, length_s);
   const Track y = y_track(from, to, length_s);

@@ -21,8 +21,8 @@ namespace saccade::testing {
 namespace {
 
 constexpr double kBracket_s = 1e-9;
-/// Visibility is in single precision: next to an edge a ray may slip through for less than this.
-constexpr double kShortest_s = 1e-6;
+/// Next to an edge rays may slip through for less than this.
+constexpr double kShortest_s = 1e-7;
 constexpr double kMostTexels = 0.1;
 
 /// What a pixel sees at one instant through all its rays.
@@ -48,20 +48,17 @@ class BrutePixel {
   [[nodiscard]] Look at(double t_s) const { return at(t_s, motion_.pose(t_s)); }
 
   [[nodiscard]] Look at(double t_s, const Rigid3& pose) const {
-    Look look{t_s, 0, std::vector<TriangleId>(directions_.size()), {}};
-    std::vector<Ray> rays;
-    for (const Eigen::Vector3d& direction : directions_)
-      rays.push_back({pose.translation(), pose.rotation() * direction, t_s});
-    scene_.visible(rays, look.triangles);
-    double sum = 0;
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-      sum += radiance(rays[k], look.triangles[k], pose, directions_[k]);
-      const SurfaceLook surface = scene_.look(rays[k], look.triangles[k]);
-      look.texels.emplace_back(surface.texture != nullptr ? Eigen::Vector2d(surface.x, surface.y)
-                                                          : Eigen::Vector2d(0, 0));
-    }
-    look.log_intensity = std::log(log_eps_ + sum / static_cast<double>(rays.size()));
-    return look;
+    std::vector<TriangleId> triangles(directions_.size());
+    scene_.visible(rays_at(t_s, pose), triangles);
+    return look_at(t_s, pose, std::move(triangles));
+  }
+
+  /// With visibility in double precision.
+  [[nodiscard]] Look exactly_at(double t_s) const {
+    const Rigid3 pose = motion_.pose(t_s);
+    std::vector<TriangleId> triangles;
+    for (const Ray& ray : rays_at(t_s, pose)) triangles.push_back(scene_.visible_exactly(ray));
+    return look_at(t_s, pose, std::move(triangles));
   }
 
   [[nodiscard]] Look between(const Look& a, const Look& b) const {
@@ -73,7 +70,7 @@ class BrutePixel {
   template <class IsBefore>
   [[nodiscard]] std::pair<Look, Look> bisect(Look lo, Look hi, const IsBefore& is_before) const {
     while (hi.t_s - lo.t_s > kBracket_s) {
-      Look middle = between(lo, hi);
+      Look middle = exactly_at(0.5 * (lo.t_s + hi.t_s));
       (is_before(middle) ? lo : hi) = std::move(middle);
     }
     return {lo, hi};
@@ -93,6 +90,29 @@ class BrutePixel {
   }
 
  private:
+  [[nodiscard]] std::vector<Ray> rays_at(double t_s, const Rigid3& pose) const {
+    std::vector<Ray> rays;
+    for (const Eigen::Vector3d& direction : directions_)
+      rays.push_back({pose.translation(), pose.rotation() * direction, t_s});
+    return rays;
+  }
+
+  /// The visible triangles are known.
+  [[nodiscard]] Look look_at(double t_s, const Rigid3& pose,
+                             std::vector<TriangleId> triangles) const {
+    const std::vector<Ray> rays = rays_at(t_s, pose);
+    Look look{t_s, 0, std::move(triangles), {}};
+    double sum = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      sum += radiance(rays[k], look.triangles[k], pose, directions_[k]);
+      const SurfaceLook surface = scene_.look(rays[k], look.triangles[k]);
+      look.texels.emplace_back(surface.texture != nullptr ? Eigen::Vector2d(surface.x, surface.y)
+                                                          : Eigen::Vector2d(0, 0));
+    }
+    look.log_intensity = std::log(log_eps_ + sum / static_cast<double>(rays.size()));
+    return look;
+  }
+
   [[nodiscard]] double radiance(const Ray& ray, TriangleId triangle, const Rigid3& pose,
                                 const Eigen::Vector3d& direction) const {
     if (!filters_) return scene_.shade(ray, triangle).radiance;
@@ -117,13 +137,14 @@ class BruteSensor {
         state_(first.log_intensity, contrast),
         last_(std::move(first)) {}
 
-  void advance(const Look& to) {
+  void advance(Look to) {
+    if (last_.triangles != to.triangles) to = pixel_.exactly_at(to.t_s);
     while (last_.triangles != to.triangles) {
       const auto same = [&](const Look& look) { return look.triangles == last_.triangles; };
       const auto [lo, hi] = pixel_.bisect(last_, to, same);
       advance_on_surface(lo, 0);
-      const Look later = pixel_.at(std::min(hi.t_s + kShortest_s, to.t_s));
-      fire_up_to(hi.triangles == later.triangles ? hi : later);
+      const Look later = pixel_.exactly_at(std::min(hi.t_s + kShortest_s, to.t_s));
+      fire_up_to(later);
       has_previous_ = false;
     }
     advance_on_surface(to, 0);

@@ -17,9 +17,9 @@ namespace saccade::testing {
 /// can hide between two grid times is looked for:
 ///   - where a ray moves over its texture by more than 0.1 texel, the step is halved until it does
 ///     not (minified texture under grazing rays);
-///   - where a visible triangle differs, each change is bisected to a nanosecond; what is then seen
-///     for less than a microsecond counts for nothing, because rays slip through between triangles
-///     that touch but share no corners;
+///   - where a visible triangle differs, each change is bisected to a nanosecond, with visibility
+///     in double precision; what is then seen for less than a tenth of a microsecond counts for
+///     nothing, because rays slip through between triangles that touch but share no corners;
 ///   - where the signal turns back next to a threshold, its extremum is searched.
 /// Crossings are bisected to a nanosecond. Sorted. Of `options` the thresholds, eps and the rays
 /// per pixel count.

@@ -17,7 +17,10 @@ struct Crop {
   std::string config;
   int x0, y0;
   double start_s;
-  /// Not the Dunes: in a fine mesh the steps are halved against parallax, whatever fires.
+  double duration_s = 0.03;
+  /// Less where shadows narrower than a step pass between two looks.
+  double least_10_us = 0.999, least_1_us = 0.99;
+  /// Not in fine meshes, where the steps are halved against parallax, whatever fires.
   bool is_within_budget = true;
 };
 
@@ -28,7 +31,7 @@ TEST_P(ShippedCrop, AgreesWithBruteForce) {
   const auto config =
       config::read<SimulationConfig>(config::load("configs/simulation/" + crop.config + ".yaml"));
   const Scene scene = build_scene(config.scene);
-  const Spline motion = cut_motion(build_motion(config.trajectory), crop.start_s, 0.03);
+  const Spline motion = cut_motion(build_motion(config.trajectory), crop.start_s, crop.duration_s);
   PinholeCamera camera = config.camera;
   camera.cx -= crop.x0;
   camera.cy -= crop.y0;
@@ -42,8 +45,8 @@ TEST_P(ShippedCrop, AgreesWithBruteForce) {
               result.text().c_str(), path_px, events_per_pixel,
               path_px / 0.5 / events_per_pixel + 4);
   EXPECT_GT(result.expected, 50U);
-  EXPECT_GE(result.share_10_us(), 0.999);
-  EXPECT_GE(result.share_1_us(), 0.99);
+  EXPECT_GE(result.share_10_us(), crop.least_10_us);
+  EXPECT_GE(result.share_1_us(), crop.least_1_us);
   if (crop.is_within_budget) {
     EXPECT_LE(result.rays_per_event(), path_px / 0.5 / events_per_pixel + 4);
   }
@@ -51,7 +54,12 @@ TEST_P(ShippedCrop, AgreesWithBruteForce) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedCrop,
                          ::testing::Values(Crop{"walls", 60, 40, 0.2}, Crop{"planes", 60, 40, 0.2},
-                                           Crop{"dunes", 100, 80, 0.3, false}),
+                                           Crop{"dunes", 100, 80, 0.3, 0.03, 0.999, 0.99, false},
+                                           Crop{"office", 60, 100, 0.2, 0.02, 0.995, 0.99, false},
+                                           Crop{"desk", 100, 100, 0.3, 0.02, 0.98, 0.97},
+                                           Crop{"boxes", 100, 80, 0.3, 0.02},
+                                           Crop{"leaves", 100, 80, 0.2, 0.01},
+                                           Crop{"moving_box", 100, 80, 0.4, 0.02}),
                          [](const auto& instance) { return instance.param.config; });
 
 }  // namespace

@@ -169,13 +169,14 @@ class RandomWorld : public ::testing::TestWithParam<std::uint64_t> {
   std::uint64_t count_ = 0;
 };
 
-// Where a moving quad is seen edge-on, or a cutout is a fraction of a step wide, what shows between
-// two looks can be missed; everything else is found.
+// What shows for less than a step of the grid may escape brute force; shadows narrower than a step
+// of the sensor may escape the sensor.
 TEST_P(RandomWorld, Agrees) {
   EventOptions options;
   options.samples_per_pixel = GetParam() % 5 == 0 ? 4 : 1;
   expect_agreement(scene(), testing::lively_motion(kDuration_s, 1.5, 1, GetParam()),
-                   crop_at(119, 89, 20, 12), 0.97, 0.97, options);
+                   crop_at(119, 89, 20, 12), GetParam() == 8 ? 0.995 : 0.999,
+                   GetParam() == 8 ? 0.995 : 0.99, options);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomWorld, ::testing::Range<std::uint64_t>(1, 13));
