@@ -4,6 +4,7 @@
 #include <array>
 
 #include "simulator/sensor/passing.h"
+#include "simulator/sensor/texel_path.h"
 
 namespace saccade {
 
