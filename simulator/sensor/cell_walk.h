@@ -13,17 +13,9 @@ namespace saccade {
 /// of them are found at once, in whole lanes for the compiler to vectorise.
 class Borders {
  public:
-  Borders(const PlaneTrack& track, double u0, double u1) {
-    const TrackPart part(track, u0, u1);
-    step_ = part.slopes.low > 0 ? 1 : part.slopes.high < 0 ? -1 : 0;
-    const double start = std::floor(part.from);
-    first_ = static_cast<std::int64_t>(start);
-    if (step_ != 0)
-      count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMost + 1.0));
-    is_steady_ = step_ != 0 ? count_ <= kMost : is_within(part.values, start);
-    if (is_steady_ && count_ > 0) find(track, u0, u1);
-    crossings_[is_steady_ ? static_cast<std::size_t>(count_) : 0] = u1;
-  }
+  explicit Borders(const PlaneTrack& track) : Borders(track, TrackPart(track), 0, 1) {}
+  Borders(const PlaneTrack& track, double u0, double u1)
+      : Borders(track, TrackPart(track, u0, u1), u0, u1) {}
 
   /// Whether the coordinate never turns back over a border, nor crosses too many.
   [[nodiscard]] bool is_steady() const { return is_steady_; }
@@ -41,6 +33,17 @@ class Borders {
  private:
   static constexpr int kMost = 16;
   static constexpr int kLanes = 8;
+
+  Borders(const PlaneTrack& track, const TrackPart& part, double u0, double u1) {
+    step_ = part.slopes.low > 0 ? 1 : part.slopes.high < 0 ? -1 : 0;
+    const double start = std::floor(part.from);
+    first_ = static_cast<std::int64_t>(start);
+    if (step_ != 0)
+      count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMost + 1.0));
+    is_steady_ = step_ != 0 ? count_ <= kMost : is_within(part.values, start);
+    if (is_steady_ && count_ > 0) find(track, u0, u1);
+    crossings_[is_steady_ ? static_cast<std::size_t>(count_) : 0] = u1;
+  }
 
   /// From the chord and one step of Newton's method.
   void find(const PlaneTrack& track, double u0, double u1) {

@@ -47,6 +47,7 @@ class LockstepTile final : public EventTile {
         directions_(world.rays.rays(index)),
         outline_(world.rays.outline(index, kMargin_px)),
         tolerance_s_(1e-6 * world.options.time_tolerance_us),
+        lanes_(directions_.first(tile_.pixels())),
         is_bilinear_(world.options.texture_filter == TextureFilter::kBilinear),
         tracer_(world.scene, statistics_, footprints(world)) {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
@@ -57,6 +58,7 @@ class LockstepTile final : public EventTile {
     tracer_.use(poses);
     TileLook look;
     trace(t_s, look);
+    add_views(look);
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       const double level = sample(look, i).log_intensity;
       TilePixel& pixel = pixels_[i];
@@ -141,21 +143,28 @@ class LockstepTile final : public EventTile {
     return world.options.texture_filter == TextureFilter::kMipmap ? &world.rays : nullptr;
   }
 
-  /// What the rays of the tile see at an instant.
+  /// What the rays of the tile see at an instant: which triangles, and, where it is asked for, what
+  /// of them.
   struct TileLook {
     double t_s;
+    Triangles triangles;
+    bool has_views;
     std::array<RayView, kTilePixels * kRays> views;  ///< pixel by pixel
   };
 
   /// Senses `pixels` between two looks: at once where they see one surface all the time, else in
   /// the two halves of the steps.
-  void sense_between(const StepRange& range, const Steps& steps, const TileLook& look,
-                     const TileLook& next, PixelSet pixels) {
+  void sense_between(const StepRange& range, const Steps& steps, TileLook& look, TileLook& next,
+                     PixelSet pixels) {
     find_passing(look.t_s, next.t_s);
     if (kRays == 1 && is_bilinear_ && (is_alone_ || !passing_.empty()))
       pixels = sense_steady(look, next, pixels);
     if (pixels.none()) return;
-    if (range.to - range.from == 1) return sense_step(look, next, pixels);
+    if (range.to - range.from == 1) {
+      add_views(look);
+      add_views(next);
+      return sense_step(look, next, pixels);
+    }
     const int middle = (range.from + range.to) / 2;
     TileLook between;
     is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between);
@@ -164,27 +173,39 @@ class LockstepTile final : public EventTile {
     sense_between({middle, range.to}, steps, between, next, pixels);
   }
 
-  /// Senses those pixels that see one textured plane all the time. Returns
-  /// the others.
+  /// Senses those pixels that see one textured plane all the time. Returns the others.
   PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
-    std::optional<PlaneView> middle;
+    TriangleId triangle = kNothing;
+    PlanePaths paths;
+    SurfaceLook surface;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      const RayView& lo = look.views[i];
-      const RayView& hi = next.views[i];
-      if (!pixels[i] || lo.triangle != hi.triangle || !tracer_.is_plane(lo.triangle) ||
-          lo.look.texture == nullptr)
+      if (!pixels[i] || look.triangles[i] != next.triangles[i] ||
+          !tracer_.is_plane(look.triangles[i]) ||
+          (!is_alone_ && !stays_in_sight(i, look.triangles[i])))
         continue;
-      if (!is_alone_ && !stays_in_sight(i, lo.triangle)) continue;
-      if (!middle || middle->triangle() != lo.triangle)
-        middle.emplace(tracer_.plane_view(lo.triangle, 0.5 * (look.t_s + next.t_s)));
-      const PlanePath path(look.t_s, next.t_s - look.t_s, lo, middle->at(directions_[i]), hi);
-      if (!path.is_exact(tolerance_s_)) continue;
-      const PlaneSignal plane(path, lo.look, world_.options.log_eps, tolerance_s_);
+      if (look.triangles[i] != triangle) {
+        triangle = look.triangles[i];
+        surface = find_paths(triangle, look.t_s, next.t_s, paths);
+      }
+      const PlanePath path = paths.path(i);
+      if (surface.texture == nullptr || !path.is_exact(tolerance_s_)) continue;
+      const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
       const bool is_noisy = !noisy_.empty();
       sense(i, plane, plane.from(is_noisy), plane.to(next.t_s, is_noisy));
       pixels.reset(i);
     }
     return pixels;
+  }
+
+  /// Returns what there is to see.
+  SurfaceLook find_paths(TriangleId triangle, double from_s, double to_s, PlanePaths& paths) const {
+    const PlaneView from = tracer_.plane_view(triangle, from_s);
+    from.at(lanes_, paths.from);
+    tracer_.plane_view(triangle, 0.5 * (from_s + to_s)).at(lanes_, paths.middle);
+    tracer_.plane_view(triangle, to_s).at(lanes_, paths.to);
+    paths.from_s = from_s;
+    paths.length_s = to_s - from_s;
+    return from.surface();
   }
 
   /// Whether a pixel that sees `triangle` before and after a stretch sees nothing else within it.
@@ -381,8 +402,15 @@ class LockstepTile final : public EventTile {
   /// The visible triangles are known.
   void see(const Triangles& triangles, double t_s, TileLook& look) {
     look.t_s = t_s;
+    look.triangles = triangles;
+    look.has_views = false;
+  }
+
+  void add_views(TileLook& look) {
+    if (look.has_views) return;
+    look.has_views = true;
     const std::size_t n = directions_.size();
-    tracer_.see(directions_, {triangles.data(), n}, t_s, {look.views.data(), n});
+    tracer_.see(directions_, {look.triangles.data(), n}, look.t_s, {look.views.data(), n});
   }
 
   [[nodiscard]] bool are_equal(const Triangles& triangles) const {
@@ -398,17 +426,9 @@ class LockstepTile final : public EventTile {
 
   void remember(const TileLook& look) {
     t_s_ = look.t_s;
-    double nearest = std::numeric_limits<double>::infinity();
-    double farthest = 0;
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-      const RayView& view = look.views[k];
-      triangles_[k] = view.triangle;
-      const double distance =
-          view.look.distance > 0 ? view.look.distance : std::numeric_limits<double>::infinity();
-      nearest = std::min(nearest, distance);
-      farthest = std::max(farthest, distance);
-    }
-    inverse_depths_ = {1 / farthest, 1 / nearest};
+    triangles_ = look.triangles;
+    inverse_depths_ =
+        tracer_.inverse_depths(directions_, {triangles_.data(), directions_.size()}, t_s_);
   }
 
   const EventWorld& world_;
@@ -416,6 +436,7 @@ class LockstepTile final : public EventTile {
   std::span<const Eigen::Vector3d> directions_;
   std::array<Eigen::Vector3d, 4> outline_;
   double tolerance_s_;
+  DirectionLanes lanes_;  ///< for one ray per pixel
   bool is_bilinear_;
   RayTracer tracer_;
   bool is_alone_ = false;  ///< the triangle that is seen, within the slab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/sensor/plane_view.h"
 #include "simulator/sensor/texel_path.h"
 
 namespace saccade {
@@ -40,6 +41,10 @@ class PlaneTrack {
            32 * swell_ * u * v * (v - u);
   }
 
+  /// The slopes at both ends.
+  [[nodiscard]] double from_slope() const { return chord_ + from_excess_; }
+  [[nodiscard]] double to_slope() const { return chord_ + to_excess_; }
+
   /// Bound of the second derivative: those of the weights stay within 4, 4 and 32.
   [[nodiscard]] double bend() const {
     return 4 * (std::abs(from_excess_) + std::abs(to_excess_)) + 32 * std::abs(swell_);
@@ -58,33 +63,31 @@ struct TrackPart {
   double from, to;
   Interval values, slopes;
 
-  TrackPart(const PlaneTrack& track, double u0, double u1) : from(track.at(u0)), to(track.at(u1)) {
-    const double length = u1 - u0;
-    const double turn = 0.5 * track.bend() * length;
-    const double stray = 0.25 * turn * length;
-    values = {std::min(from, to) - stray, std::max(from, to) + stray};
-    const double a = track.slope_at(u0);
-    const double b = track.slope_at(u1);
-    slopes = {std::min(a, b) - turn, std::max(a, b) + turn};
-  }
+  /// All of it.
+  explicit TrackPart(const PlaneTrack& track)
+      : TrackPart(track.from(), track.from_slope(), track.to(), track.to_slope(), track.bend()) {}
+  TrackPart(const PlaneTrack& track, double u0, double u1)
+      : TrackPart(track.at(u0), track.slope_at(u0), track.at(u1), track.slope_at(u1),
+                  track.bend() * (u1 - u0), u1 - u0) {}
 
   [[nodiscard]] double middle_texel() const { return std::floor(0.5 * (values.low + values.high)); }
+
+ private:
+  /// `bending`: how much the slope may change at most over the part, which is `length` long.
+  TrackPart(double start, double start_slope, double end, double end_slope, double bending,
+            double length = 1)
+      : from(start), to(end) {
+    const double turn = 0.5 * bending;
+    const double stray = 0.25 * turn * length;
+    values = {std::min(from, to) - stray, std::max(from, to) + stray};
+    slopes = {std::min(start_slope, end_slope) - turn, std::max(start_slope, end_slope) + turn};
+  }
 };
 
 /// The path of a ray over the texture of a plane.
 struct PlanePath {
   PlaneTrack x, y;
   double from_s, length_s;
-
-  /// What the ray sees at both ends of the stretch and half way.
-  PlanePath(double start_s, double seconds, const RayView& from, const RayView& middle,
-            const RayView& to)
-      : x(from.look.x, from.x_rate * seconds, middle.look.x, middle.x_rate * seconds, to.look.x,
-          to.x_rate * seconds),
-        y(from.look.y, from.y_rate * seconds, middle.look.y, middle.y_rate * seconds, to.look.y,
-          to.y_rate * seconds),
-        from_s(start_s),
-        length_s(seconds) {}
 
   [[nodiscard]] double time_s(double u) const { return from_s + u * length_s; }
   [[nodiscard]] double fraction(double t_s) const { return (t_s - from_s) / length_s; }
@@ -96,6 +99,23 @@ struct PlanePath {
     constexpr double kLeast_texel = 1e-6;
     const double motion = std::max(std::abs(x.chord()), std::abs(y.chord())) / length_s;
     return std::max(x.error(), y.error()) <= std::max(kShare * tolerance_s * motion, kLeast_texel);
+  }
+};
+
+/// The paths of all pixels of a tile over a plane, from what they see at both ends of a stretch and
+/// half way.
+struct PlanePaths {
+  PlaneLanes from, middle, to;
+  double from_s, length_s;
+
+  [[nodiscard]] PlanePath path(std::size_t i) const {
+    const auto track = [&](const Lanes& a, const Lanes& a_rate, const Lanes& b, const Lanes& b_rate,
+                           const Lanes& c, const Lanes& c_rate) {
+      return PlaneTrack(a[i], a_rate[i] * length_s, b[i], b_rate[i] * length_s, c[i],
+                        c_rate[i] * length_s);
+    };
+    return {track(from.x, from.x_rate, middle.x, middle.x_rate, to.x, to.x_rate),
+            track(from.y, from.y_rate, middle.y, middle.y_rate, to.y, to.y_rate), from_s, length_s};
   }
 };
 

@@ -150,6 +150,25 @@ void RayTracer::see(std::span<const Eigen::Vector3d> directions,
   }
 }
 
+InverseDepthRange RayTracer::inverse_depths(std::span<const Eigen::Vector3d> directions,
+                                            std::span<const TriangleId> triangles,
+                                            double t_s) const {
+  const CameraFrame camera = poses_->at(t_s);
+  InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
+  TrianglePass plane;
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    double inverse = 0;
+    if (triangles[k] != kNothing) {
+      if (k == 0 || triangles[k] != triangles[k - 1])
+        plane = scene_.triangle_pass(triangles[k], camera.position, camera.rotation, t_s);
+      inverse = std::max(plane.w.dot(directions[k]) / plane.depth, 0.0);
+    }
+    range.low = std::min(range.low, inverse);
+    range.high = std::max(range.high, inverse);
+  }
+  return range;
+}
+
 PlaneView RayTracer::plane_view(TriangleId triangle, double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
   const double soon_s = difference_s(t_s);

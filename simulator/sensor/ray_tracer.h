@@ -9,6 +9,7 @@
 
 #include "simulator/motion/pose_table.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/plane_view.h"
 #include "simulator/sensor/ray_view.h"
@@ -71,6 +72,11 @@ class RayTracer {
   /// What rays of one instant see, the visible triangles given.
   void see(std::span<const Eigen::Vector3d> directions, std::span<const TriangleId> triangles,
            double t_s, std::span<RayView> views);
+
+  /// Of what they see.
+  [[nodiscard]] InverseDepthRange inverse_depths(std::span<const Eigen::Vector3d> directions,
+                                                 std::span<const TriangleId> triangles,
+                                                 double t_s) const;
 
   /// Whether a triangle stands still in an unlit scene.
   [[nodiscard]] bool is_plane(TriangleId triangle) const {
