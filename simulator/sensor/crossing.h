@@ -17,13 +17,13 @@ namespace saccade {
 class Thresholds {
  public:
   Thresholds() = default;
-  /// `drift_per_s` >= 0 [1/s].
-  Thresholds(const Band& band, double drift_per_s, double log_eps)
-      : band_(band), drift_(drift_per_s), log_eps_(log_eps) {
+  /// `drift_per_s` >= 0 [1/s]; from `since_s` on.
+  Thresholds(const Band& band, double drift_per_s, double log_eps, double since_s = 0)
+      : band_(band), drift_(drift_per_s), log_eps_(log_eps), since_s_(since_s) {
     // Rounding may not make a certificate of what is exactly at a threshold.
     constexpr double kGuard = 1e-12;
-    lower_ = std::exp(band.lower) * (1 + kGuard);
-    upper_ = std::exp(band.upper) * (1 - kGuard);
+    lower_ = std::exp(band.lower - drift_ * since_s_) * (1 + kGuard);
+    upper_ = std::exp(band.upper - drift_ * since_s_) * (1 - kGuard);
   }
 
   [[nodiscard]] const Band& band() const { return band_; }
@@ -36,7 +36,7 @@ class Thresholds {
   /// The radiances, between both bounds, that are inside the band at any time up to `end_s`, with
   /// exp(-x) >= 1 - x for the drift.
   [[nodiscard]] Interval radiances(double end_s) const {
-    const double drifted = drift_ == 0 ? 1 : 1 - drift_ * end_s;
+    const double drifted = drift_ == 0 ? 1 : 1 - drift_ * (end_s - since_s_);
     return {lower_ - log_eps_, upper_ * drifted - log_eps_};
   }
 
@@ -56,11 +56,12 @@ class Thresholds {
   Band band_;
   double drift_ = 0;
   double log_eps_ = 0;
-  double lower_ = 0, upper_ = 0;  ///< eps + I
+  double since_s_ = 0;
+  double lower_ = 0, upper_ = 0;  ///< eps + I, at since_s_
 };
 
 /// Two instants around a crossing: the signal is on the inner side of the threshold at `lo`, at or
-/// beyond it at `hi`.
+/// beyond it at `hi`; or the same instant twice, at which it has just reached it.
 template <class Sample>
 struct Bracket {
   Sample lo, hi;
@@ -70,6 +71,7 @@ struct Bracket {
   /// The crossing: the straight line between both ends, which for a smooth signal is far more exact
   /// than the bracket is wide; inside the bracket in any case.
   [[nodiscard]] double crossing_s(const Thresholds& thresholds, double level) const {
+    if (width_s() == 0) return lo.t_s;
     const double from = thresholds.signal(lo);
     const double fraction = (level - from) / (thresholds.signal(hi) - from);
     return lo.t_s + std::clamp(fraction, 0.0, 1.0) * width_s();

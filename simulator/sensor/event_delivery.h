@@ -24,7 +24,8 @@ class EventDelivery {
 
   /// Where new events are appended, in a fixed order.
   [[nodiscard]] SensedEvents& pending() { return pending_; }
-  /// All events up to `t_s` are pending; `is_last`: none will follow.
+  /// All events up to `t_s` are pending; `is_last`: none will follow, and those at `t_s` itself are
+  /// left out.
   void deliver(double t_s, bool is_last, const Sink& sink);
 
   /// Events that met a full readout.

@@ -241,8 +241,8 @@ class LockstepTile final : public EventTile {
   }
 
   void update_thresholds(TilePixel& pixel) const {
-    pixel.thresholds =
-        Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s, world_.options.log_eps);
+    pixel.thresholds = Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s,
+                                  world_.options.log_eps, pixel.state.reference_s);
   }
 
   [[nodiscard]] Signal signal(std::size_t i) {

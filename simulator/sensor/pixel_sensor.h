@@ -80,7 +80,8 @@ class PixelSensor {
            high + traits_.drift_per_s * to_s < band.upper - kGuard;
   }
   void update_thresholds() {
-    thresholds_ = Thresholds(state_.level.band(), traits_.drift_per_s, log_eps_);
+    thresholds_ =
+        Thresholds(state_.level.band(), traits_.drift_per_s, log_eps_, state_.reference_s);
   }
 
   const Signal& signal_;

@@ -83,7 +83,11 @@ class PlaneSignal {
     const auto look_closer = [&](double u0, double u1) {
       const Sample a = u0 <= lo.u ? known(lo) : sample(path_.time_s(u0), u0);
       const Sample b = u1 >= hi.u ? known(hi) : sample(path_.time_s(u1), u1);
-      if (a.t_s < b.t_s) exit = find_exit(*this, thresholds, a, b);
+      // What was passed over as within the band may by the last bit be at its border.
+      if (!thresholds.band().holds(thresholds.signal(a)))
+        exit = Bracket<Sample>{a, a};
+      else if (a.t_s < b.t_s)
+        exit = find_exit(*this, thresholds, a, b);
       return !exit;
     };
     const auto look = [&](const CellCourse& course, const CellCourse::Shape& shape) {
