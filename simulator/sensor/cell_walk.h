@@ -45,7 +45,7 @@ class Borders {
     crossings_[is_steady_ ? static_cast<std::size_t>(count_) : 0] = u1;
   }
 
-  /// From the chord and one step of Newton's method.
+  /// From the chord and two steps of Newton's method.
   void find(const PlaneTrack& track, double u0, double u1) {
     const double inverse = 1 / track.chord();
     const auto border = static_cast<double>(step_ > 0 ? first_ + 1 : first_);
@@ -53,6 +53,7 @@ class Borders {
       for (int lane = 0; lane < kLanes; ++lane) {
         const double value = border + step_ * (k + lane);
         double u = (value - track.from()) * inverse;
+        u += (value - track.at(u)) / track.slope_at(u);
         u += (value - track.at(u)) / track.slope_at(u);
         u = u > u0 ? u : u0;
         crossings_[static_cast<std::size_t>(k + lane)] = u < u1 ? u : u1;

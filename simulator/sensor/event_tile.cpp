@@ -74,25 +74,18 @@ class LockstepTile final : public EventTile {
 
   void advance(const Slab& slab, const TileMotion& motion) override {
     tracer_.use(slab.poses);
-    const bool is_alone = !motion.has_objects && sees_one_triangle(slab.end_s);
-    const bool foresees = !is_alone && tracer_.collect(outline_, motion.farthest_m, t_s_,
-                                                       slab.end_s, kMostCandidates, candidates_);
-    if (!foresees) candidates_.clear();
-    const double step_px = world_.options.max_step_px * (is_alone ? kLongSteps : 1);
-    const double refinement = is_alone || foresees ? 1 : motion.refinement;
-    const int count =
-        std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
-    const Steps steps{t_s_, slab.end_s, count};
-    is_alone_ = is_alone;
-    TileLook look, next;
-    // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
-    see(triangles_, t_s_, look);
-    is_alone ? see(triangles_, slab.end_s, next) : trace(slab.end_s, next);
-    PixelSet all;
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) all.set(i);
-    statistics_.stretches += tile_.pixels();
-    sense_between({0, count}, steps, look, next, all);
-    remember(next);
+    if (look_ahead(slab.end_s, motion)) {
+      advance_to(slab.end_s, motion);
+      return;
+    }
+    // Fewer triangles come within reach in half the time.
+    const double middle_s = 0.5 * (t_s_ + slab.end_s);
+    TileMotion half = motion;
+    half.pixels *= 0.5;
+    for (const double end_s : {middle_s, slab.end_s}) {
+      look_ahead(end_s, half);
+      advance_to(end_s, half);
+    }
   }
 
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
@@ -141,6 +134,31 @@ class LockstepTile final : public EventTile {
 
   [[nodiscard]] static const PixelRays* footprints(const EventWorld& world) {
     return world.options.texture_filter == TextureFilter::kMipmap ? &world.rays : nullptr;
+  }
+
+  /// Finds out what can come into view up to `end_s`: whether that is known.
+  bool look_ahead(double end_s, const TileMotion& motion) {
+    is_alone_ = !motion.has_objects && sees_one_triangle(end_s);
+    foresees_ = !is_alone_ && tracer_.collect(outline_, motion.farthest_m, t_s_, end_s,
+                                              kMostCandidates, candidates_);
+    if (!foresees_) candidates_.clear();
+    return is_alone_ || foresees_;
+  }
+
+  void advance_to(double end_s, const TileMotion& motion) {
+    const double step_px = world_.options.max_step_px * (is_alone_ ? kLongSteps : 1);
+    const double refinement = is_alone_ || foresees_ ? 1 : motion.refinement;
+    const int count =
+        std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
+    TileLook look, next;
+    // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
+    see(triangles_, t_s_, look);
+    is_alone_ ? see(triangles_, end_s, next) : trace(end_s, next);
+    PixelSet all;
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) all.set(i);
+    statistics_.stretches += tile_.pixels();
+    sense_between({0, count}, {t_s_, end_s, count}, look, next, all);
+    remember(next);
   }
 
   /// What the rays of the tile see at an instant: which triangles, and, where it is asked for, what
@@ -440,6 +458,7 @@ class LockstepTile final : public EventTile {
   bool is_bilinear_;
   RayTracer tracer_;
   bool is_alone_ = false;  ///< the triangle that is seen, within the slab
+  bool foresees_ = false;  ///< all that can come into view within the slab
   double t_s_ = 0;         ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;
   Triangles triangles_{};  ///< seen at t_s_

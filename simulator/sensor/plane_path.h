@@ -95,7 +95,7 @@ struct PlanePath {
   /// Whether the path is as exact as times are wanted to be: its error is a small share of what the
   /// image moves within `tolerance_s`.
   [[nodiscard]] bool is_exact(double tolerance_s) const {
-    constexpr double kShare = 0.02;
+    constexpr double kShare = 0.005;
     constexpr double kLeast_texel = 1e-6;
     const double motion = std::max(std::abs(x.chord()), std::abs(y.chord())) / length_s;
     return std::max(x.error(), y.error()) <= std::max(kShare * tolerance_s * motion, kLeast_texel);
