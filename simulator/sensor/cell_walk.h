@@ -41,23 +41,35 @@ class Borders {
     if (step_ != 0)
       count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMost + 1.0));
     is_steady_ = step_ != 0 ? count_ <= kMost : is_within(part.values, start);
-    if (is_steady_ && count_ > 0) find(track, u0, u1);
+    if (is_steady_ && count_ > 0) is_steady_ = find(track, part, u0, u1);
     crossings_[is_steady_ ? static_cast<std::size_t>(count_) : 0] = u1;
   }
 
-  /// From the chord and two steps of Newton's method.
-  void find(const PlaneTrack& track, double u0, double u1) {
-    const double inverse = 1 / track.chord();
+  /// The inverse cubic of the part's ends and one step of Newton's method; false where that is not
+  /// enough.
+  bool find(const PlaneTrack& track, const TrackPart& part, double u0, double u1) {
+    constexpr double kExact_texel = 1e-4;
+    const double length = u1 - u0;
+    const double chord = part.to - part.from;
+    const double per_texel = 1 / chord;
+    const double from_excess = chord / (part.from_slope * length) - 1;
+    const double to_excess = chord / (part.to_slope * length) - 1;
     const auto border = static_cast<double>(step_ > 0 ? first_ + 1 : first_);
+    std::array<double, kMost + kLanes> off;
     for (int k = 0; k < count_; k += kLanes)
       for (int lane = 0; lane < kLanes; ++lane) {
         const double value = border + step_ * (k + lane);
-        double u = (value - track.from()) * inverse;
-        u += (value - track.at(u)) / track.slope_at(u);
-        u += (value - track.at(u)) / track.slope_at(u);
+        const double s = (value - part.from) * per_texel;
+        const double r = 1 - s;
+        const double speed = 1 + r * (1 - 3 * s) * from_excess + s * (3 * s - 2) * to_excess;
+        double u = u0 + length * s * (1 + r * (r * from_excess - s * to_excess));
+        u += (value - track.at(u)) * (speed * length * per_texel);
+        off[static_cast<std::size_t>(k + lane)] = std::abs(value - track.at(u));
         u = u > u0 ? u : u0;
         crossings_[static_cast<std::size_t>(k + lane)] = u < u1 ? u : u1;
       }
+    return std::all_of(off.begin(), off.begin() + count_,
+                       [](double each) { return each <= kExact_texel; });
   }
 
   std::array<double, kMost + kLanes> crossings_;

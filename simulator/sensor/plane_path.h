@@ -61,6 +61,7 @@ class PlaneTrack {
 /// Bounds on a part of the path.
 struct TrackPart {
   double from, to;
+  double from_slope, to_slope;
   Interval values, slopes;
 
   /// All of it.
@@ -76,7 +77,7 @@ struct TrackPart {
   /// `bending`: how much the slope may change at most over the part, which is `length` long.
   TrackPart(double start, double start_slope, double end, double end_slope, double bending,
             double length = 1)
-      : from(start), to(end) {
+      : from(start), to(end), from_slope(start_slope), to_slope(end_slope) {
     const double turn = 0.5 * bending;
     const double stray = 0.25 * turn * length;
     values = {std::min(from, to) - stray, std::max(from, to) + stray};
@@ -95,7 +96,7 @@ struct PlanePath {
   /// Whether the path is as exact as times are wanted to be: its error is a small share of what the
   /// image moves within `tolerance_s`.
   [[nodiscard]] bool is_exact(double tolerance_s) const {
-    constexpr double kShare = 0.005;
+    constexpr double kShare = 0.01;
     constexpr double kLeast_texel = 1e-6;
     const double motion = std::max(std::abs(x.chord()), std::abs(y.chord())) / length_s;
     return std::max(x.error(), y.error()) <= std::max(kShare * tolerance_s * motion, kLeast_texel);
