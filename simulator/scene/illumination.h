@@ -32,6 +32,10 @@ class Illumination {
   /// without the distance) over `lamps`.
   [[nodiscard]] double from_lamps(const SurfacePoint& point, LampSet lamps) const;
 
+  /// With unit directions.
+  [[nodiscard]] std::span<const LightOptions> lights() const { return lights_; }
+  [[nodiscard]] double shadow_offset() const { return shadow_offset_; }
+
  private:
   double ambient_;
   std::vector<LightOptions> lights_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 
@@ -9,9 +10,18 @@ namespace saccade {
 namespace {
 
 constexpr std::uint32_t kLeaf = 4;
+/// Below this boxes are halved by number, so that the tree fits the stack that visits it.
+constexpr int kDeepest = 30;
 constexpr std::size_t kMostPyramids = 4;
 /// Shares of the size of a box that float coordinates are trusted to.
 constexpr double kRounding = 1e-6;
+
+/// Three times the centre.
+Eigen::Vector3f centre_of(const Corners& corners) { return corners[0] + corners[1] + corners[2]; }
+
+struct Extent {
+  double low, high;
+};
 
 /// The four sides of the pyramids and the plane through the eye across them, not negative inside,
 /// and the half space in front.
@@ -31,25 +41,85 @@ class Region {
       }
       sides_[4][m] = {axis, -axis.dot(pyramid.eye)};
     }
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const AffineForm form = k < sides_.size()    ? sides_[k][0]
+                              : k == sides_.size() ? front_
+                                                   : AffineForm{Eigen::Vector3d::Zero(), 1};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        lanes_[axis][k] = form.gradient[static_cast<Eigen::Index>(axis)];
+      lanes_[3][k] = form.offset;
+    }
   }
 
-  /// Whether one and the same side keeps a set of points out at all times, or the front does.
-  /// `highest(form)`: the greatest value of an affine form over the set.
-  template <class Highest>
-  [[nodiscard]] bool excludes(const Highest& highest) const {
-    if (highest(front_) <= 0) return true;
-    for (const auto& side : sides_) {
+  /// Whether there is one pyramid, for which excludes_one() is quicker.
+  [[nodiscard]] bool is_one() const { return count_ == 1; }
+
+  [[nodiscard]] bool excludes_one(const Eigen::AlignedBox3f& box) const {
+    const Eigen::Vector3d middle = box.center().cast<double>();
+    const Eigen::Vector3d half = box.sizes().cast<double>() * (0.5 + kRounding);
+    unsigned outside = 0;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const double high = lanes_[0][k] * middle.x() + lanes_[1][k] * middle.y() +
+                          lanes_[2][k] * middle.z() + lanes_[3][k] +
+                          std::abs(lanes_[0][k]) * half.x() + std::abs(lanes_[1][k]) * half.y() +
+                          std::abs(lanes_[2][k]) * half.z();
+      outside |= high < 0 ? 1U : 0U;
+    }
+    return outside != 0;
+  }
+
+  [[nodiscard]] bool excludes_one(const Corners& corners) const {
+    std::array<unsigned, kLanes> inside{};
+    for (const Eigen::Vector3f& corner : corners) {
+      const Eigen::Vector3d at = corner.cast<double>();
+      for (std::size_t k = 0; k < kLanes; ++k)
+        inside[k] |=
+            lanes_[0][k] * at.x() + lanes_[1][k] * at.y() + lanes_[2][k] * at.z() + lanes_[3][k] >=
+                    0
+                ? 1U
+                : 0U;
+    }
+    unsigned all = 1;
+    for (const unsigned each : inside) all &= each;
+    return all == 0;
+  }
+
+  /// All sides and the front, as bits.
+  static constexpr std::uint32_t kAll = 0x3f;
+
+  /// Whether one and the same of `sides` keeps a set of points out at all times. `range(form)`: the
+  /// least and the greatest value of an affine form over the set. Drops from `sides` those that
+  /// keep none of its points out.
+  template <class Range>
+  [[nodiscard]] bool excludes(const Range& range, std::uint32_t& sides) const {
+    if ((sides & kFront) != 0) {
+      const Extent values = range(front_);
+      if (values.high <= 0) return true;
+      if (values.low > 0) sides &= ~kFront;
+    }
+    for (std::size_t k = 0; k < sides_.size(); ++k) {
+      const std::uint32_t bit = 1U << k;
+      if ((sides & bit) == 0) continue;
       bool outside = true;
-      for (std::size_t m = 0; m < count_ && outside; ++m) outside = highest(side[m]) < 0;
+      for (std::size_t m = 0; m < count_ && outside; ++m) {
+        const Extent values = range(sides_[k][m]);
+        outside = values.high < 0;
+        if (values.low >= 0) sides &= ~bit;
+      }
       if (outside) return true;
     }
     return false;
   }
 
  private:
+  static constexpr std::uint32_t kFront = 0x20;
+  static constexpr std::size_t kLanes = 8;
+
   std::size_t count_;
   std::array<std::array<AffineForm, kMostPyramids>, 5> sides_;
   AffineForm front_;
+  /// The sides of the first pyramid and the front, coefficient by coefficient, for vectors.
+  std::array<std::array<double, kLanes>, 4> lanes_;
 };
 
 }  // namespace
@@ -62,18 +132,70 @@ OccluderTree::OccluderTree(std::span<const Corners> triangles, std::span<const T
   if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
 }
 
-void OccluderTree::build(std::uint32_t first, std::uint32_t count) {
+/// Where the surfaces of both parts' boxes times their triangles are least, of some planes across
+/// the longest extent of the centres.
+std::uint32_t OccluderTree::divide(std::span<Occluder> triangles,
+                                   const Eigen::AlignedBox3f& centres) {
+  constexpr std::size_t kBins = 16;
+  struct Bin {
+    Eigen::AlignedBox3f box;
+    std::uint32_t count = 0;
+
+    void add(const Bin& other) {
+      box.extend(other.box);
+      count += other.count;
+    }
+    [[nodiscard]] float cost() const {
+      const Eigen::Vector3f size = box.sizes();
+      return static_cast<float>(count) *
+             (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+    }
+  };
+  Eigen::Index axis = 0;
+  const float extent = centres.sizes().maxCoeff(&axis);
+  const auto bin_of = [&](const Occluder& occluder) {
+    const float share = (centre_of(occluder.corners)[axis] - centres.min()[axis]) / extent;
+    return std::min(static_cast<std::size_t>(share * static_cast<float>(kBins)), kBins - 1);
+  };
+  const auto half = static_cast<std::uint32_t>(triangles.size() / 2);
+  if (!(extent > 0)) return half;
+  std::array<Bin, kBins> bins;
+  for (const Occluder& occluder : triangles) {
+    Bin& bin = bins[bin_of(occluder)];
+    for (const Eigen::Vector3f& corner : occluder.corners) bin.box.extend(corner);
+    ++bin.count;
+  }
+  std::array<float, kBins> after{};  // cost of the bins from here on
+  Bin sum;
+  for (std::size_t k = kBins; k-- > 1;) {
+    sum.add(bins[k]);
+    after[k] = sum.count == 0 ? 0 : sum.cost();
+  }
+  sum = bins[0];
+  std::size_t best = 1;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 1; k < kBins; ++k) {
+    const float cost = sum.cost() + after[k];
+    if (cost < least) {
+      least = cost;
+      best = k;
+    }
+    sum.add(bins[k]);
+  }
+  const auto middle = std::partition(triangles.begin(), triangles.end(),
+                                     [&](const Occluder& each) { return bin_of(each) < best; });
+  return static_cast<std::uint32_t>(middle - triangles.begin());
+}
+
+void OccluderTree::build(std::uint32_t first, std::uint32_t count, int depth) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   Eigen::AlignedBox3f box, centres;
   const auto begin = triangles_.begin() + first;
   const auto end = begin + count;
-  const auto centre = [](const Occluder& occluder) -> Eigen::Vector3f {
-    return occluder.corners[0] + occluder.corners[1] + occluder.corners[2];
-  };
   for (auto triangle = begin; triangle != end; ++triangle) {
     for (const Eigen::Vector3f& corner : triangle->corners) box.extend(corner);
-    centres.extend(centre(*triangle));
+    centres.extend(centre_of(triangle->corners));
   }
   nodes_[index].box = box;
   if (count <= kLeaf) {
@@ -81,15 +203,10 @@ void OccluderTree::build(std::uint32_t first, std::uint32_t count) {
     nodes_[index].count = count;
     return;
   }
-  Eigen::Index axis = 0;
-  centres.sizes().maxCoeff(&axis);
-  const std::uint32_t half = count / 2;
-  std::nth_element(begin, begin + half, end, [&](const Occluder& a, const Occluder& b) {
-    return centre(a)[axis] < centre(b)[axis];
-  });
-  build(first, half);
+  const std::uint32_t half = depth < kDeepest ? divide({begin, end}, centres) : count / 2;
+  build(first, half, depth + 1);
   nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-  build(first + half, count - half);
+  build(first + half, count - half, depth + 1);
 }
 
 template <class Use>
@@ -97,33 +214,48 @@ void OccluderTree::visit(std::span<const SightPyramid> sweep, const AffineForm& 
                          const Use& use) const {
   if (nodes_.empty()) return;
   const Region region(sweep, front);
+  const bool is_one = region.is_one();
   const auto over_box = [](const Eigen::AlignedBox3f& box) {
     const Eigen::Vector3d middle = box.center().cast<double>();
     const Eigen::Vector3d half = box.sizes().cast<double>() * (0.5 + kRounding);
-    return [middle, half](const AffineForm& form) {
-      return form.at(middle) + form.gradient.cwiseAbs().dot(half);
+    return [middle, half](const AffineForm& form) -> Extent {
+      const double at_middle = form.at(middle);
+      const double reach = form.gradient.cwiseAbs().dot(half);
+      return {at_middle - reach, at_middle + reach};
     };
   };
   const auto over_triangle = [](const Corners& corners) {
-    return [&corners](const AffineForm& form) {
-      return std::max({form.at(corners[0].cast<double>()), form.at(corners[1].cast<double>()),
+    return [&corners](const AffineForm& form) -> Extent {
+      const auto [low, high] =
+          std::minmax({form.at(corners[0].cast<double>()), form.at(corners[1].cast<double>()),
                        form.at(corners[2].cast<double>())});
+      return {low, high};
     };
   };
-  std::array<std::uint32_t, 64> stack;
+  struct Open {
+    std::uint32_t node;
+    std::uint32_t sides;  ///< that may keep some of it out
+  };
+  std::array<Open, 64> stack;
   std::size_t height = 0;
-  stack[height++] = 0;
+  stack[height++] = {0, Region::kAll};
   while (height > 0) {
-    const std::uint32_t index = stack[--height];
+    auto [index, sides] = stack[--height];
     const Node& node = nodes_[index];
-    if (region.excludes(over_box(node.box))) continue;
+    if (is_one ? region.excludes_one(node.box) : region.excludes(over_box(node.box), sides))
+      continue;
     if (node.count == 0) {
-      stack[height++] = node.first;
-      stack[height++] = index + 1;
+      stack[height++] = {node.first, sides};
+      stack[height++] = {index + 1, sides};
       continue;
     }
-    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      if (!region.excludes(over_triangle(triangles_[k].corners)) && !use(triangles_[k].id)) return;
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+      std::uint32_t left = sides;
+      const Corners& corners = triangles_[k].corners;
+      const bool is_outside =
+          is_one ? region.excludes_one(corners) : region.excludes(over_triangle(corners), left);
+      if (!is_outside && !use(triangles_[k].id)) return;
+    }
   }
 }
 

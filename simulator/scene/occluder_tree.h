@@ -55,7 +55,10 @@ class OccluderTree {
     std::uint32_t count = 0;  ///< 0: no leaf; the first child is the next node
   };
 
-  void build(std::uint32_t first, std::uint32_t count);
+  void build(std::uint32_t first, std::uint32_t count, int depth = 0);
+  /// Brings the triangles of both children together; returns the number in the first.
+  [[nodiscard]] static std::uint32_t divide(std::span<Occluder> triangles,
+                                            const Eigen::AlignedBox3f& centres);
 
   std::vector<Occluder> triangles_;  ///< in the order of the leaves
   std::vector<Node> nodes_;

@@ -104,6 +104,7 @@ void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) 
 }
 
 TriangleId Scene::visible_exactly(const Ray& ray) const {
+  constexpr double kFarther = 1.1;  // less than the room of nearer_than()
   constexpr double kAround = 1e-5;  // of the direction's length: far above single precision
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   const double half = kAround * ray.direction.norm();
@@ -113,10 +114,20 @@ TriangleId Scene::visible_exactly(const Ray& ray) const {
                             {ray.direction - right - down, ray.direction + right - down,
                              ray.direction + right + down, ray.direction - right + down},
                             ray.time_s};
+  // What single precision sees is as far as a search needs to go, if it is met at all.
+  TriangleId guess = kNothing;
+  visible({&ray, 1}, {&guess, 1});
   std::vector<TriangleId> triangles;
-  static_cast<void>(
-      collect({&around, 1}, std::numeric_limits<double>::infinity(), kAll, triangles));
-  return nearest_of(triangles, ray);
+  const auto nearest_up_to = [&](double farthest) {
+    static_cast<void>(collect({&around, 1}, farthest, kAll, triangles));
+    return nearest_of(triangles, ray);
+  };
+  if (guess != kNothing) {
+    const double distance = look(ray, guess).distance;
+    const TriangleId nearest = nearest_up_to(distance);
+    if (nearest != kNothing && look(ray, nearest).distance <= distance * kFarther) return nearest;
+  }
+  return nearest_up_to(std::numeric_limits<double>::infinity());
 }
 
 TriangleId Scene::nearest_of(std::span<const TriangleId> triangles, const Ray& ray) const {

@@ -95,6 +95,7 @@ struct CutoutLook {
 };
 
 class MovingObject;
+struct PatchLight;
 
 /// Everything that reflects or emits light, immutable after loading; all members are thread-safe
 /// and deterministic. Visibility comes from Embree (float); the point that is seen and its radiance
@@ -144,6 +145,13 @@ class Scene {
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceLook& look) const;
   [[nodiscard]] bool is_lit() const;
+  /// How the lamps light what pyramids of sight that move evenly through those of `sweep` (at most
+  /// 4) see of `triangle`, found for the whole triangle before or else put into `light`; nullptr
+  /// where that is not known: for what moves or is moved around, where light goes through cutouts,
+  /// and where more than `most` triangles may hide a lamp.
+  [[nodiscard]] const PatchLight* find_light(TriangleId triangle,
+                                             std::span<const SightPyramid> sweep, std::size_t most,
+                                             PatchLight& light) const;
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;

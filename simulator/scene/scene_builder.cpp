@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -41,6 +43,19 @@ Eigen::AlignedBox3d roomy(const Eigen::AlignedBox3f& box) {
   const Eigen::AlignedBox3d exact = box.cast<double>();
   const Eigen::Vector3d room = Eigen::Vector3d::Constant(kRoom * extent_of(box));
   return {exact.min() - room, exact.max() + room};
+}
+
+/// The corners of a triangle, whatever their order.
+using Place = std::array<std::array<double, 3>, 3>;
+
+Place place_of(const Triangle& triangle, const Mesh& mesh) {
+  Place place;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const Eigen::Vector3d& vertex = mesh.vertices[triangle.corners[k]];
+    place[k] = {vertex.x(), vertex.y(), vertex.z()};
+  }
+  std::sort(place.begin(), place.end());
+  return place;
 }
 
 Background read_background(const SceneOptions& options) {
@@ -97,8 +112,10 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
     textures_.push_back(material.opacity);
   }
   std::size_t kept = 0;
+  std::set<Place> taken;
   for (const Triangle& triangle : mesh.triangles) {
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
+    if (!is_cut_out && !taken.insert(place_of(triangle, mesh)).second) continue;
     kept += setup.add(triangle, is_cut_out ? body.cut_out : body.opaque) ? 1 : 0;
   }
   return kept;

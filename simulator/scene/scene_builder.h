@@ -29,7 +29,9 @@ class SceneBuilder {
   ~SceneBuilder();
 
   /// Takes in a mesh as the next object; `world_from_mesh` is invertible. Triangles without area
-  /// are left out. Returns how many are kept.
+  /// are left out, and opaque ones in the place of an earlier one of the mesh, as of surfaces that
+  /// are modelled from both sides: which of both is seen would be chance. Returns how many are
+  /// kept.
   std::size_t add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh);
 
   /// The same for an object that moves rigidly, `object_from_mesh` first.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "simulator/scene/illumination.h"
 #include "simulator/scene/mesh.h"
 #include "simulator/scene/occluder_tree.h"
+#include "simulator/scene/patch_light.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/visibility.h"
 
@@ -51,6 +53,28 @@ struct OccluderSource {
 /// Corners' unit normals in the body's frame.
 using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 
+/// A part of a triangle.
+struct Patch {
+  TriangleId triangle;
+  double side;                           ///< of the plane it is seen from: 1 above zero, -1 below
+  std::vector<Eigen::Vector3d> corners;  ///< it is within their hull
+};
+
+/// What may hide a lamp from a triangle.
+struct LampCandidates {
+  LampSet bit;
+  std::vector<TriangleId> triangles;
+};
+
+/// How the lamps light one side of a triangle: all there is to know where that is little, else the
+/// candidates for parts of it, or where they are too many, nothing.
+struct WholeLight {
+  std::once_flag found;
+  std::unique_ptr<const PatchLight> light;
+  LampSet proven = 0;
+  std::unique_ptr<std::vector<LampCandidates>> candidates;
+};
+
 /// The triangles of a scene by number: opaque ones first, then those with cutouts; in both parts
 /// what stands still first, then object by object what moves.
 struct Scene::State {
@@ -67,6 +91,8 @@ struct Scene::State {
   std::vector<OccluderSource> occluder_sources;
   std::once_flag trees_built;
   std::vector<OccluderTree> trees;
+  std::once_flag whole_lights_built;
+  std::unique_ptr<WholeLight[]> whole_lights;  ///< two per triangle
 
   /// Of what stands still (0), then of the moving objects, each in its own frame.
   [[nodiscard]] const OccluderTree& occluders(std::size_t body);
@@ -90,6 +116,30 @@ struct Scene::State {
   /// In the body's frame.
   [[nodiscard]] SurfacePoint local_point(const Ray& ray, double distance,
                                          TriangleId triangle) const;
+
+  /// nullopt: it casts none, edge-on to the lamp. `patch`: a point near where it may fall.
+  [[nodiscard]] std::optional<ShadowCaster> shadow_caster(TriangleId triangle,
+                                                          const LightOptions& lamp,
+                                                          const Eigen::Vector3d& patch) const;
+  /// What may stand between a lamp and a convex patch, given by points around it, above zero of
+  /// `front`; false where that is not known.
+  [[nodiscard]] bool collect_casters(const LightOptions& lamp,
+                                     std::span<const Eigen::Vector3d> patch,
+                                     const AffineForm& front, std::size_t most,
+                                     std::vector<TriangleId>& found);
+  /// Of the triangles `found` those that hide a part of the patch; false where one hides it all.
+  [[nodiscard]] bool keep_casters(const LightOptions& lamp, const Patch& patch,
+                                  const Eigen::Vector3d& lift, std::span<const TriangleId> found,
+                                  std::vector<ShadowCaster>& casters) const;
+  /// Adds a lamp that the patch faces to its light.
+  void add_lamp(LampSet bit, const Patch& patch, std::span<const TriangleId> found,
+                PatchLight& light) const;
+  /// The light on a patch; false where it is not known.
+  [[nodiscard]] bool find_light(const Patch& patch, std::size_t most, PatchLight& light);
+  /// The same from the candidates of its triangle.
+  void find_light(const Patch& patch, const WholeLight& whole, PatchLight& light) const;
+  /// Of a whole triangle, found once.
+  [[nodiscard]] const WholeLight& whole_light(TriangleId triangle, double side);
 
   /// In the world, as is `ray`.
   [[nodiscard]] SurfacePoint surface_point(const Ray& ray, double distance,

@@ -10,6 +10,7 @@
 
 #include "core/check.h"
 #include "simulator/sensor/passing.h"
+#include "simulator/sensor/passing_shadow.h"
 #include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/pixel_signal.h"
 #include "simulator/sensor/plane_signal.h"
@@ -138,6 +139,7 @@ class LockstepTile final : public EventTile {
 
   /// Finds out what can come into view up to `end_s`: whether that is known.
   bool look_ahead(double end_s, const TileMotion& motion) {
+    tracer_.use(outline_, t_s_, end_s);
     is_alone_ = !motion.has_objects && sees_one_triangle(end_s);
     foresees_ = !is_alone_ && tracer_.collect(outline_, motion.farthest_m, t_s_, end_s,
                                               kMostCandidates, candidates_);
@@ -245,10 +247,11 @@ class LockstepTile final : public EventTile {
       if (!pixels[i]) continue;
       if (any_passes(i, look, next))
         sense_passing(i, sample(look, i), sample(next, i));
-      else if (is_idle(i, look.t_s, next.t_s) && is_certified(i, look, next))
+      else if (is_idle(i, look.t_s, next.t_s) && is_certified(i, look, next) &&
+               !any_shadow_passes(i, sample(look, i), sample(next, i)))
         ++statistics_.certified;
       else
-        sense(i, signal(i), sample(look, i), sample(next, i));
+        sense_lit(i, signal(i), sample(look, i), sample(next, i));
     }
   }
 
@@ -373,10 +376,77 @@ class LockstepTile final : public EventTile {
     for (const double t_s : passing_s_) {
       if (t_s - lo.t_s < tolerance_s_ || hi.t_s - t_s < tolerance_s_) continue;
       const Sample middle = pixel_signal.look(t_s);
-      sense(i, pixel_signal, lo, middle);
+      sense_lit(i, pixel_signal, lo, middle);
       lo = middle;
     }
+    sense_lit(i, pixel_signal, lo, hi);
+  }
+
+  /// sense() with looks around the times at which shadows come or go.
+  void sense_lit(std::size_t i, const Signal& pixel_signal, Sample lo, const Sample& hi) {
+    if (any_shadow_passes(i, lo, hi)) {
+      for (const double t_s : shadow_s_) {
+        if (!(t_s > lo.t_s && t_s < hi.t_s)) continue;
+        const Sample middle = pixel_signal.look_again(t_s, lo, hi);
+        sense(i, pixel_signal, lo, middle);
+        lo = middle;
+      }
+    }
     sense(i, pixel_signal, lo, hi);
+  }
+
+  /// Collects looks, in order, that tell the times apart between which a pixel sees a shadow or a
+  /// gap of light, on the surfaces at both ends; whether there are any.
+  [[nodiscard]] bool any_shadow_passes(std::size_t i, const Sample& lo, const Sample& hi) {
+    shadow_s_.clear();
+    if (!tracer_.is_lit()) return false;
+    for (std::size_t k = 0; k < kRays; ++k) {
+      const Eigen::Vector3d& direction = directions_[i * kRays + k];
+      const TriangleId from = lo.rays[k].triangle;
+      const TriangleId to = hi.rays[k].triangle;
+      if (from == to) {
+        find_shadows(direction, from, lo.t_s, hi.t_s);
+        continue;
+      }
+      const double change_s =
+          tracer_.change_s(direction, {from, lo.t_s}, {to, hi.t_s}, 0.1 * tolerance_s_);
+      find_shadows(direction, from, lo.t_s, std::isnan(change_s) ? hi.t_s : change_s);
+      find_shadows(direction, to, std::isnan(change_s) ? lo.t_s : change_s, hi.t_s);
+    }
+    std::sort(shadow_s_.begin(), shadow_s_.end());
+    return !shadow_s_.empty();
+  }
+
+  /// Adds to shadow_s_ for a ray that may see `triangle`: around each change of light, and in
+  /// between.
+  void find_shadows(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
+                    double to_s) {
+    const PatchLight* light = tracer_.light_of(triangle);
+    if (light == nullptr || light->doubtful.empty()) return;
+    const double length_s = to_s - from_s;
+    if (!(length_s > 2 * tolerance_s_)) return;
+    std::array<Eigen::Vector3d, 3> points;
+    for (std::size_t m = 0; m < points.size(); ++m)
+      points[m] =
+          tracer_.point_at(direction, triangle, from_s + 0.5 * static_cast<double>(m) * length_s) +
+          light->lift;
+    if (!std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); }))
+      return;
+    for (const DoubtfulLamp& lamp : light->doubtful) {
+      double before = -1;  // the last change
+      const auto change = [&](double at) {
+        if (!(at > 0 && at < 1)) return;
+        const double t_s = from_s + at * length_s;
+        if (before >= 0) shadow_s_.push_back(from_s + 0.5 * (before + at) * length_s);
+        shadow_s_.push_back(t_s - 0.45 * tolerance_s_);
+        shadow_s_.push_back(t_s + 0.45 * tolerance_s_);
+        before = at;
+      };
+      shadows_.find(lamp, points, [&](double begin, double end) {
+        change(begin);
+        change(end);
+      });
+    }
   }
 
   /// Whether only a crossing could make the pixel fire between two times.
@@ -436,10 +506,17 @@ class LockstepTile final : public EventTile {
     return std::all_of(triangles.begin(), end, [&](TriangleId t) { return t == triangles[0]; });
   }
 
-  /// Whether one triangle is all that can be seen in and around the tile up to `t_s`.
-  [[nodiscard]] bool sees_one_triangle(double t_s) const {
-    return !tracer_.is_lit() && are_equal(triangles_) &&
-           tracer_.is_alone(triangles_[0], outline_, t_s_, t_s);
+  /// Whether one triangle, in even light, is all that can be seen in and around the tile up to
+  /// `t_s`.
+  [[nodiscard]] bool sees_one_triangle(double t_s) {
+    return are_equal(triangles_) && tracer_.is_alone(triangles_[0], outline_, t_s_, t_s) &&
+           is_evenly_lit(triangles_[0]);
+  }
+
+  [[nodiscard]] bool is_evenly_lit(TriangleId triangle) {
+    if (!tracer_.is_lit() || triangle == kNothing) return true;
+    const PatchLight* light = tracer_.light_of(triangle);
+    return light != nullptr && light->doubtful.empty();
   }
 
   void remember(const TileLook& look) {
@@ -467,7 +544,9 @@ class LockstepTile final : public EventTile {
   std::vector<PassingTriangle> passing_;  ///< of them, within the step
   std::vector<TriangleId> within_reach_;  ///< the same
   std::vector<double> passing_s_;         ///< of the pixel that is at work
-  std::vector<NoisyState> noisy_;         ///< one per pixel, or none
+  std::vector<double> shadow_s_;          ///< of a stretch of it
+  PassingShadows shadows_;
+  std::vector<NoisyState> noisy_;  ///< one per pixel, or none
 };
 
 }  // namespace

@@ -11,6 +11,45 @@
 
 namespace saccade {
 
+/// Five values of the parabola through three, at its quarters.
+[[nodiscard]] inline std::array<double, 5> parabola_quarters(const std::array<double, 3>& values) {
+  const auto [a, b, c] = values;
+  return {a, 0.125 * (3 * a + 6 * b - c), b, 0.125 * (3 * c + 6 * b - a), c};
+}
+
+/// Keeps of [low, high] where the line from x at 0 to y at 1 is not negative.
+inline void clip_to_line(double x, double y, double& low, double& high) {
+  if (x < 0 && y < 0) high = -1;
+  if (x < 0 && y >= 0) low = std::max(low, x / (x - y));
+  if (y < 0 && x >= 0) high = std::min(high, x / (x - y));
+}
+
+/// use(begin, end), as fractions of the whole, with each stretch in which no form is negative. Each
+/// is given at both ends and half way, and taken to be the parabola through these, even between its
+/// quarters.
+template <std::size_t kForms, class Use>
+void find_stretches(const std::array<std::array<double, 3>, kForms>& forms, const Use& use) {
+  std::array<std::array<double, 5>, kForms> quarters;
+  for (std::size_t k = 0; k < kForms; ++k) {
+    quarters[k] = parabola_quarters(forms[k]);
+    if (std::all_of(quarters[k].begin(), quarters[k].end(), [](double x) { return x < 0; })) return;
+  }
+  double begin = 0;
+  double end = -1;  // nothing is open
+  for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+    double low = 0;
+    double high = 1;
+    for (const std::array<double, 5>& form : quarters)
+      clip_to_line(form[quarter], form[quarter + 1], low, high);
+    if (low >= high) continue;
+    const double from = 0.25 * (static_cast<double>(quarter) + low);
+    if (end >= begin && from > end) use(begin, end);
+    if (end < begin || from > end) begin = from;
+    end = 0.25 * (static_cast<double>(quarter) + high);
+  }
+  if (end >= begin) use(begin, end);
+}
+
 /// A triangle that may pass through rays of a tile between two looks, with its edges at both and
 /// half way. Each edge's form along a ray is taken to be the parabola through these, and even
 /// between its quarters: exact enough for what is seen edge-on, too, because the forms are smooth
@@ -61,43 +100,11 @@ struct PassingTriangle {
   template <class Use>
   void find_passages(const Eigen::Vector3d& direction, const Use& use) const {
     for (const double sign : {1.0, -1.0}) {
-      std::array<std::array<double, 5>, 3> edges;
-      bool is_outside = false;
-      for (std::size_t k = 0; k < 3 && !is_outside; ++k) {
-        edges[k] =
-            quarters(sign * at[0].edges[k].dot(direction), sign * at[1].edges[k].dot(direction),
-                     sign * at[2].edges[k].dot(direction));
-        is_outside = std::all_of(edges[k].begin(), edges[k].end(), [](double x) { return x < 0; });
-      }
-      if (is_outside) continue;
-      double begin = 0;
-      double end = -1;  // nothing is open
-      for (std::size_t quarter = 0; quarter < 4; ++quarter) {
-        double low = 0;
-        double high = 1;
-        for (const std::array<double, 5>& edge : edges)
-          clip(edge[quarter], edge[quarter + 1], low, high);
-        if (low >= high) continue;
-        const double from = 0.25 * (static_cast<double>(quarter) + low);
-        if (end >= begin && from > end) use(begin, end);
-        if (end < begin || from > end) begin = from;
-        end = 0.25 * (static_cast<double>(quarter) + high);
-      }
-      if (end >= begin) use(begin, end);
+      std::array<std::array<double, 3>, 3> forms;
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t m = 0; m < 3; ++m) forms[k][m] = sign * at[m].edges[k].dot(direction);
+      find_stretches(forms, use);
     }
-  }
-
- private:
-  /// Of the parabola through three values.
-  [[nodiscard]] static std::array<double, 5> quarters(double a, double b, double c) {
-    return {a, 0.125 * (3 * a + 6 * b - c), b, 0.125 * (3 * c + 6 * b - a), c};
-  }
-
-  /// Keeps of [low, high] where the line from x at 0 to y at 1 is not negative.
-  static void clip(double x, double y, double& low, double& high) {
-    if (x < 0 && y < 0) high = -1;
-    if (x < 0 && y >= 0) low = std::max(low, x / (x - y));
-    if (y < 0 && x >= 0) high = std::min(high, x / (x - y));
   }
 };
 

@@ -102,6 +102,20 @@ auto PixelSignal<kRays>::look(double t_s) const -> Sample {
 }
 
 template <std::size_t kRays>
+auto PixelSignal<kRays>::look_again(double t_s, const Sample& lo, const Sample& hi) const
+    -> Sample {
+  if (changing_ray(lo, hi) < kRays) return look(t_s);
+  Sample sample;
+  sample.t_s = t_s;
+  for (std::size_t k = 0; k < kRays; ++k) {
+    sample.rays[k] = tracer_.view(directions_[k], lo.rays[k].triangle, t_s);
+    follow(lo.rays[k], sample.rays[k]);
+  }
+  set_log_intensity(sample);
+  return sample;
+}
+
+template <std::size_t kRays>
 auto PixelSignal<kRays>::divide(const Sample& lo, const Sample& hi, int depth) const -> Sample {
   constexpr int kGuesses = 8;  // deeper than this, halves: what is there is not what was guessed
   const double length_s = hi.t_s - lo.t_s;

@@ -39,6 +39,8 @@ class PixelSignal {
   /// With rays, whatever is seen before and after.
   [[nodiscard]] Sample look(double t_s) const;
   [[nodiscard]] Sample at(double t_s, const Sample& lo, const Sample& hi) const;
+  /// at(), whatever lamps light both ends.
+  [[nodiscard]] Sample look_again(double t_s, const Sample& lo, const Sample& hi) const;
 
   void set_log_intensity(Sample& sample) const {
     sample.log_intensity = saccade::log_intensity(sample.radiance(), log_eps_);

@@ -17,6 +17,11 @@ constexpr double kAtEdge = 1e-3;
 /// Rates are differences over this time: short against any motion, long against rounding.
 constexpr double kSoon_s = 1e-7;
 
+/// Where more triangles than this may hide a lamp from a patch, shadow rays are quicker.
+constexpr std::size_t kMostCasters = 192;
+/// Of patches whose light is found in one go.
+constexpr std::size_t kMostLights = 256;
+
 RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, double soon_s,
                    TriangleId triangle) {
   RayView view{triangle, now, 0, 0};
@@ -81,16 +86,55 @@ RayView RayTracer::unlit_view(const Eigen::Vector3d& direction, TriangleId trian
                     soon_s, triangle);
 }
 
+void RayTracer::use(const std::array<Eigen::Vector3d, 4>& outline, double from_s, double to_s) {
+  finds_lights_ = is_lit();
+  light_count_ = 0;
+  if (finds_lights_) sweep_ = sweep_of(outline, from_s, to_s);
+}
+
+const PatchLight* RayTracer::light_of(TriangleId triangle) {
+  if (!finds_lights_ || triangle == kNothing) return nullptr;
+  for (std::size_t k = light_count_; k-- > 0;)
+    if (lights_[k].triangle == triangle) return lights_[k].light();
+  if (light_count_ == kMostLights) return nullptr;
+  if (light_count_ == lights_.size()) lights_.emplace_back();
+  KnownLight& known = lights_[light_count_++];
+  known.triangle = triangle;
+  const PatchLight* light = scene_.find_light(triangle, sweep_, kMostCasters, known.patch);
+  known.is_known = light == &known.patch;
+  known.whole = known.is_known ? nullptr : light;
+  return light;
+}
+
+Eigen::Vector3d RayTracer::point_at(const Eigen::Vector3d& direction, TriangleId triangle,
+                                    double t_s) const {
+  const Ray ray = ray_at(direction, t_s);
+  const double distance = scene_.look(ray, triangle).distance;
+  if (!(distance > 0)) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  return ray.origin + distance * ray.direction;
+}
+
 void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) {
+  std::array<Ray, kPacket> doubtful;
   std::array<TriangleId, kPacket> triangles;
   std::array<SurfaceLook, kPacket> looks;
-  const std::size_t n = rays.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    triangles[k] = views[k].triangle;
-    looks[k] = views[k].look;
+  std::array<std::size_t, kPacket> owners;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    SurfaceLook& look = views[k].look;
+    if (const PatchLight* light = light_of(views[k].triangle); light && look.distance > 0) {
+      look.lamps = light->lamps_at(rays[k].origin + look.distance * rays[k].direction);
+      look.irradiance = scene_.irradiance(rays[k], views[k].triangle, look);
+      continue;
+    }
+    doubtful[n] = rays[k];
+    triangles[n] = views[k].triangle;
+    looks[n] = look;
+    owners[n++] = k;
   }
-  scene_.illuminate(rays, {triangles.data(), n}, {looks.data(), n});
-  for (std::size_t k = 0; k < n; ++k) views[k].look = looks[k];
+  if (n == 0) return;
+  scene_.illuminate({doubtful.data(), n}, {triangles.data(), n}, {looks.data(), n});
+  for (std::size_t k = 0; k < n; ++k) views[owners[k]].look = looks[k];
   statistics_.lit_points += n;
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/pose_table.h"
+#include "simulator/scene/patch_light.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
@@ -60,7 +61,18 @@ class RayTracer {
   /// known. Outlives it.
   void use(std::span<const TriangleId> within_reach) { within_reach_ = within_reach; }
 
+  /// What follows is between `from_s` and `to_s`, within the `outline` of some rays: the lamps of
+  /// what can be seen there are found once for all of it.
+  void use(const std::array<Eigen::Vector3d, 4>& outline, double from_s, double to_s);
+
   [[nodiscard]] bool is_lit() const { return scene_.is_lit(); }
+
+  /// How the lamps light what is seen of a triangle there; nullptr where that is not known, and for
+  /// kNothing. Valid until the next call.
+  [[nodiscard]] const PatchLight* light_of(TriangleId triangle);
+  /// The point of the triangle's plane that a ray meets; NaN where it meets none.
+  [[nodiscard]] Eigen::Vector3d point_at(const Eigen::Vector3d& direction, TriangleId triangle,
+                                         double t_s) const;
 
   /// The visible triangles of at most kPacket rays of one instant.
   void find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
@@ -131,6 +143,17 @@ class RayTracer {
                                double t_s) const;
 
  private:
+  struct KnownLight {
+    TriangleId triangle;
+    const PatchLight* whole;  ///< of the whole triangle
+    bool is_known;            ///< if just for what follows
+    PatchLight patch;
+
+    [[nodiscard]] const PatchLight* light() const {
+      return whole != nullptr ? whole : is_known ? &patch : nullptr;
+    }
+  };
+
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double inside(const Eigen::Vector3d& direction, TriangleId triangle,
                               double t_s) const;
@@ -144,7 +167,8 @@ class RayTracer {
   /// Of the ray `direction` at an instant, at which the camera is `camera`.
   [[nodiscard]] SurfaceLook surface_look(const Eigen::Vector3d& direction, TriangleId triangle,
                                          const CameraFrame& camera, double t_s) const;
-  /// Finds the light for at most kPacket views.
+  /// Finds the light for at most kPacket views: with the triangles between a patch and the lamps
+  /// where these are known, else with shadow rays.
   void illuminate(std::span<const Ray> rays, std::span<RayView> views);
 
   const Scene& scene_;
@@ -152,6 +176,10 @@ class RayTracer {
   const PixelRays* footprints_;
   const PoseTable* poses_ = nullptr;
   std::span<const TriangleId> within_reach_;
+  std::array<SightPyramid, 4> sweep_;  ///< of what follows
+  std::vector<KnownLight> lights_;  ///< of what has been seen in it so far, `light_count_` of them
+  std::size_t light_count_ = 0;
+  bool finds_lights_ = false;
 };
 
 }  // namespace saccade
