@@ -27,7 +27,7 @@ constexpr double kLongSteps = 2;
 
 /// Where no more triangles than this are in reach of a tile, each of its pixels looks when one of
 /// them passes between two steps.
-constexpr std::size_t kMostCandidates = 256;
+constexpr std::size_t kMostCandidates = 512;
 
 /// Nearer than this to an edge a pixel's view may change [px].
 constexpr double kEdge_px = 0.05;
@@ -187,7 +187,7 @@ class LockstepTile final : public EventTile {
     }
     const int middle = (range.from + range.to) / 2;
     TileLook between;
-    is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between);
+    is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between, pixels);
     statistics_.stretches += pixels.count();
     sense_between({range.from, middle}, steps, look, between, pixels);
     sense_between({middle, range.to}, steps, between, next, pixels);
@@ -478,12 +478,30 @@ class LockstepTile final : public EventTile {
   }
 
   void trace(double t_s, TileLook& look) {
+    PixelSet all;
+    trace(t_s, look, all.set());
+  }
+
+  /// Of the other pixels nothing is known then.
+  void trace(double t_s, TileLook& look, const PixelSet& pixels) {
     Triangles triangles;
-    const std::size_t n = directions_.size();
-    for (std::size_t k = 0; k < n; k += RayTracer::kPacket) {
-      const std::size_t some = std::min(RayTracer::kPacket, n - k);
-      tracer_.find_triangles(directions_.subspan(k, some), t_s, {&triangles[k], some});
+    triangles.fill(kNothing);
+    std::array<Eigen::Vector3d, RayTracer::kPacket> rays;
+    std::array<std::size_t, RayTracer::kPacket> owners;
+    std::array<TriangleId, RayTracer::kPacket> seen;
+    std::size_t n = 0;
+    const auto flush = [&] {
+      tracer_.find_triangles({rays.data(), n}, t_s, {seen.data(), n});
+      for (std::size_t m = 0; m < n; ++m) triangles[owners[m]] = seen[m];
+      n = 0;
+    };
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      if (!pixels[k / kRays]) continue;
+      rays[n] = directions_[k];
+      owners[n++] = k;
+      if (n == RayTracer::kPacket) flush();
     }
+    if (n > 0) flush();
     see(triangles, t_s, look);
   }
 
