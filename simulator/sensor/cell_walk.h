@@ -46,16 +46,20 @@ class Borders {
   }
 
   /// The inverse cubic of the part's ends and one step of Newton's method; false where that is not
-  /// enough.
+  /// enough. Where the path is nearly even, it is: the cubic is off by less than a hundredth of the
+  /// excess cubed.
   bool find(const PlaneTrack& track, const TrackPart& part, double u0, double u1) {
     constexpr double kExact_texel = 1e-4;
+    constexpr double kEven = 0.25;
+    constexpr double kFlat_texel = 0.01;
     const double length = u1 - u0;
     const double chord = part.to - part.from;
-    const double per_texel = 1 / chord;
     const double from_excess = chord / (part.from_slope * length) - 1;
     const double to_excess = chord / (part.to_slope * length) - 1;
+    const bool is_even = std::max(std::abs(from_excess), std::abs(to_excess)) < kEven &&
+                         std::abs(track.swell()) < kFlat_texel;
+    const double per_texel = 1 / chord;
     const auto border = static_cast<double>(step_ > 0 ? first_ + 1 : first_);
-    std::array<double, kMost + kLanes> off;
     for (int k = 0; k < count_; k += kLanes)
       for (int lane = 0; lane < kLanes; ++lane) {
         const double value = border + step_ * (k + lane);
@@ -64,12 +68,12 @@ class Borders {
         const double speed = 1 + r * (1 - 3 * s) * from_excess + s * (3 * s - 2) * to_excess;
         double u = u0 + length * s * (1 + r * (r * from_excess - s * to_excess));
         u += (value - track.at(u)) * (speed * length * per_texel);
-        off[static_cast<std::size_t>(k + lane)] = std::abs(value - track.at(u));
         u = u > u0 ? u : u0;
         crossings_[static_cast<std::size_t>(k + lane)] = u < u1 ? u : u1;
       }
-    return std::all_of(off.begin(), off.begin() + count_,
-                       [](double each) { return each <= kExact_texel; });
+    for (int k = 0; k < count_ && !is_even; ++k)
+      if (!(std::abs(border + step_ * k - track.at(crossing(k))) <= kExact_texel)) return false;
+    return true;
   }
 
   std::array<double, kMost + kLanes> crossings_;

@@ -28,6 +28,7 @@ class PlaneTrack {
   [[nodiscard]] double from() const { return from_; }
   [[nodiscard]] double to() const { return to_; }
   [[nodiscard]] double chord() const { return chord_; }
+  [[nodiscard]] double swell() const { return swell_; }
   /// How far the path may be from the true one [texel].
   [[nodiscard]] double error() const { return error_; }
 
