@@ -7,7 +7,7 @@ set grid
 set output "docs/images/sampling_ablation.svg"
 set multiplot layout 2,2 title "Crossings found within 10 us, by cost"
 set logscale x
-set xrange [2:30000]
+set xrange [0.5:30000]
 set yrange [0:1.05]
 set xlabel "rays per event"
 set ylabel "recall at 10 us"
