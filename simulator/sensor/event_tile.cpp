@@ -9,12 +9,10 @@
 #include <span>
 
 #include "core/check.h"
-#include "simulator/sensor/passing.h"
-#include "simulator/sensor/passing_shadow.h"
+#include "simulator/sensor/foresight.h"
 #include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/pixel_signal.h"
 #include "simulator/sensor/plane_signal.h"
-#include "simulator/sensor/staying.h"
 
 namespace saccade {
 namespace {
@@ -24,10 +22,6 @@ constexpr double kMargin_px = 0.5;
 /// Longer steps, in multiples of max_step_px, where visibility is proven and the paths over the
 /// texture alone set the pace.
 constexpr double kLongSteps = 2;
-
-/// Where no more triangles than this are in reach of a tile, each of its pixels looks when one of
-/// them passes between two steps.
-constexpr std::size_t kMostCandidates = 512;
 
 /// Nearer than this to an edge a pixel's view may change [px].
 constexpr double kEdge_px = 0.05;
@@ -50,7 +44,9 @@ class LockstepTile final : public EventTile {
         tolerance_s_(1e-6 * world.options.time_tolerance_us),
         lanes_(directions_.first(tile_.pixels())),
         is_bilinear_(world.options.texture_filter == TextureFilter::kBilinear),
-        tracer_(world.scene, statistics_, footprints(world)) {
+        tracer_(world.scene, statistics_, footprints(world)),
+        foresight_(world.scene, tracer_, outline_, kEdge_px / world.rays.camera().fx,
+                   tolerance_s_) {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
     if (world.noise.on()) noisy_.resize(tile_.pixels());
   }
@@ -141,9 +137,8 @@ class LockstepTile final : public EventTile {
   bool look_ahead(double end_s, const TileMotion& motion) {
     tracer_.use(outline_, t_s_, end_s);
     is_alone_ = !motion.has_objects && sees_one_triangle(end_s);
-    foresees_ = !is_alone_ && tracer_.collect(outline_, motion.farthest_m, t_s_, end_s,
-                                              kMostCandidates, candidates_);
-    if (!foresees_) candidates_.clear();
+    if (is_alone_) foresight_.forget();
+    foresees_ = !is_alone_ && foresight_.collect(motion.farthest_m, t_s_, end_s);
     return is_alone_ || foresees_;
   }
 
@@ -176,8 +171,8 @@ class LockstepTile final : public EventTile {
   /// the two halves of the steps.
   void sense_between(const StepRange& range, const Steps& steps, TileLook& look, TileLook& next,
                      PixelSet pixels) {
-    find_passing(look.t_s, next.t_s);
-    if (kRays == 1 && is_bilinear_ && (is_alone_ || !passing_.empty()))
+    foresight_.narrow(look.t_s, next.t_s);
+    if (kRays == 1 && is_bilinear_ && (is_alone_ || foresight_.has_any()))
       pixels = sense_steady(look, next, pixels);
     if (pixels.none()) return;
     if (range.to - range.from == 1) {
@@ -201,7 +196,7 @@ class LockstepTile final : public EventTile {
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       if (!pixels[i] || look.triangles[i] != next.triangles[i] ||
           !tracer_.is_plane(look.triangles[i]) ||
-          (!is_alone_ && !stays_in_sight(i, look.triangles[i])))
+          (!is_alone_ && !foresight_.stays_in_sight(directions_[i], look.triangles[i])))
         continue;
       if (look.triangles[i] != triangle) {
         triangle = look.triangles[i];
@@ -226,20 +221,6 @@ class LockstepTile final : public EventTile {
     paths.from_s = from_s;
     paths.length_s = to_s - from_s;
     return from.surface();
-  }
-
-  /// Whether a pixel that sees `triangle` before and after a stretch sees nothing else within it.
-  [[nodiscard]] bool stays_in_sight(std::size_t i, TriangleId triangle) const {
-    const double margin = kEdge_px / world_.rays.camera().fx;
-    const auto seen = std::find_if(passing_.begin(), passing_.end(),
-                                   [&](const auto& each) { return each.triangle == triangle; });
-    if (seen == passing_.end() || world_.scene.is_cut_out(triangle)) return false;
-    if (!TriangleSight(*seen, directions_[i], margin).stays_inside()) return false;
-    return std::all_of(passing_.begin(), passing_.end(), [&](const PassingTriangle& other) {
-      if (other.triangle == triangle) return true;
-      const TriangleSight sight(other, directions_[i], margin);
-      return sight.stays_outside() || sight.stays_behind(*seen);
-    });
   }
 
   void sense_step(const TileLook& look, const TileLook& next, const PixelSet& pixels) {
@@ -295,79 +276,16 @@ class LockstepTile final : public EventTile {
     statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
-  /// The candidates that may pass through some ray of the tile between two looks.
-  void find_passing(double from_s, double to_s) {
-    passing_.clear();
-    within_reach_.clear();
-    tracer_.use(std::span<const TriangleId>());
-    if (candidates_.empty()) return;
-    const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
-    std::array<CameraFrame, 3> cameras;
-    for (std::size_t m = 0; m < cameras.size(); ++m) cameras[m] = tracer_.camera_at(times_s[m]);
-    for (const TriangleId candidate : candidates_) {
-      PassingTriangle passing{candidate, {}};
-      for (std::size_t m = 0; m < cameras.size(); ++m)
-        passing.at[m] = world_.scene.triangle_pass(candidate, cameras[m].position,
-                                                   cameras[m].rotation, times_s[m]);
-      if (passing.misses(outline_)) continue;
-      passing_.push_back(passing);
-      within_reach_.push_back(candidate);
-    }
-    tracer_.use(within_reach_);
-  }
-
-  /// Collects the times, in order, at which triangles pass through a ray of a pixel between two
-  /// looks that both see others, or leave it between two that see them; whether there are any.
+  /// Collects the times, in order, at which a pixel must look to see what passes between two looks;
+  /// whether there are any.
   [[nodiscard]] bool any_passes(std::size_t i, const TileLook& look, const TileLook& next) {
     passing_s_.clear();
-    if (passing_.empty()) return false;
-    for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
-      const RayView& lo = look.views[k];
-      const RayView& hi = next.views[k];
-      const bool is_open = lo.look.distance == 0 || hi.look.distance == 0 ||
-                           world_.scene.is_cut_out(lo.triangle) ||
-                           world_.scene.is_cut_out(hi.triangle);
-      const double hidden_beyond = is_open ? std::numeric_limits<double>::infinity()
-                                           : std::max(lo.look.distance, hi.look.distance);
-      for (const PassingTriangle& passing : passing_) {
-        const bool at_lo = passing.triangle == lo.triangle;
-        const bool at_hi = passing.triangle == hi.triangle;
-        if (at_lo && at_hi && passing.leaves(directions_[k]))
-          passing_s_.push_back(0.5 * (look.t_s + next.t_s));
-        const bool is_cut_out = world_.scene.is_cut_out(passing.triangle);
-        if ((at_lo || at_hi) && !is_cut_out) continue;
-        if (passing.is_hidden(directions_[k], hidden_beyond)) continue;
-        passing.find_passages(directions_[k], [&](double begin, double end) {
-          const double from_s = look.t_s + begin * (next.t_s - look.t_s);
-          const double to_s = look.t_s + end * (next.t_s - look.t_s);
-          if (!is_cut_out) {
-            find_sightings(directions_[k], passing.triangle, from_s, to_s);
-            return;
-          }
-          for (const OpaqueStretch& stretch :
-               tracer_.find_holes(directions_[k], passing.triangle, from_s, to_s)) {
-            const bool is_known =
-                (at_lo && stretch.from_s == look.t_s) || (at_hi && stretch.to_s == next.t_s);
-            if (stretch.is_opaque && !is_known)
-              find_sightings(directions_[k], passing.triangle, stretch.from_s, stretch.to_s);
-            if (!stretch.is_opaque && stretch.from_s > look.t_s && stretch.to_s < next.t_s)
-              passing_s_.push_back(0.5 * (stretch.from_s + stretch.to_s));
-          }
-        });
-      }
-    }
+    if (!foresight_.has_any()) return false;
+    for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k)
+      foresight_.find_passes(directions_[k], {look.t_s, look.views[k]}, {next.t_s, next.views[k]},
+                             passing_s_);
     std::sort(passing_s_.begin(), passing_s_.end());
     return !passing_s_.empty();
-  }
-
-  /// Adds to passing_s_ when a triangle is seen within its edges: early, half way or late; what is
-  /// behind it there may come before it.
-  void find_sightings(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
-                      double to_s) {
-    for (const double fraction : {0.02, 0.5, 0.98}) {
-      const double t_s = from_s + fraction * (to_s - from_s);
-      if (tracer_.sees(direction, triangle, t_s)) passing_s_.push_back(t_s);
-    }
   }
 
   /// sense() with looks at passing_s_.
@@ -395,58 +313,15 @@ class LockstepTile final : public EventTile {
     sense(i, pixel_signal, lo, hi);
   }
 
-  /// Collects looks, in order, that tell the times apart between which a pixel sees a shadow or a
-  /// gap of light, on the surfaces at both ends; whether there are any.
+  /// The same for shadows.
   [[nodiscard]] bool any_shadow_passes(std::size_t i, const Sample& lo, const Sample& hi) {
     shadow_s_.clear();
     if (!tracer_.is_lit()) return false;
-    for (std::size_t k = 0; k < kRays; ++k) {
-      const Eigen::Vector3d& direction = directions_[i * kRays + k];
-      const TriangleId from = lo.rays[k].triangle;
-      const TriangleId to = hi.rays[k].triangle;
-      if (from == to) {
-        find_shadows(direction, from, lo.t_s, hi.t_s);
-        continue;
-      }
-      const double change_s =
-          tracer_.change_s(direction, {from, lo.t_s}, {to, hi.t_s}, 0.1 * tolerance_s_);
-      find_shadows(direction, from, lo.t_s, std::isnan(change_s) ? hi.t_s : change_s);
-      find_shadows(direction, to, std::isnan(change_s) ? lo.t_s : change_s, hi.t_s);
-    }
+    for (std::size_t k = 0; k < kRays; ++k)
+      foresight_.find_shadows(directions_[i * kRays + k], {lo.rays[k].triangle, lo.t_s},
+                              {hi.rays[k].triangle, hi.t_s}, shadow_s_);
     std::sort(shadow_s_.begin(), shadow_s_.end());
     return !shadow_s_.empty();
-  }
-
-  /// Adds to shadow_s_ for a ray that may see `triangle`: around each change of light, and in
-  /// between.
-  void find_shadows(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
-                    double to_s) {
-    const PatchLight* light = tracer_.light_of(triangle);
-    if (light == nullptr || light->doubtful.empty()) return;
-    const double length_s = to_s - from_s;
-    if (!(length_s > 2 * tolerance_s_)) return;
-    std::array<Eigen::Vector3d, 3> points;
-    for (std::size_t m = 0; m < points.size(); ++m)
-      points[m] =
-          tracer_.point_at(direction, triangle, from_s + 0.5 * static_cast<double>(m) * length_s) +
-          light->lift;
-    if (!std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); }))
-      return;
-    for (const DoubtfulLamp& lamp : light->doubtful) {
-      double before = -1;  // the last change
-      const auto change = [&](double at) {
-        if (!(at > 0 && at < 1)) return;
-        const double t_s = from_s + at * length_s;
-        if (before >= 0) shadow_s_.push_back(from_s + 0.5 * (before + at) * length_s);
-        shadow_s_.push_back(t_s - 0.45 * tolerance_s_);
-        shadow_s_.push_back(t_s + 0.45 * tolerance_s_);
-        before = at;
-      };
-      shadows_.find(lamp, points, [&](double begin, double end) {
-        change(begin);
-        change(end);
-      });
-    }
   }
 
   /// Whether only a crossing could make the pixel fire between two times.
@@ -558,12 +433,9 @@ class LockstepTile final : public EventTile {
   InverseDepthRange inverse_depths_;
   Triangles triangles_{};  ///< seen at t_s_
   std::array<TilePixel, kTilePixels> pixels_;
-  std::vector<TriangleId> candidates_;    ///< that may come into view within the slab
-  std::vector<PassingTriangle> passing_;  ///< of them, within the step
-  std::vector<TriangleId> within_reach_;  ///< the same
-  std::vector<double> passing_s_;         ///< of the pixel that is at work
-  std::vector<double> shadow_s_;          ///< of a stretch of it
-  PassingShadows shadows_;
+  Foresight foresight_;
+  std::vector<double> passing_s_;  ///< of the pixel that is at work
+  std::vector<double> shadow_s_;   ///< of a stretch of it
   std::vector<NoisyState> noisy_;  ///< one per pixel, or none
 };
 

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "simulator/sensor/passing.h"
+#include "simulator/sensor/passing_shadow.h"
+#include "simulator/sensor/ray_tracer.h"
+
+namespace saccade {
+
+/// What a ray sees at an instant.
+struct RayLook {
+  double t_s;
+  const RayView& view;
+};
+
+/// Knows, from their corners, when triangles and their shadows come before the rays of a tile, as
+/// long as only so many of them are within its reach.
+class Foresight {
+ public:
+  /// Of the rays within `outline`; what is nearer to an edge than `doubt` of the image plane is in
+  /// doubt. All outlive it.
+  Foresight(const Scene& scene, RayTracer& tracer, const std::array<Eigen::Vector3d, 4>& outline,
+            double doubt, double tolerance_s)
+      : scene_(scene),
+        tracer_(tracer),
+        outline_(outline),
+        doubt_(doubt),
+        tolerance_s_(tolerance_s) {}
+
+  /// Takes in what can come into view between two times nearer than `farthest_m`; false, and
+  /// nothing is known then, where that is too much.
+  [[nodiscard]] bool collect(double farthest_m, double from_s, double to_s);
+  /// Nothing is known from now on.
+  void forget() { candidates_.clear(); }
+
+  /// Restricts itself to a part of that time.
+  void narrow(double from_s, double to_s);
+  /// Whether there is anything in reach then.
+  [[nodiscard]] bool has_any() const { return !passing_.empty(); }
+
+  /// Whether a ray that sees `triangle` at the beginning and the end sees nothing else in between.
+  [[nodiscard]] bool stays_in_sight(const Eigen::Vector3d& direction, TriangleId triangle) const;
+
+  /// Adds to `times_s`, in any order, when triangles pass through a ray between two looks that both
+  /// see others, or leave it between two that see them.
+  void find_passes(const Eigen::Vector3d& direction, const RayLook& lo, const RayLook& hi,
+                   std::vector<double>& times_s) const;
+
+  /// Adds to `times_s`, in any order, looks that tell the times apart between which a ray sees a
+  /// shadow or a gap of light, on the surfaces that it sees at both ends.
+  void find_shadows(const Eigen::Vector3d& direction, const Sighting& from, const Sighting& to,
+                    std::vector<double>& times_s);
+
+ private:
+  /// When a triangle is seen within its edges: early, half way or late; what is behind it there may
+  /// come before it.
+  void find_sightings(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
+                      double to_s, std::vector<double>& times_s) const;
+  /// Of a cut-out between two times at which a ray enters and leaves its edges.
+  void find_gaps(const Eigen::Vector3d& direction, TriangleId triangle, double from_s, double to_s,
+                 const RayLook& lo, const RayLook& hi, std::vector<double>& times_s) const;
+  /// Around each change of light, and in between, for a ray that may see `triangle`.
+  void find_shadows_on(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,
+                       double to_s, std::vector<double>& times_s);
+
+  const Scene& scene_;
+  RayTracer& tracer_;
+  const std::array<Eigen::Vector3d, 4>& outline_;
+  double doubt_;
+  double tolerance_s_;
+  std::vector<TriangleId> candidates_;    ///< that may come into view
+  std::vector<PassingTriangle> passing_;  ///< of them, in the part of the time
+  std::vector<TriangleId> within_reach_;  ///< the same
+  PassingShadows shadows_;
+};
+
+}  // namespace saccade
