@@ -8,7 +8,7 @@ set output "docs/images/sampling_ablation.svg"
 set multiplot layout 2,2 title "Crossings found within 10 us, by cost"
 set logscale x
 set xrange [0.5:30000]
-set yrange [0:1.05]
+set yrange [0:1.2]
 set xlabel "rays per event"
 set ylabel "recall at 10 us"
 do for [scene in scenes] {
@@ -26,7 +26,8 @@ set multiplot layout 1,2
 set format x "10^{%T}"
 unset key
 set key bottom right maxrows 4
-set yrange [0.001:1000]
+set yrange [1e-6:1000]
+set format y "10^{%T}"
 set logscale y
 set xrange [1e4:1e7]
 set title "Walls: pixels"
