@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kLeaf = 4;
 /// Below this boxes are halved by number, so that the tree fits the stack that visits it.
 constexpr int kDeepest = 30;
-constexpr std::size_t kMostPyramids = 4;
+constexpr std::size_t kMostPyramids = 5;
 /// Shares of the size of a box that float coordinates are trusted to.
 constexpr double kRounding = 1e-6;
 

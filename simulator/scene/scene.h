@@ -162,7 +162,7 @@ class Scene {
   [[nodiscard]] std::size_t triangle_count() const;
 
   /// Whether nothing but `triangle` can be seen in a pyramid of sight that moves evenly through
-  /// those of `sweep` (at most 4): it is opaque, stands still and fills them, and no other triangle
+  /// those of `sweep` (at most 5): it is opaque, stands still and fills them, and no other triangle
   /// that stands still reaches into them before its plane. For kNothing: whether none is in them at
   /// all.
   [[nodiscard]] bool is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const;

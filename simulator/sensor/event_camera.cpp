@@ -15,9 +15,11 @@
 namespace saccade {
 namespace {
 
-constexpr double kLongestSlab_s = 0.020;
+constexpr double kLongestSlab_s = 0.030;
 constexpr double kShortestSlab_s = 1e-4;
-constexpr double kSlabMotion_px = kTileSize;
+/// Of tiles around one: from there things come into its view within a slab.
+constexpr int kRings = 2;
+constexpr double kSlabMotion_px = kRings * kTileSize;
 /// Where surfaces slide over one another, at more than this share of their motion, one can show for
 /// less than a step behind another's edge; the steps there are shorter.
 constexpr double kOccluding = 0.15;
@@ -25,8 +27,8 @@ constexpr double kOccludedRefinement = 2;
 constexpr std::size_t kTilesPerTask = 16;
 /// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
 constexpr double kTileRadius_px = 2.83;
-/// To the corners of the eight tiles around.
-constexpr double kNeighbourhood_px = 8.49;
+/// To the corners of the tiles around.
+constexpr double kNeighbourhood_px = 1.4143 * (0.5 + kRings) * kTileSize;
 
 }  // namespace
 
@@ -101,9 +103,9 @@ void EventCamera::for_each_tile(const Work& work) {
 
 double EventCamera::bound_speeds(double t_s) {
   // The motion changes little within 5 ms, so that a few looks bound it.
-  std::array<Twist, 5> twists;
+  std::array<Twist, 7> twists;
   for (std::size_t k = 0; k < twists.size(); ++k)
-    twists[k] = camera_twist(motion_.state(t_s + 0.25 * static_cast<double>(k) * kLongestSlab_s));
+    twists[k] = camera_twist(motion_.state(t_s + static_cast<double>(k) * kLongestSlab_s / 6));
   const PinholeCamera& camera = rays_.camera();
   const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlab_s);
   for_each_tile([&](EventTile&, std::size_t i) {
@@ -131,8 +133,8 @@ InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
   const int tx = static_cast<int>(tile) % rays_.tiles_x();
   const int ty = static_cast<int>(tile) / rays_.tiles_x();
   InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
-  for (int y = std::max(0, ty - 1); y <= std::min(ty + 1, rays_.tiles_y() - 1); ++y)
-    for (int x = std::max(0, tx - 1); x <= std::min(tx + 1, rays_.tiles_x() - 1); ++x) {
+  for (int y = std::max(0, ty - kRings); y <= std::min(ty + kRings, rays_.tiles_y() - 1); ++y)
+    for (int x = std::max(0, tx - kRings); x <= std::min(tx + kRings, rays_.tiles_x() - 1); ++x) {
       const InverseDepthRange near =
           tiles_[static_cast<std::size_t>(y * rays_.tiles_x() + x)]->inverse_depths();
       range.low = std::min(range.low, near.low);

@@ -29,8 +29,13 @@ class PlaneTrack {
   [[nodiscard]] double to() const { return to_; }
   [[nodiscard]] double chord() const { return chord_; }
   [[nodiscard]] double swell() const { return swell_; }
-  /// How far the path may be from the true one [texel].
-  [[nodiscard]] double error() const { return error_; }
+  /// How far the path may be from the true one [texel]: by its next term, or, lest that is small by
+  /// chance, by what the terms before it let expect of a swinging motion.
+  [[nodiscard]] double error() const {
+    const double swell = std::abs(swell_);
+    const double bow = std::max(0.125 * std::abs(from_excess_ - to_excess_), swell);
+    return std::max(error_, 0.2 * swell * std::sqrt(swell / std::max(bow, kTiny)));
+  }
 
   [[nodiscard]] double at(double u) const {
     const double v = 1 - u;
@@ -52,6 +57,8 @@ class PlaneTrack {
   }
 
  private:
+  static constexpr double kTiny = 1e-300;
+
   double from_, to_;
   double chord_;
   double from_excess_, to_excess_;

@@ -234,11 +234,14 @@ bool RayTracer::collect(const std::array<Eigen::Vector3d, 4>& outline, double fa
   return scene_.collect(sweep, farthest_m, most, found);
 }
 
-std::array<SightPyramid, 4> RayTracer::sweep_of(const std::array<Eigen::Vector3d, 4>& outline,
-                                                double from_s, double to_s) const {
-  const double step_s = (to_s - from_s) / 3;
-  return {pyramid_at(outline, from_s), pyramid_at(outline, from_s + step_s),
-          pyramid_at(outline, to_s - step_s), pyramid_at(outline, to_s)};
+auto RayTracer::sweep_of(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
+                         double to_s) const -> Sweep {
+  Sweep sweep;
+  const double step_s = (to_s - from_s) / static_cast<double>(sweep.size() - 1);
+  for (std::size_t m = 0; m + 1 < sweep.size(); ++m)
+    sweep[m] = pyramid_at(outline, from_s + static_cast<double>(m) * step_s);
+  sweep.back() = pyramid_at(outline, to_s);
+  return sweep;
 }
 
 SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,

@@ -160,8 +160,10 @@ class RayTracer {
   /// How far from `t_s` the look lies that gives the rates: backwards at the end of the stretch,
   /// where an object may come to rest.
   [[nodiscard]] double difference_s(double t_s) const;
-  [[nodiscard]] std::array<SightPyramid, 4> sweep_of(const std::array<Eigen::Vector3d, 4>& outline,
-                                                     double from_s, double to_s) const;
+  /// Of 30 ms at most: so many that what moves between two of them does so evenly.
+  using Sweep = std::array<SightPyramid, 5>;
+  [[nodiscard]] Sweep sweep_of(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
+                               double to_s) const;
   [[nodiscard]] SightPyramid pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
                                         double t_s) const;
   /// Of the ray `direction` at an instant, at which the camera is `camera`.
@@ -176,7 +178,7 @@ class RayTracer {
   const PixelRays* footprints_;
   const PoseTable* poses_ = nullptr;
   std::span<const TriangleId> within_reach_;
-  std::array<SightPyramid, 4> sweep_;  ///< of what follows
+  Sweep sweep_;                     ///< of what follows
   std::vector<KnownLight> lights_;  ///< of what has been seen in it so far, `light_count_` of them
   std::size_t light_count_ = 0;
   bool finds_lights_ = false;
