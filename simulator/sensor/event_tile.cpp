@@ -17,7 +17,7 @@
 namespace saccade {
 namespace {
 
-/// Around a tile, for what a proof over three instants of a slab leaves out between them [px].
+/// Around a tile, for what a proof over some instants of a slab leaves out between them [px].
 constexpr double kMargin_px = 0.5;
 /// Longer steps, in multiples of max_step_px, where visibility is proven and the paths over the
 /// texture alone set the pace.

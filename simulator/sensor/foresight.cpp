@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulator/sensor/staying.h"
+#include "simulator/sensor/triangle_sight.h"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -124,6 +125,7 @@ class PlaneSignal {
                (course.to() - course.from()) * ((level - shape.first) / (shape.last - shape.first));
     for (int k = 0; k < kSteps; ++k)
       u = std::clamp(u + (level - course.value(u)) / course.slope(u), course.from(), course.to());
+    if (!std::isfinite(u)) return std::nullopt;  // flat where it should rise
     const double reach = 0.4 * tolerance_s_ / path_.length_s;
     const double before = std::max(u - reach, course.from());
     const double after = std::min(u + reach, course.to());
