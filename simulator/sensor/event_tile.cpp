@@ -204,10 +204,11 @@ class LockstepTile final : public EventTile {
       }
       const PlanePath path = paths.path(i);
       if (surface.texture == nullptr || !path.is_exact(tolerance_s_)) continue;
+      pixels.reset(i);
+      if (is_idle(i, look.t_s, next.t_s) && is_certified(i, path, surface, next.t_s)) continue;
       const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
       const bool is_noisy = !noisy_.empty();
       sense(i, plane, plane.from(is_noisy), plane.to(next.t_s, is_noisy));
-      pixels.reset(i);
     }
     return pixels;
   }
@@ -341,6 +342,18 @@ class LockstepTile final : public EventTile {
     }
     sum.scale(1.0 / kRays);
     return pixels_[i].thresholds.certify(sum, next.t_s);
+  }
+
+  /// The same along a path up to `to_s`.
+  [[nodiscard]] bool is_certified(std::size_t i, const PlanePath& path, const SurfaceLook& surface,
+                                  double to_s) const {
+    const Interval x = TrackPart(path.x).values;
+    const Interval y = TrackPart(path.y).values;
+    const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
+    const double low = surface.factor * static_cast<double>(texels.low);
+    const double high = surface.factor * static_cast<double>(texels.high);
+    const Interval silent = pixels_[i].thresholds.radiances(to_s);
+    return low > silent.low && high < silent.high;
   }
 
   void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
