@@ -18,7 +18,7 @@ namespace saccade {
 
 /// How often an unfinished recording is saved.
 struct CheckpointPace {
-  std::chrono::milliseconds shortest{200};  ///< from one checkpoint to the next
+  std::chrono::milliseconds shortest{500};  ///< from one checkpoint to the next
   int time_share = 20;                      ///< saving takes at most 1 / this of the time
 };
 
