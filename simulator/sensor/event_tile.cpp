@@ -26,6 +26,40 @@ constexpr double kLongSteps = 2;
 /// Nearer than this to an edge a pixel's view may change [px].
 constexpr double kEdge_px = 0.05;
 
+/// So far from the change of what a pixel sees it is looked at on both sides [tolerances].
+constexpr double kAroundChange = 0.45;
+
+/// The paths of a tile's pixels over a triangle.
+struct TriangleCourse {
+  TriangleId triangle;
+  SurfaceLook surface;
+  PlanePaths paths;
+};
+
+/// Those over the triangles that a tile has looked at last, for a stretch of time.
+class TilePaths {
+ public:
+  TilePaths(double from, double to) : from_s(from), to_s(to) {}
+
+  [[nodiscard]] const TriangleCourse* find(TriangleId triangle) const {
+    for (std::size_t k = 0; k < std::min(count_, courses_.size()); ++k)
+      if (courses_[k].triangle == triangle) return &courses_[k];
+    return nullptr;
+  }
+  /// In place of the oldest. Leaves those added in the last call as they are.
+  TriangleCourse& add(TriangleId triangle) {
+    TriangleCourse& course = courses_[count_++ % courses_.size()];
+    course.triangle = triangle;
+    return course;
+  }
+
+  const double from_s, to_s;
+
+ private:
+  std::array<TriangleCourse, 4> courses_;
+  std::size_t count_ = 0;
+};
+
 /// A pixel and what it fires at.
 struct TilePixel {
   PixelTraits traits;
@@ -188,40 +222,80 @@ class LockstepTile final : public EventTile {
     sense_between({middle, range.to}, steps, between, next, pixels);
   }
 
-  /// Senses those pixels that see one textured plane all the time. Returns the others.
+  /// Senses those pixels that see one textured plane all the time, or one and then another. Returns
+  /// the others.
   PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
-    TriangleId triangle = kNothing;
-    PlanePaths paths;
-    SurfaceLook surface;
+    TilePaths paths(look.t_s, next.t_s);
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      if (!pixels[i] || look.triangles[i] != next.triangles[i] ||
-          !tracer_.is_plane(look.triangles[i]) ||
-          (!is_alone_ && !foresight_.stays_in_sight(directions_[i], look.triangles[i])))
-        continue;
-      if (look.triangles[i] != triangle) {
-        triangle = look.triangles[i];
-        surface = find_paths(triangle, look.t_s, next.t_s, paths);
-      }
-      const PlanePath path = paths.path(i);
-      if (surface.texture == nullptr || !path.is_exact(tolerance_s_)) continue;
-      pixels.reset(i);
-      if (is_idle(i, look.t_s, next.t_s) && is_certified(i, path, surface, next.t_s)) continue;
-      const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
-      const bool is_noisy = !noisy_.empty();
-      sense(i, plane, plane.from(is_noisy), plane.to(next.t_s, is_noisy));
+      if (!pixels[i]) continue;
+      const TriangleId from = look.triangles[i];
+      const TriangleId to = next.triangles[i];
+      if (!tracer_.is_plane(from) || !tracer_.is_plane(to)) continue;
+      if (from == to ? sense_plane(i, from, paths) : sense_change(i, from, to, paths))
+        pixels.reset(i);
     }
     return pixels;
   }
 
-  /// Returns what there is to see.
-  SurfaceLook find_paths(TriangleId triangle, double from_s, double to_s, PlanePaths& paths) const {
-    const PlaneView from = tracer_.plane_view(triangle, from_s);
-    from.at(lanes_, paths.from);
-    tracer_.plane_view(triangle, 0.5 * (from_s + to_s)).at(lanes_, paths.middle);
-    tracer_.plane_view(triangle, to_s).at(lanes_, paths.to);
-    paths.from_s = from_s;
-    paths.length_s = to_s - from_s;
-    return from.surface();
+  /// Whether a pixel sees just the plane of a triangle; it is sensed then.
+  bool sense_plane(std::size_t i, TriangleId triangle, TilePaths& paths) {
+    if (!is_alone_ && !foresight_.stays_in_sight(directions_[i], triangle)) return false;
+    const TriangleCourse& course = find_course(triangle, paths);
+    const PlanePath path = course.paths.path(i);
+    if (!is_walkable(course, path)) return false;
+    sense_path(i, path, course.surface, paths.from_s, paths.to_s);
+    return true;
+  }
+
+  /// The same for the planes of two, one after the other: around the change on the pixel's general
+  /// signal.
+  bool sense_change(std::size_t i, TriangleId from, TriangleId to, TilePaths& paths) {
+    if (is_alone_) return false;
+    const double change_s =
+        foresight_.change_s(directions_[i], {from, paths.from_s}, {to, paths.to_s});
+    const double before_s = change_s - kAroundChange * tolerance_s_;
+    const double after_s = change_s + kAroundChange * tolerance_s_;
+    if (!(before_s > paths.from_s && after_s < paths.to_s)) return false;
+    const TriangleCourse& first = find_course(from, paths);
+    const PlanePath path = first.paths.path(i);
+    if (!is_walkable(first, path)) return false;
+    const TriangleCourse& second = find_course(to, paths);
+    const PlanePath next_path = second.paths.path(i);
+    if (!is_walkable(second, next_path)) return false;
+    const Signal pixel_signal = signal(i);
+    const Sample before = pixel_signal.look(before_s);
+    const Sample after = pixel_signal.look(after_s);
+    if (before.rays[0].triangle != from || after.rays[0].triangle != to) return false;
+    sense_path(i, path, first.surface, paths.from_s, before_s);
+    sense(i, pixel_signal, before, after);
+    sense_path(i, next_path, second.surface, after_s, paths.to_s);
+    return true;
+  }
+
+  [[nodiscard]] bool is_walkable(const TriangleCourse& course, const PlanePath& path) const {
+    return course.surface.texture != nullptr && path.is_exact(tolerance_s_);
+  }
+
+  void sense_path(std::size_t i, const PlanePath& path, const SurfaceLook& surface, double from_s,
+                  double to_s) {
+    if (is_idle(i, from_s, to_s) && is_certified(i, path, surface, from_s, to_s)) return;
+    const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
+    const bool is_known = !noisy_.empty();
+    sense(i, plane, plane.place(from_s, is_known), plane.place(to_s, is_known));
+  }
+
+  /// The paths over a triangle that is seen.
+  const TriangleCourse& find_course(TriangleId triangle, TilePaths& paths) const {
+    if (const TriangleCourse* known = paths.find(triangle)) return *known;
+    TriangleCourse& course = paths.add(triangle);
+    const PlaneView from = tracer_.plane_view(triangle, paths.from_s);
+    from.at(lanes_, course.paths.from);
+    tracer_.plane_view(triangle, 0.5 * (paths.from_s + paths.to_s)).at(lanes_, course.paths.middle);
+    tracer_.plane_view(triangle, paths.to_s).at(lanes_, course.paths.to);
+    course.paths.from_s = paths.from_s;
+    course.paths.length_s = paths.to_s - paths.from_s;
+    course.surface = from.surface();
+    return course;
   }
 
   void sense_step(const TileLook& look, const TileLook& next, const PixelSet& pixels) {
@@ -344,11 +418,13 @@ class LockstepTile final : public EventTile {
     return pixels_[i].thresholds.certify(sum, next.t_s);
   }
 
-  /// The same along a path up to `to_s`.
+  /// The same along a part of a path.
   [[nodiscard]] bool is_certified(std::size_t i, const PlanePath& path, const SurfaceLook& surface,
-                                  double to_s) const {
-    const Interval x = TrackPart(path.x).values;
-    const Interval y = TrackPart(path.y).values;
+                                  double from_s, double to_s) const {
+    const double from = path.fraction(from_s);
+    const double to = path.fraction(to_s);
+    const Interval x = TrackPart(path.x, from, to).values;
+    const Interval y = TrackPart(path.y, from, to).values;
     const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
     const double low = surface.factor * static_cast<double>(texels.low);
     const double high = surface.factor * static_cast<double>(texels.high);

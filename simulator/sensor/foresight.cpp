@@ -12,6 +12,18 @@ namespace {
 /// With more triangles than this in reach of a tile, looking at each of them costs more than steps.
 constexpr std::size_t kMostCandidates = 512;
 
+/// Whether an edge of one triangle and one of another lie on the same line.
+bool share_edge(const PassingTriangle& a, std::size_t edge_of_a, const PassingTriangle& b,
+                std::size_t edge_of_b) {
+  constexpr double kSame = 1e-9;
+  for (std::size_t m = 0; m < a.at.size(); ++m) {
+    const Eigen::Vector3d& first = a.at[m].edges[edge_of_a];
+    const Eigen::Vector3d& second = b.at[m].edges[edge_of_b];
+    if (first.cross(second).norm() > kSame * first.norm() * second.norm()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool Foresight::collect(double farthest_m, double from_s, double to_s) {
@@ -41,16 +53,42 @@ void Foresight::narrow(double from_s, double to_s) {
   tracer_.use(within_reach_);
 }
 
-bool Foresight::stays_in_sight(const Eigen::Vector3d& direction, TriangleId triangle) const {
-  const auto seen = std::find_if(passing_.begin(), passing_.end(),
-                                 [&](const auto& each) { return each.triangle == triangle; });
-  if (seen == passing_.end() || scene_.is_cut_out(triangle)) return false;
-  if (!TriangleSight(*seen, direction, doubt_).stays_inside()) return false;
+const PassingTriangle* Foresight::find_opaque(TriangleId triangle) const {
+  const auto found = std::find_if(passing_.begin(), passing_.end(),
+                                  [&](const auto& each) { return each.triangle == triangle; });
+  return found == passing_.end() || scene_.is_cut_out(triangle) ? nullptr : &*found;
+}
+
+bool Foresight::are_foremost(const Eigen::Vector3d& direction, const PassingTriangle& a,
+                             const PassingTriangle& b) const {
   return std::all_of(passing_.begin(), passing_.end(), [&](const PassingTriangle& other) {
-    if (other.triangle == triangle) return true;
+    if (&other == &a || &other == &b) return true;
     const TriangleSight sight(other, direction, doubt_);
-    return sight.stays_outside() || sight.stays_behind(*seen);
+    return sight.stays_outside() || (sight.stays_behind(a) && (&a == &b || sight.stays_behind(b)));
   });
+}
+
+bool Foresight::stays_in_sight(const Eigen::Vector3d& direction, TriangleId triangle) const {
+  const PassingTriangle* seen = find_opaque(triangle);
+  return seen != nullptr && TriangleSight(*seen, direction, doubt_).stays_inside() &&
+         are_foremost(direction, *seen, *seen);
+}
+
+double Foresight::change_s(const Eigen::Vector3d& direction, const Sighting& from,
+                           const Sighting& to) const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const PassingTriangle* a = find_opaque(from.triangle);
+  const PassingTriangle* b = find_opaque(to.triangle);
+  if (a == nullptr || b == nullptr) return kUnknown;
+  const TriangleSight before(*a, direction, doubt_);
+  const TriangleSight after(*b, direction, doubt_);
+  const auto out = before.edge_passed(false);
+  const auto in = after.edge_passed(true);
+  const bool is_single = out && in ? share_edge(*a, *out, *b, *in)
+                         : out     ? after.stays_inside() && after.stays_behind(*a)
+                               : in.has_value() && before.stays_inside() && before.stays_behind(*b);
+  if (!is_single || !are_foremost(direction, *a, *b)) return kUnknown;
+  return tracer_.change_s(direction, from, to, 0.1 * tolerance_s_);
 }
 
 void Foresight::find_passes(const Eigen::Vector3d& direction, const RayLook& lo, const RayLook& hi,

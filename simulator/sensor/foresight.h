@@ -44,6 +44,12 @@ class Foresight {
   /// Whether a ray that sees `triangle` at the beginning and the end sees nothing else in between.
   [[nodiscard]] bool stays_in_sight(const Eigen::Vector3d& direction, TriangleId triangle) const;
 
+  /// When the view of a ray changes from the one triangle to the other, to a tenth of the
+  /// tolerance, if it sees them at the beginning and the end and nothing else in between; NaN where
+  /// that is not certain.
+  [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const Sighting& from,
+                                const Sighting& to) const;
+
   /// Adds to `times_s`, in any order, when triangles pass through a ray between two looks that both
   /// see others, or leave it between two that see them.
   void find_passes(const Eigen::Vector3d& direction, const RayLook& lo, const RayLook& hi,
@@ -55,6 +61,11 @@ class Foresight {
                     std::vector<double>& times_s);
 
  private:
+  /// nullptr where it is out of reach, or has holes.
+  [[nodiscard]] const PassingTriangle* find_opaque(TriangleId triangle) const;
+  /// Whether nothing else comes before both triangles in the way of a ray.
+  [[nodiscard]] bool are_foremost(const Eigen::Vector3d& direction, const PassingTriangle& a,
+                                  const PassingTriangle& b) const;
   /// When a triangle is seen within its edges: early, half way or late; what is behind it there may
   /// come before it.
   void find_sightings(const Eigen::Vector3d& direction, TriangleId triangle, double from_s,

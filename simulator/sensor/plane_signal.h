@@ -35,9 +35,11 @@ class PlaneSignal {
 
   [[nodiscard]] double tolerance_s() const { return tolerance_s_; }
 
-  /// The ends of the path. Their log intensities are not known yet, unless `is_known` demands it.
-  [[nodiscard]] Sample from(bool is_known) const { return end(path_.from_s, 0, is_known); }
-  [[nodiscard]] Sample to(double t_s, bool is_known) const { return end(t_s, 1, is_known); }
+  /// A place on the path. Its log intensity is not known yet, unless `is_known` demands it.
+  [[nodiscard]] Sample place(double t_s, bool is_known) const {
+    const Sample unknown{t_s, kUnknown, path_.fraction(t_s)};
+    return is_known ? known(unknown) : unknown;
+  }
 
   [[nodiscard]] Sample at(double t_s, const Sample& /*lo*/, const Sample& /*hi*/) const {
     return sample(t_s, path_.fraction(t_s));
@@ -138,10 +140,6 @@ class PlaneSignal {
     return found;
   }
 
-  [[nodiscard]] Sample end(double t_s, double u, bool is_known) const {
-    const Sample place{t_s, kUnknown, u};
-    return is_known ? known(place) : place;
-  }
   [[nodiscard]] Sample known(const Sample& place) const {
     return std::isnan(place.log_intensity) ? sample(place.t_s, place.u) : place;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "simulator/sensor/passing.h"
 #include "simulator/sensor/texel_path.h"
@@ -33,6 +34,23 @@ class TriangleSight {
       if (!((side_ > 0 ? edge.low : -edge.high) > reach(k))) return false;
     }
     return true;
+  }
+
+  /// The edge through which the ray, inside the others all the time, goes out of the triangle once,
+  /// or with `inwards` comes in.
+  [[nodiscard]] std::optional<std::size_t> edge_passed(bool inwards) const {
+    std::optional<std::size_t> passed;
+    for (std::size_t k = 0; k < 3 && side_ != 0; ++k) {
+      const Interval edge = from_edge(k);
+      if ((side_ > 0 ? edge.low : -edge.high) > reach(k)) continue;
+      const double from = side_ * triangle_.at[0].edges[k].dot(direction_);
+      const double to = side_ * triangle_.at[2].edges[k].dot(direction_);
+      // A parabola between two signs has one root.
+      const bool is_passed = (inwards ? to : from) > reach(k) && (inwards ? from : to) < -reach(k);
+      if (passed || !is_passed) return std::nullopt;
+      passed = k;
+    }
+    return passed;
   }
 
   /// Whether it is outside one of them all the time.
