@@ -99,6 +99,22 @@ std::optional<SightPyramid> pyramid_around(const Eigen::Vector3d& eye,
                       0};
 }
 
+struct Ball {
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+/// Around lifted points, with room.
+Ball ball_around(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& lift) {
+  Ball ball{Eigen::Vector3d::Zero(), 0};
+  for (const Eigen::Vector3d& point : points) ball.centre += point + lift;
+  ball.centre /= static_cast<double>(points.size());
+  for (const Eigen::Vector3d& point : points)
+    ball.radius = std::max(ball.radius, (point + lift - ball.centre).norm());
+  ball.radius *= 1 + 2 * kRoom;
+  return ball;
+}
+
 /// Adds room for the rounding between neighbours to the edges.
 ShadowCaster with_tolerance(ShadowCaster caster, double scale) {
   for (std::size_t k = 0; k < 3; ++k) caster.forms[k].offset += kEdgeTolerance * scale;
@@ -139,10 +155,14 @@ ShadowCaster far_caster(TriangleId triangle, const TriangleSurface& surface,
 LampSet PatchLight::lamps_at(const Eigen::Vector3d& point) const {
   LampSet lamps = proven;
   const Eigen::Vector3d start = point + lift;
-  for (const DoubtfulLamp& lamp : doubtful)
-    if (std::none_of(lamp.casters.begin(), lamp.casters.end(),
-                     [&](const ShadowCaster& caster) { return caster.hides(start); }))
-      lamps |= lamp.bit;
+  for (const DoubtfulLamp& lamp : doubtful) {
+    bool is_lit = true;
+    lamp.lanes.visit_others({start, start, start}, [&](std::size_t i) {
+      is_lit = !lamp.casters[i].hides(start);
+      return is_lit;
+    });
+    if (is_lit) lamps |= lamp.bit;
+  }
   return lamps;
 }
 
@@ -207,26 +227,39 @@ void Scene::State::find_light(const Patch& patch, const WholeLight& whole,
 
 void Scene::State::add_lamp(LampSet bit, const Patch& patch, std::span<const TriangleId> found,
                             PatchLight& light) const {
-  DoubtfulLamp lamp{bit, {}};
+  DoubtfulLamp lamp{bit, {}, {}};
   const LightOptions& options =
       illumination->lights()[static_cast<std::size_t>(std::countr_zero(bit))];
   if (!keep_casters(options, patch, light.lift, found, lamp.casters)) return;
-  if (lamp.casters.empty())
+  if (lamp.casters.empty()) {
     light.proven |= bit;
-  else
-    light.doubtful.push_back(std::move(lamp));
+    return;
+  }
+  double reach_m = 0;
+  for (const Eigen::Vector3d& corner : patch.corners)
+    reach_m = std::max(reach_m, (corner - patch.corners[0]).norm());
+  lamp.lanes = CasterLanes(patch.corners[0] + light.lift, 2 * reach_m);
+  for (const ShadowCaster& caster : lamp.casters) lamp.lanes.add(caster.forms);
+  light.doubtful.push_back(std::move(lamp));
 }
 
 bool Scene::State::keep_casters(const LightOptions& lamp, const Patch& patch,
                                 const Eigen::Vector3d& lift, std::span<const TriangleId> found,
                                 std::vector<ShadowCaster>& casters) const {
   const auto& corners = patch.corners;
+  const Ball ball = ball_around(corners, lift);
   for (const TriangleId triangle : found) {
     const auto caster = shadow_caster(triangle, lamp, corners[0]);
     if (!caster) continue;
     bool covers = true;
     const bool is_beside =
         std::any_of(caster->forms.begin(), caster->forms.end(), [&](const AffineForm& form) {
+          const double middle = form.at(ball.centre);
+          const double reach = ball.radius * form.gradient.norm();
+          if (std::abs(middle) > reach) {
+            covers = covers && middle > 0;
+            return middle < 0;
+          }
           double low = std::numeric_limits<double>::infinity();
           double high = -low;
           for (const Eigen::Vector3d& corner : corners) {

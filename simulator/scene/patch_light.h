@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/caster_lanes.h"
 #include "simulator/scene/occluder_tree.h"
 #include "simulator/scene/scene.h"
 
@@ -29,6 +30,7 @@ struct ShadowCaster {
 struct DoubtfulLamp {
   LampSet bit;
   std::vector<ShadowCaster> casters;
+  CasterLanes lanes;  ///< of them, in their order
 };
 
 /// Which lamps light the points of a patch of a triangle that stands still.

@@ -39,8 +39,8 @@ class EventDelivery {
   TimeNs step_ns_;
   SensedEvents pending_;  ///< found but not yet handed on
   SensorOutput output_;
-  SensedEvents sorted_;   ///< scratch memory
-  SensedEvents ready_;  ///< to be handed to the sink; kept for its memory
+  SensedEvents sorted_;  ///< scratch memory
+  SensedEvents ready_;   ///< to be handed to the sink; kept for its memory
 };
 
 }  // namespace saccade

@@ -161,6 +161,7 @@ class LockstepTile final : public EventTile {
   };
   struct StepRange {
     int from, to;
+    std::size_t depth;  ///< halvings that led to it
   };
 
   [[nodiscard]] static const PixelRays* footprints(const EventWorld& world) {
@@ -188,7 +189,7 @@ class LockstepTile final : public EventTile {
     PixelSet all;
     for (std::size_t i = 0; i < tile_.pixels(); ++i) all.set(i);
     statistics_.stretches += tile_.pixels();
-    sense_between({0, count}, {t_s_, end_s, count}, look, next, all);
+    sense_between({0, count, 0}, {t_s_, end_s, count}, look, next, all);
     remember(next);
   }
 
@@ -205,7 +206,7 @@ class LockstepTile final : public EventTile {
   /// the two halves of the steps.
   void sense_between(const StepRange& range, const Steps& steps, TileLook& look, TileLook& next,
                      PixelSet pixels) {
-    foresight_.narrow(look.t_s, next.t_s);
+    foresight_.narrow(look.t_s, next.t_s, range.depth);
     if (kRays == 1 && is_bilinear_ && (is_alone_ || foresight_.has_any()))
       pixels = sense_steady(look, next, pixels);
     if (pixels.none()) return;
@@ -218,8 +219,8 @@ class LockstepTile final : public EventTile {
     TileLook between;
     is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between, pixels);
     statistics_.stretches += pixels.count();
-    sense_between({range.from, middle}, steps, look, between, pixels);
-    sense_between({middle, range.to}, steps, between, next, pixels);
+    sense_between({range.from, middle, range.depth + 1}, steps, look, between, pixels);
+    sense_between({middle, range.to, range.depth + 1}, steps, between, next, pixels);
   }
 
   /// Senses those pixels that see one textured plane all the time, or one and then another. Returns
@@ -356,6 +357,7 @@ class LockstepTile final : public EventTile {
   [[nodiscard]] bool any_passes(std::size_t i, const TileLook& look, const TileLook& next) {
     passing_s_.clear();
     if (!foresight_.has_any()) return false;
+    foresight_.turn_to(directions_.subspan(i * kRays, kRays));
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k)
       foresight_.find_passes(directions_[k], {look.t_s, look.views[k]}, {next.t_s, next.views[k]},
                              passing_s_);

@@ -10,7 +10,7 @@ namespace saccade {
 namespace {
 
 /// With more triangles than this in reach of a tile, looking at each of them costs more than steps.
-constexpr std::size_t kMostCandidates = 512;
+constexpr std::size_t kMostCandidates = 4096;
 
 /// Whether an edge of one triangle and one of another lie on the same line.
 bool share_edge(const PassingTriangle& a, std::size_t edge_of_a, const PassingTriangle& b,
@@ -33,24 +33,42 @@ bool Foresight::collect(double farthest_m, double from_s, double to_s) {
   return all;
 }
 
-void Foresight::narrow(double from_s, double to_s) {
+void Foresight::narrow(double from_s, double to_s, std::size_t depth) {
   passing_.clear();
-  within_reach_.clear();
+  outside_.clear();
   tracer_.use(std::span<const TriangleId>());
   if (candidates_.empty()) return;
+  if (within_reach_.size() <= depth) within_reach_.resize(depth + 1);
+  const std::vector<TriangleId>& before = depth == 0 ? candidates_ : within_reach_[depth - 1];
+  std::vector<TriangleId>& now = within_reach_[depth];
+  now.clear();
   const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
   std::array<CameraFrame, 3> cameras;
   for (std::size_t m = 0; m < cameras.size(); ++m) cameras[m] = tracer_.camera_at(times_s[m]);
-  for (const TriangleId candidate : candidates_) {
+  for (const TriangleId candidate : before) {
     PassingTriangle passing{candidate, {}};
     for (std::size_t m = 0; m < cameras.size(); ++m)
       passing.at[m] =
           scene_.triangle_pass(candidate, cameras[m].position, cameras[m].rotation, times_s[m]);
     if (passing.misses(outline_)) continue;
     passing_.push_back(passing);
-    within_reach_.push_back(candidate);
+    outside_.add(passing);
+    now.push_back(candidate);
   }
-  tracer_.use(within_reach_);
+  tracer_.use(now);
+}
+
+void Foresight::turn_to(std::span<const Eigen::Vector3d> directions) {
+  nearby_.clear();
+  nearby_ids_.clear();
+  for (const Eigen::Vector3d& direction : directions)
+    outside_.visit_others(direction, [&](std::size_t k) { nearby_.push_back(k); });
+  if (directions.size() > 1) {
+    std::sort(nearby_.begin(), nearby_.end());
+    nearby_.erase(std::unique(nearby_.begin(), nearby_.end()), nearby_.end());
+  }
+  for (const std::size_t k : nearby_) nearby_ids_.push_back(passing_[k].triangle);
+  tracer_.use(nearby_ids_);
 }
 
 const PassingTriangle* Foresight::find_opaque(TriangleId triangle) const {
@@ -98,7 +116,8 @@ void Foresight::find_passes(const Eigen::Vector3d& direction, const RayLook& lo,
   const double hidden_beyond = is_open ? std::numeric_limits<double>::infinity()
                                        : std::max(lo.view.look.distance, hi.view.look.distance);
   const double length_s = hi.t_s - lo.t_s;
-  for (const PassingTriangle& passing : passing_) {
+  for (const std::size_t index : nearby_) {
+    const PassingTriangle& passing = passing_[index];
     const bool at_lo = passing.triangle == lo.view.triangle;
     const bool at_hi = passing.triangle == hi.view.triangle;
     if (at_lo && at_hi && passing.leaves(direction)) times_s.push_back(lo.t_s + 0.5 * length_s);
@@ -133,7 +152,7 @@ void Foresight::find_sightings(const Eigen::Vector3d& direction, TriangleId tria
                                double to_s, std::vector<double>& times_s) const {
   for (const double fraction : {0.02, 0.5, 0.98}) {
     const double t_s = from_s + fraction * (to_s - from_s);
-    if (tracer_.sees(direction, triangle, t_s)) times_s.push_back(t_s);
+    if (tracer_.sees(direction, triangle, nearby_ids_, t_s)) times_s.push_back(t_s);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "simulator/sensor/outside_test.h"
 #include "simulator/sensor/passing.h"
 #include "simulator/sensor/passing_shadow.h"
 #include "simulator/sensor/ray_tracer.h"
@@ -28,7 +29,8 @@ class Foresight {
         tracer_(tracer),
         outline_(outline),
         doubt_(doubt),
-        tolerance_s_(tolerance_s) {}
+        tolerance_s_(tolerance_s),
+        outside_(doubt) {}
 
   /// Takes in what can come into view between two times nearer than `farthest_m`; false, and
   /// nothing is known then, where that is too much.
@@ -36,8 +38,9 @@ class Foresight {
   /// Nothing is known from now on.
   void forget() { candidates_.clear(); }
 
-  /// Restricts itself to a part of that time.
-  void narrow(double from_s, double to_s);
+  /// Restricts itself to a part of that time: at `depth` 0 of all of it, else of the part that was
+  /// last set at the depth before.
+  void narrow(double from_s, double to_s, std::size_t depth);
   /// Whether there is anything in reach then.
   [[nodiscard]] bool has_any() const { return !passing_.empty(); }
 
@@ -49,6 +52,9 @@ class Foresight {
   /// that is not certain.
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const Sighting& from,
                                 const Sighting& to) const;
+
+  /// The rays that the following is asked about, until the next part of the time.
+  void turn_to(std::span<const Eigen::Vector3d> directions);
 
   /// Adds to `times_s`, in any order, when triangles pass through a ray between two looks that both
   /// see others, or leave it between two that see them.
@@ -82,9 +88,12 @@ class Foresight {
   const std::array<Eigen::Vector3d, 4>& outline_;
   double doubt_;
   double tolerance_s_;
-  std::vector<TriangleId> candidates_;    ///< that may come into view
-  std::vector<PassingTriangle> passing_;  ///< of them, in the part of the time
-  std::vector<TriangleId> within_reach_;  ///< the same
+  std::vector<TriangleId> candidates_;                 ///< that may come into view
+  std::vector<PassingTriangle> passing_;               ///< of them, in the part of the time
+  OutsideTest outside_;                                ///< of passing_
+  std::vector<std::vector<TriangleId>> within_reach_;  ///< the same, at each depth
+  std::vector<std::size_t> nearby_;     ///< of them, what the rays that it is turned to can meet
+  std::vector<TriangleId> nearby_ids_;  ///< the same
   PassingShadows shadows_;
 };
 

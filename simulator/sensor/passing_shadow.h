@@ -23,17 +23,14 @@ class PassingShadows {
             const Use& use) {
     constexpr double kNeighbours = 1e-6;
     hidden_.clear();
-    for (const ShadowCaster& caster : lamp.casters) {
+    lamp.lanes.visit_others(points, [&](std::size_t i) {
       std::array<std::array<double, 3>, 4> forms;
-      bool is_beside = false;
-      for (std::size_t k = 0; k < forms.size() && !is_beside; ++k) {
-        for (std::size_t m = 0; m < points.size(); ++m) forms[k][m] = caster.forms[k].at(points[m]);
-        const auto quarters = parabola_quarters(forms[k]);
-        is_beside = std::all_of(quarters.begin(), quarters.end(), [](double x) { return x < 0; });
-      }
-      if (is_beside) continue;
+      for (std::size_t k = 0; k < forms.size(); ++k)
+        for (std::size_t m = 0; m < points.size(); ++m)
+          forms[k][m] = lamp.casters[i].forms[k].at(points[m]);
       find_stretches(forms, [&](double begin, double end) { hidden_.emplace_back(begin, end); });
-    }
+      return true;
+    });
     std::sort(hidden_.begin(), hidden_.end());
     for (std::size_t k = 0; k < hidden_.size();) {
       auto [begin, end] = hidden_[k];

@@ -18,7 +18,7 @@ constexpr double kAtEdge = 1e-3;
 constexpr double kSoon_s = 1e-7;
 
 /// Where more triangles than this may hide a lamp from a patch, shadow rays are quicker.
-constexpr std::size_t kMostCasters = 192;
+constexpr std::size_t kMostCasters = 8192;
 /// Of patches whose light is found in one go.
 constexpr std::size_t kMostLights = 256;
 
@@ -284,8 +284,9 @@ std::vector<OpaqueStretch> RayTracer::find_holes(const Eigen::Vector3d& directio
   return stretches;
 }
 
-bool RayTracer::sees(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {
-  return scene_.nearest_of(within_reach_, ray_at(direction, t_s)) == triangle;
+bool RayTracer::sees(const Eigen::Vector3d& direction, TriangleId triangle,
+                     std::span<const TriangleId> among, double t_s) const {
+  return scene_.nearest_of(among, ray_at(direction, t_s)) == triangle;
 }
 
 double RayTracer::inside(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {

@@ -114,8 +114,9 @@ class RayTracer {
                                                       TriangleId triangle, double from_s,
                                                       double to_s) const;
 
-  /// Whether the ray meets `triangle` first of those within reach.
-  [[nodiscard]] bool sees(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const;
+  /// Whether the ray meets `triangle` first of some.
+  [[nodiscard]] bool sees(const Eigen::Vector3d& direction, TriangleId triangle,
+                          std::span<const TriangleId> among, double t_s) const;
 
   [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
 
