@@ -2,6 +2,7 @@
 find_package(Eigen3 3.4 REQUIRED)
 find_package(SlimOpenCV REQUIRED)
 find_package(OpenEXR REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)

@@ -14,7 +14,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31474f4c44434153;  // of this layout
+constexpr std::uint64_t kMagic = 0x32474f4c44434153;  // of this layout
 
 /// An event in the journal.
 struct Packed {

@@ -20,11 +20,11 @@ namespace saccade {
 /// L = ln(eps + I) rises to L_ref + C_on and OFF when it falls to L_ref - C_off, L_ref moves by
 /// exactly that threshold, and the time is that of the crossing of the continuous signal.
 ///
-/// Time advances in slabs of at most 10 ms and 4 px of image motion. Within a slab every tile of
-/// 4 x 4 pixels takes its own number of equal steps, so that no point seen by it or by the eight
-/// tiles around it moves more than `max_step_px` per step: what a fast, thin occluder can reach
-/// within the slab is in those tiles. Tiles run in parallel and depend on one another only through
-/// the state at the slab's start, so the stream is the same for any number of threads.
+/// Time advances in slabs of at most 30 ms and 8 px of image motion. What is in a tile of 4 x 4
+/// pixels or in the 24 around it, two rings, is all that gets before its rays within a slab; it
+/// bounds how far points move there. Every tile divides the slab as far as its pixels need, down to
+/// equal steps of `max_step_px`. Tiles run in parallel and depend on one another only through the
+/// state at the slab's start, so the stream is the same for any number of threads.
 class EventCamera {
  public:
   /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,9 +9,10 @@
 
 #include "core/check.h"
 #include "simulator/sensor/foresight.h"
-#include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/pixel_signal.h"
 #include "simulator/sensor/plane_signal.h"
+#include "simulator/sensor/tile_look.h"
+#include "simulator/sensor/tile_paths.h"
 
 namespace saccade {
 namespace {
@@ -29,77 +29,28 @@ constexpr double kEdge_px = 0.05;
 /// So far from the change of what a pixel sees it is looked at on both sides [tolerances].
 constexpr double kAroundChange = 0.45;
 
-/// The paths of a tile's pixels over a triangle.
-struct TriangleCourse {
-  TriangleId triangle;
-  SurfaceLook surface;
-  PlanePaths paths;
-};
-
-/// Those over the triangles that a tile has looked at last, for a stretch of time.
-class TilePaths {
- public:
-  TilePaths(double from, double to) : from_s(from), to_s(to) {}
-
-  [[nodiscard]] const TriangleCourse* find(TriangleId triangle) const {
-    for (std::size_t k = 0; k < std::min(count_, courses_.size()); ++k)
-      if (courses_[k].triangle == triangle) return &courses_[k];
-    return nullptr;
-  }
-  /// In place of the oldest. Leaves those added in the last call as they are.
-  TriangleCourse& add(TriangleId triangle) {
-    TriangleCourse& course = courses_[count_++ % courses_.size()];
-    course.triangle = triangle;
-    return course;
-  }
-
-  const double from_s, to_s;
-
- private:
-  std::array<TriangleCourse, 4> courses_;
-  std::size_t count_ = 0;
-};
-
-/// A pixel and what it fires at.
-struct TilePixel {
-  PixelTraits traits;
-  PixelState state;
-  Thresholds thresholds;
-};
-
 template <std::size_t kRays>
 class LockstepTile final : public EventTile {
  public:
   LockstepTile(const EventWorld& world, std::size_t index)
-      : world_(world),
-        tile_(world.rays.tile(index)),
+      : EventTile(PixelBank(world.options, world.noise, world.seed, world.rays.tile(index))),
+        world_(world),
         directions_(world.rays.rays(index)),
         outline_(world.rays.outline(index, kMargin_px)),
         tolerance_s_(1e-6 * world.options.time_tolerance_us),
-        lanes_(directions_.first(tile_.pixels())),
+        lanes_(directions_.first(pixels_.size())),
         is_bilinear_(world.options.texture_filter == TextureFilter::kBilinear),
         tracer_(world.scene, statistics_, footprints(world)),
         foresight_(world.scene, tracer_, outline_, kEdge_px / world.rays.camera().fx,
-                   tolerance_s_) {
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) pixels_[i].traits = traits(i);
-    if (world.noise.on()) noisy_.resize(tile_.pixels());
-  }
+                   tolerance_s_) {}
 
   void start(const PoseTable& poses, double t_s) override {
     tracer_.use(poses);
     TileLook look;
-    trace(t_s, look);
-    add_views(look);
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-      const double level = sample(look, i).log_intensity;
-      TilePixel& pixel = pixels_[i];
-      pixel.state = start_pixel(pixel.traits, level, t_s);
-      update_thresholds(pixel);
-      if (!noisy_.empty())
-        noisy_[i] = {NoisyState::kNotBlind,
-                     world_.noise.spontaneous.start(pixel.traits.x, pixel.traits.y, t_s),
-                     PhotoreceptorFilter::settled(level)};
-    }
+    look.trace(tracer_, directions_, t_s, all_pixels());
+    look.add_views(tracer_, directions_);
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+      pixels_.start(i, sample(look, i).log_intensity, t_s);
     remember(look);
   }
 
@@ -126,8 +77,7 @@ class LockstepTile final : public EventTile {
     state.value(inverse_depths_.low);
     state.value(inverse_depths_.high);
     state.value(triangles_);
-    for (const TilePixel& pixel : pixels_) state.value(pixel.state);
-    state.values(noisy_);
+    pixels_.save(state);
     state.value(statistics_);
   }
 
@@ -136,19 +86,15 @@ class LockstepTile final : public EventTile {
     state.value(inverse_depths_.low);
     state.value(inverse_depths_.high);
     state.value(triangles_);
-    for (TilePixel& pixel : pixels_) {
-      state.value(pixel.state);
-      update_thresholds(pixel);
-    }
-    state.values(noisy_);
+    pixels_.load(state);
     state.value(statistics_);
   }
 
  private:
   using Signal = PixelSignal<kRays>;
   using Sample = PixelSample<kRays>;
-  using Triangles = std::array<TriangleId, kTilePixels * kRays>;
-  using PixelSet = std::bitset<kTilePixels>;
+  using TileLook = saccade::TileLook<kRays>;
+  using Triangles = typename TileLook::Triangles;
 
   /// Equal steps through a slab.
   struct Steps {
@@ -184,23 +130,18 @@ class LockstepTile final : public EventTile {
         std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
     TileLook look, next;
     // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
-    see(triangles_, t_s_, look);
-    is_alone_ ? see(triangles_, end_s, next) : trace(end_s, next);
-    PixelSet all;
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) all.set(i);
-    statistics_.stretches += tile_.pixels();
-    sense_between({0, count, 0}, {t_s_, end_s, count}, look, next, all);
+    look.see(triangles_, t_s_);
+    look_at(end_s, next, all_pixels());
+    sense_between({0, count, 0}, {t_s_, end_s, count}, look, next, all_pixels());
     remember(next);
   }
 
-  /// What the rays of the tile see at an instant: which triangles, and, where it is asked for, what
-  /// of them.
-  struct TileLook {
-    double t_s;
-    Triangles triangles;
-    bool has_views;
-    std::array<RayView, kTilePixels * kRays> views;  ///< pixel by pixel
-  };
+  [[nodiscard]] PixelSet all_pixels() const { return (1ULL << pixels_.size()) - 1; }
+
+  /// With rays, if it takes any.
+  void look_at(double t_s, TileLook& look, const PixelSet& pixels) {
+    is_alone_ ? look.see(triangles_, t_s) : look.trace(tracer_, directions_, t_s, pixels);
+  }
 
   /// Senses `pixels` between two looks: at once where they see one surface all the time, else in
   /// the two halves of the steps.
@@ -211,14 +152,13 @@ class LockstepTile final : public EventTile {
       pixels = sense_steady(look, next, pixels);
     if (pixels.none()) return;
     if (range.to - range.from == 1) {
-      add_views(look);
-      add_views(next);
+      look.add_views(tracer_, directions_);
+      next.add_views(tracer_, directions_);
       return sense_step(look, next, pixels);
     }
     const int middle = (range.from + range.to) / 2;
     TileLook between;
-    is_alone_ ? see(triangles_, steps(middle), between) : trace(steps(middle), between, pixels);
-    statistics_.stretches += pixels.count();
+    look_at(steps(middle), between, pixels);
     sense_between({range.from, middle, range.depth + 1}, steps, look, between, pixels);
     sense_between({middle, range.to, range.depth + 1}, steps, between, next, pixels);
   }
@@ -226,8 +166,8 @@ class LockstepTile final : public EventTile {
   /// Senses those pixels that see one textured plane all the time, or one and then another. Returns
   /// the others.
   PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
-    TilePaths paths(look.t_s, next.t_s);
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    TilePaths paths(tracer_, lanes_, look.t_s, next.t_s);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
       if (!pixels[i]) continue;
       const TriangleId from = look.triangles[i];
       const TriangleId to = next.triangles[i];
@@ -241,7 +181,7 @@ class LockstepTile final : public EventTile {
   /// Whether a pixel sees just the plane of a triangle; it is sensed then.
   bool sense_plane(std::size_t i, TriangleId triangle, TilePaths& paths) {
     if (!is_alone_ && !foresight_.stays_in_sight(directions_[i], triangle)) return false;
-    const TriangleCourse& course = find_course(triangle, paths);
+    const TriangleCourse& course = paths.over(triangle);
     const PlanePath path = course.paths.path(i);
     if (!is_walkable(course, path)) return false;
     sense_path(i, path, course.surface, paths.from_s, paths.to_s);
@@ -257,10 +197,10 @@ class LockstepTile final : public EventTile {
     const double before_s = change_s - kAroundChange * tolerance_s_;
     const double after_s = change_s + kAroundChange * tolerance_s_;
     if (!(before_s > paths.from_s && after_s < paths.to_s)) return false;
-    const TriangleCourse& first = find_course(from, paths);
+    const TriangleCourse& first = paths.over(from);
     const PlanePath path = first.paths.path(i);
     if (!is_walkable(first, path)) return false;
-    const TriangleCourse& second = find_course(to, paths);
+    const TriangleCourse& second = paths.over(to);
     const PlanePath next_path = second.paths.path(i);
     if (!is_walkable(second, next_path)) return false;
     const Signal pixel_signal = signal(i);
@@ -279,48 +219,21 @@ class LockstepTile final : public EventTile {
 
   void sense_path(std::size_t i, const PlanePath& path, const SurfaceLook& surface, double from_s,
                   double to_s) {
-    if (is_idle(i, from_s, to_s) && is_certified(i, path, surface, from_s, to_s)) return;
+    if (pixels_.is_idle(i, from_s, to_s) && is_certified(i, path, surface, from_s, to_s)) return;
     const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
-    const bool is_known = !noisy_.empty();
+    const bool is_known = pixels_.is_noisy();
     sense(i, plane, plane.place(from_s, is_known), plane.place(to_s, is_known));
   }
 
-  /// The paths over a triangle that is seen.
-  const TriangleCourse& find_course(TriangleId triangle, TilePaths& paths) const {
-    if (const TriangleCourse* known = paths.find(triangle)) return *known;
-    TriangleCourse& course = paths.add(triangle);
-    const PlaneView from = tracer_.plane_view(triangle, paths.from_s);
-    from.at(lanes_, course.paths.from);
-    tracer_.plane_view(triangle, 0.5 * (paths.from_s + paths.to_s)).at(lanes_, course.paths.middle);
-    tracer_.plane_view(triangle, paths.to_s).at(lanes_, course.paths.to);
-    course.paths.from_s = paths.from_s;
-    course.paths.length_s = paths.to_s - paths.from_s;
-    course.surface = from.surface();
-    return course;
-  }
-
   void sense_step(const TileLook& look, const TileLook& next, const PixelSet& pixels) {
-    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
       if (!pixels[i]) continue;
       if (any_passes(i, look, next))
         sense_passing(i, sample(look, i), sample(next, i));
-      else if (is_idle(i, look.t_s, next.t_s) && is_certified(i, look, next) &&
-               !any_shadow_passes(i, sample(look, i), sample(next, i)))
-        ++statistics_.certified;
-      else
+      else if (!pixels_.is_idle(i, look.t_s, next.t_s) || !is_certified(i, look, next) ||
+               any_shadow_passes(i, sample(look, i), sample(next, i)))
         sense_lit(i, signal(i), sample(look, i), sample(next, i));
     }
-  }
-
-  [[nodiscard]] PixelTraits traits(std::size_t i) const {
-    const auto x = static_cast<std::uint16_t>(tile_.x(i));
-    const auto y = static_cast<std::uint16_t>(tile_.y(i));
-    return pixel_traits(world_.options, world_.seed, x, y);
-  }
-
-  void update_thresholds(TilePixel& pixel) const {
-    pixel.thresholds = Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s,
-                                  world_.options.log_eps, pixel.state.reference_s);
   }
 
   [[nodiscard]] Signal signal(std::size_t i) {
@@ -329,26 +242,13 @@ class LockstepTile final : public EventTile {
   }
 
   [[nodiscard]] Sample sample(const TileLook& look, std::size_t i) const {
-    Sample sample;
-    sample.t_s = look.t_s;
-    for (std::size_t k = 0; k < kRays; ++k) sample.rays[k] = look.views[i * kRays + k];
-    sample.log_intensity = log_intensity(sample.radiance(), world_.options.log_eps);
-    return sample;
+    return look.sample(i, world_.options.log_eps);
   }
 
   template <class AnySignal, class AnySample>
   void sense(std::size_t i, const AnySignal& pixel_signal, const AnySample& lo,
              const AnySample& hi) {
-    TilePixel& pixel = pixels_[i];
-    const auto emit = [&](double t_s, int polarity, EventOrigin origin, double log_intensity) {
-      record(pixel.traits, t_s, polarity, origin, log_intensity);
-    };
-    PixelSensor sensor(pixel_signal, pixel.traits, world_.options.log_eps, pixel.state,
-                       pixel.thresholds, emit);
-    const double width_s = noisy_.empty() ? sensor.sense(lo, hi)
-                           : world_.noise.filter.on()
-                               ? sensor.sense_filtered(lo, hi, world_.noise, noisy_[i])
-                               : sensor.sense(lo, hi, world_.noise, noisy_[i]);
+    const double width_s = pixels_.sense(i, pixel_signal, lo, hi);
     statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
@@ -401,12 +301,6 @@ class LockstepTile final : public EventTile {
     return !shadow_s_.empty();
   }
 
-  /// Whether only a crossing could make the pixel fire between two times.
-  [[nodiscard]] bool is_idle(std::size_t i, double from_s, double next_s) const {
-    return noisy_.empty() || (!world_.noise.filter.on() && noisy_[i].blind_until_s < from_s &&
-                              noisy_[i].spontaneous.next_s() >= next_s);
-  }
-
   /// Whether the bounds of the radiance prove that nothing crosses.
   [[nodiscard]] bool is_certified(std::size_t i, const TileLook& look, const TileLook& next) const {
     RadianceRange sum{0, 0, 0, 0};
@@ -417,7 +311,7 @@ class LockstepTile final : public EventTile {
       sum.add(radiance_range(from, to, next.t_s - look.t_s));
     }
     sum.scale(1.0 / kRays);
-    return pixels_[i].thresholds.certify(sum, next.t_s);
+    return pixels_.thresholds(i).certify(sum, next.t_s);
   }
 
   /// The same along a part of a path.
@@ -430,59 +324,8 @@ class LockstepTile final : public EventTile {
     const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
     const double low = surface.factor * static_cast<double>(texels.low);
     const double high = surface.factor * static_cast<double>(texels.high);
-    const Interval silent = pixels_[i].thresholds.radiances(to_s);
+    const Interval silent = pixels_.thresholds(i).radiances(to_s);
     return low > silent.low && high < silent.high;
-  }
-
-  void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
-              double log_intensity) {
-    const double unit_ns = static_cast<double>(world_.options.timestamp_step_ns());
-    const auto units = static_cast<TimeNs>(std::llround(t_s * 1e9 / unit_ns));
-    events_.push_back({units * world_.options.timestamp_step_ns(), pixel.x, pixel.y,
-                       static_cast<std::int8_t>(polarity), origin,
-                       static_cast<float>(log_intensity)});
-  }
-
-  void trace(double t_s, TileLook& look) {
-    PixelSet all;
-    trace(t_s, look, all.set());
-  }
-
-  /// Of the other pixels nothing is known then.
-  void trace(double t_s, TileLook& look, const PixelSet& pixels) {
-    Triangles triangles;
-    triangles.fill(kNothing);
-    std::array<Eigen::Vector3d, RayTracer::kPacket> rays;
-    std::array<std::size_t, RayTracer::kPacket> owners;
-    std::array<TriangleId, RayTracer::kPacket> seen;
-    std::size_t n = 0;
-    const auto flush = [&] {
-      tracer_.find_triangles({rays.data(), n}, t_s, {seen.data(), n});
-      for (std::size_t m = 0; m < n; ++m) triangles[owners[m]] = seen[m];
-      n = 0;
-    };
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-      if (!pixels[k / kRays]) continue;
-      rays[n] = directions_[k];
-      owners[n++] = k;
-      if (n == RayTracer::kPacket) flush();
-    }
-    if (n > 0) flush();
-    see(triangles, t_s, look);
-  }
-
-  /// The visible triangles are known.
-  void see(const Triangles& triangles, double t_s, TileLook& look) {
-    look.t_s = t_s;
-    look.triangles = triangles;
-    look.has_views = false;
-  }
-
-  void add_views(TileLook& look) {
-    if (look.has_views) return;
-    look.has_views = true;
-    const std::size_t n = directions_.size();
-    tracer_.see(directions_, {look.triangles.data(), n}, look.t_s, {look.views.data(), n});
   }
 
   [[nodiscard]] bool are_equal(const Triangles& triangles) const {
@@ -511,7 +354,6 @@ class LockstepTile final : public EventTile {
   }
 
   const EventWorld& world_;
-  Tile tile_;
   std::span<const Eigen::Vector3d> directions_;
   std::array<Eigen::Vector3d, 4> outline_;
   double tolerance_s_;
@@ -523,11 +365,9 @@ class LockstepTile final : public EventTile {
   double t_s_ = 0;         ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;
   Triangles triangles_{};  ///< seen at t_s_
-  std::array<TilePixel, kTilePixels> pixels_;
   Foresight foresight_;
   std::vector<double> passing_s_;  ///< of the pixel that is at work
   std::vector<double> shadow_s_;   ///< of a stretch of it
-  std::vector<NoisyState> noisy_;  ///< one per pixel, or none
 };
 
 }  // namespace

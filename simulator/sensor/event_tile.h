@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <utility>
 
 #include "core/event.h"
 #include "simulator/motion/pose_table.h"
@@ -10,6 +10,7 @@
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/noise/state_bytes.h"
+#include "simulator/sensor/pixel_bank.h"
 #include "simulator/sensor/pixel_noise.h"
 #include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/ray_tracer.h"
@@ -40,18 +41,20 @@ struct TileMotion {
   bool has_objects = false;  ///< that move may come into view
 };
 
-/// 4 x 4 event pixels that are traced in lockstep, one packet of rays per step. Where the bounds of
-/// a pixel's radiance over a step prove that nothing can have fired, nothing more is done; else its
-/// signal is searched alone, on the surfaces that both ends of the step see.
+/// 4 x 4 event pixels. Those that provably see one plane all the time are sensed along their exact
+/// path over its texture, without rays. The others are traced in lockstep, one packet of rays per
+/// step: where the bounds of a pixel's radiance over a step prove that nothing can have fired,
+/// nothing more is done; else its signal is searched alone, on the surfaces that both ends of the
+/// step see.
 class EventTile {
  public:
   virtual ~EventTile() = default;
 
   /// Takes the references at time `t_s`, which the poses cover.
   virtual void start(const PoseTable& poses, double t_s) = 0;
-  /// Senses to the end of the slab, in equal steps of at most `max_step_px`. Where a single
-  /// triangle provably fills the tile's surroundings all the time, no ray is traced and the steps
-  /// are longer.
+  /// Senses to the end of the slab, divided down to equal steps of at most `max_step_px` for the
+  /// pixels that need it. Where a single triangle provably fills the tile's surroundings all the
+  /// time, no ray is traced and the steps are longer.
   virtual void advance(const Slab& slab, const TileMotion& motion) = 0;
 
   /// Of the surfaces that the pixels see now.
@@ -64,14 +67,13 @@ class EventTile {
 
   /// Moves out the events found since the last call, step by step and pixel by pixel; times rounded
   /// to the unit.
-  void take_events(SensedEvents& out) {
-    out.insert(out.end(), events_.begin(), events_.end());
-    events_.clear();
-  }
+  void take_events(SensedEvents& out) { pixels_.take_events(out); }
   [[nodiscard]] const EventStatistics& statistics() const { return statistics_; }
 
  protected:
-  SensedEvents events_;
+  explicit EventTile(PixelBank pixels) : pixels_(std::move(pixels)) {}
+
+  PixelBank pixels_;
   EventStatistics statistics_;
 };
 

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/linear_signal.h"
 #include "simulator/sensor/object_motion.h"
 #include "simulator/sensor/tile_trace.h"
 
@@ -38,42 +39,22 @@ FrameCamera::FrameCamera(const Scene& scene, const Spline& world_from_camera,
       motion_(world_from_camera),
       rays_(camera, options.samples_per_pixel),
       options_(options),
-      seed_(seed),
       noise_(options, seed),
       delivery_(options, camera, seed) {
   blocks_.reserve(rays_.tile_count());
-  for (std::size_t i = 0; i < rays_.tile_count(); ++i) blocks_.push_back(make_block(i));
-}
-
-FrameCamera::Block FrameCamera::make_block(std::size_t index) const {
-  const Tile tile = rays_.tile(index);
-  Block block;
-  block.pixels.resize(tile.pixels());
-  if (noise_.on()) block.noisy.resize(tile.pixels());
-  for (std::size_t i = 0; i < tile.pixels(); ++i) {
-    const auto x = static_cast<std::uint16_t>(tile.x(i));
-    const auto y = static_cast<std::uint16_t>(tile.y(i));
-    block.pixels[i].traits = pixel_traits(options_, seed_, x, y);
-  }
-  return block;
+  for (std::size_t i = 0; i < rays_.tile_count(); ++i)
+    blocks_.emplace_back(PixelBank(options_, noise_, seed, rays_.tile(i)));
 }
 
 void FrameCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
-  if (frames_ == 0)
-    render(0, [&](Block& block, const Levels& levels) { start_pixels(block, levels); });
+  if (frames_ == 0) render(0, [](Block& block, const Levels& levels) { start(block, levels); });
   while (t_s_ < duration_s) {
     const double next_s = next_frame_s(duration_s);
-    render(next_s, [&](Block& block, const Levels& levels) {
-      for (std::size_t i = 0; i < block.pixels.size(); ++i) sense(block, i, {next_s, levels[i]});
-    });
+    render(next_s, [&](Block& block, const Levels& levels) { sense(block, next_s, levels); });
     longest_s_ = std::max(longest_s_, next_s - t_s_);
     t_s_ = next_s;
-    for (Block& block : blocks_) {
-      delivery_.pending().insert(delivery_.pending().end(), block.events.begin(),
-                                 block.events.end());
-      block.events.clear();
-    }
+    for (Block& block : blocks_) block.pixels.take_events(delivery_.pending());
     delivery_.deliver(t_s_, t_s_ == duration_s, sink);
   }
 }
@@ -122,43 +103,20 @@ FrameCamera::Levels FrameCamera::look(std::size_t tile, const Instant& instant,
   return levels;
 }
 
-void FrameCamera::start_pixels(Block& block, const Levels& levels) const {
-  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
-    Pixel& pixel = block.pixels[i];
-    pixel.log_intensity = levels[i];
-    pixel.state = start_pixel(pixel.traits, levels[i], 0);
-    update_thresholds(pixel);
-    if (!block.noisy.empty())
-      block.noisy[i] = {NoisyState::kNotBlind,
-                        noise_.spontaneous.start(pixel.traits.x, pixel.traits.y, 0),
-                        PhotoreceptorFilter::settled(levels[i])};
-  }
+void FrameCamera::start(Block& block, const Levels& levels) {
+  for (std::size_t i = 0; i < block.pixels.size(); ++i) block.pixels.start(i, levels[i], 0);
+  block.levels = levels;
 }
 
-void FrameCamera::sense(Block& block, std::size_t i, const LinearSample& to) const {
-  Pixel& pixel = block.pixels[i];
-  const LinearSample from{t_s_, pixel.log_intensity};
-  pixel.log_intensity = to.log_intensity;
-  ++block.statistics.stretches;
-  if (block.noisy.empty() && pixel.thresholds.band().holds(pixel.thresholds.signal(to))) {
-    ++block.statistics.certified;
-    return;
-  }
-  const auto emit = [&](double t_s, int polarity, EventOrigin origin, double log_intensity) {
-    const TimeNs step_ns = options_.timestamp_step_ns();
-    const auto steps = static_cast<TimeNs>(std::llround(t_s * 1e9 / static_cast<double>(step_ns)));
-    block.events.push_back({steps * step_ns, pixel.traits.x, pixel.traits.y,
-                            static_cast<std::int8_t>(polarity), origin,
-                            static_cast<float>(log_intensity)});
-  };
+void FrameCamera::sense(Block& block, double next_s, const Levels& levels) const {
   const LinearSignal signal(options_.log_eps, 1e-6 * options_.time_tolerance_us);
-  PixelSensor sensor(signal, pixel.traits, options_.log_eps, pixel.state, pixel.thresholds, emit);
-  if (block.noisy.empty())
-    sensor.sense(from, to);
-  else if (noise_.filter.on())
-    sensor.sense_filtered(from, to, noise_, block.noisy[i]);
-  else
-    sensor.sense(from, to, noise_, block.noisy[i]);
+  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
+    const LinearSample to{next_s, levels[i]};
+    const Thresholds& thresholds = block.pixels.thresholds(i);
+    if (block.pixels.is_noisy() || !thresholds.band().holds(thresholds.signal(to)))
+      block.pixels.sense(i, signal, {t_s_, block.levels[i]}, to);
+  }
+  block.levels = levels;
 }
 
 std::string FrameCamera::state() const {
@@ -168,11 +126,8 @@ std::string FrameCamera::state() const {
   state.value(fastest_px_s_);
   state.value(longest_s_);
   for (const Block& block : blocks_) {
-    for (const Pixel& pixel : block.pixels) {
-      state.value(pixel.state);
-      state.value(pixel.log_intensity);
-    }
-    state.values(block.noisy);
+    block.pixels.save(state);
+    state.value(block.levels);
     state.value(block.statistics);
   }
   delivery_.save(state);
@@ -186,12 +141,8 @@ void FrameCamera::resume(std::string_view bytes) {
   state.value(fastest_px_s_);
   state.value(longest_s_);
   for (Block& block : blocks_) {
-    for (Pixel& pixel : block.pixels) {
-      state.value(pixel.state);
-      state.value(pixel.log_intensity);
-      update_thresholds(pixel);
-    }
-    state.values(block.noisy);
+    block.pixels.load(state);
+    state.value(block.levels);
     state.value(block.statistics);
   }
   delivery_.load(state);

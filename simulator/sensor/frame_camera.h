@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/camera.h"
@@ -11,10 +12,9 @@
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_delivery.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/linear_signal.h"
+#include "simulator/sensor/pixel_bank.h"
 #include "simulator/sensor/pixel_noise.h"
 #include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/pixel_sensor.h"
 #include "simulator/sensor/ray_tracer.h"
 
 namespace saccade {
@@ -49,42 +49,32 @@ class FrameCamera {
   [[nodiscard]] EventStatistics statistics() const;
 
  private:
-  struct Pixel {
-    PixelTraits traits;
-    PixelState state;
-    Thresholds thresholds;
-    double log_intensity = 0;  ///< in the last frame
-  };
+  using Levels = std::array<double, kTilePixels>;
   /// A tile's share of the camera.
   struct Block {
-    std::vector<Pixel> pixels;
-    std::vector<NoisyState> noisy;  ///< one per pixel, or none
-    SensedEvents events;
+    explicit Block(PixelBank bank) : pixels(std::move(bank)) {}
+
+    PixelBank pixels;
+    Levels levels{};  ///< log intensities in the last frame
     EventStatistics statistics;
     double fastest_px_s = 0;  ///< of what it saw in the last frame
   };
-  using Levels = std::array<double, kTilePixels>;
   struct Instant;
 
-  [[nodiscard]] Block make_block(std::size_t tile) const;
   [[nodiscard]] double next_frame_s(double duration_s) const;
   /// Renders the frame of `t_s` and calls done(block, log intensities) for all tiles, in parallel.
   template <class Done>
   void render(double t_s, const Done& done);
   /// The log intensities of a tile, and how fast what it sees moves.
   [[nodiscard]] Levels look(std::size_t tile, const Instant& instant, Block& block) const;
-  void start_pixels(Block& block, const Levels& levels) const;
-  void sense(Block& block, std::size_t pixel, const LinearSample& to) const;
-  void update_thresholds(Pixel& pixel) const {
-    pixel.thresholds =
-        Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s, options_.log_eps);
-  }
+  static void start(Block& block, const Levels& levels);
+  /// From the last frame to the one of `next_s`.
+  void sense(Block& block, double next_s, const Levels& levels) const;
 
   const Scene& scene_;
   const Spline& motion_;
   PixelRays rays_;
   EventOptions options_;
-  std::uint64_t seed_;
   PixelNoise noise_;
   std::vector<Block> blocks_;  ///< one per tile
   double t_s_ = 0;             ///< of the last frame

@@ -38,8 +38,6 @@ void EventStatistics::add(const EventStatistics& other) {
   rays += other.rays;
   lit_points += other.lit_points;
   surface_looks += other.surface_looks;
-  stretches += other.stretches;
-  certified += other.certified;
   lost += other.lost;
   time_bound_s = std::max(time_bound_s, other.time_bound_s);
 }
@@ -265,23 +263,10 @@ std::vector<OpaqueStretch> RayTracer::find_holes(const Eigen::Vector3d& directio
   const CutoutLook last = look(to_s);
   const double texels = std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
   const double steps = std::clamp(std::ceil(kLooksPerTexel * texels), 4.0, kMostLooks);
-  double begin_s = from_s;
-  double before_s = from_s;
-  double before = first.opacity - 0.5;
-  std::vector<OpaqueStretch> stretches;
-  for (double k = 1; k <= steps; ++k) {
-    const double t_s = from_s + (to_s - from_s) * k / steps;
-    const double now = (k == steps ? last : look(t_s)).opacity - 0.5;
-    if ((now < 0) != (before < 0)) {
-      const double end_s = before_s + (t_s - before_s) * before / (before - now);
-      stretches.push_back({begin_s, end_s, before >= 0});
-      begin_s = end_s;
-    }
-    before_s = t_s;
-    before = now;
-  }
-  stretches.push_back({begin_s, to_s, before >= 0});
-  return stretches;
+  const auto opacity = [&](double t_s) { return look(t_s).opacity; };
+  return OpacitySearch(opacity, {from_s, first.opacity}, {to_s, last.opacity},
+                       static_cast<std::size_t>(steps))
+      .stretches();
 }
 
 bool RayTracer::sees(const Eigen::Vector3d& direction, TriangleId triangle,

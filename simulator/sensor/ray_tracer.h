@@ -11,6 +11,7 @@
 #include "simulator/scene/patch_light.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/opacity_search.h"
 #include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/plane_view.h"
 #include "simulator/sensor/ray_view.h"
@@ -22,8 +23,6 @@ struct EventStatistics {
   std::uint64_t rays = 0;           ///< visibility rays
   std::uint64_t lit_points = 0;     ///< whose light was found, with a shadow ray to each lamp
   std::uint64_t surface_looks = 0;  ///< evaluations of a known triangle, without a visibility ray
-  std::uint64_t stretches = 0;      ///< steps of pixels
-  std::uint64_t certified = 0;      ///< of them those in which nothing can have fired
   std::uint64_t lost = 0;           ///< events that met a full readout
   double time_bound_s = 0;          ///< widest final bracket around a crossing
 
@@ -34,12 +33,6 @@ struct EventStatistics {
 struct Sighting {
   TriangleId triangle;
   double t_s;
-};
-
-/// A stretch of time in which a triangle that is cut out stops a ray or lets it through.
-struct OpaqueStretch {
-  double from_s, to_s;
-  bool is_opaque;
 };
 
 /// How the rays of a camera see the scene at any time of a stretch of its motion. Counts what it

@@ -323,10 +323,10 @@ Recorded record(const Scene& scene, const Spline& motion, const PinholeCamera& c
 }
 
 Agreement agreement(const Scene& scene, const Spline& motion, const PinholeCamera& camera,
-                    EventOptions options) {
+                    EventOptions options, double step_s) {
   options.timestamp_unit = TimestampUnit::kNanoseconds;
   const Recorded recorded = record(scene, motion, camera, options);
-  const Events truth = brute_force(scene, motion, camera, options);
+  const Events truth = brute_force(scene, motion, camera, options, step_s);
   Agreement result;
   result.found = recorded.events.size();
   result.expected = truth.size();

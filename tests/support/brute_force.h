@@ -18,8 +18,9 @@ namespace saccade::testing {
 ///   - where a ray moves over its texture by more than 0.1 texel, the step is halved until it does
 ///     not (minified texture under grazing rays);
 ///   - where a visible triangle differs, each change is bisected to a nanosecond, with visibility
-///     in double precision; what is then seen for less than a tenth of a microsecond counts for
-///     nothing, because rays slip through between triangles that touch but share no corners;
+///     in double precision (Scene::visible_exactly); what is then seen for less than a tenth of a
+///     microsecond counts for nothing, because rays slip through between triangles that touch but
+///     share no corners;
 ///   - where the signal turns back next to a threshold, its extremum is searched.
 /// Crossings are bisected to a nanosecond. Sorted. Of `options` the thresholds, eps and the rays
 /// per pixel count.
@@ -63,9 +64,10 @@ struct Recorded {
 [[nodiscard]] Recorded record(const Scene& scene, const Spline& motion, const PinholeCamera& camera,
                               const EventOptions& options);
 
-/// The event camera, in nanoseconds, held against brute force.
+/// The event camera, in nanoseconds, held against brute force on a grid of `step_s`.
 [[nodiscard]] Agreement agreement(const Scene& scene, const Spline& motion,
-                                  const PinholeCamera& camera, EventOptions options);
+                                  const PinholeCamera& camera, EventOptions options,
+                                  double step_s = 1e-5);
 
 /// How far the image moves: the motion field's norm integrated over the motion, mean over all
 /// pixels [px].
