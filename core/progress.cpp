@@ -87,6 +87,13 @@ void Progress::add(std::uint64_t units) {
   next_ = terminal_ ? now + kRedraw : now + (now - start_);
 }
 
+void Progress::report(const std::string& line) {
+  const std::scoped_lock lock(mutex_);
+  const std::string text = (terminal_ ? "\r\x1b[K" : "") + line + "\n";
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  if (!finished_ && terminal_) show(Clock::now(), false);
+}
+
 void Progress::finish() {
   const std::scoped_lock lock(mutex_);
   if (finished_) return;

@@ -41,6 +41,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void add(std::uint64_t units);
+  /// Shows a line of text above the bar, quiet or not: for what went wrong with a part of the work.
+  void report(const std::string& line);
   /// Shows the final state: what was done, how long it took, at which rate. Once.
   void finish();
 

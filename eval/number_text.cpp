@@ -35,4 +35,10 @@ std::string grouped(const std::optional<double>& value) {
   return digits;
 }
 
+std::string rounded(const std::optional<double>& value) {
+  if (!value || std::abs(*value) < 1000) return significant(value);
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(*value))) - 2);
+  return grouped(std::round(*value / unit) * unit);
+}
+
 }  // namespace saccade

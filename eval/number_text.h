@@ -12,6 +12,10 @@ namespace saccade {
 /// With `decimals` decimals; a dash for nothing.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
 
+/// Three significant digits without an exponent, thousands in groups ("0.0123", "12,300"); a dash
+/// for nothing.
+[[nodiscard]] std::string rounded(const std::optional<double>& value);
+
 /// 1,234,567; a dash for nothing.
 [[nodiscard]] std::string grouped(const std::optional<double>& value);
 

@@ -3,30 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <span>
 #include <string>
 
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/sha256.h"
+#include "core/program.h"
 #include "core/progress.h"
-#include "core/version.h"
 
 namespace saccade {
-namespace fs = std::filesystem;
 namespace {
 
-/// Tells builds of the same version apart.
-std::string program_text() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const auto size = fs::file_size(program, ignored);
-  const auto time = fs::last_write_time(program, ignored).time_since_epoch().count();
-  return fmt::format("saccade {} ({}), {} bytes of {}", version(), git_commit(), size, time);
-}
-
-EventLogs logs_in(const fs::path& folder, std::size_t cameras) {
+EventLogs logs_in(const std::filesystem::path& folder, std::size_t cameras) {
   EventLogs logs;
   for (std::size_t i = 0; i < cameras; ++i)
     logs.push_back(std::make_unique<EventLog>(folder / fmt::format("cam{}", i)));
@@ -46,7 +35,7 @@ Fingerprint fingerprint_of(const SimulationConfig& config, const InputLog& input
   Fingerprint fingerprint = inputs.files();
   const std::string text = config::print(config);
   fingerprint["the configuration"] = sha256(std::as_bytes(std::span(text)));
-  fingerprint["the program"] = program_text();
+  fingerprint["the program"] = program_identity();
   return fingerprint;
 }
 

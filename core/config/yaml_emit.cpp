@@ -64,6 +64,10 @@ std::string scalar_text(const Node& node) {
   return in_quotes(node.text);
 }
 
+std::string key_text(const Entry& entry) {
+  return is_safe_plain(entry.key) ? entry.key : in_quotes(entry.key);
+}
+
 bool is_leaf(const Node& node) {
   return node.kind == Node::Kind::kNull || node.kind == Node::Kind::kScalar;
 }
@@ -101,7 +105,12 @@ class Emitter {
 
   void flow(const Node& node) {
     if (node.kind == Node::Kind::kMap) {
-      out_ += "{}";
+      out_ += "{";
+      for (std::size_t i = 0; i < node.entries.size(); ++i) {
+        out_ += (i > 0 ? ", " : "") + key_text(node.entries[i]) + ": ";
+        flow(node.entries[i].value);
+      }
+      out_ += "}";
     } else if (node.kind == Node::Kind::kList) {
       out_ += "[";
       for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -121,7 +130,7 @@ class Emitter {
   }
 
   void key(const Entry& entry, std::size_t indent) {
-    out_ += (is_safe_plain(entry.key) ? entry.key : in_quotes(entry.key)) + ":";
+    out_ += key_text(entry) + ":";
     if (is_inline(entry.value)) {
       out_ += " ";
       end_line(entry.value, entry.comment);
@@ -155,6 +164,12 @@ std::string to_yaml(const Node& node, bool comments) {
     return emitter.take() + "\n";
   }
   emitter.block(node, 0);
+  return emitter.take();
+}
+
+std::string to_flow_yaml(const Node& node) {
+  Emitter emitter(false);
+  emitter.flow(node);
   return emitter.take();
 }
 

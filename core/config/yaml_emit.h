@@ -10,4 +10,7 @@ namespace saccade::config {
 /// their keys.
 [[nodiscard]] std::string to_yaml(const Node& node, bool comments = false);
 
+/// The same on one line, as the value of `--set`.
+[[nodiscard]] std::string to_flow_yaml(const Node& node);
+
 }  // namespace saccade::config

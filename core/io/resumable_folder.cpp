@@ -34,17 +34,6 @@ void describe(config::Fields& fields, Inputs& inputs) {
   fields.value("inputs", inputs.inputs, "what the unfinished work depends on");
 }
 
-/// "the configuration differs", or "" when the two agree.
-std::string difference(const Fingerprint& before, const Fingerprint& now) {
-  for (const auto& [name, content] : now) {
-    const auto it = before.find(name);
-    if (it == before.end() || it->second != content) return name + " differs";
-  }
-  for (const auto& [name, content] : before)
-    if (!now.contains(name)) return name + " is not used any more";
-  return {};
-}
-
 void create_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -80,6 +69,16 @@ bool is_same_file(int descriptor, const fs::path& file) {
 }
 
 }  // namespace
+
+std::string difference(const Fingerprint& before, const Fingerprint& now) {
+  for (const auto& [name, content] : now) {
+    const auto it = before.find(name);
+    if (it == before.end() || it->second != content) return name + " differs";
+  }
+  for (const auto& [name, content] : before)
+    if (!now.contains(name)) return name + " is not used any more";
+  return {};
+}
 
 /// Held as long as it lives; the system releases it when the program ends, however that happens.
 class ResumableFolder::Lock {

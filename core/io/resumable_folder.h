@@ -12,6 +12,9 @@ namespace saccade {
 /// What a piece of work depends on: a name ("configuration", "scene.obj") -> its content or hash.
 using Fingerprint = std::map<std::string, std::string>;
 
+/// "the configuration differs" or "scene.obj is not used any more"; empty where the two agree.
+[[nodiscard]] std::string difference(const Fingerprint& before, const Fingerprint& now);
+
 /// An output folder that appears under its final name only when it is complete, and whose
 /// unfinished state outlives a program that is killed: it grows in the hidden sibling
 /// `.NAME.unfinished`, which is found again by the next program with the same fingerprint.

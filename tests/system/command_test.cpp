@@ -46,7 +46,8 @@ std::vector<std::string> verbs() {
 
 TEST(Command, EveryVerbExplainsItselfWithAnExample) {
   const std::vector<std::string> all = verbs();
-  for (const char* verb : {"simulate", "run", "eval", "report", "render", "info", "convert"})
+  for (const char* verb :
+       {"simulate", "run", "eval", "report", "sweep", "render", "info", "convert"})
     EXPECT_THAT(all, Contains(verb));
   for (const std::string& verb : all)
     EXPECT_THAT(saccade_ok({verb, "--help"}),
@@ -74,6 +75,7 @@ TEST(Command, MissingArgumentsAreBadUsage) {
 std::vector<std::string> print_call(const fs::path& config) {
   const std::string folder = config.parent_path().filename();
   if (folder == "simulation") return {"simulate", config.string(), "--print-config"};
+  if (folder == "sweeps") return {"sweep", config.string(), "--print-config"};
   if (folder == "tracking") return {"run", "track", "-c", config.string(), "--print-config"};
   ADD_FAILURE() << config << ": state here which verb reads the configurations of its folder";
   return {};

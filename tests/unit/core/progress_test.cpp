@@ -38,6 +38,14 @@ TEST(Progress, LogsHoldOneLineForShortWork) {
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1);
 }
 
+TEST(Progress, ReportsWhatWentWrongQuietOrNot) {
+  set_progress_quiet(true);
+  ::testing::internal::CaptureStderr();
+  { Progress("work", 10, "steps").report("step 3 failed"); }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "step 3 failed\n");
+  set_progress_quiet(false);
+}
+
 TEST(Progress, QuietShowsNothing) {
   set_progress_quiet(true);
   ::testing::internal::CaptureStderr();

@@ -128,5 +128,13 @@ TEST(Overrides, NameWhatIsWrong) {
   EXPECT_THAT(error("s={a: 1, a: 2}"), HasSubstr("--set s: duplicate key 'a'"));
 }
 
+TEST(Document, AValueOnOneLineIsTheSameValue) {
+  const std::string text = "a: {b: [1, {c: ~, \"d e\": 'yes'}], f: \"it's\"}\ng: []\n";
+  const std::string line = to_flow_yaml(parse(text, "a.yaml").root());
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_EQ(line, R"({a: {b: [1, {c: ~, "d e": "yes"}], f: "it's"}, g: []})");
+  EXPECT_EQ(to_flow_yaml(parse(line, "line").root()), line);
+}
+
 }  // namespace
 }  // namespace saccade::config

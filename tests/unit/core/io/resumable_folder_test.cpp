@@ -153,5 +153,13 @@ TEST_F(Resumable, InputsAreLoggedWithTheirHash) {
   EXPECT_TRUE(InputLog().files().empty());
 }
 
+TEST(Fingerprint, NamesWhatDiffers) {
+  const Fingerprint before{{"a", "1"}, {"b", "2"}};
+  EXPECT_EQ(difference(before, before), "");
+  EXPECT_EQ(difference(before, {{"a", "1"}, {"b", "3"}}), "b differs");
+  EXPECT_EQ(difference(before, {{"a", "1"}}), "b is not used any more");
+  EXPECT_EQ(difference({}, {{"c", "1"}}), "c differs");
+}
+
 }  // namespace
 }  // namespace saccade

@@ -1,0 +1,115 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apps/common_options.h"
+#include "apps/option_checks.h"
+#include "apps/verbs.h"
+#include "core/error.h"
+#include "core/progress.h"
+#include "eval/sweep/sweep.h"
+#include "eval/sweep/sweep_config.h"
+
+namespace saccade {
+namespace {
+
+struct SweepVerbOptions {
+  std::string file;
+  std::filesystem::path output;
+  std::string launcher = "local";
+  std::vector<std::string> overrides;
+  std::vector<std::string> seeds;
+  int threads = 0;  ///< 0: as the file states it
+  SweepOptions sweep;
+  bool dry_run = false;
+  bool print_config = false;
+  bool quiet = false;
+};
+
+SweepConfig load(const SweepVerbOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  std::string seeds;
+  for (const std::string& seed : options.seeds) seeds += (seeds.empty() ? "" : ", ") + seed;
+  if (!seeds.empty()) overrides.push_back("seeds=[" + seeds + "]");
+  if (options.threads > 0) overrides.push_back(fmt::format("threads={}", options.threads));
+  return config::read<SweepConfig>(config::load(options.file, overrides));
+}
+
+void show(const SweepVerbOptions& options, const SweepSummary& summary) {
+  fmt::print("{}: {} jobs done, {} done before, {} failed\n", options.output.string(), summary.done,
+             summary.skipped, summary.failed);
+  fmt::print("wrote {} and {}\n", (options.output / "sweep.md").string(),
+             (options.output / "sweep.csv").string());
+}
+
+void sweep(const SweepVerbOptions& options) {
+  set_progress_quiet(options.quiet);
+  const std::unique_ptr<Launcher> launcher = make_launcher(options.launcher);
+  const SweepConfig config = load(options);
+  if (options.print_config) {
+    fmt::print("{}", config::print_documented(config));
+    return;
+  }
+  if (options.output.empty()) throw InputError("-o", "name the folder of the sweep: -o DIR");
+  if (options.dry_run) {
+    fmt::print("{}", describe_sweep(config, options.output));
+    return;
+  }
+  const SweepSummary summary = run_sweep(config, options.output, *launcher, options.sweep);
+  if (summary.interrupted)
+    throw std::runtime_error("interrupted; the same command goes on from here");
+  if (!options.quiet) show(options, summary);
+  if (summary.failed > 0)
+    throw std::runtime_error(fmt::format("{} {} failed; what they printed is in {}/NAME/log.txt",
+                                         summary.failed, summary.failed == 1 ? "job" : "jobs",
+                                         (options.output / "jobs").string()));
+}
+
+void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
+  verb.add_option("--launcher", options.launcher, "Where the jobs run: local")
+      ->capture_default_str();
+  verb.add_option("-j,--jobs", options.sweep.jobs,
+                  "Runs at a time (default: one per core). Speeds are worth quoting with 1 alone; "
+                  "`timing: true` in the file demands it")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  verb.add_flag("--dry-run", options.dry_run, "Print the command lines and what would be skipped");
+  verb.add_option("--set", options.overrides,
+                  "Override one key of the sweep file, e.g. --set repeat=1 (repeatable)")
+      ->type_name("KEY.PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb.add_option("--seed", options.seeds, "A seed in place of the file's (repeatable)")
+      ->type_name("N")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
+  verb.add_option("--threads", options.threads, "Threads of one run, in place of the file's")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  verb.add_flag("--print-config", options.print_config,
+                "Print every key with its value, help and range, and stop");
+  verb.add_flag("-q,--quiet", options.quiet, "No progress, no summary: errors only");
+}
+
+}  // namespace
+
+void add_sweep_verb(CLI::App& command) {
+  const auto options = std::make_shared<SweepVerbOptions>();
+  CLI::App* verb = command.add_subcommand(
+      "sweep", "Run a grid of configurations x datasets x seeds into one table; resumable");
+  verb->add_option("SWEEP", options->file, "Sweep file (YAML)")->required();
+  verb->add_option("-o,--output", options->output, "Folder of the sweep")->type_name("DIR");
+  add_sweep_options(*verb, *options);
+  verb->footer(
+      "Examples:\n"
+      "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples\n"
+      "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples --dry-run");
+  verb->callback([options] { sweep(*options); });
+}
+
+}  // namespace saccade

@@ -1,0 +1,33 @@
+#include "core/shell.h"
+
+#include <cctype>
+#include <string_view>
+
+namespace saccade {
+namespace {
+
+bool needs_quotes(std::string_view word) {
+  constexpr std::string_view kPlain = "_-./=:,+@%";
+  for (const char c : word)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        kPlain.find(c) == std::string_view::npos)
+      return true;
+  return word.empty();
+}
+
+std::string quoted(std::string_view word) {
+  if (!needs_quotes(word)) return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+std::string shell_line(std::span<const std::string> words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+  return line;
+}
+
+}  // namespace saccade

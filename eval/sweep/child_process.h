@@ -1,0 +1,58 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace saccade {
+
+/// How a process ended.
+struct ChildEnd {
+  int exit_code = -1;  ///< -1: by a signal
+  int signal = 0;
+
+  /// "exit code 2" or "killed by signal 9 (Killed)".
+  [[nodiscard]] std::string text() const;
+};
+
+/// A program that runs beside this one, in a process group of its own, so that Ctrl-C in the
+/// terminal reaches it through stop() alone. It reads nothing.
+class ChildProcess {
+ public:
+  /// `words`: what the program is called and its arguments. What it prints is appended to `log`,
+  /// behind the words. Throws InputError when it cannot be started or the log not be written.
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& words,
+               const std::filesystem::path& log);
+  ~ChildProcess();  ///< kills what is still running
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&& other) noexcept;
+
+  /// Readable for poll() as soon as the process has ended.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+  /// How it ended; nullopt while it runs. An end is told once.
+  [[nodiscard]] std::optional<ChildEnd> poll_end();
+  /// Asks it to end (SIGTERM).
+  void stop() const;
+
+ private:
+  void kill_and_close();
+
+  pid_t pid_ = -1;  ///< -1: ended
+  int descriptor_ = -1;
+};
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP do not end this program but are remembered.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  [[nodiscard]] bool requested() const;
+};
+
+}  // namespace saccade

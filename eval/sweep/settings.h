@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/config/node.h"
+
+namespace saccade {
+
+/// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line; a text that begins with ./
+/// or
+/// ../ was relative to the sweep file and is an absolute path here.
+struct Setting {
+  std::string key;
+  std::string value;
+};
+
+/// Overrides in the order of the file: `{align.samples: 50, motion.prediction: none}`.
+using Settings = std::vector<Setting>;
+
+/// One parameter of the grid with its values, in the order of the file.
+struct GridAxis {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+using Grid = std::vector<GridAxis>;
+
+// In the namespace of the types, where the templates of Fields find them. InputError at the node's
+// place for an axis without values or with one value twice.
+void from_node(const config::Node& node, const std::string& name, Settings& settings);
+[[nodiscard]] config::Node to_node(const Settings& settings);
+void from_node(const config::Node& node, const std::string& name, Grid& grid);
+[[nodiscard]] config::Node to_node(const Grid& grid);
+
+}  // namespace saccade

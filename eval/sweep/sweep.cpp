@@ -1,0 +1,216 @@
+#include "eval/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <fstream>
+#include <map>
+#include <set>
+#include <system_error>
+#include <thread>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/atomic_file.h"
+#include "core/progress.h"
+#include "core/shell.h"
+#include "eval/sweep/folder_lock.h"
+#include "eval/sweep/job_record.h"
+#include "eval/sweep/plan.h"
+#include "eval/sweep/results.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLogLines = 12;
+
+std::string command_text(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{"saccade"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return shell_line(words);
+}
+
+/// The end of a log, without the titles of its calls.
+std::string last_lines(const fs::path& file) {
+  std::ifstream stream(file);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("$ saccade ")) lines.push_back(line);
+    if (lines.size() > kLogLines) lines.pop_front();
+  }
+  std::string text;
+  for (const std::string& line : lines) text += "    " + line + "\n";
+  return text;
+}
+
+/// A folder that somebody filled with something else is left alone.
+void check_folder(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder");
+  if (!fs::is_empty(folder) && !fs::exists(folder / "sweep.yaml"))
+    throw InputError(folder.string(),
+                     "holds something that is no sweep (no sweep.yaml); choose another folder");
+}
+
+/// What killed estimators left beside the run folders.
+void remove_half_written(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> partial;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (name.starts_with('.') && name.find(".partial-") != std::string::npos)
+      partial.push_back(entry.path());
+  }
+  for (const fs::path& path : partial) fs::remove_all(path, ignored);
+}
+
+/// Runs the jobs of one kind that are due.
+class Phase {
+ public:
+  Phase(const std::vector<SweepJob>& jobs, const fs::path& folder, std::vector<JobState>& states)
+      : jobs_(jobs), folder_(folder), states_(states) {
+    states_.assign(jobs.size(), JobState::kUnknown);
+  }
+
+  /// Jobs whose dataset could not be made fail with it.
+  void fail_without_dataset(const std::vector<JobState>& simulations) {
+    for (std::size_t i = 0; i < jobs_.size(); ++i)
+      if (jobs_[i].made_by && simulations[*jobs_[i].made_by] == JobState::kFailed)
+        states_[i] = JobState::kFailed;
+  }
+
+  /// False when it was interrupted.
+  bool run(Launcher& launcher, int at_once, const std::string& label) {
+    select_due();
+    if (due_.empty()) return true;
+    Progress progress(label, jobs_.size(), "jobs", jobs_.size() - due_.size());
+    const auto on_end = [&](std::size_t i, const LaunchResult& result) {
+      finish(i, result, progress);
+      progress.add(1);
+    };
+    return launcher.run(launches_, at_once, on_end, [&] { progress.add(0); });
+  }
+
+ private:
+  void select_due() {
+    JobInputs inputs;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      if (states_[i] == JobState::kFailed) continue;
+      const SweepJob& job = jobs_[i];
+      const fs::path job_folder = folder_ / "jobs" / job.name;
+      Fingerprint job_inputs = inputs.of(job);
+      if (why_to_run(job, job_folder / "job.yaml", job_inputs).empty()) {
+        states_[i] = JobState::kSkipped;
+        continue;
+      }
+      fs::remove(job_folder / "job.yaml");
+      due_.push_back(i);
+      inputs_.push_back(std::move(job_inputs));
+      launches_.push_back({job.name, job.commands, job_folder / "log.txt"});
+    }
+  }
+
+  void finish(std::size_t launch, const LaunchResult& result, Progress& progress) {
+    const std::size_t i = due_[launch];
+    const fs::path& log = launches_[launch].log;
+    states_[i] = result.succeeded ? JobState::kDone : JobState::kFailed;
+    if (result.succeeded) {
+      write_job_record(log.parent_path() / "job.yaml", jobs_[i], inputs_[launch], result.wall_s);
+      return;
+    }
+    report(jobs_[i].name, result, log, progress);
+  }
+
+  /// What many jobs print alike is shown once.
+  void report(const std::string& name, const LaunchResult& result, const fs::path& log,
+              Progress& progress) {
+    const std::string end = last_lines(log);
+    const auto [first, is_new] = reported_.emplace(end, name);
+    if (is_new)
+      progress.report(fmt::format("saccade: job {} failed with {}:\n  {}\n  the end of {}:\n{}",
+                                  name, result.problem, command_text(result.failed), log.string(),
+                                  end));
+    else
+      progress.report(fmt::format("saccade: job {} failed with {}, as {} did", name, result.problem,
+                                  first->second));
+  }
+
+  const std::vector<SweepJob>& jobs_;
+  fs::path folder_;
+  std::vector<JobState>& states_;
+  std::map<std::string, std::string>
+      reported_;  ///< ends of logs and the job that printed them first
+  std::vector<std::size_t> due_;
+  std::vector<Fingerprint> inputs_;  ///< of the due jobs
+  std::vector<LaunchJob> launches_;  ///< of the due jobs
+};
+
+int runs_at_once(const SweepConfig& sweep, const SweepOptions& options) {
+  if (sweep.timing) return 1;
+  if (options.jobs > 0) return options.jobs;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::max(1, cores / sweep.threads);
+}
+
+std::size_t count(const SweepStates& states, JobState state) {
+  const auto in = [&](const std::vector<JobState>& jobs) {
+    return static_cast<std::size_t>(std::count(jobs.begin(), jobs.end(), state));
+  };
+  return in(states.simulations) + in(states.runs);
+}
+
+/// Why a job would run, as far as that can be told before its dataset is made.
+std::string preview(const SweepJob& job, const fs::path& folder, JobInputs& inputs,
+                    const std::set<fs::path>& to_be_made) {
+  if (to_be_made.contains(job.dataset)) return "its dataset is to be simulated";
+  return why_to_run(job, folder / "jobs" / job.name / "job.yaml", inputs.of(job));
+}
+
+}  // namespace
+
+SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launcher& launcher,
+                       const SweepOptions& options) {
+  check_folder(folder);
+  const SweepPlan plan = plan_sweep(sweep, folder);
+  fs::create_directories(folder);
+  const FolderLock lock(folder);
+  write_atomically(folder / "sweep.yaml", config::print(sweep));
+  remove_half_written(folder / "runs");
+  SweepStates states;
+  Phase simulations(plan.simulations, folder, states.simulations);
+  Phase runs(plan.runs, folder, states.runs);
+  bool complete = simulations.run(launcher, 1, "simulating");
+  runs.fail_without_dataset(states.simulations);
+  complete = complete && runs.run(launcher, runs_at_once(sweep, options), "running");
+  SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
+                       count(states, JobState::kFailed), !complete};
+  if (complete) write_sweep_results(sweep, plan, states, folder);
+  return summary;
+}
+
+std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {
+  check_folder(folder);
+  const SweepPlan plan = plan_sweep(sweep, folder);
+  JobInputs inputs;
+  std::string text;
+  std::set<fs::path> to_be_made;
+  std::size_t due = 0;
+  for (const auto* jobs : {&plan.simulations, &plan.runs})
+    for (const SweepJob& job : *jobs) {
+      const std::string why = preview(job, folder, inputs, to_be_made);
+      text += fmt::format("{} {}{}\n", why.empty() ? "skip" : "run ", job.name,
+                          why.empty() ? "" : ": " + why);
+      if (why.empty()) continue;
+      ++due;
+      if (job.is_simulation()) to_be_made.insert(job.output);
+      for (const std::vector<std::string>& command : job.commands)
+        text += "  " + command_text(command) + "\n";
+    }
+  const std::size_t all = plan.simulations.size() + plan.runs.size();
+  return text + fmt::format("{} jobs: {} to run, {} done already\n", all, due, all - due);
+}
+
+}  // namespace saccade

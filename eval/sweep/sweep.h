@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "eval/sweep/launcher.h"
+#include "eval/sweep/sweep_config.h"
+
+namespace saccade {
+
+/// How a sweep is run, beside what its file says.
+struct SweepOptions {
+  int jobs = 0;  ///< runs at a time; 0: one per core. With `timing` always one
+};
+
+/// What became of a sweep.
+struct SweepSummary {
+  std::size_t done = 0;     ///< now
+  std::size_t skipped = 0;  ///< done before, of the same inputs
+  std::size_t failed = 0;
+  bool interrupted = false;
+};
+
+/// Makes all datasets, runs and scores that are not there yet, then writes the table over all of
+/// them (write_sweep_results). `folder` holds sweep.yaml, data/NAME, runs/NAME,
+/// jobs/NAME/{job.yaml, log.txt}. Simulations go first and one at a time, because each of them uses
+/// all cores. A job that fails is reported on stderr with its command and the end of its log, and
+/// the others go on. InputError when `folder` holds something that is no sweep, or another program
+/// is at work in it.
+SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& folder,
+                       Launcher& launcher, const SweepOptions& options = {});
+
+/// What run_sweep() would do: for each job its name, whether and why it would run, and its command
+/// lines. Writes nothing.
+[[nodiscard]] std::string describe_sweep(const SweepConfig& sweep,
+                                         const std::filesystem::path& folder);
+
+}  // namespace saccade

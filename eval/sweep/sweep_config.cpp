@@ -1,0 +1,104 @@
+#include "eval/sweep/sweep_config.h"
+
+#include <algorithm>
+#include <set>
+
+namespace saccade {
+namespace {
+
+/// The first name that stands twice; empty when none does.
+template <class Named>
+std::string repeated_name(const std::vector<Named>& items) {
+  std::set<std::string> seen;
+  for (const Named& item : items)
+    if (!seen.insert(item.name).second) return item.name;
+  return {};
+}
+
+template <class Named>
+void expect_names_differ(config::Fields& fields, const char* key, const std::vector<Named>& items) {
+  const std::string name = repeated_name(items);
+  fields.expect(name.empty(), key, "holds the name '" + name + "' twice");
+}
+
+void expect_seeds_differ(config::Fields& fields, const std::vector<std::uint64_t>& seeds) {
+  const std::set<std::uint64_t> different(seeds.begin(), seeds.end());
+  fields.expect(different.size() == seeds.size(), "seeds", "holds a seed twice");
+}
+
+/// The seed of a job stands in its own key, so that rows can be averaged over it.
+template <class Keyed>
+void expect_no_seed(config::Fields& fields, const char* key, const std::vector<Keyed>& items) {
+  const bool stated =
+      std::any_of(items.begin(), items.end(), [](const Keyed& item) { return item.key == "seed"; });
+  fields.expect(!stated, key, "must not hold 'seed'; state it in 'seeds'");
+}
+
+std::string folder_name(const std::filesystem::path& folder) {
+  return folder.has_filename() ? folder.filename() : folder.parent_path().filename();
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, SweepDataset& dataset) {
+  fields.value("name", dataset.name, "in tables; default: the folder's or the file's");
+  fields.path("path", dataset.path, "a dataset folder").must_exist();
+  fields.path("simulate", dataset.simulate, "or a simulation configuration").must_exist();
+  fields.value("set", dataset.set, "overrides of it, key.path: value");
+  fields.value("seeds", dataset.seeds, "of the simulation, one dataset each");
+  fields.expect(dataset.path.has_value() != dataset.simulate.has_value(), "path",
+                "must be stated, or 'simulate', and not both");
+  fields.expect(dataset.simulate || (dataset.set.empty() && dataset.seeds.empty()), "path",
+                "names a finished dataset: 'set' and 'seeds' belong to 'simulate'");
+  expect_seeds_differ(fields, dataset.seeds);
+  expect_no_seed(fields, "set", dataset.set);
+  if (!fields.reading() || !dataset.name.empty()) return;
+  if (dataset.path) dataset.name = folder_name(*dataset.path);
+  if (dataset.simulate) dataset.name = dataset.simulate->stem();
+}
+
+void describe(config::Fields& fields, SweepConfiguration& configuration) {
+  fields.value("name", configuration.name, "in tables; default: the file's");
+  fields.path("file", configuration.file, "of the module; ~ is its defaults").must_exist();
+  fields.value("set", configuration.set, "overrides of it, key.path: value");
+  expect_no_seed(fields, "set", configuration.set);
+  if (fields.reading() && configuration.name.empty())
+    configuration.name = configuration.file ? configuration.file->stem().string() : "defaults";
+}
+
+void describe(config::Fields& fields, SweepVariant& variant) {
+  fields.value("name", variant.name, "in tables").required();
+  fields.value("set", variant.set, "overrides of the configuration, key.path: value");
+  fields.expect(!variant.name.empty(), "name", "must not be empty");
+  expect_no_seed(fields, "set", variant.set);
+}
+
+void describe(config::Fields& fields, SweepConfig& sweep) {
+  fields.value("title", sweep.title, "of sweep.md");
+  fields.value("module", sweep.module, "what `saccade run` runs");
+  fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}")
+      .required()
+      .length(1, config::Rule::kAnyLength);
+  fields.list("configurations", sweep.configurations, "each {name, file, set}");
+  fields.list("variants", sweep.variants, "each {name, set}");
+  fields.value("grid", sweep.grid, "key.path: list of values; every combination is run");
+  fields.value("seeds", sweep.seeds, "of the runs");
+  fields.value("repeat", sweep.repeat, "repetitions of each run, for its speed").range(1, 100000);
+  fields.value("timing", sweep.timing, "one run at a time on one thread, for a speed to quote");
+  fields.value("threads", sweep.threads, "of one run").range(1, 4096);
+  fields.value("start_s", sweep.start_s, "begin of the window; default: first event");
+  fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
+  fields.value("metrics", sweep.metrics, "of metrics.json in sweep.md; default: the usual ones");
+  expect_names_differ(fields, "datasets", sweep.datasets);
+  expect_names_differ(fields, "configurations", sweep.configurations);
+  expect_names_differ(fields, "variants", sweep.variants);
+  expect_seeds_differ(fields, sweep.seeds);
+  expect_no_seed(fields, "grid", sweep.grid);
+  fields.expect(!sweep.timing || sweep.threads == 1, "threads", "must be 1 where 'timing' is true");
+  const bool simulates_only = sweep.configurations.empty();
+  fields.expect(!simulates_only || sweep.grid.empty(), "grid", "needs 'configurations' to vary");
+  fields.expect(!simulates_only || sweep.variants.empty(), "variants",
+                "need 'configurations' to vary");
+}
+
+}  // namespace saccade

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/fields.h"
+#include "eval/sweep/settings.h"
+
+namespace saccade {
+
+/// A dataset folder that exists, or a simulation that makes one for each of its seeds.
+struct SweepDataset {
+  std::string name;  ///< default: the last part of the folder, or the file without its ending
+  std::optional<std::filesystem::path> path;
+  std::optional<std::filesystem::path> simulate;  ///< a simulation configuration
+  Settings set;                                   ///< on top of it
+  std::vector<std::uint64_t> seeds;               ///< of the simulation; empty: the one it states
+};
+
+struct SweepConfiguration {
+  std::string name;                           ///< default: the file without its ending
+  std::optional<std::filesystem::path> file;  ///< default: the defaults of the module
+  Settings set;
+};
+
+/// A named list of overrides: a row of an ablation.
+struct SweepVariant {
+  std::string name;
+  Settings set;
+};
+
+/// The contents of a sweep file: every configuration x variant x point of the grid x seed runs over
+/// every dataset. Without configurations the datasets are simulated and nothing else.
+struct SweepConfig {
+  std::string title;
+  std::string module = "track";
+  std::vector<SweepDataset> datasets;
+  std::vector<SweepConfiguration> configurations;
+  std::vector<SweepVariant> variants;
+  Grid grid;
+  std::vector<std::uint64_t> seeds;  ///< of the runs; empty: the one that the configuration states
+  int repeat = 1;                    ///< of each run, for its timing
+  bool timing = false;               ///< one run at a time, with one thread
+  int threads = 1;                   ///< of one run
+  std::optional<double> start_s;     ///< window of the runs, as --start-s
+  std::optional<double> duration_s;
+  std::vector<std::string>
+      metrics;  ///< columns of sweep.md and its pictures; empty: the usual ones
+};
+
+void describe(config::Fields& fields, SweepConfig& sweep);
+
+}  // namespace saccade

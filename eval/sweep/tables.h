@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/io/csv_file.h"
+#include "eval/sweep/figures.h"
+#include "eval/sweep/results.h"
+
+namespace saccade {
+
+/// One row for each job: where it stands in the sweep, whether it is ok or failed, and every metric
+/// that any job has. Cells without a value are empty.
+[[nodiscard]] CsvTable sweep_csv(const SweepResults& results);
+
+/// The page of a sweep: for each dataset a table with a row for each group, the best value of a
+/// column in bold, then the figures and the jobs that failed.
+[[nodiscard]] std::string sweep_markdown(const SweepResults& results,
+                                         std::span<const SweepFigure> figures);
+
+}  // namespace saccade
