@@ -42,6 +42,8 @@ class MotionModel {
   void stop();
 
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
+  /// In the camera's frame [m/s, rad/s].
+  [[nodiscard]] const Twist& velocity() const { return velocity_; }
 
  private:
   [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;

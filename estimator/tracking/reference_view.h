@@ -1,12 +1,25 @@
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/io/dataset.h"
 #include "core/rigid3.h"
-#include "estimator/tracking/track_config.h"
 
 namespace saccade {
+
+/// Where the map comes from.
+struct ReferenceOptions {
+  std::optional<int> frame;  ///< index in images.txt; default: the first at or after the start
+  std::optional<double>
+      planar_depth_m;  ///< the map is a plane at this z of the reference view; else the depth map
+  /// Left, top, right, bottom [px] of the part of the undistorted frame that becomes the map; a
+  /// plane rarely fills the view. Default: all of it.
+  std::optional<std::array<double, 4>> region_px;
+  double time_offset_s = 0;  ///< the frame shows the scene this long after its stamp
+};
 
 /// The view that the map is taken from, on the undistorted sensor.
 struct ReferenceView {

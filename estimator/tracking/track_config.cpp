@@ -92,6 +92,33 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
       .range(0, 1);
 }
 
+void describe_intensity(config::Fields& fields, TrackConfig& config) {
+  IntensityOptions& options = config.intensity;
+  fields.value("events", options.events, "per pose").range(16, 1e6);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
+      .range(1, 1000);
+  fields
+      .value("noise", options.noise,
+             "deviation of a level from the map [log units] that is expected at first")
+      .range(0.01, 10);
+  fields
+      .value("correction", options.correction,
+             "least share by which a pixel's level is drawn to the map at each of its events")
+      .range(0, 1);
+  fields
+      .value("redraw_px", options.redraw_px,
+             "the map is drawn anew when the view has moved this far")
+      .range(0.1, 100);
+  fields
+      .value("information", options.information,
+             "share of the information of independent residuals: neighbouring ones err alike")
+      .range(1e-6, 1);
+  fields
+      .value("contrast", config.contrast,
+             "threshold of both polarities [log units]; ~ takes the dataset's")
+      .above(0);
+}
+
 void describe_motion(config::Fields& fields, PredictionOptions& options) {
   fields.choice("prediction", options.prediction,
                 {{"none", PredictionOptions::Prediction::kNone},
@@ -118,6 +145,10 @@ void describe_lost(config::Fields& fields, LostOptions& options) {
 void describe(config::Fields& fields, TrackConfig& config) {
   using config::Fields;
   TrackerOptions& tracker = config.tracker;
+  fields.choice(
+      "method", config.method,
+      {{"edges", TrackConfig::Method::kEdges}, {"intensity", TrackConfig::Method::kIntensity}},
+      "edges against event frames (the thesis), or log intensity at each event");
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "where the map comes from");
@@ -133,6 +164,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
   fields.group(
       "align", [&](Fields& f) { describe_align(f, tracker.align); },
       "Lucas-Kanade between the two (4.1-4.3)");
+  if (config.method == TrackConfig::Method::kIntensity)
+    fields.group(
+        "intensity", [&](Fields& f) { describe_intensity(f, config); },
+        "how a pose is found from the log intensity at each event");
   fields.group(
       "motion", [&](Fields& f) { describe_motion(f, tracker.motion); },
       "expectation of the next pose");

@@ -15,6 +15,8 @@
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
 #include "estimator/run_writer.h"
+#include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
 
@@ -91,15 +93,19 @@ struct TrackOutput {
   RunTiming timing;
 };
 
-TrackOutput track_repeatedly(const TrackConfig& config, const PinholeCamera& camera,
-                             const TrackInput& input, int repeat) {
-  TrackOutput output;
-  const auto map_start = Clock::now();
-  output.map = extract_map(input.reference.log_intensity, input.reference.depth,
-                           camera.undistorted(), config.map);
-  const double map_s = seconds_since(map_start);
-  Tracker tracker(config.tracker, camera, output.map, input.reference.world_from_reference,
-                  config.seed);
+EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
+  if (config.contrast) return {*config.contrast, *config.contrast};
+  const DatasetFacts& facts = dataset.facts();
+  if (!facts.contrast_on || !facts.contrast_off)
+    throw InputError(dataset.folder().string(),
+                     "does not state its contrast thresholds; state intensity.contrast");
+  return {*facts.contrast_on, *facts.contrast_off};
+}
+
+/// Any tracker over all events, `repeat` times.
+template <class AnyTracker>
+void track_repeatedly(AnyTracker& tracker, const TrackInput& input, int repeat,
+                      TrackOutput& output) {
   Progress progress("track", input.events.size() * static_cast<std::size_t>(repeat), "events");
   for (int i = 0; i < repeat; ++i) {
     tracker.reset(input.events.front().t_ns, input.initial_world_from_camera);
@@ -108,10 +114,31 @@ TrackOutput track_repeatedly(const TrackConfig& config, const PinholeCamera& cam
     output.timing.wall_s.push_back(seconds_since(start));
   }
   const TrackTiming& stages = tracker.timing();
-  output.timing.stages_s = {{"map", map_s},
-                            {"template", stages.template_s},
-                            {"event_frame", stages.event_frame_s},
-                            {"align", stages.align_s}};
+  output.timing.stages_s.insert(output.timing.stages_s.end(),
+                                {{"template", stages.template_s},
+                                 {"event_frame", stages.event_frame_s},
+                                 {"align", stages.align_s}});
+}
+
+TrackOutput track(const TrackConfig& config, const Dataset& dataset, const TrackInput& input,
+                  int repeat) {
+  const PinholeCamera& camera = dataset.camera();
+  TrackOutput output;
+  const auto map_start = Clock::now();
+  output.map = extract_map(input.reference.log_intensity, input.reference.depth,
+                           camera.undistorted(), config.map);
+  if (config.method == TrackConfig::Method::kIntensity) {
+    const IntensityMap map(camera.undistorted(), {&input.reference, 1});
+    output.timing.stages_s = {{"map", seconds_since(map_start)}};
+    IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
+                             camera, map);
+    track_repeatedly(tracker, input, repeat, output);
+  } else {
+    output.timing.stages_s = {{"map", seconds_since(map_start)}};
+    Tracker tracker(config.tracker, camera, output.map, input.reference.world_from_reference,
+                    config.seed);
+    track_repeatedly(tracker, input, repeat, output);
+  }
   output.timing.events = input.events.size();
   output.timing.poses = output.poses.size();
   output.timing.sequence_s = input.window.end_s - input.window.start_s;
@@ -164,7 +191,7 @@ RunSummary run_track(const RunRequest& request) {
   const TrackInput input = load_input(request, config, dataset);
   const double read_s = seconds_since(read_start);
 
-  TrackOutput output = track_repeatedly(config, dataset.camera(), input, request.repeat);
+  TrackOutput output = track(config, dataset, input, request.repeat);
 
   const auto write_start = Clock::now();
   write_tum_trajectory(writer.path() / "trajectory.txt", stamped_poses(output.poses));

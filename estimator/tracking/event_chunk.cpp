@@ -1,0 +1,175 @@
+#include "estimator/tracking/event_chunk.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// Further than this from the place that was looked up the map is not taken to go on evenly [px].
+constexpr float kReach_px = 3;
+/// Residuals beyond this many deviations weigh less than half.
+constexpr float kTail = 2.4F;
+
+}  // namespace
+
+void EventChunk::add(const EventMeasurement& event, const SeenPlace& seen) {
+  SACCADE_CHECK(count_ < kCapacity);
+  if (count_ % kLanes == 0) {
+    // What fills the lanes behind the last event weighs nothing.
+    for (int i = count_; i < count_ + kLanes; ++i) trust_[static_cast<std::size_t>(i)] = 0;
+  }
+  const auto i = static_cast<std::size_t>(count_++);
+  point_x_[i] = seen.point.x();
+  point_y_[i] = seen.point.y();
+  point_z_[i] = seen.point.z();
+  pixel_x_[i] = event.pixel.x();
+  pixel_y_[i] = event.pixel.y();
+  time_s_[i] = event.time_s;
+  level_[i] = event.level;
+  trust_[i] = event.trust;
+  place_x_[i] = seen.place.x();
+  place_y_[i] = seen.place.y();
+  scale_xx_[i] = seen.scale(0, 0);
+  scale_xy_[i] = seen.scale(0, 1);
+  scale_yx_[i] = seen.scale(1, 0);
+  scale_yy_[i] = seen.scale(1, 1);
+}
+
+void EventChunk::evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion) {
+  const auto fx = static_cast<float>(camera.fx);
+  const auto fy = static_cast<float>(camera.fy);
+  const auto cx = static_cast<float>(camera.cx);
+  const auto cy = static_cast<float>(camera.cy);
+  const auto right = static_cast<float>(atlas.width() - 1);
+  const auto bottom = static_cast<float>(atlas.height() - 1);
+  const Eigen::Matrix3f r = motion.rotation;
+  const Eigen::Vector3f t = motion.translation;
+  const Eigen::Vector3f v = motion.velocity.head<3>();
+  const Eigen::Vector3f w = motion.velocity.tail<3>();
+  const int width = atlas.width();
+  for (std::size_t i = 0; i < padded(); ++i) {
+    const float mx = point_x_[i];
+    const float my = point_y_[i];
+    const float mz = point_z_[i];
+    const float ax = r(0, 0) * mx + r(0, 1) * my + r(0, 2) * mz + t.x();
+    const float ay = r(1, 0) * mx + r(1, 1) * my + r(1, 2) * mz + t.y();
+    const float az = r(2, 0) * mx + r(2, 1) * my + r(2, 2) * mz + t.z();
+    const float dt = time_s_[i];
+    const float px = ax - dt * (v.x() + w.y() * az - w.z() * ay);
+    const float py = ay - dt * (v.y() + w.z() * ax - w.x() * az);
+    const float pz = az - dt * (v.z() + w.x() * ay - w.y() * ax);
+    const float inverse = 1 / pz;
+    const float x = px * inverse;
+    const float y = py * inverse;
+    const float ex = pixel_x_[i] - (fx * x + cx);
+    const float ey = pixel_y_[i] - (fy * y + cy);
+    const float u = place_x_[i] + scale_xx_[i] * ex + scale_xy_[i] * ey;
+    const float z = place_y_[i] + scale_yx_[i] * ex + scale_yy_[i] * ey;
+    const bool is_seen = (pz > 0) & (std::abs(ex) < kReach_px) & (std::abs(ey) < kReach_px) &
+                         (u >= 0) & (z >= 0) & (u < right) & (z < bottom);
+    visible_[i] = is_seen ? 1.0F : 0.0F;
+    const float safe_u = is_seen ? u : 0;
+    const float safe_v = is_seen ? z : 0;
+    const int column = static_cast<int>(safe_u);
+    const int row = static_cast<int>(safe_v);
+    at_x_[i] = safe_u - static_cast<float>(column);
+    at_y_[i] = safe_v - static_cast<float>(row);
+    cell_[i] = row * width + column;
+    ray_x_[i] = x;
+    ray_y_[i] = y;
+    inverse_depth_[i] = inverse;
+  }
+  read(atlas);
+  for (std::size_t i = 0; i < padded(); ++i) {
+    const float a = fx * (slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i]);
+    const float b = fy * (slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i]);
+    const float x = ray_x_[i];
+    const float y = ray_y_[i];
+    const float iz = inverse_depth_[i];
+    const float radial = a * x + b * y;
+    columns_[0][i] = a * iz;
+    columns_[1][i] = b * iz;
+    columns_[2][i] = -radial * iz;
+    columns_[3][i] = -y * radial - b;
+    columns_[4][i] = x * radial + a;
+    columns_[5][i] = b * x - a * y;
+  }
+}
+
+void EventChunk::read(const ImageF& atlas) {
+  const float* texels = atlas.data();
+  const int width = atlas.width();
+  for (std::size_t i = 0; i < padded(); ++i) {
+    const float* cell = texels + cell_[i];
+    const float a = cell[0];
+    const float b = cell[1];
+    const float c = cell[width];
+    const float d = cell[width + 1];
+    const float top = a + at_x_[i] * (b - a);
+    const float low = c + at_x_[i] * (d - c);
+    const float value = top + at_y_[i] * (low - top);
+    slope_x_[i] = (b - a) + at_y_[i] * ((d - c) - (b - a));
+    slope_y_[i] = low - top;
+    const bool is_known = visible_[i] > 0 && value == value;
+    visible_[i] = is_known ? 1.0F : 0.0F;
+    residual_[i] = is_known ? level_[i] - value : 0;
+    slope_x_[i] = is_known ? slope_x_[i] : 0;
+    slope_y_[i] = is_known ? slope_y_[i] : 0;
+  }
+}
+
+void EventChunk::weigh(float noise) {
+  const float scale = 1 / (kTail * noise);
+  for (std::size_t i = 0; i < padded(); ++i) {
+    const float relative = residual_[i] * scale;
+    weight_[i] = visible_[i] * trust_[i] / (1 + relative * relative);
+  }
+}
+
+void EventChunk::add_to(Sums& sums, float noise) {
+  alignas(64) Floats squares;
+  const float limit = kTail * noise;
+  float visible = 0;
+  float inliers = 0;
+  float trust = 0;
+  float weight = 0;
+  for (std::size_t i = 0; i < padded(); ++i) {
+    squares[i] = weight_[i] * residual_[i];
+    visible += visible_[i] * trust_[i];
+    inliers += std::abs(residual_[i]) < limit ? visible_[i] * trust_[i] : 0;
+    trust += trust_[i];
+    weight += weight_[i];
+  }
+  sums.visible += static_cast<double>(visible);
+  sums.inliers += static_cast<double>(inliers);
+  sums.trust += static_cast<double>(trust);
+  sums.weight += static_cast<double>(weight);
+  sums.squared_residual += dot(squares, residual_);
+  for (std::size_t c = 0; c < 6; ++c) {
+    for (std::size_t i = 0; i < padded(); ++i) weighted_[c][i] = weight_[i] * columns_[c][i];
+    const auto column = static_cast<Eigen::Index>(c);
+    sums.rhs(column) += dot(weighted_[c], residual_);
+    for (std::size_t d = 0; d <= c; ++d)
+      sums.normal(static_cast<Eigen::Index>(d), column) += dot(weighted_[c], columns_[d]);
+  }
+}
+
+double EventChunk::dot(const Floats& a, const Floats& b) const {
+  // Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
+  float sums[kLanes] = {};
+  for (std::size_t i = 0; i < padded(); i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+  for (std::size_t width = kLanes / 2; width > 0; width /= 2)
+    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
+  return static_cast<double>(sums[0]);
+}
+
+float EventChunk::residual(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return visible_[k] > 0 ? residual_[k] : std::numeric_limits<float>::quiet_NaN();
+}
+
+}  // namespace saccade

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/map_view.h"
+
+namespace saccade {
+
+/// What an event says: at its instant its pixel saw this log intensity.
+struct EventMeasurement {
+  Eigen::Vector2f pixel;  ///< undistorted [px]
+  float time_s;           ///< after the instant of the pose that is sought
+  float level;            ///< log intensity
+  float trust;            ///< weight, 0..1
+};
+
+/// Up to kCapacity events on their way through an iteration of the intensity aligner, structure of
+/// arrays in single precision, so that all of it is vector code.
+class EventChunk {
+ public:
+  static constexpr int kCapacity = 256;
+  static constexpr int kLanes = 16;
+
+  [[nodiscard]] int size() const { return count_; }
+  void clear() { count_ = 0; }
+  /// `seen`: near the pixel, at the sought pose nearly under it.
+  void add(const EventMeasurement& event, const SeenPlace& seen);
+
+  /// Where the map stands and how the camera moves while the events happen: its velocity (v, w) in
+  /// its own frame [m/s, rad/s].
+  struct Motion {
+    Eigen::Matrix3f rotation;     ///< camera from map
+    Eigen::Vector3f translation;  ///< the same [m]
+    Eigen::Matrix<float, 6, 1> velocity;
+  };
+
+  /// Residuals r = level - L(place) with L the map's log intensity where the events' pixels look,
+  ///   place = seen place + scale (pixel - pi(p)),   p = p_c - t (v + w x p_c),   p_c = R P + t_c
+  /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
+  /// map's slope in the image:
+  ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y).
+  void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
+
+  /// Weights trust / (1 + (r / (2.4 noise))^2) (Cauchy); 0 where nothing of the map is seen.
+  void weigh(float noise);
+
+  struct Sums {
+    Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< J^T W r
+    Matrix6 normal = Matrix6::Zero();  ///< J^T W J, upper triangle
+    double weight = 0;
+    double squared_residual = 0;  ///< r^T W r
+    double visible = 0;           ///< events that see a known place, by trust
+    double inliers = 0;           ///< of them those within 2.4 noise
+    double trust = 0;
+  };
+  void add_to(Sums& sums, float noise);
+
+  /// Of event `i`, after evaluate(): level above the map; NaN where nothing of it is seen.
+  [[nodiscard]] float residual(int i) const;
+
+ private:
+  using Floats = std::array<float, kCapacity>;
+  [[nodiscard]] std::size_t padded() const {
+    return static_cast<std::size_t>((count_ + kLanes - 1) / kLanes * kLanes);
+  }
+  void read(const ImageF& atlas);
+  [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
+
+  int count_ = 0;
+  alignas(64) Floats point_x_{}, point_y_{}, point_z_{};
+  alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, level_{}, trust_{};
+  alignas(64) Floats place_x_{}, place_y_{}, scale_xx_{}, scale_xy_{}, scale_yx_{}, scale_yy_{};
+  alignas(64) Floats ray_x_{}, ray_y_{}, inverse_depth_{};
+  alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, weight_{};
+  alignas(64) Floats slope_x_{}, slope_y_{};
+  alignas(64) std::array<std::int32_t, kCapacity> cell_{};
+  alignas(64) std::array<Floats, 6> columns_{}, weighted_{};
+};
+
+}  // namespace saccade

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/reference_view.h"
+
+namespace saccade {
+
+/// The known world of the intensity tracker: what one or more views show, as points with a log
+/// intensity. The pictures lie one below the other in an atlas, so that a place in any of them is
+/// one pair of coordinates.
+class IntensityMap {
+ public:
+  /// `camera` is undistorted and that of all views; the map's frame is that of the first of them.
+  /// At least one view.
+  IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views);
+
+  /// A view's picture in the atlas, its pose, and its points [m].
+  struct View {
+    Rigid3 view_from_map;
+    int first_row = 0;                    ///< in the atlas
+    std::vector<Eigen::Vector3f> points;  ///< in the map's frame, row by row
+    std::vector<float> inverse_depth;     ///< [1/m]; 0 where there is none
+  };
+  [[nodiscard]] const std::vector<View>& views() const { return views_; }
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  [[nodiscard]] const Rigid3& world_from_map() const { return world_from_map_; }
+
+  /// Log intensities, NaN where the lens shows nothing.
+  [[nodiscard]] const ImageF& atlas() const { return atlas_; }
+
+ private:
+  PinholeCamera camera_;
+  Rigid3 world_from_map_;
+  ImageF atlas_;
+  std::vector<View> views_;
+};
+
+}  // namespace saccade

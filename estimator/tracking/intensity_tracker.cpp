@@ -1,0 +1,242 @@
+#include "estimator/tracking/intensity_tracker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/check.h"
+#include "estimator/tracking/cholesky.h"
+#include "estimator/tracking/event_frame.h"
+
+namespace saccade {
+namespace {
+
+/// Beyond the image the view is drawn this much further than it may move before it is redrawn.
+constexpr int kSpare_px = 4;
+constexpr double kLeastNoise = 0.01;
+
+int margin_of(const IntensityOptions& options) {
+  return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+/// The outcome of one alignment.
+struct IntensityTracker::Estimate {
+  Rigid3 map_from_camera;
+  Matrix6 information = Matrix6::Zero();
+  EventChunk::Sums sums;
+  bool is_valid = false;
+};
+
+IntensityTracker::IntensityTracker(const IntensityOptions& options, const PredictionOptions& motion,
+                                   const EventContrast& contrast, const PinholeCamera& camera,
+                                   const IntensityMap& map)
+    : options_(options),
+      camera_(camera.undistorted()),
+      undistortion_(camera),
+      map_(map),
+      view_(map, margin_of(options)),
+      levels_(camera.width, camera.height, contrast.on, contrast.off, options.correction),
+      motion_(motion, camera.fx) {}
+
+void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
+  motion_.reset(t_ns, map_.world_from_map().inverse() * world_from_camera);
+  noise_ = options_.noise;
+  has_view_ = false;
+  views_drawn_ = 0;
+  timing_ = {};
+  draw_view(motion_.pose());
+  start_levels();
+}
+
+void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
+  if (has_view_ && view_fits(map_from_camera)) return;
+  view_.draw(map_from_camera);
+  has_view_ = true;
+  ++views_drawn_;
+}
+
+bool IntensityTracker::view_fits(const Rigid3& map_from_camera) const {
+  // How far a few points spread over the view have moved since it was drawn.
+  constexpr int kStep = 31;
+  const Rigid3 camera_from_map = map_from_camera.inverse();
+  double furthest = 0;
+  for (int y = kStep / 2; y < camera_.height; y += kStep)
+    for (int x = kStep / 2; x < camera_.width; x += kStep) {
+      const SeenPlace& seen = view_(x, y);
+      if (!(seen.inverse_depth > 0)) continue;
+      const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
+      if (point.z() <= 0) return false;
+      furthest = std::max(furthest, (camera_.project(point) - Eigen::Vector2d(x, y)).norm());
+    }
+  return furthest < options_.redraw_px;
+}
+
+void IntensityTracker::start_levels() {
+  levels_.forget();
+  for (int y = 0; y < camera_.height; ++y)
+    for (int x = 0; x < camera_.width; ++x) {
+      const Eigen::Vector2f pixel = undistortion_(x, y);
+      const int nearest_x = static_cast<int>(std::lround(pixel.x()));
+      const int nearest_y = static_cast<int>(std::lround(pixel.y()));
+      if (!view_.contains(nearest_x, nearest_y)) continue;
+      const SeenPlace& seen = view_(nearest_x, nearest_y);
+      if (!(seen.inverse_depth > 0)) continue;
+      const Eigen::Vector2f offset(pixel.x() - static_cast<float>(nearest_x),
+                                   pixel.y() - static_cast<float>(nearest_y));
+      const Eigen::Vector2f place = seen.place + seen.scale * offset;
+      if (!is_inside(map_.atlas(), place.x(), place.y())) continue;
+      const float level = sample(map_.atlas(), place.x(), place.y());
+      if (!std::isfinite(level)) continue;
+      levels_.set(static_cast<std::size_t>(y * camera_.width + x), level, 1);
+    }
+}
+
+std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
+                                                 const std::function<void(std::size_t)>& progress) {
+  std::vector<TrackedPose> poses;
+  const auto count = static_cast<std::size_t>(options_.events);
+  while (events.size() >= count) {
+    poses.push_back(track_batch(events.first(count)));
+    events = events.subspan(count);
+    if (progress) progress(count);
+  }
+  return poses;
+}
+
+EventChunk::Motion IntensityTracker::motion_at(const Rigid3& map_from_camera) const {
+  const Rigid3 camera_from_map = map_from_camera.inverse();
+  return {camera_from_map.rotation_matrix().cast<float>(),
+          camera_from_map.translation().cast<float>(), motion_.velocity().cast<float>()};
+}
+
+TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
+  TrackedPose pose;
+  pose.first_ns = events.front().t_ns;
+  pose.last_ns = events.back().t_ns;
+  pose.t_ns = mean_time(events);
+  const double start_s = now_s();
+  const PosePrediction predicted = motion_.predict(pose.t_ns, view_.typical_depth_m());
+  draw_view(predicted.map_from_camera);
+  const double drawn_s = now_s();
+  load(events, pose.t_ns, motion_at(predicted.map_from_camera));
+  const double loaded_s = now_s();
+  const Estimate estimate = align(predicted);
+  if (estimate.is_valid) {
+    motion_.update(estimate.map_from_camera, estimate.information);
+    correct_levels();
+  } else {
+    motion_.stop();
+    pose.status = TrackStatus::kLost;
+  }
+  pose.iterations = options_.iterations;
+  pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
+  pose.residual = noise_;
+  pose.world_from_camera = map_.world_from_map() * motion_.pose();
+  timing_.template_s += drawn_s - start_s;
+  timing_.event_frame_s += loaded_s - drawn_s;
+  timing_.align_s += now_s() - loaded_s;
+  return pose;
+}
+
+void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
+                            const EventChunk::Motion& motion) {
+  chunk_count_ = 0;
+  loaded_pixels_.clear();
+  for (const Event& event : events) {
+    const std::size_t pixel = levels_.index(event);
+    EventMeasurement measurement;
+    measurement.level = levels_.step(pixel, event.polarity);
+    measurement.pixel = undistortion_(event.x, event.y);
+    measurement.time_s = static_cast<float>(seconds_from_ns(event.t_ns - t_ns));
+    measurement.trust = levels_.trust(pixel);
+    SeenPlace seen;
+    if (!find_place(measurement.pixel, measurement.time_s, motion, seen)) continue;
+    if (loaded_pixels_.size() % EventChunk::kCapacity == 0) {
+      if (chunk_count_ == chunks_.size()) chunks_.emplace_back();
+      chunks_[chunk_count_++].clear();
+    }
+    chunks_[chunk_count_ - 1].add(measurement, seen);
+    loaded_pixels_.push_back(static_cast<std::uint32_t>(pixel));
+  }
+}
+
+bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
+                                  const EventChunk::Motion& motion, SeenPlace& seen) const {
+  const auto project = [&](const Eigen::Vector3f& point) -> Eigen::Vector2f {
+    const Eigen::Vector3f at = motion.rotation * point + motion.translation;
+    const Eigen::Vector3f v = motion.velocity.head<3>();
+    const Eigen::Vector3f w = motion.velocity.tail<3>();
+    const Eigen::Vector3f moved = at - time_s * (v + w.cross(at));
+    return {
+        static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
+        static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy)};
+  };
+  const auto look = [&](const Eigen::Vector2f& at) -> const SeenPlace* {
+    const int x = static_cast<int>(std::floor(at.x() + 0.5F));
+    const int y = static_cast<int>(std::floor(at.y() + 0.5F));
+    if (!view_.contains(x, y)) return nullptr;
+    const SeenPlace& place = view_(x, y);
+    return place.inverse_depth > 0 ? &place : nullptr;
+  };
+  // What is seen there now was elsewhere in the view that was drawn: one step of a fixed point.
+  const SeenPlace* here = look(pixel);
+  if (here == nullptr) return false;
+  const Eigen::Vector2f before = pixel + (pixel - project(here->point));
+  if (!before.allFinite()) return false;
+  const SeenPlace* there = look(before);
+  if (there == nullptr) return false;
+  seen = *there;
+  return true;
+}
+
+auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
+  Estimate estimate;
+  estimate.map_from_camera = predicted.map_from_camera;
+  const auto noise = static_cast<float>(noise_);
+  const double weight = options_.information / (noise_ * noise_);
+  const Matrix6 prior = predicted.precision / weight;
+  Twist deviation = Twist::Zero();
+  for (int i = 0; i <= options_.iterations; ++i) {
+    const EventChunk::Motion motion = motion_at(estimate.map_from_camera);
+    estimate.sums = {};
+    for (std::size_t k = 0; k < chunk_count_; ++k) {
+      chunks_[k].evaluate(camera_, map_.atlas(), motion);
+      chunks_[k].weigh(noise);
+      chunks_[k].add_to(estimate.sums, noise);
+    }
+    // The last round is for the evidence.
+    if (i == options_.iterations) break;
+    Cholesky<6> factors;
+    if (!factors.factor(estimate.sums.normal + prior)) return estimate;
+    const Twist step = factors.solve(estimate.sums.rhs - prior * deviation);
+    if (!step.allFinite()) return estimate;
+    estimate.map_from_camera = estimate.map_from_camera * Rigid3::exp(step);
+    deviation += step;
+  }
+  if (!(estimate.sums.weight > 6)) return estimate;
+  const double measured = std::sqrt(estimate.sums.squared_residual / estimate.sums.weight);
+  constexpr double kForget = 0.05;
+  noise_ = std::max(kLeastNoise, noise_ + kForget * (measured - noise_));
+  const Matrix6 normal = estimate.sums.normal;
+  estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
+  estimate.is_valid = true;
+  return estimate;
+}
+
+void IntensityTracker::correct_levels() {
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < chunk_count_; ++k)
+    for (int j = 0; j < chunks_[k].size(); ++j, ++i) {
+      const float excess = chunks_[k].residual(j);
+      if (std::isfinite(excess)) levels_.correct(loaded_pixels_[i], excess);
+    }
+  for (const std::uint32_t pixel : loaded_pixels_) levels_.settle(pixel);
+}
+
+}  // namespace saccade

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/event.h"
+#include "core/rigid3.h"
+#include "estimator/tracking/event_chunk.h"
+#include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/map_view.h"
+#include "estimator/tracking/motion_model.h"
+#include "estimator/tracking/pixel_levels.h"
+#include "estimator/tracking/tracker.h"
+
+namespace saccade {
+
+/// How poses are found from the log intensity at each event.
+struct IntensityOptions {
+  int events = 1000;         ///< per pose
+  int iterations = 4;        ///< of Gauss-Newton
+  double noise = 0.05;       ///< expected deviation of a level from the map [log units], at first
+  double correction = 0.02;  ///< least share by which a level is drawn to the map at each event
+  double redraw_px = 4;      ///< the map is drawn anew when the view has moved this far
+  double information = 0.1;  ///< of that of independent residuals: neighbouring ones err alike
+};
+
+/// The part of a sensor's model that the tracker knows.
+struct EventContrast {
+  double on = 0.2, off = 0.2;  ///< thresholds [log units]
+};
+
+/// 6-DoF pose of an event camera against a map of log intensity. An event says what its pixel saw
+/// at its instant: the first value plus the thresholds of all its events. The pose is sought at
+/// which the map shows the same there:
+///   r_k = level_k - L(W(u_k; pose at t_k)),   pose(t) = pose exp((t - t_0) velocity)
+/// by Gauss-Newton with Cauchy weights, pulled towards a constant velocity by the prediction's
+/// precision. Deterministic; one thread.
+class IntensityTracker {
+ public:
+  /// `camera` may be distorted; `map` outlives the tracker.
+  IntensityTracker(const IntensityOptions& options, const PredictionOptions& motion,
+                   const EventContrast& contrast, const PinholeCamera& camera,
+                   const IntensityMap& map);
+
+  /// Starts anew from a known pose.
+  void reset(TimeNs t_ns, const Rigid3& world_from_camera);
+
+  /// Tracks through `events` in order of time; a rest too short for a pose gives none. `progress`
+  /// is called with the number of events done since its last call.
+  [[nodiscard]] std::vector<TrackedPose> track(
+      std::span<const Event> events, const std::function<void(std::size_t)>& progress = {});
+
+  [[nodiscard]] std::size_t templates_drawn() const { return views_drawn_; }
+  [[nodiscard]] const TrackTiming& timing() const { return timing_; }
+
+ private:
+  struct Estimate;
+  void draw_view(const Rigid3& map_from_camera);
+  [[nodiscard]] bool view_fits(const Rigid3& map_from_camera) const;
+  void start_levels();
+  [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
+  void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
+  [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
+                                const EventChunk::Motion& motion, SeenPlace& seen) const;
+  [[nodiscard]] Estimate align(const PosePrediction& predicted);
+  void correct_levels();
+  [[nodiscard]] EventChunk::Motion motion_at(const Rigid3& map_from_camera) const;
+
+  IntensityOptions options_;
+  PinholeCamera camera_;  ///< undistorted
+  UndistortionTable undistortion_;
+  const IntensityMap& map_;
+  MapView view_;
+  PixelLevels levels_;
+  MotionModel motion_;
+  bool has_view_ = false;
+  double noise_ = 0;
+  std::vector<EventChunk> chunks_;
+  std::size_t chunk_count_ = 0;
+  std::vector<std::uint32_t> loaded_pixels_;  ///< of the events in the chunks, in order
+  std::size_t views_drawn_ = 0;
+  TrackTiming timing_;
+};
+
+}  // namespace saccade
