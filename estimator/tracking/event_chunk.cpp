@@ -121,33 +121,38 @@ void EventChunk::read(const ImageF& atlas) {
   }
 }
 
-void EventChunk::weigh(float noise) {
-  const float scale = 1 / (kTail * noise);
+void EventChunk::weigh(const Noise& noise) {
+  const float level = noise.level * noise.level;
+  const float place = noise.place_px * noise.place_px;
+  const float tail = 1 / (kTail * kTail * noise.scale * noise.scale);
   for (std::size_t i = 0; i < padded(); ++i) {
-    const float relative = residual_[i] * scale;
-    weight_[i] = visible_[i] * trust_[i] / (1 + relative * relative);
+    const float gx = slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i];
+    const float gy = slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i];
+    const float precision = 1 / (level + place * (gx * gx + gy * gy));
+    relative_[i] = residual_[i] * residual_[i] * precision * tail;
+    weight_[i] = visible_[i] * trust_[i] * level * precision / (1 + relative_[i]);
   }
 }
 
-void EventChunk::add_to(Sums& sums, float noise) {
-  alignas(64) Floats squares;
-  const float limit = kTail * noise;
+void EventChunk::add_to(Sums& sums) {
+  constexpr float kClose = 1 / (kTail * kTail);
   float visible = 0;
+  float close = 0;
   float inliers = 0;
   float trust = 0;
   float weight = 0;
   for (std::size_t i = 0; i < padded(); ++i) {
-    squares[i] = weight_[i] * residual_[i];
     visible += visible_[i] * trust_[i];
-    inliers += std::abs(residual_[i]) < limit ? visible_[i] * trust_[i] : 0;
+    inliers += relative_[i] < 1 ? visible_[i] * trust_[i] : 0;
+    close += relative_[i] < kClose ? visible_[i] * trust_[i] : 0;
     trust += trust_[i];
-    weight += weight_[i];
+    weight += visible_[i] * trust_[i] / (1 + relative_[i]);
   }
   sums.visible += static_cast<double>(visible);
   sums.inliers += static_cast<double>(inliers);
   sums.trust += static_cast<double>(trust);
   sums.weight += static_cast<double>(weight);
-  sums.squared_residual += dot(squares, residual_);
+  sums.close += static_cast<double>(close);
   for (std::size_t c = 0; c < 6; ++c) {
     for (std::size_t i = 0; i < padded(); ++i) weighted_[c][i] = weight_[i] * columns_[c][i];
     const auto column = static_cast<Eigen::Index>(c);

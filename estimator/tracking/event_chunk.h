@@ -48,19 +48,26 @@ class EventChunk {
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y).
   void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
 
-  /// Weights trust / (1 + (r / (2.4 noise))^2) (Cauchy); 0 where nothing of the map is seen.
-  void weigh(float noise);
+  /// What residuals deviate by: sigma^2 = scale^2 (level^2 + (place_px |grad L|)^2).
+  struct Noise {
+    float level;     ///< [log units]
+    float place_px;  ///< of what a map of point samples shows between them
+    float scale;
+  };
+  /// Weights trust (level / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy); 0 where nothing of the
+  /// map is seen.
+  void weigh(const Noise& noise);
 
   struct Sums {
     Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< J^T W r
     Matrix6 normal = Matrix6::Zero();  ///< J^T W J, upper triangle
     double weight = 0;
-    double squared_residual = 0;  ///< r^T W r
-    double visible = 0;           ///< events that see a known place, by trust
-    double inliers = 0;           ///< of them those within 2.4 noise
+    double visible = 0;  ///< events that see a known place, by trust
+    double inliers = 0;  ///< of them those within 2.4 sigma
+    double close = 0;    ///< and those within sigma
     double trust = 0;
   };
-  void add_to(Sums& sums, float noise);
+  void add_to(Sums& sums);
 
   /// Of event `i`, after evaluate(): level above the map; NaN where nothing of it is seen.
   [[nodiscard]] float residual(int i) const;
@@ -78,7 +85,7 @@ class EventChunk {
   alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, level_{}, trust_{};
   alignas(64) Floats place_x_{}, place_y_{}, scale_xx_{}, scale_xy_{}, scale_yx_{}, scale_yy_{};
   alignas(64) Floats ray_x_{}, ray_y_{}, inverse_depth_{};
-  alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, weight_{};
+  alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, relative_{}, weight_{};
   alignas(64) Floats slope_x_{}, slope_y_{};
   alignas(64) std::array<std::int32_t, kCapacity> cell_{};
   alignas(64) std::array<Floats, 6> columns_{}, weighted_{};

@@ -1,6 +1,7 @@
 #include "estimator/tracking/intensity_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 
@@ -24,17 +25,82 @@ IntensityMap::View lift(const PinholeCamera& camera, const ReferenceView& refere
   return view;
 }
 
+/// A picture smoothed by a Gaussian; what is unknown stays so and counts for nothing.
+ImageF smoothed(const ImageF& image, double blur_px) {
+  if (!(blur_px > 0)) return image;
+  const int reach = static_cast<int>(std::ceil(3 * blur_px));
+  std::vector<double> kernel;
+  for (int k = -reach; k <= reach; ++k)
+    kernel.push_back(std::exp(-0.5 * k * k / (blur_px * blur_px)));
+  const auto pass = [&](const ImageF& from, int dx, int dy) {
+    ImageF to(from.width(), from.height());
+    for (int y = 0; y < from.height(); ++y)
+      for (int x = 0; x < from.width(); ++x) {
+        double sum = 0;
+        double weight = 0;
+        for (int k = -reach; k <= reach; ++k) {
+          const int u = x + k * dx;
+          const int v = y + k * dy;
+          if (u < 0 || v < 0 || u >= from.width() || v >= from.height()) continue;
+          if (!std::isfinite(from(u, v))) continue;
+          sum += kernel[static_cast<std::size_t>(k + reach)] * static_cast<double>(from(u, v));
+          weight += kernel[static_cast<std::size_t>(k + reach)];
+        }
+        to(x, y) = std::isfinite(from(x, y)) ? static_cast<float>(sum / weight) : from(x, y);
+      }
+    return to;
+  };
+  return pass(pass(image, 1, 0), 0, 1);
+}
+
+/// The greatest step between neighbours within two pixels.
+ImageF steepness(const ImageF& image) {
+  constexpr int kReach = 2;
+  ImageF steepest(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      float most = 0;
+      for (int v = std::max(0, y - kReach); v <= std::min(image.height() - 2, y + kReach - 1); ++v)
+        for (int u = std::max(0, x - kReach); u <= std::min(image.width() - 2, x + kReach - 1);
+             ++u) {
+          const float right = std::abs(image(u + 1, v) - image(u, v));
+          const float down = std::abs(image(u, v + 1) - image(u, v));
+          most = std::max({most, right, down});
+        }
+      steepest(x, y) = most;
+    }
+  return steepest;
+}
+
+/// Smooths where neighbours differ by more than `step`, fully from twice that on.
+ImageF smoothed_at_steps(const ImageF& image, double blur_px, double step) {
+  const ImageF blurred = smoothed(image, blur_px);
+  const ImageF steep = steepness(image);
+  ImageF result = image;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const float share = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
+      result(x, y) += share * (blurred(x, y) - image(x, y));
+    }
+  return result;
+}
+
 }  // namespace
 
-IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views)
+IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views,
+                           double blur_px)
     : camera_(camera) {
   SACCADE_CHECK(!views.empty());
   world_from_map_ = views.front().world_from_reference;
-  atlas_ = ImageF(camera.width, camera.height * static_cast<int>(views.size()));
+  const int rows = camera.height * static_cast<int>(views.size());
+  atlas_ = ImageF(camera.width, rows);
+  coarse_atlas_ = ImageF(camera.width, rows);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const int first_row = camera.height * static_cast<int>(i);
-    const auto pixels = views[i].log_intensity.pixels();
-    std::copy(pixels.begin(), pixels.end(), &atlas_(0, first_row));
+    const ImageF fine = smoothed_at_steps(views[i].log_intensity, blur_px, kStep);
+    const ImageF coarse = smoothed(views[i].log_intensity, blur_px);
+    std::copy(fine.pixels().begin(), fine.pixels().end(), &atlas_(0, first_row));
+    std::copy(coarse.pixels().begin(), coarse.pixels().end(), &coarse_atlas_(0, first_row));
     views_.push_back(lift(camera, views[i],
                           world_from_map_.inverse() * views[i].world_from_reference, first_row));
   }

@@ -20,7 +20,8 @@ class IntensityMap {
  public:
   /// `camera` is undistorted and that of all views; the map's frame is that of the first of them.
   /// At least one view.
-  IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views);
+  /// `blur_px`: deviation of the Gaussian that smooths coarse_atlas().
+  IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views, double blur_px);
 
   /// A view's picture in the atlas, its pose, and its points [m].
   struct View {
@@ -35,11 +36,13 @@ class IntensityMap {
 
   /// Log intensities, NaN where the lens shows nothing.
   [[nodiscard]] const ImageF& atlas() const { return atlas_; }
+  /// The same smoothed: edges attract from further away.
+  [[nodiscard]] const ImageF& coarse_atlas() const { return coarse_atlas_; }
 
  private:
   PinholeCamera camera_;
   Rigid3 world_from_map_;
-  ImageF atlas_;
+  ImageF atlas_, coarse_atlas_;
   std::vector<View> views_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 /// Beyond the image the view is drawn this much further than it may move before it is redrawn.
 constexpr int kSpare_px = 4;
-constexpr double kLeastNoise = 0.01;
+constexpr double kMostNoise = 1;  // scale, either way
 
 int margin_of(const IntensityOptions& options) {
   return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
@@ -46,7 +46,7 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options, const Predic
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, map_.world_from_map().inverse() * world_from_camera);
-  noise_ = options_.noise;
+  noise_scale_ = 1;
   has_view_ = false;
   views_drawn_ = 0;
   timing_ = {};
@@ -93,7 +93,7 @@ void IntensityTracker::start_levels() {
       if (!is_inside(map_.atlas(), place.x(), place.y())) continue;
       const float level = sample(map_.atlas(), place.x(), place.y());
       if (!std::isfinite(level)) continue;
-      levels_.set(static_cast<std::size_t>(y * camera_.width + x), level, 1);
+      levels_.set(static_cast<std::size_t>(y * camera_.width + x), level, 10);
     }
 }
 
@@ -134,9 +134,9 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
     motion_.stop();
     pose.status = TrackStatus::kLost;
   }
-  pose.iterations = options_.iterations;
+  pose.iterations = options_.coarse_iterations + options_.iterations;
   pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
-  pose.residual = noise_;
+  pose.residual = noise_scale_ * options_.noise;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
   timing_.template_s += drawn_s - start_s;
   timing_.event_frame_s += loaded_s - drawn_s;
@@ -198,20 +198,26 @@ bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
 auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
   Estimate estimate;
   estimate.map_from_camera = predicted.map_from_camera;
-  const auto noise = static_cast<float>(noise_);
-  const double weight = options_.information / (noise_ * noise_);
+  const EventChunk::Noise noise{static_cast<float>(options_.noise),
+                                static_cast<float>(options_.place_px),
+                                static_cast<float>(noise_scale_)};
+  const double deviation_of_one = noise_scale_ * options_.noise;
+  const double weight = options_.information / (deviation_of_one * deviation_of_one);
   const Matrix6 prior = predicted.precision / weight;
   Twist deviation = Twist::Zero();
-  for (int i = 0; i <= options_.iterations; ++i) {
+  const int rounds = options_.coarse_iterations + options_.iterations;
+  for (int i = 0; i <= rounds; ++i) {
+    const bool is_coarse = i < options_.coarse_iterations || options_.iterations == 0;
+    const ImageF& atlas = is_coarse ? map_.coarse_atlas() : map_.atlas();
     const EventChunk::Motion motion = motion_at(estimate.map_from_camera);
     estimate.sums = {};
     for (std::size_t k = 0; k < chunk_count_; ++k) {
-      chunks_[k].evaluate(camera_, map_.atlas(), motion);
+      chunks_[k].evaluate(camera_, atlas, motion);
       chunks_[k].weigh(noise);
-      chunks_[k].add_to(estimate.sums, noise);
+      chunks_[k].add_to(estimate.sums);
     }
     // The last round is for the evidence.
-    if (i == options_.iterations) break;
+    if (i == rounds) break;
     Cholesky<6> factors;
     if (!factors.factor(estimate.sums.normal + prior)) return estimate;
     const Twist step = factors.solve(estimate.sums.rhs - prior * deviation);
@@ -220,13 +226,20 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
     deviation += step;
   }
   if (!(estimate.sums.weight > 6)) return estimate;
-  const double measured = std::sqrt(estimate.sums.squared_residual / estimate.sums.weight);
-  constexpr double kForget = 0.05;
-  noise_ = std::max(kLeastNoise, noise_ + kForget * (measured - noise_));
+  learn_noise(estimate.sums);
   const Matrix6 normal = estimate.sums.normal;
   estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
   estimate.is_valid = true;
   return estimate;
+}
+
+void IntensityTracker::learn_noise(const EventChunk::Sums& sums) {
+  // The scale at which as many residuals are within one deviation as of a Gaussian.
+  constexpr double kWithin = 0.6827;
+  constexpr double kPace = 0.2;
+  if (!(sums.visible > 0)) return;
+  noise_scale_ *= std::exp(kPace * (kWithin - sums.close / sums.visible));
+  noise_scale_ = std::clamp(noise_scale_, 1 / kMostNoise, kMostNoise);
 }
 
 void IntensityTracker::correct_levels() {

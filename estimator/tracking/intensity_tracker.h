@@ -18,12 +18,15 @@ namespace saccade {
 
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
-  int events = 1000;         ///< per pose
-  int iterations = 4;        ///< of Gauss-Newton
-  double noise = 0.05;       ///< expected deviation of a level from the map [log units], at first
-  double correction = 0.02;  ///< least share by which a level is drawn to the map at each event
-  double redraw_px = 4;      ///< the map is drawn anew when the view has moved this far
-  double information = 0.1;  ///< of that of independent residuals: neighbouring ones err alike
+  int events = 1000;          ///< per pose
+  int coarse_iterations = 2;  ///< of Gauss-Newton against the smoothed map
+  int iterations = 3;         ///< then against the map itself
+  double noise = 0.05;        ///< deviation of a level from the map [log units]
+  double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
+  double correction = 0.02;   ///< least share by which a level is drawn to the map at each event
+  double blur_px = 1;         ///< deviation of the Gaussian that smooths it
+  double redraw_px = 4;       ///< the map is drawn anew when the view has moved this far
+  double information = 0.1;   ///< of that of independent residuals: neighbouring ones err alike
 };
 
 /// The part of a sensor's model that the tracker knows.
@@ -65,6 +68,7 @@ class IntensityTracker {
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
                                 const EventChunk::Motion& motion, SeenPlace& seen) const;
   [[nodiscard]] Estimate align(const PosePrediction& predicted);
+  void learn_noise(const EventChunk::Sums& sums);
   void correct_levels();
   [[nodiscard]] EventChunk::Motion motion_at(const Rigid3& map_from_camera) const;
 
@@ -76,7 +80,7 @@ class IntensityTracker {
   PixelLevels levels_;
   MotionModel motion_;
   bool has_view_ = false;
-  double noise_ = 0;
+  double noise_scale_ = 1;
   std::vector<EventChunk> chunks_;
   std::size_t chunk_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of the events in the chunks, in order

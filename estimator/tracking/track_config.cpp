@@ -95,16 +95,25 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
 void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
   fields.value("events", options.events, "per pose").range(16, 1e6);
-  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
-      .range(1, 1000);
+  fields
+      .value("coarse_iterations", options.coarse_iterations,
+             "of Gauss-Newton against the smoothed map")
+      .range(0, 1000);
+  fields.value("iterations", options.iterations, "then against the map itself").range(0, 1000);
   fields
       .value("noise", options.noise,
-             "deviation of a level from the map [log units] that is expected at first")
-      .range(0.01, 10);
+             "deviation of a level from the map [log units], before the scale that is measured")
+      .range(0.001, 10);
+  fields
+      .value("place_px", options.place_px,
+             "deviation of the place where the map shows a level: it is sampled at points")
+      .range(0, 10);
   fields
       .value("correction", options.correction,
              "least share by which a pixel's level is drawn to the map at each of its events")
       .range(0, 1);
+  fields.value("blur_px", options.blur_px, "deviation of the Gaussian that smooths the map")
+      .range(0, 10);
   fields
       .value("redraw_px", options.redraw_px,
              "the map is drawn anew when the view has moved this far")
