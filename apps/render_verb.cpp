@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
+#include "apps/pose_option.h"
 #include "apps/verbs.h"
+#include "core/error.h"
 #include "eval/picture/render.h"
 
 namespace saccade {
@@ -16,14 +20,47 @@ struct RenderVerbOptions {
   std::filesystem::path output;
   bool light = false;
   RenderOptions render;
+  OverlayOptions overlay;
+  std::optional<std::filesystem::path> picture;
+  std::optional<std::string> overlay_pose;
   CommonOptions common;
 };
 
 void render_path(RenderVerbOptions options) {
   options.common.apply();
   options.render.dark = !options.light;
+  if (options.overlay_pose)
+    options.overlay.world_from_picture = parse_pose(*options.overlay_pose, "--overlay-pose");
+  if (options.picture) {
+    if (options.picture->empty())
+      throw InputError("--overlay", "names no picture; docs/images/logo.png is one");
+    options.overlay.picture = *options.picture;
+    options.render.overlay = options.overlay;
+  }
   render(options.path, options.output, options.render);
   if (!options.common.quiet) fmt::print("wrote {}\n", options.output.string());
+}
+
+void add_overlay_options(CLI::App& verb, RenderVerbOptions& options) {
+  OverlayOptions& overlay = options.overlay;
+  CLI::Option* const picture =
+      verb.add_option("--overlay", options.picture,
+                      "Picture that hangs in the world, over events and frames")
+          ->type_name("PICTURE");
+  const auto add = [&](CLI::Option* option) { return option->needs(picture); };
+  add(verb.add_option("--overlay-pose", options.overlay_pose,
+                      "World from picture (default: just in front of the scene)"))
+      ->type_name("\"x y z qx qy qz qw\"");
+  add(verb.add_option("--overlay-width", overlay.width_m,
+                      "Its width [m] (default: a quarter of the view)"))
+      ->check(positive_number());
+  add(verb.add_option("--overlay-at-s", overlay.at_s,
+                      "The camera that it is in front of by default [s] (default: the first)"))
+      ->check(finite_number());
+  add(verb.add_flag("--overlay-truth", overlay.truth,
+                    "Its outline where the true pose of a run sees it"));
+  add(verb.add_flag("--overlay-on-top", overlay.on_top,
+                    "Not hidden by what the depth maps see before it"));
 }
 
 }  // namespace
@@ -57,11 +94,13 @@ void add_render_verb(CLI::App& command) {
       ->check(positive_number())
       ->capture_default_str();
   verb->add_flag("--light", options->light, "On a light background");
+  add_overlay_options(*verb, *options);
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"
       "  saccade render data/walls -o walls.png\n"
-      "  saccade render runs/walls -o walls.mp4 --slow-motion 5");
+      "  saccade render runs/walls -o walls.mp4 --slow-motion 5\n"
+      "  saccade render runs/leaves -o leaves.mp4 --overlay docs/images/logo.png --overlay-truth");
   verb->callback([options] { render_path(*options); });
 }
 

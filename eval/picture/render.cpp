@@ -29,6 +29,10 @@ void check_options(const RenderOptions& options) {
         "must be above 0");
   check(!options.events || *options.events > 0, "events", "must be above 0");
   check(!options.duration_s || *options.duration_s > 0, "duration", "must be above 0 s");
+  if (!options.overlay) return;
+  const std::optional<double>& width_m = options.overlay->width_m;
+  check(!width_m || (*width_m > 0 && std::isfinite(*width_m)), "overlay width",
+        "must be above 0 m");
 }
 
 /// What is drawn: a dataset, or a run with its dataset.
@@ -67,8 +71,40 @@ TimeSpan span_of(const Subject& subject, const RenderOptions& options) {
   return span;
 }
 
+std::optional<Overlay> overlay_for(const Subject& subject, const TimeSpan& span,
+                                   const RenderOptions& options) {
+  if (!options.overlay) return std::nullopt;
+  return Overlay(*options.overlay, subject.dataset, subject.run ? &*subject.run : nullptr,
+                 subject.map, span.start_s);
+}
+
+/// What is drawn and how.
+struct Scene {
+  const Subject& subject;
+  SensorView view;
+  std::optional<Overlay> overlay;
+  int upscale;
+};
+
+/// Events and frame with the picture that hangs in the world.
+std::vector<Picture> overlaid_pictures_at(const Scene& scene, double t_s) {
+  const auto over = [&](std::string caption, ImageRgb8 image, double drawn_s) {
+    return scene.overlay->over({std::move(caption), std::move(image)}, drawn_s, scene.upscale,
+                               scene.view.theme());
+  };
+  std::vector<Picture> pictures;
+  pictures.push_back(over("events", scene.view.undistorted_events(t_s), t_s));
+  if (auto frame = scene.view.undistorted_frame(t_s))
+    pictures.push_back(
+        over(fmt::format("frame of {:.3f} s", frame->t_s), std::move(frame->image), frame->t_s));
+  return pictures;
+}
+
 /// The pictures of one moment, left to right.
-std::vector<Picture> pictures_at(const Subject& subject, const SensorView& view, double t_s) {
+std::vector<Picture> pictures_at(const Scene& scene, double t_s) {
+  if (scene.overlay) return overlaid_pictures_at(scene, t_s);
+  const Subject& subject = scene.subject;
+  const SensorView& view = scene.view;
   std::vector<Picture> pictures;
   if (subject.has_poses()) {
     pictures.push_back(
@@ -97,12 +133,14 @@ std::string title_of(const Subject& subject) {
   return fmt::format("{}: {} on {}", subject.run->name(), subject.run->record.module, dataset);
 }
 
-ImageRgb8 contact_sheet(const Subject& subject, const SensorView& view, const TimeSpan& span) {
+ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
   constexpr double kMoments[] = {0.08, 0.36, 0.64, 0.92};
+  const Subject& subject = scene.subject;
+  const SensorView& view = scene.view;
   Sheet sheet(title_of(subject), view.theme());
   for (const double share : kMoments) {
     const double t_s = span.start_s + share * (span.end_s - span.start_s);
-    sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(subject, view, t_s));
+    sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(scene, t_s));
   }
   const std::vector<Eigen::Vector3d> truth = positions(subject.dataset.groundtruth(), span);
   std::vector<Eigen::Vector3d> estimate;
@@ -114,21 +152,21 @@ ImageRgb8 contact_sheet(const Subject& subject, const SensorView& view, const Ti
   return sheet.draw();
 }
 
-ImageRgb8 moment(const Subject& subject, const SensorView& view, double t_s) {
-  Sheet sheet(title_of(subject), view.theme());
-  sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(subject, view, t_s));
+ImageRgb8 moment(const Scene& scene, double t_s) {
+  Sheet sheet(title_of(scene.subject), scene.view.theme());
+  sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(scene, t_s));
   return sheet.draw();
 }
 
-void write_video(const Subject& subject, const SensorView& view, const TimeSpan& span,
-                 const std::filesystem::path& output, const RenderOptions& options) {
+void write_video(const Scene& scene, const TimeSpan& span, const std::filesystem::path& output,
+                 const RenderOptions& options) {
   const double step_s = 1 / (options.fps * options.slow_motion);
   const auto frames = static_cast<std::uint64_t>((span.end_s - span.start_s) / step_s) + 1;
-  const ImageRgb8 first = moment(subject, view, span.start_s);
+  const ImageRgb8 first = moment(scene, span.start_s);
   VideoWriter video(output, first.width(), first.height(), options.fps);
   Progress progress("rendering", frames, "frames");
   for (std::uint64_t i = 0; i < frames; ++i) {
-    video.add(moment(subject, view, span.start_s + static_cast<double>(i) * step_s));
+    video.add(moment(scene, span.start_s + static_cast<double>(i) * step_s));
     progress.add(1);
   }
   video.finish();
@@ -146,12 +184,15 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
   const TimeSpan span = span_of(subject, options);
   const bool single = ending == ".png" && options.time_s.has_value();
   const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
-  const SensorView view(
-      subject.dataset, loaded.start_s, loaded.end_s,
-      {options.upscale, options.events.value_or(0), options.dark ? kDarkTheme : kLightTheme});
-  if (ending == ".mp4") return write_video(subject, view, span, output, options);
-  write_png(output,
-            single ? moment(subject, view, *options.time_s) : contact_sheet(subject, view, span));
+  // Before the events are loaded, which takes longer than to say what is wrong with the overlay.
+  std::optional<Overlay> overlay = overlay_for(subject, span, options);
+  const Scene scene{subject,
+                    SensorView(subject.dataset, loaded.start_s, loaded.end_s,
+                               {options.upscale, options.events.value_or(0),
+                                options.dark ? kDarkTheme : kLightTheme}),
+                    std::move(overlay), options.upscale};
+  if (ending == ".mp4") return write_video(scene, span, output, options);
+  write_png(output, single ? moment(scene, *options.time_s) : contact_sheet(scene, span));
 }
 
 }  // namespace saccade

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "eval/picture/overlay.h"
+
 namespace saccade {
 
 struct RenderOptions {
@@ -20,6 +22,9 @@ struct RenderOptions {
   double fps = 30;          ///< of a video, 1..240
   double slow_motion = 10;  ///< seconds of video per second of recording, > 0
   bool dark = true;         ///< on a dark or a light background
+  /// A picture that hangs in the world, over events and frames without lens distortion; each frame
+  /// with the pose of its own time.
+  std::optional<OverlayOptions> overlay = std::nullopt;
 };
 
 /// Draws a dataset or a run (a folder with run.yaml) into `output`:
@@ -28,6 +33,7 @@ struct RenderOptions {
 ///          a dataset; events, map tracked over events and trajectory of a run
 ///   .mp4   events beside the frame, or events under the tracked map; encoded by the program ffmpeg
 /// Events are drawn undistorted wherever something is drawn over them.
+/// With an overlay: events and frame, with the picture in them.
 /// Throws InputError for another ending, an option out of range, a moment without events or truth,
 /// and a missing ffmpeg.
 void render(const std::filesystem::path& path, const std::filesystem::path& output,

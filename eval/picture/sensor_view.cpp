@@ -72,6 +72,19 @@ ImageRgb8 SensorView::map_over_events(double t_s, std::span<const Eigen::Vector3
                               style_.upscale, style_.theme);
 }
 
+ImageRgb8 SensorView::undistorted_events(double t_s) const {
+  return upscale(draw_events(undistort_events(around(t_s), dataset_.camera()), camera_.width,
+                             camera_.height, style_.theme),
+                 style_.upscale);
+}
+
+std::optional<FramePicture> SensorView::undistorted_frame(double t_s) const {
+  if (dataset_.frames().empty()) return std::nullopt;
+  const std::size_t index = current_file(dataset_.frames(), t_s);
+  const ImageF frame = undistort_image(dataset_.load_frame(index), dataset_.camera());
+  return FramePicture{dataset_.frames()[index].t_s, upscale(draw_radiance(frame), style_.upscale)};
+}
+
 std::optional<ImageRgb8> SensorView::frame(double t_s) const {
   if (dataset_.frames().empty()) return std::nullopt;
   const std::size_t index = current_file(dataset_.frames(), t_s);

@@ -18,6 +18,11 @@ struct SensorViewStyle {
   Theme theme = kDarkTheme;
 };
 
+struct FramePicture {
+  double t_s = 0;
+  ImageRgb8 image;
+};
+
 struct DepthPicture {
   ImageRgb8 image;
   DepthRange range;
@@ -41,6 +46,11 @@ class SensorView {
   [[nodiscard]] ImageRgb8 map_over_events(double t_s,
                                           std::span<const Eigen::Vector3f> points_in_world,
                                           const Rigid3& world_from_camera) const;
+  /// The undistorted events alone.
+  [[nodiscard]] ImageRgb8 undistorted_events(double t_s) const;
+  /// The latest grey frame at `t_s` as a camera without distortion would have seen it, with its own
+  /// time; nullopt when the dataset has none.
+  [[nodiscard]] std::optional<FramePicture> undistorted_frame(double t_s) const;
   /// The latest grey frame and depth map at `t_s` (the first one before it); nullopt when the
   /// dataset has none.
   [[nodiscard]] std::optional<ImageRgb8> frame(double t_s) const;

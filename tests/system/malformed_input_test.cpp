@@ -73,6 +73,12 @@ std::vector<std::string> track(std::vector<std::string> more = {}) {
   return arguments;
 }
 
+std::vector<std::string> overlay(std::vector<std::string> more) {
+  std::vector<std::string> arguments = {"render", "@/data", "-o", "@/out.png"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
 auto file(const std::string& name, const std::string& text) {
   return [=](const TemporaryFolder& folder) { folder.write(name, text); };
 }
@@ -239,6 +245,26 @@ const std::vector<Case>& cases() {
        {"est.txt:2", "zero"}},
       {"ReportOfNoRun", nothing, {"report", "@/nowhere", "-o", "@/out"}, {"nowhere"}},
       {"RenderToUnknownFormat", nothing, {"render", "@/data", "-o", "@/out.xyz"}, {"out.xyz"}},
+      {"OverlayMissing",
+       nothing,
+       overlay({"--overlay", "@/none.png"}),
+       {"none.png", "no such file"}},
+      {"OverlayIsNoPicture",
+       nothing,
+       overlay({"--overlay", "@/data/calib.txt"}),
+       {"calib.txt", "no picture"}},
+      {"OverlayPoseTooShort",
+       nothing,
+       overlay({"--overlay", "@/none.png", "--overlay-pose", "1 2 3 0 0 1"}),
+       {"--overlay-pose", "6 numbers instead of 7", "x y z qx qy qz qw"}},
+      {"OverlayPoseNotANumber",
+       nothing,
+       overlay({"--overlay", "@/none.png", "--overlay-pose", "1 2 3 0 0 O 1"}),
+       {"--overlay-pose", "character 11 (qz)", "'O'"}},
+      {"OverlayOptionAlone",
+       nothing,
+       overlay({"--overlay-width", "2"}),
+       {"--overlay-width requires --overlay"}},
   };
   return all;
 }
