@@ -27,7 +27,6 @@ IntensityMap::View lift(const PinholeCamera& camera, const ReferenceView& refere
 
 /// A picture smoothed by a Gaussian; what is unknown stays so and counts for nothing.
 ImageF smoothed(const ImageF& image, double blur_px) {
-  if (!(blur_px > 0)) return image;
   const int reach = static_cast<int>(std::ceil(3 * blur_px));
   std::vector<double> kernel;
   for (int k = -reach; k <= reach; ++k)
@@ -72,8 +71,8 @@ ImageF steepness(const ImageF& image) {
   return steepest;
 }
 
-/// Smooths where neighbours differ by more than `step`, fully from twice that on.
-ImageF smoothed_at_steps(const ImageF& image, double blur_px, double step) {
+ImageF smoothed_at_edges(const ImageF& image, double blur_px, double step) {
+  if (!(blur_px > 0)) return image;
   const ImageF blurred = smoothed(image, blur_px);
   const ImageF steep = steepness(image);
   ImageF result = image;
@@ -88,19 +87,16 @@ ImageF smoothed_at_steps(const ImageF& image, double blur_px, double step) {
 }  // namespace
 
 IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views,
-                           double blur_px)
+                           const IntensityMapOptions& options)
     : camera_(camera) {
   SACCADE_CHECK(!views.empty());
   world_from_map_ = views.front().world_from_reference;
-  const int rows = camera.height * static_cast<int>(views.size());
-  atlas_ = ImageF(camera.width, rows);
-  coarse_atlas_ = ImageF(camera.width, rows);
+  atlas_ = ImageF(camera.width, camera.height * static_cast<int>(views.size()));
   for (std::size_t i = 0; i < views.size(); ++i) {
     const int first_row = camera.height * static_cast<int>(i);
-    const ImageF fine = smoothed_at_steps(views[i].log_intensity, blur_px, kStep);
-    const ImageF coarse = smoothed(views[i].log_intensity, blur_px);
-    std::copy(fine.pixels().begin(), fine.pixels().end(), &atlas_(0, first_row));
-    std::copy(coarse.pixels().begin(), coarse.pixels().end(), &coarse_atlas_(0, first_row));
+    const ImageF picture =
+        smoothed_at_edges(views[i].log_intensity, options.blur_px, options.edge_step);
+    std::copy(picture.pixels().begin(), picture.pixels().end(), &atlas_(0, first_row));
     views_.push_back(lift(camera, views[i],
                           world_from_map_.inverse() * views[i].world_from_reference, first_row));
   }

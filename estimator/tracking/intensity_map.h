@@ -13,6 +13,14 @@
 
 namespace saccade {
 
+/// A picture of point samples does not say where between two of them an edge stands. Where
+/// neighbours differ by more than an edge's step it is smoothed, fully from twice that on, so that
+/// edges attract from further away; elsewhere it stays as it is.
+struct IntensityMapOptions {
+  double edge_step = 0.9;  ///< [log units]
+  double blur_px = 0.8;    ///< deviation of the Gaussian; 0: nothing is smoothed
+};
+
 /// The known world of the intensity tracker: what one or more views show, as points with a log
 /// intensity. The pictures lie one below the other in an atlas, so that a place in any of them is
 /// one pair of coordinates.
@@ -20,8 +28,8 @@ class IntensityMap {
  public:
   /// `camera` is undistorted and that of all views; the map's frame is that of the first of them.
   /// At least one view.
-  /// `blur_px`: deviation of the Gaussian that smooths coarse_atlas().
-  IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views, double blur_px);
+  IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views,
+               const IntensityMapOptions& options);
 
   /// A view's picture in the atlas, its pose, and its points [m].
   struct View {
@@ -36,13 +44,11 @@ class IntensityMap {
 
   /// Log intensities, NaN where the lens shows nothing.
   [[nodiscard]] const ImageF& atlas() const { return atlas_; }
-  /// The same smoothed: edges attract from further away.
-  [[nodiscard]] const ImageF& coarse_atlas() const { return coarse_atlas_; }
 
  private:
   PinholeCamera camera_;
   Rigid3 world_from_map_;
-  ImageF atlas_, coarse_atlas_;
+  ImageF atlas_;
   std::vector<View> views_;
 };
 

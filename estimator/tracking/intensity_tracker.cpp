@@ -134,7 +134,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
     motion_.stop();
     pose.status = TrackStatus::kLost;
   }
-  pose.iterations = options_.coarse_iterations + options_.iterations;
+  pose.iterations = options_.iterations;
   pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
   pose.residual = noise_scale_ * options_.noise;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
@@ -205,19 +205,16 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
   const double weight = options_.information / (deviation_of_one * deviation_of_one);
   const Matrix6 prior = predicted.precision / weight;
   Twist deviation = Twist::Zero();
-  const int rounds = options_.coarse_iterations + options_.iterations;
-  for (int i = 0; i <= rounds; ++i) {
-    const bool is_coarse = i < options_.coarse_iterations || options_.iterations == 0;
-    const ImageF& atlas = is_coarse ? map_.coarse_atlas() : map_.atlas();
+  for (int i = 0; i <= options_.iterations; ++i) {
     const EventChunk::Motion motion = motion_at(estimate.map_from_camera);
     estimate.sums = {};
     for (std::size_t k = 0; k < chunk_count_; ++k) {
-      chunks_[k].evaluate(camera_, atlas, motion);
+      chunks_[k].evaluate(camera_, map_.atlas(), motion);
       chunks_[k].weigh(noise);
       chunks_[k].add_to(estimate.sums);
     }
     // The last round is for the evidence.
-    if (i == rounds) break;
+    if (i == options_.iterations) break;
     Cholesky<6> factors;
     if (!factors.factor(estimate.sums.normal + prior)) return estimate;
     const Twist step = factors.solve(estimate.sums.rhs - prior * deviation);

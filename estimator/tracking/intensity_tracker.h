@@ -18,15 +18,14 @@ namespace saccade {
 
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
-  int events = 1000;          ///< per pose
-  int coarse_iterations = 2;  ///< of Gauss-Newton against the smoothed map
-  int iterations = 3;         ///< then against the map itself
-  double noise = 0.05;        ///< deviation of a level from the map [log units]
-  double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
-  double correction = 0.02;   ///< least share by which a level is drawn to the map at each event
-  double blur_px = 1;         ///< deviation of the Gaussian that smooths it
-  double redraw_px = 4;       ///< the map is drawn anew when the view has moved this far
-  double information = 0.1;   ///< of that of independent residuals: neighbouring ones err alike
+  IntensityMapOptions map;
+  int events = 1000;         ///< per pose
+  int iterations = 4;        ///< of Gauss-Newton
+  double noise = 0.05;       ///< deviation of a level from the map [log units]
+  double place_px = 0.3;     ///< of the place where the map shows it, see EventChunk::Noise
+  double correction = 0.02;  ///< least share by which a level is drawn to the map at each event
+  double redraw_px = 4;      ///< the map is drawn anew when the view has moved this far
+  double information = 0.1;  ///< of that of independent residuals: neighbouring ones err alike
 };
 
 /// The part of a sensor's model that the tracker knows.

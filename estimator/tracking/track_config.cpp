@@ -95,11 +95,8 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
 void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
   fields.value("events", options.events, "per pose").range(16, 1e6);
-  fields
-      .value("coarse_iterations", options.coarse_iterations,
-             "of Gauss-Newton against the smoothed map")
-      .range(0, 1000);
-  fields.value("iterations", options.iterations, "then against the map itself").range(0, 1000);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
+      .range(1, 1000);
   fields
       .value("noise", options.noise,
              "deviation of a level from the map [log units], before the scale that is measured")
@@ -112,7 +109,11 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
       .value("correction", options.correction,
              "least share by which a pixel's level is drawn to the map at each of its events")
       .range(0, 1);
-  fields.value("blur_px", options.blur_px, "deviation of the Gaussian that smooths the map")
+  fields
+      .value("edge_step", options.map.edge_step,
+             "the map is smoothed where neighbours differ by more [log units]")
+      .range(0.001, 100);
+  fields.value("blur_px", options.map.blur_px, "deviation of that Gaussian; 0: nothing is smoothed")
       .range(0, 10);
   fields
       .value("redraw_px", options.redraw_px,

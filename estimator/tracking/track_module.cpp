@@ -128,7 +128,7 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   output.map = extract_map(input.reference.log_intensity, input.reference.depth,
                            camera.undistorted(), config.map);
   if (config.method == TrackConfig::Method::kIntensity) {
-    const IntensityMap map(camera.undistorted(), {&input.reference, 1}, config.intensity.blur_px);
+    const IntensityMap map(camera.undistorted(), {&input.reference, 1}, config.intensity.map);
     output.timing.stages_s = {{"map", seconds_since(map_start)}};
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map);
