@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace saccade {
 namespace {
@@ -9,6 +10,9 @@ namespace {
 /// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
 /// the next ones go on in the same way.
 constexpr float kStep = 0.03F;
+/// What two views show of one surface differs by less than this in inverse depth: the first one
+/// drawn remains.
+constexpr float kNearer = 1.01F;
 
 /// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
 bool is_joined(float before, float b, float c, float after) {
@@ -30,11 +34,25 @@ MapView::MapView(const IntensityMap& map, int margin_px)
 void MapView::draw(const Rigid3& map_from_camera) {
   map_from_camera_ = map_from_camera;
   for (SeenPlace& place : places_.pixels()) place.inverse_depth = 0;
-  for (const IntensityMap::View& view : map_.views()) {
-    project(view);
-    draw_view(view);
+  for (const std::size_t i : nearest_views()) {
+    project(map_.views()[i]);
+    draw_view(map_.views()[i]);
   }
   measure();
+}
+
+std::vector<std::size_t> MapView::nearest_views() const {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::pair<double, std::size_t>> by_angle;
+  for (std::size_t i = 0; i < map_.views().size(); ++i) {
+    const Rigid3 view_from_camera = map_.views()[i].view_from_map * map_from_camera_;
+    by_angle.emplace_back(so3_log(view_from_camera.rotation()).norm(), i);
+  }
+  std::sort(by_angle.begin(), by_angle.end());
+  std::vector<std::size_t> nearest;
+  for (std::size_t k = 0; k < std::min(kMost, by_angle.size()); ++k)
+    nearest.push_back(by_angle[k].second);
+  return nearest;
 }
 
 void MapView::project(const IntensityMap::View& view) {
@@ -127,7 +145,7 @@ void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c) {
                                   weights.x() * (b.vertex.inverse_depth - p.inverse_depth) +
                                   weights.y() * (c.vertex.inverse_depth - p.inverse_depth);
       SeenPlace& seen = places_(x + margin_, y + margin_);
-      if (inverse_depth <= seen.inverse_depth) continue;
+      if (inverse_depth <= kNearer * seen.inverse_depth) continue;
       seen = {a.point + weights.x() * (b.point - a.point) + weights.y() * (c.point - a.point),
               inverse_depth, a.place + slope * offset, slope};
     }

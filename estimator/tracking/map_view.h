@@ -54,6 +54,8 @@ class MapView {
     Eigen::Vector2f place;
   };
 
+  /// The few that look most nearly the same way, the nearest first.
+  [[nodiscard]] std::vector<std::size_t> nearest_views() const;
   void project(const IntensityMap::View& view);
   void draw_view(const IntensityMap::View& view);
   void draw_triangle(const Corner& a, const Corner& b, const Corner& c);

@@ -46,7 +46,10 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
     cross_covariance_.setZero();
   }
   map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);
-  const Twist drift = twist_of_px(options_.agility_px, depth_m).square();
+  const double speed_px =
+      focal_px_ * (velocity_.tail<3>().norm() + velocity_.head<3>().norm() / depth_m);
+  const Twist drift =
+      twist_of_px(options_.agility_px + options_.agility_share * speed_px, depth_m).square();
   pose_covariance_ +=
       dt * (cross_covariance_ + cross_covariance_.transpose()) + dt * dt * velocity_covariance_;
   pose_covariance_.diagonal() += dt * dt * dt / 3 * drift;

@@ -12,6 +12,8 @@ struct PredictionOptions {
   Prediction prediction = Prediction::kNone;
   /// How fast the velocity drifts, as image motion: px/s of change within a second (a random walk).
   double agility_px = 500;
+  /// The same per image speed [1/s]: what moves fast is about to turn back.
+  double agility_share = 0;
 };
 
 /// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).

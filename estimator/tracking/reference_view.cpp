@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "core/error.h"
@@ -65,25 +67,9 @@ void keep_region(const std::array<double, 4>& region, ImageF& depth) {
       if (x < region[0] || y < region[1] || x > region[2] || y > region[3]) depth(x, y) = 0;
 }
 
-}  // namespace
-
-ImageF undistort_bilinear(const ImageF& image, const PinholeCamera& camera, float outside) {
-  if (!camera.is_distorted()) return image;
-  return undistort(image, camera, outside,
-                   [&](double x, double y) { return static_cast<float>(sample(image, x, y)); });
-}
-
-ImageF undistort_nearest(const ImageF& image, const PinholeCamera& camera, float outside) {
-  if (!camera.is_distorted()) return image;
-  return undistort(image, camera, outside, [&](double x, double y) {
-    return image(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
-  });
-}
-
-ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& options,
-                             double start_s) {
+ReferenceView load_view(const Dataset& dataset, const ReferenceOptions& options,
+                        std::size_t index) {
   const PinholeCamera& camera = dataset.camera();
-  const std::size_t index = reference_index(dataset, options, start_s);
   const StampedFile& frame = dataset.frames()[index];
   ReferenceView view;
   const ImageF radiance = dataset.load_frame(index);
@@ -105,6 +91,41 @@ ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& opt
   if (!dataset.groundtruth().empty())
     view.world_from_reference = dataset.groundtruth().at_clamped(frame.t_s + options.time_offset_s);
   return view;
+}
+
+}  // namespace
+
+ImageF undistort_bilinear(const ImageF& image, const PinholeCamera& camera, float outside) {
+  if (!camera.is_distorted()) return image;
+  return undistort(image, camera, outside,
+                   [&](double x, double y) { return static_cast<float>(sample(image, x, y)); });
+}
+
+ImageF undistort_nearest(const ImageF& image, const PinholeCamera& camera, float outside) {
+  if (!camera.is_distorted()) return image;
+  return undistort(image, camera, outside, [&](double x, double y) {
+    return image(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
+  });
+}
+
+std::vector<ReferenceView> load_references(const Dataset& dataset, const ReferenceOptions& options,
+                                           double start_s, double end_s) {
+  const std::size_t first = reference_index(dataset, options, start_s);
+  std::vector<ReferenceView> views{load_view(dataset, options, first)};
+  if (!options.turn_deg) return views;
+  if (dataset.groundtruth().empty())
+    throw InputError("reference.turn_deg",
+                     dataset.folder().string() + " holds no groundtruth.txt for further views");
+  const double turn = *options.turn_deg * std::numbers::pi / 180;
+  const auto& frames = dataset.frames();
+  for (std::size_t i = first + 1; i < frames.size() && frames[i].t_s <= end_s; ++i) {
+    const Rigid3 pose = dataset.groundtruth().at_clamped(frames[i].t_s + options.time_offset_s);
+    const bool is_new = std::all_of(views.begin(), views.end(), [&](const ReferenceView& view) {
+      return angle_between(view.world_from_reference.rotation(), pose.rotation()) > turn;
+    });
+    if (is_new) views.push_back(load_view(dataset, options, i));
+  }
+  return views;
 }
 
 }  // namespace saccade

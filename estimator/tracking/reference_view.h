@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"
@@ -18,6 +19,9 @@ struct ReferenceOptions {
   /// Left, top, right, bottom [px] of the part of the undistorted frame that becomes the map; a
   /// plane rarely fills the view. Default: all of it.
   std::optional<std::array<double, 4>> region_px;
+  /// A further frame belongs to the map where the view has turned by more than this from all
+  /// others; default: one frame.
+  std::optional<double> turn_deg;
   double time_offset_s = 0;  ///< the frame shows the scene this long after its stamp
 };
 
@@ -29,11 +33,13 @@ struct ReferenceView {
 };
 
 /// Loads the reference frame with its depth and its true pose (identity where the dataset has no
-/// ground truth: the reference view is the world then). `start_s` chooses the frame by default.
-/// Throws InputError naming the dataset when a frame, a depth map at its time, or a pose is
-/// missing.
-[[nodiscard]] ReferenceView load_reference(const Dataset& dataset, const ReferenceOptions& options,
-                                           double start_s);
+/// ground truth: the reference view is the world then), and with `turn_deg` the later frames that
+/// the map needs. `start_s` chooses the first frame by default, `end_s` is the end of what is
+/// tracked. Throws InputError naming the dataset when a frame, a depth map at its time, or a pose
+/// is missing.
+[[nodiscard]] std::vector<ReferenceView> load_references(const Dataset& dataset,
+                                                         const ReferenceOptions& options,
+                                                         double start_s, double end_s);
 
 /// The image that a camera without distortion would have taken; bilinear, `outside` beyond the
 /// border.

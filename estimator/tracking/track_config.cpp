@@ -15,6 +15,12 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
   fields.value("region_px", options.region_px,
                "left, top, right, bottom of the part of the frame that becomes the map; ~ is all");
   fields
+      .value(
+          "turn_deg", options.turn_deg,
+          "a further frame joins the map where the view has turned so far from all others; ~: one "
+          "frame")
+      .range(1, 180);
+  fields
       .value("time_offset_s", options.time_offset_s,
              "the frame shows the scene this long after its time stamp (exposure, readout)")
       .range(-1, 1);
@@ -139,6 +145,11 @@ void describe_motion(config::Fields& fields, PredictionOptions& options) {
         .value("agility_px", options.agility_px,
                "change of the image velocity within a second [px/s] that is expected")
         .range(1, 1e6);
+  if (options.prediction == PredictionOptions::Prediction::kConstantVelocity)
+    fields
+        .value("agility_share", options.agility_share,
+               "that, added for each px/s of image velocity: what moves fast is about to turn back")
+        .range(0, 1e3);
 }
 
 void describe_lost(config::Fields& fields, LostOptions& options) {

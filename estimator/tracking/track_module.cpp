@@ -33,7 +33,7 @@ double seconds_since(Clock::time_point start) {
 struct TrackInput {
   Events events;
   RunRecord::Window window;
-  ReferenceView reference;
+  std::vector<ReferenceView> references;
   Rigid3 initial_world_from_camera;
 };
 
@@ -82,7 +82,8 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
   if (input.events.empty())
     throw InputError(dataset.folder().string(), "holds no events in the window to be tracked");
   input.window = window_of(request, input.events);
-  input.reference = load_reference(dataset, config.reference, input.window.start_s);
+  input.references =
+      load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
   return input;
 }
@@ -92,6 +93,26 @@ struct TrackOutput {
   std::vector<TrackedPose> poses;
   RunTiming timing;
 };
+
+/// The map points of all views, in the frame of the first.
+MapPoints map_of(const TrackConfig& config, const PinholeCamera& camera,
+                 const std::vector<ReferenceView>& views) {
+  MapPoints all;
+  const Rigid3 map_from_world = views.front().world_from_reference.inverse();
+  for (const ReferenceView& view : views) {
+    const MapPoints points = extract_map(view.log_intensity, view.depth, camera, config.map);
+    const Rigid3 map_from_view = map_from_world * view.world_from_reference;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d point =
+          map_from_view * Eigen::Vector3d(points.x[i], points.y[i], points.z[i]);
+      all.x.push_back(static_cast<float>(point.x()));
+      all.y.push_back(static_cast<float>(point.y()));
+      all.z.push_back(static_cast<float>(point.z()));
+      all.value.push_back(points.value[i]);
+    }
+  }
+  return all;
+}
 
 EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
   if (config.contrast) return {*config.contrast, *config.contrast};
@@ -125,18 +146,17 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   const PinholeCamera& camera = dataset.camera();
   TrackOutput output;
   const auto map_start = Clock::now();
-  output.map = extract_map(input.reference.log_intensity, input.reference.depth,
-                           camera.undistorted(), config.map);
+  output.map = map_of(config, camera.undistorted(), input.references);
   if (config.method == TrackConfig::Method::kIntensity) {
-    const IntensityMap map(camera.undistorted(), {&input.reference, 1}, config.intensity.map);
+    const IntensityMap map(camera.undistorted(), input.references, config.intensity.map);
     output.timing.stages_s = {{"map", seconds_since(map_start)}};
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map);
     track_repeatedly(tracker, input, repeat, output);
   } else {
     output.timing.stages_s = {{"map", seconds_since(map_start)}};
-    Tracker tracker(config.tracker, camera, output.map, input.reference.world_from_reference,
-                    config.seed);
+    Tracker tracker(config.tracker, camera, output.map,
+                    input.references.front().world_from_reference, config.seed);
     track_repeatedly(tracker, input, repeat, output);
   }
   output.timing.events = input.events.size();
@@ -196,7 +216,7 @@ RunSummary run_track(const RunRequest& request) {
   const auto write_start = Clock::now();
   write_tum_trajectory(writer.path() / "trajectory.txt", stamped_poses(output.poses));
   write_poses_csv(writer.path() / "poses.csv", output.poses);
-  write_map(writer.path() / "map.ply", output.map, input.reference.world_from_reference);
+  write_map(writer.path() / "map.ply", output.map, input.references.front().world_from_reference);
   output.timing.io_s = read_s + seconds_since(write_start);
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
                 output.timing);
