@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include "core/check.h"
 #include "estimator/tracking/cholesky.h"
@@ -11,6 +12,10 @@
 namespace saccade {
 namespace {
 
+/// Fewer do not make a pose.
+constexpr std::size_t kFewEvents = 100;
+/// Pixels are said to be known as well at the start as after this many corrections.
+constexpr float kKnownLooks = 10;
 /// Beyond the image the view is drawn this much further than it may move before it is redrawn.
 constexpr int kSpare_px = 4;
 constexpr double kMostNoise = 1;  // scale, either way
@@ -35,14 +40,15 @@ struct IntensityTracker::Estimate {
 
 IntensityTracker::IntensityTracker(const IntensityOptions& options, const PredictionOptions& motion,
                                    const EventContrast& contrast, const PinholeCamera& camera,
-                                   const IntensityMap& map)
+                                   const IntensityMap& map, Tracker& edges)
     : options_(options),
       camera_(camera.undistorted()),
       undistortion_(camera),
       map_(map),
       view_(map, margin_of(options)),
       levels_(camera.width, camera.height, contrast.on, contrast.off, options.correction),
-      motion_(motion, camera.fx) {}
+      motion_(motion, camera.fx),
+      edges_(edges) {}
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, map_.world_from_map().inverse() * world_from_camera);
@@ -50,8 +56,13 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   has_view_ = false;
   views_drawn_ = 0;
   timing_ = {};
+  last_event_ns_ = t_ns;
+  usual_inliers_ = 0;
+  misfits_ = 0;
+  attempts_ = 0;
+  is_lost_ = false;
   draw_view(motion_.pose());
-  start_levels();
+  start_levels(kKnownLooks);
 }
 
 void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
@@ -77,7 +88,7 @@ bool IntensityTracker::view_fits(const Rigid3& map_from_camera) const {
   return furthest < options_.redraw_px;
 }
 
-void IntensityTracker::start_levels() {
+void IntensityTracker::start_levels(float looks) {
   levels_.forget();
   for (int y = 0; y < camera_.height; ++y)
     for (int x = 0; x < camera_.width; ++x) {
@@ -93,20 +104,101 @@ void IntensityTracker::start_levels() {
       if (!is_inside(map_.atlas(), place.x(), place.y())) continue;
       const float level = sample(map_.atlas(), place.x(), place.y());
       if (!std::isfinite(level)) continue;
-      levels_.set(static_cast<std::size_t>(y * camera_.width + x), level, 10);
+      levels_.set(static_cast<std::size_t>(y * camera_.width + x), level, looks);
     }
 }
 
 std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
                                                  const std::function<void(std::size_t)>& progress) {
-  std::vector<TrackedPose> poses;
+  Poses poses;
   const auto count = static_cast<std::size_t>(options_.events);
   while (events.size() >= count) {
-    poses.push_back(track_batch(events.first(count)));
-    events = events.subspan(count);
-    if (progress) progress(count);
+    std::size_t done = 0;
+    if (is_lost_) {
+      done = relocalise(events, poses);
+      if (done == 0) break;  // too few events are left
+    } else {
+      done = before_silence(events.first(count));
+      if (done >= kFewEvents) poses.push_back(track_batch(events.first(done)));
+      if (done < count) lose();
+    }
+    if (done > 0) last_event_ns_ = events[done - 1].t_ns;
+    events = events.subspan(done);
+    if (progress) progress(done);
   }
   return poses;
+}
+
+std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
+  const double speed_px = motion_.speed_px(view_.typical_depth_m());
+  TimeNs before_ns = last_event_ns_;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (seconds_from_ns(events[i].t_ns - before_ns) * speed_px > options_.silence_px) return i;
+    before_ns = events[i].t_ns;
+  }
+  return events.size();
+}
+
+bool IntensityTracker::fits_worse(double inlier_ratio) {
+  constexpr int kPatience = 5;
+  constexpr double kForget = 0.01;
+  // While the levels are still uncertain fewer residuals fit.
+  constexpr int kUncertain = 50;
+  constexpr double kUncertainDrop = 0.6;
+  if (usual_inliers_ == 0) usual_inliers_ = inlier_ratio;
+  const bool is_certain = attempts_ == 0;
+  const double drop = options_.inlier_drop * (is_certain ? 1 : kUncertainDrop);
+  if (inlier_ratio < drop * usual_inliers_) return ++misfits_ >= kPatience;
+  misfits_ = 0;
+  if (is_certain) usual_inliers_ += kForget * (inlier_ratio - usual_inliers_);
+  if (!is_certain && ++fits_ >= kUncertain) attempts_ = 0;
+  return false;
+}
+
+void IntensityTracker::lose() {
+  if (attempts_ == 0) lost_at_ = motion_.pose();
+  is_lost_ = true;
+  misfits_ = 0;
+}
+
+Rigid3 IntensityTracker::guess(TimeNs t_ns) const {
+  // Where it should be by now, where it was, and then around it in growing circles.
+  const double gap_s = seconds_from_ns(t_ns - last_event_ns_);
+  if (attempts_ == 1) return lost_at_ * Rigid3::exp(motion_.velocity() * gap_s);
+  if (attempts_ == 2) return lost_at_;
+  constexpr int kDirections = 8;
+  constexpr double kStep_px = 6;
+  const int ring = 1 + (attempts_ - 3) / kDirections;
+  const double angle = 2 * std::numbers::pi * (attempts_ - 3) / kDirections;
+  const double turn = kStep_px * ring / camera_.fx;
+  Twist offset = Twist::Zero();
+  offset.tail<3>() << turn * std::sin(angle), turn * std::cos(angle), 0;
+  return lost_at_ * Rigid3::exp(offset);
+}
+
+std::size_t IntensityTracker::relocalise(std::span<const Event> events, Poses& poses) {
+  constexpr std::size_t kFrames = 6;
+  constexpr double kUncertain_px = 4;
+  const TimeNs t_ns = events.front().t_ns;
+  ++attempts_;
+  edges_.reset(t_ns, map_.world_from_map() * guess(t_ns), kUncertain_px);
+  const std::size_t done = kFrames * edges_.next_frame_events();
+  if (done > events.size()) return 0;
+  Poses found = edges_.track(events.first(done));
+  double inliers = 0;
+  for (TrackedPose& pose : found) {
+    pose.status = TrackStatus::kLost;
+    inliers += pose.inlier_ratio / static_cast<double>(found.size());
+  }
+  poses.insert(poses.end(), found.begin(), found.end());
+  if (inliers < edges_.least_inlier_ratio()) return done;
+  is_lost_ = false;
+  fits_ = 0;
+  motion_ = edges_.motion();
+  has_view_ = false;
+  draw_view(motion_.pose());
+  start_levels(1);
+  return done;
 }
 
 EventChunk::Motion IntensityTracker::motion_at(const Rigid3& map_from_camera) const {
@@ -130,12 +222,13 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
     correct_levels();
-  } else {
-    motion_.stop();
-    pose.status = TrackStatus::kLost;
   }
   pose.iterations = options_.iterations;
   pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
+  if (!estimate.is_valid || fits_worse(pose.inlier_ratio)) {
+    lose();
+    pose.status = TrackStatus::kLost;
+  }
   pose.residual = noise_scale_ * options_.noise;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
   timing_.template_s += drawn_s - start_s;

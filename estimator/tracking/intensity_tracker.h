@@ -19,13 +19,15 @@ namespace saccade {
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
   IntensityMapOptions map;
-  int events = 1000;         ///< per pose
-  int iterations = 4;        ///< of Gauss-Newton
-  double noise = 0.05;       ///< deviation of a level from the map [log units]
-  double place_px = 0.3;     ///< of the place where the map shows it, see EventChunk::Noise
-  double correction = 0.02;  ///< least share by which a level is drawn to the map at each event
-  double redraw_px = 4;      ///< the map is drawn anew when the view has moved this far
-  double information = 0.1;  ///< of that of independent residuals: neighbouring ones err alike
+  int events = 1000;          ///< per pose
+  int iterations = 4;         ///< of Gauss-Newton
+  double noise = 0.05;        ///< deviation of a level from the map [log units]
+  double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
+  double correction = 0.02;   ///< least share by which a level is drawn to the map at each event
+  double redraw_px = 4;       ///< the map is drawn anew when the view has moved this far
+  double inlier_drop = 0.75;  ///< lost below this share of the inlier ratio that is usual
+  double silence_px = 2;      ///< lost where the camera should have moved so far without an event
+  double information = 0.1;   ///< of that of independent residuals: neighbouring ones err alike
 };
 
 /// The part of a sensor's model that the tracker knows.
@@ -38,13 +40,15 @@ struct EventContrast {
 /// which the map shows the same there:
 ///   r_k = level_k - L(W(u_k; pose at t_k)),   pose(t) = pose exp((t - t_0) velocity)
 /// by Gauss-Newton with Cauchy weights, pulled towards a constant velocity by the prediction's
-/// precision. Deterministic; one thread.
+/// precision. Lost - fewer residuals fit than usual, or no event came although the camera moves -
+/// the levels say nothing any more: the edges of the map are sought around the expected pose until
+/// they fit, and the levels start anew there. Deterministic; one thread.
 class IntensityTracker {
  public:
-  /// `camera` may be distorted; `map` outlives the tracker.
+  /// `camera` may be distorted; `map` and `edges`, which finds the pose again, outlive the tracker.
   IntensityTracker(const IntensityOptions& options, const PredictionOptions& motion,
                    const EventContrast& contrast, const PinholeCamera& camera,
-                   const IntensityMap& map);
+                   const IntensityMap& map, Tracker& edges);
 
   /// Starts anew from a known pose.
   void reset(TimeNs t_ns, const Rigid3& world_from_camera);
@@ -59,9 +63,15 @@ class IntensityTracker {
 
  private:
   struct Estimate;
+  using Poses = std::vector<TrackedPose>;
+  [[nodiscard]] std::size_t before_silence(std::span<const Event> events) const;
+  [[nodiscard]] bool fits_worse(double inlier_ratio);
+  std::size_t relocalise(std::span<const Event> events, Poses& poses);
+  void lose();
+  [[nodiscard]] Rigid3 guess(TimeNs t_ns) const;
   void draw_view(const Rigid3& map_from_camera);
   [[nodiscard]] bool view_fits(const Rigid3& map_from_camera) const;
-  void start_levels();
+  void start_levels(float looks);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
   void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
@@ -80,6 +90,14 @@ class IntensityTracker {
   MotionModel motion_;
   bool has_view_ = false;
   double noise_scale_ = 1;
+  TimeNs last_event_ns_ = 0;
+  double usual_inliers_ = 0;  ///< running mean while it is tracked; 0: not known
+  int misfits_ = 0;           ///< batches in a row that fit worse than usual
+  bool is_lost_ = false;
+  int attempts_ = 0;  ///< to find the pose again, since it was tracked for long
+  int fits_ = 0;      ///< batches since it was found that fit
+  Rigid3 lost_at_;    ///< the last pose before
+  Tracker& edges_;
   std::vector<EventChunk> chunks_;
   std::size_t chunk_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of the events in the chunks, in order

@@ -5,9 +5,7 @@
 namespace saccade {
 namespace {
 
-/// Standard deviations at the start, as image motion: the first pose is given to about a pixel, of
-/// the velocity nothing is known.
-constexpr double kInitialPose_px = 0.2;
+/// Standard deviation at the start: of the velocity nothing is known.
 constexpr double kInitialVelocity_px_s = 300;
 
 }  // namespace
@@ -15,7 +13,8 @@ constexpr double kInitialVelocity_px_s = 300;
 MotionModel::MotionModel(const PredictionOptions& options, double focal_px)
     : options_(options), focal_px_(focal_px) {}
 
-void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera) {
+void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera, double deviation_px) {
+  initial_px_ = deviation_px;
   t_ns_ = t_ns;
   map_from_camera_ = map_from_camera;
   stop();
@@ -40,16 +39,15 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
     return {map_from_camera_, Matrix6::Zero()};
   if (!velocity_known_) {
     velocity_known_ = true;
-    pose_covariance_ = twist_of_px(kInitialPose_px, depth_m).square().matrix().asDiagonal();
+    pose_covariance_ = twist_of_px(initial_px_, depth_m).square().matrix().asDiagonal();
     velocity_covariance_ =
         twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
     cross_covariance_.setZero();
   }
   map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);
-  const double speed_px =
-      focal_px_ * (velocity_.tail<3>().norm() + velocity_.head<3>().norm() / depth_m);
   const Twist drift =
-      twist_of_px(options_.agility_px + options_.agility_share * speed_px, depth_m).square();
+      twist_of_px(options_.agility_px + options_.agility_share * speed_px(depth_m), depth_m)
+          .square();
   pose_covariance_ +=
       dt * (cross_covariance_ + cross_covariance_.transpose()) + dt * dt * velocity_covariance_;
   pose_covariance_.diagonal() += dt * dt * dt / 3 * drift;

@@ -30,7 +30,8 @@ class MotionModel {
   /// `focal_px` turns image motion into angles.
   MotionModel(const PredictionOptions& options, double focal_px);
 
-  void reset(TimeNs t_ns, const Rigid3& map_from_camera);
+  /// `deviation_px`: of the pose, as image motion.
+  void reset(TimeNs t_ns, const Rigid3& map_from_camera, double deviation_px = 0.2);
 
   /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the
   /// filter to `t_ns`, not before its last time.
@@ -46,6 +47,10 @@ class MotionModel {
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
   /// In the camera's frame [m/s, rad/s].
   [[nodiscard]] const Twist& velocity() const { return velocity_; }
+  /// The same as image motion at a depth [px/s].
+  [[nodiscard]] double speed_px(double depth_m) const {
+    return focal_px_ * (velocity_.tail<3>().norm() + velocity_.head<3>().norm() / depth_m);
+  }
 
  private:
   [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;
@@ -56,6 +61,7 @@ class MotionModel {
   Rigid3 map_from_camera_;
   Twist velocity_ = Twist::Zero();  ///< camera frame [m/s, rad/s]
   bool velocity_known_ = false;
+  double initial_px_ = 0.2;
   Matrix6 pose_covariance_ = Matrix6::Zero();
   Matrix6 cross_covariance_ = Matrix6::Zero();  ///< velocity x pose
   Matrix6 velocity_covariance_ = Matrix6::Zero();

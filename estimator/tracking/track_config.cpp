@@ -126,6 +126,14 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
              "the map is drawn anew when the view has moved this far")
       .range(0.1, 100);
   fields
+      .value("inlier_drop", options.inlier_drop,
+             "lost below this share of the inlier ratio that is usual")
+      .range(0, 1);
+  fields
+      .value("silence_px", options.silence_px,
+             "lost where the camera should have moved so far without an event")
+      .range(0.1, 1e6);
+  fields
       .value("information", options.information,
              "share of the information of independent residuals: neighbouring ones err alike")
       .range(1e-6, 1);

@@ -147,17 +147,15 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   TrackOutput output;
   const auto map_start = Clock::now();
   output.map = map_of(config, camera.undistorted(), input.references);
+  const IntensityMap map(camera.undistorted(), input.references, config.intensity.map);
+  output.timing.stages_s = {{"map", seconds_since(map_start)}};
+  Tracker edges(config.tracker, camera, output.map, map.world_from_map(), config.seed);
   if (config.method == TrackConfig::Method::kIntensity) {
-    const IntensityMap map(camera.undistorted(), input.references, config.intensity.map);
-    output.timing.stages_s = {{"map", seconds_since(map_start)}};
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
-                             camera, map);
+                             camera, map, edges);
     track_repeatedly(tracker, input, repeat, output);
   } else {
-    output.timing.stages_s = {{"map", seconds_since(map_start)}};
-    Tracker tracker(config.tracker, camera, output.map,
-                    input.references.front().world_from_reference, config.seed);
-    track_repeatedly(tracker, input, repeat, output);
+    track_repeatedly(edges, input, repeat, output);
   }
   output.timing.events = input.events.size();
   output.timing.poses = output.poses.size();

@@ -45,8 +45,8 @@ Tracker::Tracker(const TrackerOptions& options, const PinholeCamera& camera, con
       frame_(camera, options.event_frame.drawing),
       motion_(options.motion, camera.fx) {}
 
-void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
-  motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);
+void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviation_px) {
+  motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera, deviation_px);
   points_ = {};
   brightness_ = {};
   frame_index_ = 0;
@@ -59,13 +59,17 @@ std::vector<TrackedPose> Tracker::track(std::span<const Event> events,
                                         const std::function<void(std::size_t)>& progress) {
   std::vector<TrackedPose> poses;
   while (true) {
-    prepare_template(motion_.pose());
-    const std::size_t count = events_per_frame();
+    const std::size_t count = next_frame_events();
     if (events.size() < count) return poses;
     poses.push_back(track_frame(events.first(count)));
     events = events.subspan(count);
     if (progress) progress(count);
   }
+}
+
+std::size_t Tracker::next_frame_events() {
+  prepare_template(motion_.pose());
+  return events_per_frame();
 }
 
 void Tracker::prepare_template(const Rigid3& map_from_camera) {

@@ -61,14 +61,20 @@ class Tracker {
   Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
           const Rigid3& world_from_map, std::uint64_t seed);
 
-  /// Starts anew from a known pose.
-  void reset(TimeNs t_ns, const Rigid3& world_from_camera);
+  /// Starts anew from a pose that is known to `deviation_px`, as image motion.
+  void reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviation_px = 0.2);
 
   /// Tracks through `events` in order of time; a rest too short for a frame gives no pose.
   /// `progress` is called with the number of events done since its last call.
   [[nodiscard]] std::vector<TrackedPose> track(
       std::span<const Event> events, const std::function<void(std::size_t)>& progress = {});
 
+  /// That the next frame takes.
+  [[nodiscard]] std::size_t next_frame_events();
+  /// Below it a frame is suspicious.
+  [[nodiscard]] double least_inlier_ratio() const { return options_.lost.min_inlier_ratio; }
+  /// Where the camera is, how it moves, and how well that is known; in the map's frame.
+  [[nodiscard]] const MotionModel& motion() const { return motion_; }
   [[nodiscard]] std::size_t templates_drawn() const { return templates_drawn_; }
   [[nodiscard]] const TrackTiming& timing() const { return timing_; }
 
