@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
+
 namespace saccade {
 namespace {
 
@@ -10,17 +12,35 @@ namespace {
 constexpr float kSameSurface = 1.05F;
 constexpr float kInvisible = -1;
 
+/// Means of 2 x 2 pixels, as far as `fine` reaches; the rest stays.
+void halve(const PaddedImage& fine, PaddedImage& coarse) {
+  SACCADE_CHECK(coarse.width == fine.width / 2 && coarse.height == fine.height / 2);
+  const int margin = std::min(coarse.margin, fine.margin / 2);
+  for (int y = -margin; y < coarse.height + margin; ++y) {
+    const float* above = fine.row(2 * y);
+    const float* below = fine.row(2 * y + 1);
+    float* out = coarse.row(y);
+    for (int x = -margin; x < coarse.width + margin; ++x)
+      out[x] = 0.25F * (above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1]);
+  }
+}
+
 }  // namespace
 
 TemplateDrawer::TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options,
                                const MapPoints& map)
+    : TemplateDrawer(camera, options) {
+  map_ = &map;
+  u_.resize(map.size());
+  v_.resize(map.size());
+  z_.resize(map.size());
+}
+
+TemplateDrawer::TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options)
     : camera_(camera),
       options_(options),
-      map_(map),
-      blur_(options.blur_size_px, options.blur_sigma_px),
-      u_(map.size()),
-      v_(map.size()),
-      z_(map.size()) {
+      map_(nullptr),
+      blur_(options.blur_size_px, options.blur_sigma_px) {
   const int margin = blur_.radius() + 1;
   for (PaddedImage* image : {&nearest_, &mask_, &depth_, &blurred_mask_, &blurred_depth_})
     *image = PaddedImage(camera.width, camera.height, margin);
@@ -31,6 +51,7 @@ TemplateDrawer::TemplateDrawer(const PinholeCamera& camera, const TemplateOption
 }
 
 const std::vector<TemplatePoint>& TemplateDrawer::draw(const Rigid3& camera_from_map) {
+  SACCADE_CHECK(map_ != nullptr);
   project(camera_from_map);
   for (PaddedImage* image : {&nearest_, &mask_, &depth_}) image->clear();
   find_nearest();
@@ -39,10 +60,21 @@ const std::vector<TemplatePoint>& TemplateDrawer::draw(const Rigid3& camera_from
   } else {
     splat_bilinear();
   }
+  blur_and_collect();
+  return points_;
+}
+
+const std::vector<TemplatePoint>& TemplateDrawer::draw_halved(const TemplateDrawer& finer) {
+  halve(finer.mask_, mask_);
+  halve(finer.depth_, depth_);
+  blur_and_collect();
+  return points_;
+}
+
+void TemplateDrawer::blur_and_collect() {
   blur_.apply(mask_, blurred_mask_);
   blur_.apply(depth_, blurred_depth_);
   collect();
-  return points_;
 }
 
 void TemplateDrawer::project(const Rigid3& camera_from_map) {
@@ -54,10 +86,10 @@ void TemplateDrawer::project(const Rigid3& camera_from_map) {
   const auto cy = static_cast<float>(camera_.cy + mask_.margin);
   const auto right = static_cast<float>(mask_.stride - 1);
   const auto bottom = static_cast<float>(mask_.rows() - 1);
-  const float* x = map_.x.data();
-  const float* y = map_.y.data();
-  const float* z = map_.z.data();
-  for (std::size_t i = 0; i < map_.size(); ++i) {
+  const float* x = map_->x.data();
+  const float* y = map_->y.data();
+  const float* z = map_->z.data();
+  for (std::size_t i = 0; i < map_->size(); ++i) {
     const float pz = r(2, 0) * x[i] + r(2, 1) * y[i] + r(2, 2) * z[i] + t.z();
     const float px = r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i] + t.x();
     const float py = r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i] + t.y();
@@ -90,8 +122,8 @@ void TemplateDrawer::splat_nearest() {
     if (u_[i] == kInvisible) continue;
     const std::size_t pixel = nearest_pixel(i);
     if (z_[i] > nearest_.pixels[pixel]) continue;
-    mask_.pixels[pixel] = map_.value[i];
-    depth_.pixels[pixel] = map_.value[i] * z_[i];
+    mask_.pixels[pixel] = map_->value[i];
+    depth_.pixels[pixel] = map_->value[i] * z_[i];
   }
 }
 
@@ -106,8 +138,8 @@ void TemplateDrawer::splat_bilinear() {
     const int y = static_cast<int>(v);
     const float fx = u - static_cast<float>(x);
     const float fy = v - static_cast<float>(y);
-    const float bottom = map_.value[i] * fy;
-    const float top = map_.value[i] - bottom;
+    const float bottom = map_->value[i] * fy;
+    const float top = map_->value[i] - bottom;
     const float weights[4] = {top - top * fx, top * fx, bottom - bottom * fx, bottom * fx};
     const std::size_t corner = static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x);
     float* mask = &mask_.pixels[corner];

@@ -37,14 +37,26 @@ class TemplateDrawer {
  public:
   /// `camera` is undistorted; `options` are checked by describe().
   TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options, const MapPoints& map);
+  /// Without a map, for draw_halved().
+  TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options);
 
   /// Projects the map into the camera, keeps the nearer of two surfaces that meet in a pixel, blurs
   /// mask and mask * depth, and divides (4.20). The points come in row-major order; those on the
   /// border, whose gradient is unknown, are left out. Valid until the next draw.
   [[nodiscard]] const std::vector<TemplatePoint>& draw(const Rigid3& camera_from_map);
 
+  /// For a drawer without a map, of half the size: the template is the last draw of `finer` in
+  /// means of 2 x 2 pixels, blurred anew. Beyond the border it knows half of its own margin.
+  [[nodiscard]] const std::vector<TemplatePoint>& draw_halved(const TemplateDrawer& finer);
+
   /// n_map: pixels of the last draw's template above min_value, whatever their gradient.
   [[nodiscard]] std::size_t lit_pixels() const { return lit_pixels_; }
+
+  /// Of the last draw at a pixel of the image [1/m]; 0 where the template is dark.
+  [[nodiscard]] float inverse_depth(int x, int y) const {
+    const float mask = blurred_mask_.row(y)[x];
+    return mask > static_cast<float>(options_.min_value) ? mask / blurred_depth_.row(y)[x] : 0;
+  }
 
   /// The blurred template T of the last draw, for pictures.
   [[nodiscard]] const PaddedImage& image() const { return blurred_mask_; }
@@ -55,11 +67,12 @@ class TemplateDrawer {
   void find_nearest();
   void splat_nearest();
   void splat_bilinear();
+  void blur_and_collect();
   void collect();
 
   PinholeCamera camera_;
   TemplateOptions options_;
-  const MapPoints& map_;
+  const MapPoints* map_;  ///< nullptr: none
   GaussianBlur blur_;
   /// Projected map points in pixels of the padded images (whose margins are drawn too, or the blur
   /// would see every edge end at the border), and their depth [m]; u = -1 when not visible.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/event.h"
@@ -49,6 +50,9 @@ class IntensityTracker {
   IntensityTracker(const IntensityOptions& options, const PredictionOptions& motion,
                    const EventContrast& contrast, const PinholeCamera& camera,
                    const IntensityMap& map, Tracker& edges);
+
+  /// For motion.prediction: imu.
+  void set_gyroscope(Gyroscope gyroscope) { motion_.set_gyroscope(std::move(gyroscope)); }
 
   /// Starts anew from a known pose.
   void reset(TimeNs t_ns, const Rigid3& world_from_camera);

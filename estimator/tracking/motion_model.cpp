@@ -32,8 +32,23 @@ Eigen::Array<double, 6, 1> MotionModel::twist_of_px(double px, double depth_m) c
   return twist;
 }
 
+bool MotionModel::has_gyroscope() const {
+  return options_.prediction == PredictionOptions::Prediction::kImu && !gyroscope_.is_empty();
+}
+
+void MotionModel::turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns) {
+  // Measured, not estimated: independent of the pose and of the translation.
+  velocity_.tail<3>() = gyroscope_.mean_rate(from_ns, to_ns);
+  cross_covariance_.bottomRows<3>().setZero();
+  velocity_covariance_.bottomRows<3>().setZero();
+  velocity_covariance_.rightCols<3>().setZero();
+  velocity_covariance_.bottomRightCorner<3, 3>().diagonal().setConstant(options_.gyro_sigma *
+                                                                        options_.gyro_sigma);
+}
+
 PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
   const double dt = seconds_from_ns(t_ns - t_ns_);
+  const TimeNs last_ns = t_ns_;
   t_ns_ = t_ns;
   if (options_.prediction == PredictionOptions::Prediction::kNone)
     return {map_from_camera_, Matrix6::Zero()};
@@ -44,10 +59,13 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
         twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
     cross_covariance_.setZero();
   }
+  const double agility_px = options_.agility_px + options_.agility_share * speed_px(depth_m);
+  Twist drift = twist_of_px(agility_px, depth_m).square();
+  if (has_gyroscope()) {
+    turn_by_gyroscope(last_ns, t_ns);
+    drift.tail<3>().setZero();
+  }
   map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);
-  const Twist drift =
-      twist_of_px(options_.agility_px + options_.agility_share * speed_px(depth_m), depth_m)
-          .square();
   pose_covariance_ +=
       dt * (cross_covariance_ + cross_covariance_.transpose()) + dt * dt * velocity_covariance_;
   pose_covariance_.diagonal() += dt * dt * dt / 3 * drift;
@@ -59,7 +77,7 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
 }
 
 void MotionModel::update(const Rigid3& map_from_camera, const Matrix6& information) {
-  if (options_.prediction == PredictionOptions::Prediction::kConstantVelocity) {
+  if (options_.prediction != PredictionOptions::Prediction::kNone) {
     // Given the pose, the velocity is independent of the measurement: it follows the pose by
     // regression.
     const Matrix6 regression = cross_covariance_ * pose_precision_;

@@ -1,19 +1,28 @@
 #pragma once
 
+#include <utility>
+
+#include <Eigen/Core>
+
 #include "core/event.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/gyroscope.h"
 
 namespace saccade {
 
 /// What is expected of the motion between two frames.
 struct PredictionOptions {
-  enum class Prediction { kNone, kConstantVelocity };
+  enum class Prediction { kNone, kConstantVelocity, kImu };
 
   Prediction prediction = Prediction::kNone;
   /// How fast the velocity drifts, as image motion: px/s of change within a second (a random walk).
   double agility_px = 500;
   /// The same per image speed [1/s]: what moves fast is about to turn back.
   double agility_share = 0;
+  /// Of kImu, which turns by the gyroscope and else goes on with constant velocity: what its
+  /// readings are off by [rad/s], and a bias to be taken from them [rad/s, sensor frame].
+  double gyro_sigma = 0.05;
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
 };
 
 /// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).
@@ -29,6 +38,9 @@ class MotionModel {
  public:
   /// `focal_px` turns image motion into angles.
   MotionModel(const PredictionOptions& options, double focal_px);
+
+  /// What kImu turns by; without it, it is constant velocity.
+  void set_gyroscope(Gyroscope gyroscope) { gyroscope_ = std::move(gyroscope); }
 
   /// `deviation_px`: of the pose, as image motion.
   void reset(TimeNs t_ns, const Rigid3& map_from_camera, double deviation_px = 0.2);
@@ -53,9 +65,12 @@ class MotionModel {
   }
 
  private:
+  [[nodiscard]] bool has_gyroscope() const;
+  void turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns);
   [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;
 
   PredictionOptions options_;
+  Gyroscope gyroscope_;
   double focal_px_;
   TimeNs t_ns_ = 0;
   Rigid3 map_from_camera_;

@@ -38,6 +38,19 @@ void SampleChunk::load(std::span<const TemplatePoint> points, int first, int cou
     const float position = (static_cast<float>(first + i) + uniform) * run;
     pixel_[static_cast<std::size_t>(i)] = std::min(static_cast<int>(position), last);
   }
+  gather(points);
+}
+
+void SampleChunk::load_all(std::span<const TemplatePoint> points) {
+  SACCADE_CHECK(points.size() <= kCapacity && !points.empty());
+  count_ = static_cast<int>(points.size());
+  padded_count_ = (count_ + kLanes - 1) / kLanes * kLanes;
+  for (int i = 0; i < padded_count_; ++i)
+    pixel_[static_cast<std::size_t>(i)] = std::min(i, count_ - 1);
+  gather(points);
+}
+
+void SampleChunk::gather(std::span<const TemplatePoint> points) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
     const TemplatePoint& p = points[static_cast<std::size_t>(pixel_[i])];
     ray_x_[i] = p.ray.x();
@@ -144,6 +157,20 @@ void SampleChunk::read_bilinear(const EventFrame& frame) {
     const float low = byte(2) + fraction_x_[i] * (byte(3) - byte(2));
     frame_value_[i] = kScale * (top + fraction_y_[i] * (low - top));
   }
+}
+
+void SampleChunk::weigh(RobustWeight kind, float sigma) {
+  if (!(sigma > 0)) return;
+  const auto apply = [&](RobustWeight fixed_kind) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+      const float root = sqrt_weight(fixed_kind, residual_[i] / sigma);
+      visible_[i] *= root;
+      residual_[i] *= root;
+    }
+  };
+  // One loop for each kind, so that it is vector code.
+  if (kind == RobustWeight::kHuber) apply(RobustWeight::kHuber);
+  if (kind == RobustWeight::kTukey) apply(RobustWeight::kTukey);
 }
 
 void SampleChunk::differentiate() {

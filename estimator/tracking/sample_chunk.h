@@ -8,6 +8,7 @@
 #include "core/rigid3.h"
 #include "estimator/tracking/edge_template.h"
 #include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
 
@@ -24,6 +25,9 @@ class SampleChunk {
   void load(std::span<const TemplatePoint> points, int first, int count, int total,
             std::uint32_t key);
 
+  /// Loads these points, each once; at most kCapacity.
+  void load_all(std::span<const TemplatePoint> points);
+
   /// Where the samples fall in the frame: W(u; current_from_template) (4.15). Samples behind the
   /// camera or outside the frame become invisible: they count for nothing below.
   void warp(const PinholeCamera& camera, const EventFrame& frame,
@@ -35,6 +39,10 @@ class SampleChunk {
   /// Bilinear value of the frame (full event = 1), or with `smooth` of its 3 x 3 means, and the
   /// residual I - gain T - offset.
   void compare(const EventFrame& frame, bool smooth, float gain, float offset);
+
+  /// After compare(): weighs every sample by its residual over `sigma` in all that follows, so that
+  /// visible() becomes the sum of the weights. A sigma of 0 leaves them alike.
+  void weigh(RobustWeight kind, float sigma);
 
   /// The columns J, T, 1 of the normal equations, with
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
@@ -50,6 +58,7 @@ class SampleChunk {
 
  private:
   using Floats = std::array<float, kCapacity>;
+  void gather(std::span<const TemplatePoint> points);
   void read_bilinear(const EventFrame& frame);
   void read_smooth(const EventFrame& frame);
   [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
@@ -57,7 +66,7 @@ class SampleChunk {
   int count_ = 0;
   int padded_count_ = 0;  ///< count_ rounded up to whole vectors; the rest is invisible
   alignas(64) Floats ray_x_, ray_y_, inverse_depth_, value_, slope_x_, slope_y_;
-  alignas(64) Floats visible_;  ///< 1 or 0
+  alignas(64) Floats visible_;  ///< 1 or 0; after weigh() the root of the weight
   alignas(64) Floats fraction_x_, fraction_y_;
   alignas(64) std::array<std::int32_t, kCapacity> pixel_;  ///< offset of the upper left neighbour
   alignas(

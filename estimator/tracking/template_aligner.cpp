@@ -42,33 +42,44 @@ void fix_unknown(int k, Matrix& normal) {
 
 }  // namespace
 
+void BrightnessModel::learn(const BrightnessModel& measured) {
+  constexpr double kForget = 0.1;
+  gain += kForget * (measured.gain - gain);
+  offset += kForget * (measured.offset - offset);
+  variance += kForget * (measured.variance - variance);
+}
+
 struct TemplateAligner::State {
   Rigid3 current_from_template;
   BrightnessModel brightness;
   double step_gain = 1;             ///< gain that turns a solution of the equations into a twist
   Matrix6 prior = Matrix6::Zero();  ///< precision of the prediction, in units of the normal matrix
   Twist deviation = Twist::Zero();  ///< from the prediction, in the template's frame
+  double weight = 0;                ///< information per unit of the normal matrix
+  double sigma = 0;                 ///< of the residuals, for robust weights; 0: all count alike
+  double step_px = 0;               ///< image motion across the edges by the last step
   Cholesky<kUnknowns> factors;
 };
 
 TemplateAligner::TemplateAligner(const AlignOptions& options, const PinholeCamera& camera)
-    : options_(options), camera_(camera) {}
+    : options_(options), camera_(camera), selector_(options.selection, camera) {}
 
 void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
-  points_ = points;
+  points_ = selector_.select(points);
   template_normal_.setZero();
   pose_normal_.setZero();
-  if (points.empty()) return;
-  const int total = std::min(kManySamples, static_cast<int>(points.size()));
+  if (points_.empty()) return;
+  const int total = std::min(kManySamples, static_cast<int>(points_.size()));
   SampleChunk chunk;
   for_each_chunk(total, [&](int first, int count) {
-    chunk.load(points, first, count, total, 0);
+    chunk.load(points_, first, count, total, 0);
     chunk.show_all();
     chunk.differentiate();
     add_normal(chunk, template_normal_);
   });
   template_normal_ /= total;
   mean_value_ = static_cast<float>(template_normal_(kGain, kOffset));
+  if (is_fixed()) gradient_px_ = root_mean_squared_gradient();
   eliminate_brightness();
 }
 
@@ -85,12 +96,23 @@ void TemplateAligner::eliminate_brightness() {
   pose_normal_ -= mixed * (inverse / determinant) * mixed.transpose();
 }
 
+double TemplateAligner::root_mean_squared_gradient() const {
+  double sum = 0;
+  for (const TemplatePoint& p : points_) {
+    const double gx = static_cast<double>(p.slope.x()) / camera_.fx;
+    const double gy = static_cast<double>(p.slope.y()) / camera_.fy;
+    sum += gx * gx + gy * gy;
+  }
+  return std::sqrt(sum / static_cast<double>(points_.size()));
+}
+
 double TemplateAligner::effective_samples() const {
   // Neighbouring samples see the same events: beyond a third of the points nothing new is learnt.
   constexpr double kCorrelated = 3;
   const double points = static_cast<double>(points_.size());
-  const double drawn = std::min(static_cast<double>(options_.samples), points) *
-                       std::max(1, options_.iterations - options_.averaging_from);
+  const double drawn = is_fixed() ? points
+                                  : std::min(static_cast<double>(options_.samples), points) *
+                                        std::max(1, options_.iterations - options_.averaging_from);
   return drawn / (1 + kCorrelated * drawn / std::max(points, 1.0));
 }
 
@@ -100,21 +122,30 @@ Means TemplateAligner::draw_means(const EventFrame& frame, const State& state, i
   const auto gain = static_cast<float>(state.brightness.gain);
   const auto offset = static_cast<float>(state.brightness.offset);
   Means means;
+  double weights = 0;
   SampleChunk chunk;
   for_each_chunk(total, [&](int first, int count) {
-    chunk.load(points_, first, count, total, key);
+    if (is_fixed() && samples >= total) {
+      chunk.load_all(
+          points_.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+    } else {
+      chunk.load(points_, first, count, total, key);
+    }
     chunk.warp(camera_, frame, state.current_from_template);
     chunk.compare(frame, options_.smooth, gain, offset);
-    chunk.differentiate();
-    for (int i = 0; i < kUnknowns; ++i) means.rhs(i) += chunk.column_dot_residual(i);
-    if (options_.hessian == AlignOptions::Hessian::kSamples) add_normal(chunk, means.normal);
     means.squared_residual += chunk.squared_residual();
     means.agreeing += chunk.agreeing(mean_value_, gain * mean_value_ + offset);
     means.visible += chunk.visible();
+    chunk.weigh(options_.weights, static_cast<float>(state.sigma));
+    weights += chunk.visible();
+    chunk.differentiate();
+    for (int i = 0; i < kUnknowns; ++i) means.rhs(i) += chunk.column_dot_residual(i);
+    if (options_.hessian == AlignOptions::Hessian::kSamples) add_normal(chunk, means.normal);
   });
   const double scale = means.visible > 0 ? 1 / means.visible : 0;
-  means.rhs *= scale;
-  means.normal *= scale;
+  const double weight_scale = weights > 0 ? 1 / weights : 0;
+  means.rhs *= weight_scale;
+  means.normal *= weight_scale;
   means.squared_residual *= scale;
   means.agreeing *= scale;
   means.visible /= std::max(total, 1);
@@ -140,6 +171,7 @@ bool TemplateAligner::step(const Means& means, double step_length, State& state)
   if (!xi.allFinite()) return false;
   state.current_from_template = state.current_from_template * Rigid3::exp(-xi);
   state.deviation += xi;
+  if (is_fixed()) state.step_px = std::sqrt(xi.dot(pose_normal_ * xi)) / gradient_px_;
   state.brightness.gain += solution(kGain);
   state.brightness.offset += solution(kOffset);
   return true;
@@ -164,27 +196,41 @@ BrightnessModel TemplateAligner::measure_brightness(const EventFrame& frame,
   return model;
 }
 
-AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& prediction,
-                                   const Matrix6& precision, const BrightnessModel& brightness,
-                                   std::uint64_t seed, std::uint64_t draw) const {
-  SACCADE_CHECK(frame.width() == camera_.width && frame.height() == camera_.height);
-  AlignResult result;
+TemplateAligner::State TemplateAligner::start(const Rigid3& prediction, const Matrix6& precision,
+                                              const BrightnessModel& brightness,
+                                              const std::optional<Rigid3>& first_guess) const {
   State state;
-  state.current_from_template = prediction;
+  state.current_from_template = first_guess.value_or(prediction);
+  if (first_guess) state.deviation = -(prediction.inverse() * *first_guess).log();
   state.brightness = brightness;
   if (options_.brightness == AlignOptions::Brightness::kNone) state.brightness = {1, 0};
   // Not the gain under estimation: with few samples it may come near zero for an iteration.
   state.step_gain = std::max(state.brightness.gain, kMinGain);
-  const double weight = effective_samples() * state.step_gain * state.step_gain /
-                        std::max(brightness.variance, kMinVariance);
-  if (weight > 0) state.prior = precision / weight;
+  const double variance = std::max(brightness.variance, kMinVariance);
+  state.weight = effective_samples() * state.step_gain * state.step_gain / variance;
+  if (state.weight > 0) state.prior = precision / state.weight;
+  state.sigma = std::sqrt(variance);
+  return state;
+}
+
+AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& prediction,
+                                   const Matrix6& precision, const BrightnessModel& brightness,
+                                   std::uint64_t seed, std::uint64_t draw,
+                                   const std::optional<Rigid3>& first_guess) const {
+  SACCADE_CHECK(frame.width() == camera_.width && frame.height() == camera_.height);
+  AlignResult result;
+  State state = start(prediction, precision, brightness, first_guess);
   if (options_.hessian == AlignOptions::Hessian::kTemplate && !factor(template_normal_, state))
     result.status = AlignStatus::kSingular;
   const Random random(seed);
+  const int samples = is_fixed() ? static_cast<int>(points_.size()) : options_.samples;
   while (result.iterations < options_.iterations && result.status == AlignStatus::kOk) {
     const int i = result.iterations++;
     const std::uint32_t key = random.bits(draw, static_cast<std::uint64_t>(i))[0];
-    const Means means = draw_means(frame, state, options_.samples, key);
+    const Means means = draw_means(frame, state, samples, key);
+    state.sigma = std::sqrt(std::max(means.squared_residual, kMinVariance));
+    // Fixed points have no noise of their own, but on a binary frame they may end in a cycle, of
+    // which the mean is the best.
     const int averaged = std::max(0, i - options_.averaging_from);
     // The evidence is the mean over the same iterations as the pose.
     const double share = 1.0 / (1 + averaged);
@@ -195,13 +241,15 @@ AlignResult TemplateAligner::align(const EventFrame& frame, const Rigid3& predic
       result.status = AlignStatus::kTooFewVisible;
     } else if (!step(means, share, state)) {
       result.status = AlignStatus::kSingular;
+    } else if (is_fixed() && state.step_px < options_.converged_px) {
+      break;
     }
   }
   result.current_from_template = state.current_from_template;
   result.brightness.gain = state.brightness.gain;
   result.brightness.offset = state.brightness.offset;
   result.residual = std::sqrt(result.brightness.variance);
-  result.information = weight * pose_normal_;
+  result.information = state.weight * pose_normal_;
   return result;
 }
 

@@ -68,15 +68,68 @@ void describe_event_frame(config::Fields& fields, EventFrameOptions& options) {
       .range(1e-4, 100);
   fields.value("min_events", options.min_events, "of a frame, however little of the map is in view")
       .range(1, 1e9);
-  fields.choice("drawing", options.drawing,
-                {{"nearest", EventFrameOptions::Drawing::kNearest},
-                 {"bilinear", EventFrameOptions::Drawing::kBilinear}},
-                "how an undistorted event is drawn");
+  fields.choice("kind", options.kind,
+                {{"binary", EventFrameOptions::Kind::kBinary},
+                 {"time_surface", EventFrameOptions::Kind::kTimeSurface}},
+                "what a pixel holds: that an event fell, or how recent its last one is");
+  if (options.kind == EventFrameOptions::Kind::kTimeSurface) {
+    fields
+        .value("tau_share", options.tau_share,
+               "time constant of the decay, as a share of the frame's duration")
+        .range(1e-3, 1e3);
+    fields.value("tau_s", options.tau_s, "time constant in place of tau_share; ~ takes tau_share")
+        .range(1e-6, 1e3);
+  } else {
+    fields.choice("drawing", options.drawing,
+                  {{"nearest", EventFrameOptions::Drawing::kNearest},
+                   {"bilinear", EventFrameOptions::Drawing::kBilinear}},
+                  "how an undistorted event is drawn");
+    fields.value("motion_compensation", options.motion_compensation,
+                 "move every event to the frame's time by the predicted velocity");
+  }
+  fields.choice("window", options.window,
+                {{"disjoint", EventFrameOptions::Window::kDisjoint},
+                 {"sliding", EventFrameOptions::Window::kSliding}},
+                "which events make a frame: the next ones, or the newest ones");
+  if (options.window == EventFrameOptions::Window::kSliding)
+    fields.value("step", options.step, "share of a sliding frame's events that are new")
+        .range(1e-4, 1);
+}
+
+void describe_selection(config::Fields& fields, AlignOptions& options) {
+  using Kind = SelectionOptions::Kind;
+  SelectionOptions& selection = options.selection;
+  fields.choice("selection", selection.kind,
+                {{"random", Kind::kRandom},
+                 {"dense", Kind::kDense},
+                 {"semi_dense", Kind::kSemiDense},
+                 {"sparse_patches", Kind::kSparsePatches}},
+                "which template points are used (fig. 4.1)");
+  if (selection.kind == Kind::kSemiDense)
+    fields.value("steep_share", selection.steep_share, "share of the points, the steepest of them")
+        .above(0)
+        .at_most(1);
+  if (selection.kind == Kind::kSparsePatches) {
+    fields.value("cell_px", selection.cell_px, "each cell of this size has a patch")
+        .range(2, 10000);
+    fields.value("patch_px", selection.patch_px, "size of a patch").range(1, 1000);
+  }
+  if (selection.kind != Kind::kRandom)
+    fields.value("converged_px", options.converged_px, "a step below it [px] is the last one")
+        .range(0, 100);
 }
 
 void describe_align(config::Fields& fields, AlignOptions& options) {
-  fields.value("samples", options.samples, "template points drawn per iteration").range(16, 1e6);
-  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
+  describe_selection(fields, options);
+  fields.value("levels", options.levels, "resolutions, coarse to fine; 1 is the full one alone")
+      .range(1, 8);
+  fields
+      .value("samples", options.samples,
+             "template points drawn per iteration by the random selection")
+      .range(16, 1e6);
+  fields
+      .value("iterations", options.iterations,
+             "of Gauss-Newton: always all of them with random points, else at most")
       .range(1, 1000);
   fields.choice("brightness", options.brightness,
                 {{"none", AlignOptions::Brightness::kNone},
@@ -91,6 +144,11 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
       .value("averaging_from", options.averaging_from,
              "iteration from which steps shrink as 1/n, so that the samples average out")
       .range(0, 1000);
+  fields.choice("weights", options.weights,
+                {{"none", RobustWeight::kNone},
+                 {"huber", RobustWeight::kHuber},
+                 {"tukey", RobustWeight::kTukey}},
+                "of the residuals, in units of their root mean square");
   fields.value("smooth", options.smooth, "samples read 3 x 3 means of the event frame");
   fields
       .value("min_visible", options.min_visible,
@@ -146,18 +204,28 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
 void describe_motion(config::Fields& fields, PredictionOptions& options) {
   fields.choice("prediction", options.prediction,
                 {{"none", PredictionOptions::Prediction::kNone},
-                 {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity}},
+                 {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity},
+                 {"imu", PredictionOptions::Prediction::kImu}},
                 "first guess of the next pose");
-  if (options.prediction == PredictionOptions::Prediction::kConstantVelocity)
+  if (options.prediction != PredictionOptions::Prediction::kNone)
     fields
         .value("agility_px", options.agility_px,
                "change of the image velocity within a second [px/s] that is expected")
         .range(1, 1e6);
-  if (options.prediction == PredictionOptions::Prediction::kConstantVelocity)
+  if (options.prediction != PredictionOptions::Prediction::kNone)
     fields
         .value("agility_share", options.agility_share,
                "that, added for each px/s of image velocity: what moves fast is about to turn back")
         .range(0, 1e3);
+}
+
+void describe_gyroscope(config::Fields& fields, PredictionOptions& options) {
+  if (options.prediction != PredictionOptions::Prediction::kImu) return;
+  fields
+      .value("gyro_sigma", options.gyro_sigma,
+             "what a reading of the gyroscope is off by, its bias included [rad/s]")
+      .range(1e-6, 10);
+  fields.value("gyro_bias", options.gyro_bias, "taken from every reading [rad/s, sensor frame]");
 }
 
 void describe_lost(config::Fields& fields, LostOptions& options) {
@@ -198,8 +266,15 @@ void describe(config::Fields& fields, TrackConfig& config) {
         "intensity", [&](Fields& f) { describe_intensity(f, config); },
         "how a pose is found from the log intensity at each event");
   fields.group(
-      "motion", [&](Fields& f) { describe_motion(f, tracker.motion); },
+      "motion",
+      [&](Fields& f) {
+        describe_motion(f, tracker.motion);
+        describe_gyroscope(f, tracker.motion);
+      },
       "expectation of the next pose");
+  fields.expect(!tracker.event_frame.motion_compensation ||
+                    tracker.motion.prediction != PredictionOptions::Prediction::kNone,
+                "event_frame", "motion_compensation needs a motion.prediction");
   fields.group(
       "lost", [&](Fields& f) { describe_lost(f, tracker.lost); }, "when a pose is called lost");
   fields.value("initial_pose", config.initial_pose,

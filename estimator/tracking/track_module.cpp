@@ -10,6 +10,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/io/calibration_file.h"
 #include "core/io/csv_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"
@@ -35,6 +36,7 @@ struct TrackInput {
   RunRecord::Window window;
   std::vector<ReferenceView> references;
   Rigid3 initial_world_from_camera;
+  Gyroscope gyroscope;  ///< empty unless it is needed
 };
 
 RunRecord::Window window_of(const RunRequest& request, const Events& events) {
@@ -58,6 +60,21 @@ Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double st
     throw InputError(dataset.folder().string(),
                      "holds no groundtruth.txt to start from; state initial_pose");
   return dataset.groundtruth().at_clamped(start_s);
+}
+
+/// The dataset's gyroscope, turned into the frame of the camera by camera.yaml.
+Gyroscope load_gyroscope(const TrackConfig& config, const Dataset& dataset) {
+  const std::string place = dataset.folder().string();
+  if (!dataset.has_imu())
+    throw InputError(place, "holds no imu.txt, which motion.prediction: imu needs");
+  const std::vector<ImuSample> samples = dataset.load_imu();
+  if (samples.empty())
+    throw InputError(place, "holds an imu.txt without readings; motion.prediction: imu needs them");
+  Rigid3 camera_from_imu;
+  const std::filesystem::path chain = dataset.folder() / "camera.yaml";
+  if (std::filesystem::exists(chain))
+    camera_from_imu = read_camera_chain(chain).front().camera_from_imu.value_or(Rigid3{});
+  return {samples, camera_from_imu.rotation_matrix(), config.tracker.motion.gyro_bias};
 }
 
 Events load_window(const RunRequest& request, const Dataset& dataset) {
@@ -85,6 +102,8 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
   input.references =
       load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
+  if (config.tracker.motion.prediction == PredictionOptions::Prediction::kImu)
+    input.gyroscope = load_gyroscope(config, dataset);
   return input;
 }
 
@@ -150,6 +169,7 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   const IntensityMap map(camera.undistorted(), input.references, config.intensity.map);
   output.timing.stages_s = {{"map", seconds_since(map_start)}};
   Tracker edges(config.tracker, camera, output.map, map.world_from_map(), config.seed);
+  edges.set_gyroscope(input.gyroscope);
   if (config.method == TrackConfig::Method::kIntensity) {
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map, edges);

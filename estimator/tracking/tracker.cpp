@@ -42,6 +42,8 @@ Tracker::Tracker(const TrackerOptions& options, const PinholeCamera& camera, con
       seed_(seed),
       drawer_(camera_, options.templates, map),
       aligner_(options.align, camera_),
+      coarse_(options.templates, options.align, camera_),
+      window_(options.event_frame),
       frame_(camera, options.event_frame.drawing),
       motion_(options.motion, camera.fx) {}
 
@@ -58,12 +60,12 @@ void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviati
 std::vector<TrackedPose> Tracker::track(std::span<const Event> events,
                                         const std::function<void(std::size_t)>& progress) {
   std::vector<TrackedPose> poses;
+  window_.start(events);
+  frame_.clear();
   while (true) {
-    const std::size_t count = next_frame_events();
-    if (events.size() < count) return poses;
-    poses.push_back(track_frame(events.first(count)));
-    events = events.subspan(count);
-    if (progress) progress(count);
+    if (!window_.advance(next_frame_events())) return poses;
+    poses.push_back(track_frame());
+    if (progress) progress(window_.entered().size());
   }
 }
 
@@ -78,6 +80,7 @@ void Tracker::prepare_template(const Rigid3& map_from_camera) {
   map_from_template_ = map_from_camera;
   points_ = drawer_.draw(map_from_template_.inverse());
   aligner_.set_template(points_);
+  coarse_.set_template(drawer_);
   typical_depth_m_ = typical_depth(points_);
   ++templates_drawn_;
 }
@@ -105,48 +108,59 @@ std::size_t Tracker::events_per_frame() const {
                   static_cast<std::size_t>(count));
 }
 
-void Tracker::draw_frame(std::span<const Event> events, TrackedPose& pose) {
+void Tracker::draw_frame(TrackedPose& pose) {
   const StageClock clock(timing_.event_frame_s);
+  const std::span<const Event> events = window_.events();
   pose.first_ns = events.front().t_ns;
   pose.last_ns = events.back().t_ns;
-  pose.t_ns = mean_time(events);
-  frame_.clear();
-  frame_.draw(events);
+  pose.t_ns = window_.mean_time();
+  if (options_.event_frame.kind == EventFrameOptions::Kind::kTimeSurface) {
+    frame_.clear();
+    pose.t_ns = frame_.draw_surface(events, time_constant(options_.event_frame, events));
+  } else if (options_.event_frame.motion_compensation) {
+    frame_.clear();
+    frame_.draw_moved(events, pose.t_ns,
+                      MotionField(camera_, motion_.velocity(), drawer_, typical_depth_m_));
+  } else if (options_.event_frame.window == EventFrameOptions::Window::kSliding) {
+    frame_.remove(window_.left());
+    frame_.add(window_.entered());
+  } else {
+    frame_.clear();
+    frame_.draw(events);
+  }
 }
 
 AlignResult Tracker::align(TimeNs t_ns) {
   const StageClock clock(timing_.align_s);
   const PosePrediction predicted = motion_.predict(t_ns, typical_depth_m_);
   const Rigid3 current_from_template = predicted.map_from_camera.inverse() * map_from_template_;
-  if (frame_index_ == 0) brightness_ = aligner_.measure_brightness(frame_, current_from_template);
-  return aligner_.align(frame_, current_from_template, predicted.precision, brightness_, seed_,
-                        frame_index_++);
+  // Events that earlier frames had, too, say nothing new: against them the prediction weighs more.
+  const Matrix6 precision = predicted.precision / window_.share_of_new();
+  const std::optional<Rigid3> first_guess =
+      coarse_.approach(frame_, current_from_template, precision, seed_, frame_index_);
+  if (frame_index_ == 0)
+    brightness_ = aligner_.measure_brightness(frame_, first_guess.value_or(current_from_template));
+  return aligner_.align(frame_, current_from_template, precision, brightness_, seed_,
+                        frame_index_++, first_guess);
 }
 
-TrackedPose Tracker::track_frame(std::span<const Event> events) {
+TrackedPose Tracker::track_frame() {
   TrackedPose pose;
-  draw_frame(events, pose);
+  draw_frame(pose);
   const AlignResult aligned = align(pose.t_ns);
   pose.iterations = aligned.iterations;
   pose.inlier_ratio = aligned.inlier_ratio;
   pose.residual = aligned.residual;
   if (aligned.status == AlignStatus::kOk) {
     motion_.update(map_from_template_ * aligned.current_from_template.inverse(),
-                   aligned.information);
-    learn(aligned.brightness);
+                   aligned.information * window_.share_of_new());
+    brightness_.learn(aligned.brightness);
   } else {
     motion_.stop();
   }
   pose.status = judge(aligned);
   pose.world_from_camera = world_from_map_ * motion_.pose();
   return pose;
-}
-
-void Tracker::learn(const BrightnessModel& measured) {
-  constexpr double kForget = 0.1;
-  brightness_.gain += kForget * (measured.gain - brightness_.gain);
-  brightness_.offset += kForget * (measured.offset - brightness_.offset);
-  brightness_.variance += kForget * (measured.variance - brightness_.variance);
 }
 
 TrackStatus Tracker::judge(const AlignResult& aligned) {

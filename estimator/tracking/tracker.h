@@ -8,8 +8,10 @@
 
 #include "core/event.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/coarse_levels.h"
 #include "estimator/tracking/edge_template.h"
 #include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/event_window.h"
 #include "estimator/tracking/map_extraction.h"
 #include "estimator/tracking/motion_model.h"
 #include "estimator/tracking/template_aligner.h"
@@ -61,6 +63,9 @@ class Tracker {
   Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
           const Rigid3& world_from_map, std::uint64_t seed);
 
+  /// For motion.prediction: imu.
+  void set_gyroscope(Gyroscope gyroscope) { motion_.set_gyroscope(std::move(gyroscope)); }
+
   /// Starts anew from a pose that is known to `deviation_px`, as image motion.
   void reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviation_px = 0.2);
 
@@ -82,11 +87,10 @@ class Tracker {
   void prepare_template(const Rigid3& map_from_camera);
   [[nodiscard]] bool template_fits(const Rigid3& map_from_camera) const;
   [[nodiscard]] std::size_t events_per_frame() const;
-  void draw_frame(std::span<const Event> events, TrackedPose& pose);
+  void draw_frame(TrackedPose& pose);
   [[nodiscard]] AlignResult align(TimeNs t_ns);
-  void learn(const BrightnessModel& measured);
   [[nodiscard]] TrackStatus judge(const AlignResult& aligned);
-  [[nodiscard]] TrackedPose track_frame(std::span<const Event> events);
+  [[nodiscard]] TrackedPose track_frame();
 
   TrackerOptions options_;
   PinholeCamera camera_;  ///< undistorted
@@ -94,6 +98,8 @@ class Tracker {
   std::uint64_t seed_;
   TemplateDrawer drawer_;
   TemplateAligner aligner_;
+  CoarseLevels coarse_;
+  EventWindow window_;
   EventFrame frame_;
   MotionModel motion_;
   Rigid3 map_from_template_;

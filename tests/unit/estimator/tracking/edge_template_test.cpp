@@ -213,6 +213,24 @@ TEST(EdgeTemplate, ADrawDoesNotRememberTheLastOne) {
   }
 }
 
+TEST(EdgeTemplate, HalvedIsTheMeanOfFourPixelsWithTheirDepth) {
+  PinholeCamera half = small_camera();
+  half.width /= 2;
+  half.height /= 2;
+  MapPoints map;
+  add_point(map, 2 * small_camera().ray({40, 70}));
+  add_point(map, 4 * small_camera().ray({41, 71}));
+  add_point(map, 3 * small_camera().ray({60, 21}));
+  TemplateDrawer fine(small_camera(), plain(Splat::kNearest), map);
+  static_cast<void>(fine.draw({}));
+  TemplateDrawer coarse(half, plain(Splat::kNearest));
+  EXPECT_EQ(coarse.draw_halved(fine).size(), 2U);
+  EXPECT_NEAR(coarse.image().row(35)[20], 0.5, 1e-6);
+  EXPECT_NEAR(coarse.image().row(10)[30], 0.25, 1e-6);
+  EXPECT_NEAR(coarse.draw_halved(fine)[0].inverse_depth, 1.0 / 3, 1e-6) << "row-major: the upper";
+  EXPECT_NEAR(coarse.draw_halved(fine)[1].inverse_depth, 1.0 / 3, 1e-6) << "mean of 2 and 4 m";
+}
+
 TEST(EdgeTemplate, AnEmptyMapGivesAnEmptyTemplate) {
   const MapPoints map;
   TemplateDrawer drawer(small_camera(), TemplateOptions{}, map);

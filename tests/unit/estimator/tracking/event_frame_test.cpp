@@ -97,6 +97,91 @@ TEST(EventFrame, BilinearWeightsSaturate) {
   EXPECT_LE(sum(frame), 4 * EventFrame::kFull);
 }
 
+TEST(EventFrame, RemoveTakesBackWhatAddDrew) {
+  Events events;
+  for (int i = 0; i < 600; ++i) events.push_back(at(i * 7 % 64, i * 5 % 48));  // some pixels twice
+  for (const double k1 : {0.0, -0.25})
+    for (const Drawing drawing : {Drawing::kNearest, Drawing::kBilinear}) {
+      EventFrame sliding(camera(k1), drawing);
+      for (std::size_t begin = 0; begin + 300 <= events.size(); begin += 100) {
+        if (begin > 0) sliding.remove(std::span(events).subspan(begin - 100, 100));
+        sliding.add(
+            std::span(events).subspan(begin == 0 ? 0 : begin + 200, begin == 0 ? 300 : 100));
+        EventFrame drawn(camera(k1), drawing);
+        drawn.draw(std::span(events).subspan(begin, 300));
+        for (int y = 0; y < drawn.height(); ++y)
+          for (int x = 0; x < drawn.width(); ++x) ASSERT_EQ(sliding(x, y), drawn(x, y));
+      }
+      sliding.clear();
+      EXPECT_EQ(sum(sliding), 0);
+      sliding.add(std::span(events).first(1));
+      sliding.remove(std::span(events).first(1));
+      EXPECT_EQ(sum(sliding), 0) << "clear() forgets the counts, too";
+    }
+}
+
+TEST(EventFrame, ASurfaceDecaysWithTheAgeOfTheLastEvent) {
+  constexpr double kTau_s = 0.002;
+  Events events;
+  for (int i = 0; i <= 10; ++i) events.push_back(at(5 * i, 3 * i, i * 1'000'000));
+  events.insert(events.begin() + 9, at(10, 6, 8'000'000));  // the third pixel again
+  EventFrame frame(camera(), Drawing::kNearest);
+  const TimeNs stamp = frame.draw_surface(events, kTau_s);
+  double weights = 0;
+  double moment = 0;
+  for (const Event& e : events) {
+    const double t_s = seconds_from_ns(e.t_ns);
+    const double weight = std::exp((t_s - 0.01) / kTau_s);
+    const bool is_last = e.x != 10 || e.t_ns == 8'000'000;
+    if (is_last) {
+      EXPECT_NEAR(frame(e.x, e.y), EventFrame::kFull * weight, 0.51);
+    }
+    weights += weight;
+    moment += weight * t_s;
+  }
+  EXPECT_NEAR(seconds_from_ns(stamp), moment / weights, 1e-8);
+  EXPECT_GT(stamp, mean_time(events));
+}
+
+TEST(EventFrame, ASlowSurfaceIsTheBinaryFrame) {
+  Events events;
+  for (int i = 0; i < 200; ++i) events.push_back(at(i * 7 % 64, i * 5 % 48, 1000 * i));
+  for (const double k1 : {0.0, -0.25}) {
+    EventFrame surface(camera(k1), Drawing::kNearest);
+    EventFrame binary(camera(k1), Drawing::kNearest);
+    EXPECT_NEAR(static_cast<double>(surface.draw_surface(events, 1e3) - mean_time(events)), 0, 5);
+    binary.draw(events);
+    for (int y = 0; y < binary.height(); ++y)
+      for (int x = 0; x < binary.width(); ++x) ASSERT_EQ(surface(x, y), binary(x, y));
+  }
+}
+
+TEST(TimeConstant, FollowsTheDurationUnlessItIsStated) {
+  EventFrameOptions options;
+  options.tau_share = 0.25;
+  const Events events{at(0, 0, 1'000'000), at(0, 0, 9'000'000)};
+  EXPECT_DOUBLE_EQ(time_constant(options, events), 0.002);
+  EXPECT_GT(time_constant(options, std::span(events).first(1)), 0) << "a burst of no duration";
+  options.tau_s = 0.03;
+  EXPECT_EQ(time_constant(options, events), 0.03);
+}
+
+TEST(EventFrame, HalvedIsTheMeanOfFourPixels) {
+  PinholeCamera half = camera();
+  half.width /= 2;
+  half.height /= 2;
+  EventFrame fine(camera(), Drawing::kNearest);
+  fine.draw(
+      Events{at(0, 0), at(10, 10), at(11, 11), at(62, 46), at(63, 46), at(62, 47), at(63, 47)});
+  EventFrame coarse(half, Drawing::kNearest);
+  coarse.draw(Events{at(3, 3)});
+  coarse.draw_halved(fine);
+  EXPECT_EQ(coarse(0, 0), (EventFrame::kFull + 2) / 4);
+  EXPECT_EQ(coarse(5, 5), (2 * EventFrame::kFull + 2) / 4);
+  EXPECT_EQ(coarse(31, 23), EventFrame::kFull);
+  EXPECT_NEAR(sum(coarse), 7 * EventFrame::kFull / 4, 3) << "what was there before is gone";
+}
+
 TEST(MeanTime, OfLargeStampsDoesNotOverflow) {
   const TimeNs start = 1'700'000'000'000'000'000;  // nanoseconds since 1970
   Events events;

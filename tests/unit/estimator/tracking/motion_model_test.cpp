@@ -133,6 +133,55 @@ TEST(MotionModel, ResetForgetsEverything) {
   }
 }
 
+/// A model that has seen no motion, with a gyroscope that turns all the while.
+MotionModel with_gyroscope(const Eigen::Vector3d& rate, double sigma) {
+  PredictionOptions options;
+  options.prediction = PredictionOptions::Prediction::kImu;
+  options.gyro_sigma = sigma;
+  MotionModel model(options, kFocal);
+  ImuSample sample;
+  sample.angular_velocity = rate;
+  model.set_gyroscope(
+      Gyroscope(std::span(&sample, 1), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()));
+  model.reset(0, {});
+  return model;
+}
+
+TEST(MotionModel, TheGyroscopeTurnsTheFirstPrediction) {
+  const Eigen::Vector3d rate(0.5, -1, 2);
+  MotionModel model = with_gyroscope(rate, 0.01);
+  const PosePrediction prediction = model.predict(kStep, kDepth);
+  EXPECT_LT(angle_between(prediction.map_from_camera.rotation(), so3_exp(rate * 0.01)), 1e-9);
+  EXPECT_EQ(prediction.map_from_camera.translation(), Eigen::Vector3d::Zero());
+}
+
+TEST(MotionModel, TheGyroscopeOverrulesTheVelocityOfThePoses) {
+  // The poses stand still but for a translation, the gyroscope says otherwise: the next prediction
+  // turns, and goes on along the learnt translation.
+  const Eigen::Vector3d rate(0, 0, 1);
+  MotionModel model = with_gyroscope(rate, 0.01);
+  for (int i = 1; i <= 10; ++i) {
+    static_cast<void>(model.predict(i * kStep, kDepth));
+    model.update({{1, 0, 0, 0}, {0.01 * i, 0, 0}}, 1e12 * Matrix6::Identity());
+  }
+  const Rigid3 predicted = model.predict(11 * kStep, kDepth).map_from_camera;
+  EXPECT_LT(angle_between(predicted.rotation(), so3_exp(rate * 0.01)), 1e-4);
+  EXPECT_NEAR(predicted.translation().x(), 0.11, 1e-3);
+}
+
+TEST(MotionModel, ABetterGyroscopeKnowsTheRotationBetter) {
+  const auto precision = [](double sigma) {
+    MotionModel model = with_gyroscope({0, 0, 0}, sigma);
+    for (int i = 1; i <= 5; ++i) {
+      static_cast<void>(model.predict(i * kStep, kDepth));
+      model.update({}, 1e8 * Matrix6::Identity());
+    }
+    return model.predict(6 * kStep, kDepth).precision;
+  };
+  EXPECT_GT(precision(0.01)(4, 4), 1.5 * precision(1)(4, 4));
+  EXPECT_NEAR(precision(0.01)(0, 0) / precision(1)(0, 0), 1, 0.01) << "translation is as before";
+}
+
 TEST(MotionModel, TwoFramesAtTheSameTime) {
   MotionModel model = trained(10);
   const PosePrediction prediction = model.predict(10 * kStep, kDepth);

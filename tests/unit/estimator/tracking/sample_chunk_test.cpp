@@ -79,6 +79,20 @@ TEST(SampleChunk, AsManySamplesAsPointsTakeEachOnce) {
   EXPECT_NEAR(chunk.column_dot_column(6, 6) / (200.0 * 201 * 401 / 6), 1, 1e-5);
 }
 
+TEST(SampleChunk, LoadAllTakesEachPointOnce) {
+  std::vector<TemplatePoint> points(77);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = random_point(i);
+    points[i].value = 1 + static_cast<float>(i);
+  }
+  SampleChunk chunk;
+  chunk.load_all(points);
+  chunk.show_all();
+  chunk.differentiate();
+  EXPECT_NEAR(chunk.column_dot_column(6, 7), 77 * 78 / 2, 1e-2);
+  EXPECT_NEAR(chunk.column_dot_column(6, 6) / (77.0 * 78 * 155 / 6), 1, 1e-5);
+}
+
 TEST(SampleChunk, SamplesAreUniformOverThePoints) {
   // 50 of 1000 points, drawn 2000 times: every point about 100 times. The count of one is binomial
   // with sigma 10; the largest of 1000 stays below 5 sigma.
@@ -130,6 +144,46 @@ TEST(SampleChunk, ReadsTheFrameWhereTheWarpSays) {
     EXPECT_NEAR(chunk.squared_residual(), residual * residual, 1e-4) << i;
     chunk.differentiate();
     EXPECT_NEAR(chunk.column_dot_residual(7), residual, 1e-4) << i;
+  }
+}
+
+TEST(RobustWeight, FollowsItsDefinition) {
+  for (float x = -8; x <= 8; x += 0.25F) {
+    const double a = std::abs(static_cast<double>(x));
+    const auto squared = [x](RobustWeight kind) {
+      return std::pow(static_cast<double>(sqrt_weight(kind, x)), 2);
+    };
+    EXPECT_EQ(squared(RobustWeight::kNone), 1);
+    EXPECT_NEAR(squared(RobustWeight::kHuber), a <= 1.345 ? 1 : 1.345 / a, 1e-6);
+    const double tukey = a < 4.685 ? std::pow(1 - std::pow(a / 4.685, 2), 2) : 0;
+    EXPECT_NEAR(squared(RobustWeight::kTukey), tukey, 1e-6);
+  }
+}
+
+TEST(SampleChunk, WeighingScalesEverySumByTheWeights) {
+  // Residuals 1 (an event where none is expected) and 0: at a sigma of 0.25 the first is an
+  // outlier.
+  EventFrame frame(small_camera(), EventFrameOptions::Drawing::kNearest);
+  frame.draw(Events{{0, 50, 40, 1}});
+  auto points = row_of_points(50, 3, 40);
+  for (TemplatePoint& p : points) {
+    p.value = 0;
+    p.ray.y() += 1e-5F;  // not on the seam between two rows
+  }
+  const Rigid3 shift({1, 0, 0, 0}, {1e-5, 0, 0});
+  for (const RobustWeight kind : {RobustWeight::kHuber, RobustWeight::kTukey}) {
+    SampleChunk chunk;
+    chunk.load_all(points);
+    chunk.warp(small_camera(), frame, shift);
+    chunk.compare(frame, false, 0, 0);
+    EXPECT_NEAR(chunk.visible(), 3, 1e-6);
+    chunk.weigh(kind, 0.25F);
+    chunk.differentiate();
+    const double outlier = std::pow(static_cast<double>(sqrt_weight(kind, 4)), 2);
+    EXPECT_LT(outlier, 0.5);
+    EXPECT_NEAR(chunk.visible(), 2 + outlier, 5e-3);
+    EXPECT_NEAR(chunk.column_dot_column(7, 7), 2 + outlier, 5e-3);
+    EXPECT_NEAR(chunk.column_dot_residual(7), outlier, 5e-3);
   }
 }
 

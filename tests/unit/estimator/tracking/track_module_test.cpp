@@ -11,6 +11,7 @@
 #include "core/config/document.h"
 #include "core/io/csv_reader.h"
 #include "core/io/image_file.h"
+#include "core/io/imu_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"
 #include "core/srgb.h"
@@ -203,6 +204,27 @@ TEST_F(TrackModule, InitialPoseReplacesTheTruth) {
 
 TEST_F(TrackModule, WithoutDepthNamesTheCure) {
   EXPECT_THAT(error(request("run", "{}")), HasSubstr("reference.planar_depth_m"));
+}
+
+TEST_F(TrackModule, TurnsByTheGyroscopeOfTheDataset) {
+  const std::string config = "{reference: {planar_depth_m: 1.5}, motion: {prediction: imu}}";
+  EXPECT_THAT(error(request("run", config)), HasSubstr("imu.txt"));
+  std::vector<ImuSample> samples;
+  for (int i = 0; i <= 400; ++i) {
+    ImuSample sample;
+    sample.t_ns = 1'000'000 * i;
+    sample.angular_velocity = {0.15, 0, 0};  // the camera's z is the sensor's x
+    samples.push_back(sample);
+  }
+  write_imu(dataset_ / "imu.txt", samples);
+  folder_.write("wall/camera.yaml",
+                "cam0:\n  resolution: [80, 60]\n  intrinsics: [66, 66, 39.5, 29.5]\n"
+                "  camera_model: pinhole\n  distortion_model: radtan\n"
+                "  distortion_coeffs: [0, 0, 0, 0]\n"
+                "  T_cam_imu: [[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]]\n");
+  const RunSummary summary = run_track(request("turned", config));
+  EXPECT_GT(summary.poses, 20U);
+  EXPECT_EQ(summary.lost_poses, 0U);
 }
 
 TEST_F(TrackModule, WithoutTruthNamesTheCure) {

@@ -113,6 +113,92 @@ TEST(Tracker, TheThesisVariantStaysOnTheMap) {
   expect_within(track(options), 1.5, 4.0);
 }
 
+TEST(Tracker, EverySelectionOfPointsRecoversEveryPose) {
+  for (const auto kind : {SelectionOptions::Kind::kDense, SelectionOptions::Kind::kSemiDense,
+                          SelectionOptions::Kind::kSparsePatches}) {
+    TrackerOptions options = accurate();
+    options.align.selection.kind = kind;
+    expect_within(track(options), 0.6, 1.5);
+  }
+}
+
+TEST(Tracker, SlidingFramesGiveMorePosesOfTheSameQuality) {
+  for (const TrackerOptions& options : {accurate(), fast()}) {
+    TrackerOptions sliding = options;
+    sliding.event_frame.window = EventFrameOptions::Window::kSliding;
+    sliding.event_frame.step = 0.25;
+    const auto poses = track(sliding);
+    EXPECT_NEAR(static_cast<double>(poses.size()) / static_cast<double>(track(options).size()), 4,
+                0.4);
+    expect_within(poses, 1.0, 3.0);
+    for (std::size_t i = 1; i < poses.size(); ++i) EXPECT_GE(poses[i].t_ns, poses[i - 1].t_ns);
+  }
+}
+
+TEST(Tracker, TimeSurfacesRecoverEveryPose) {
+  for (const auto window :
+       {EventFrameOptions::Window::kDisjoint, EventFrameOptions::Window::kSliding}) {
+    TrackerOptions options = accurate();
+    options.event_frame.kind = EventFrameOptions::Kind::kTimeSurface;
+    options.event_frame.window = window;
+    const auto poses = track(options);
+    expect_within(poses, 0.6, 1.5);
+    for (const TrackedPose& pose : poses) {
+      EXPECT_GT(pose.t_ns, pose.first_ns / 2 + pose.last_ns / 2) << "recent events count more";
+      EXPECT_LE(pose.t_ns, pose.last_ns);
+    }
+  }
+}
+
+TEST(Tracker, CoarseToFineRecoversEveryPoseAndAnOffsetStart) {
+  TrackerOptions options = accurate();
+  options.align.levels = 3;
+  expect_within(track(options), 0.6, 1.5);
+  // Some 6 px beside the truth, further than an edge is wide.
+  Tracker tracker = tracker_from(options);
+  tracker.reset(0, corner_motion(0) * Rigid3({1, 0, 0, 0}, {0.09, 0.02, 0}));
+  const auto poses = tracker.track(recording().events);
+  TrackedPose start = poses.front();
+  start.world_from_camera = start.world_from_camera * Rigid3({1, 0, 0, 0}, {0.09, 0.02, 0});
+  EXPECT_GT(error_px(start), 4) << "the test must start far away";
+  EXPECT_LT(error_px(poses.back()), 1.5);
+}
+
+TEST(Tracker, MotionCompensationAllowsLongerFrames) {
+  TrackerOptions options = accurate();
+  options.event_frame.ratio = 1;
+  const double as_they_are = errors_of(track(options)).mean;
+  options.event_frame.motion_compensation = true;
+  options.event_frame.drawing = EventFrameOptions::Drawing::kBilinear;
+  const auto poses = track(options);
+  EXPECT_LT(errors_of(poses).mean, as_they_are);
+  for (const TrackedPose& pose : poses) EXPECT_EQ(pose.status, TrackStatus::kOk);
+}
+
+/// What a gyroscope in the camera's frame reads at 1 kHz.
+Gyroscope gyroscope_of_the_motion() {
+  constexpr double kHalf_s = 1e-5;
+  std::vector<ImuSample> samples;
+  for (double t_s = 0; t_s <= kEnd_s; t_s += 1e-3) {
+    const Rigid3 turn = corner_motion(t_s - kHalf_s).inverse() * corner_motion(t_s + kHalf_s);
+    ImuSample sample;
+    sample.t_ns = ns_from_seconds(t_s);
+    sample.angular_velocity = so3_log(turn.rotation()) / (2 * kHalf_s);
+    samples.push_back(sample);
+  }
+  return {samples, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
+}
+
+TEST(Tracker, AGyroscopeHelpsTheFastSetting) {
+  TrackerOptions options = fast();
+  options.motion.prediction = PredictionOptions::Prediction::kImu;
+  Tracker tracker = tracker_from(options);
+  tracker.set_gyroscope(gyroscope_of_the_motion());
+  const auto poses = tracker.track(recording().events);
+  expect_within(poses, 1.0, 3.0);
+  EXPECT_LT(errors_of(poses).mean, errors_of(track(fast())).mean);
+}
+
 TEST(Tracker, PosesFollowOneAnotherInTime) {
   TimeNs last = -1;
   for (const TrackedPose& pose : track(accurate())) {
