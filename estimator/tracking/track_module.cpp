@@ -173,6 +173,7 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   if (config.method == TrackConfig::Method::kIntensity) {
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map, edges);
+    tracker.set_gyroscope(input.gyroscope);
     track_repeatedly(tracker, input, repeat, output);
   } else {
     track_repeatedly(edges, input, repeat, output);
