@@ -60,4 +60,14 @@ ImageU8 codes_from_linear(const ImageF& linear, const ToneCurve& curve) {
   });
 }
 
+std::array<float, 256> linear_of_codes(const ToneCurve& curve) {
+  std::array<float, 256> radiance{};
+  for (std::size_t code = 0; code < radiance.size(); ++code) {
+    const double encoded = static_cast<double>(code) / 255;
+    const double linear = curve.gamma ? std::pow(encoded, *curve.gamma) : linear_from_srgb(encoded);
+    radiance[code] = static_cast<float>(linear / curve.gain);
+  }
+  return radiance;
+}
+
 }  // namespace saccade

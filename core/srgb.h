@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -26,6 +27,10 @@ struct ToneCurve {
 };
 
 [[nodiscard]] ImageU8 codes_from_linear(const ImageF& linear, const ToneCurve& curve);
+
+/// The radiance that each 8-bit code stands for: the inverse of the above but for its rounding and
+/// clamping.
+[[nodiscard]] std::array<float, 256> linear_of_codes(const ToneCurve& curve);
 
 /// Luminance of linear RGB (ITU-R BT.709).
 [[nodiscard]] constexpr float luminance(float r, float g, float b) {

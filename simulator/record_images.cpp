@@ -20,6 +20,16 @@ std::vector<StampedPose> exposure_poses(const Take& take, const ViewRenderer& re
   return poses;
 }
 
+void record_frame(const Take& take, const ViewRenderer& renderer, std::size_t index, double t_s) {
+  const ImageF exposed = renderer.radiance(exposure_poses(take, renderer, t_s));
+  if (take.config.frames.radiance == FrameOptions::Radiance::kExposed) {
+    take.writer.write_frame(index, t_s, exposed);
+  } else {
+    const std::vector<StampedPose> instant{take.pose(t_s)};
+    take.writer.write_frame(index, t_s, exposed, renderer.radiance(instant));
+  }
+}
+
 }  // namespace
 
 void record_images(const Take& take) {
@@ -33,8 +43,7 @@ void record_images(const Take& take) {
   Progress progress("images", frames.size() + depths.size() + flows.size(), "images");
   parallel_for(frames.size(), [&](std::size_t i) {
     const double t = seconds_from_ns(frames[i]);
-    if (!take.writer.take_up_frame(i, t))
-      take.writer.write_frame(i, t, renderer.radiance(exposure_poses(take, renderer, t)));
+    if (!take.writer.take_up_frame(i, t)) record_frame(take, renderer, i, t);
     progress.add(1);
   });
   parallel_for(depths.size(), [&](std::size_t i) {

@@ -47,6 +47,10 @@ void describe(config::Fields& fields, FrameOptions& options) {
       .range(0, kHighestRate_hz);
   fields.value("exposure_s", options.exposure_s, "centred on the frame's time; 0: sharp [s]")
       .range(0, 1);
+  fields.choice("radiance", options.radiance,
+                {{"exposed", FrameOptions::Radiance::kExposed},
+                 {"instant", FrameOptions::Radiance::kInstant}},
+                "the EXR shows the exposure, as the PNG does, or the frame's instant");
   fields.value("gain", options.tone.gain, "8-bit pictures: radiance 1 / gain is white")
       .range(1e-6, 1e6);
   describe_gamma(fields, options.tone.gamma);

@@ -23,6 +23,9 @@ struct FrameOptions {
   /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
   /// recording.
   double exposure_s = 0;
+  /// What the EXR holds: the exposure that the PNG shows, or the frame's instant, without blur.
+  enum class Radiance { kExposed, kInstant };
+  Radiance radiance = Radiance::kExposed;
   ToneCurve tone;  ///< of the 8-bit pictures: keys `gain` and `gamma`; the EXR holds radiance
 };
 

@@ -63,8 +63,13 @@ void DatasetWriter::store(std::vector<StampedFile>& list, std::size_t index, dou
 }
 
 void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& radiance) {
+  write_frame(index, t_s, radiance, radiance);
+}
+
+void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& exposed,
+                                const ImageF& radiance) {
   const fs::path png = numbered("images", "frame", index, "png");
-  write_png(folder_ / png, codes_from_linear(radiance, options_.tone));
+  write_png(folder_ / png, codes_from_linear(exposed, options_.tone));
   write_exr(folder_ / numbered("images", "frame", index, "exr"), radiance, "Y");
   store(frames_, index, t_s, png);
 }

@@ -24,6 +24,12 @@ int margin_of(const IntensityOptions& options) {
   return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
 }
 
+/// Weight of events that a pose must rest on; fewer than twice its unknowns lean on the prediction.
+double least_weight(const IntensityOptions& options) {
+  constexpr int kUnknowns = 6;
+  return options.events < 2 * kUnknowns ? 0 : kUnknowns;
+}
+
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -315,7 +321,7 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
     estimate.map_from_camera = estimate.map_from_camera * Rigid3::exp(step);
     deviation += step;
   }
-  if (!(estimate.sums.weight > 6)) return estimate;
+  if (estimate.sums.weight < least_weight(options_)) return estimate;
   learn_noise(estimate.sums);
   const Matrix6 normal = estimate.sums.normal;
   estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());

@@ -158,7 +158,7 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
 
 void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
-  fields.value("events", options.events, "per pose").range(16, 1e6);
+  fields.value("events", options.events, "per pose").range(1, 1e6);
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
   fields
@@ -199,6 +199,41 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
       .value("contrast", config.contrast,
              "threshold of both polarities [log units]; ~ takes the dataset's")
       .above(0);
+}
+
+void describe_frames(config::Fields& fields, TrackConfig& config) {
+  FrameTrackOptions& options = config.frames;
+  fields
+      .value("samples", options.samples,
+             "most pixels of a frame that are compared, spread evenly over it")
+      .range(16, 1e9);
+  fields
+      .value("levels", options.levels,
+             "of squares, from 2^(levels - 1) pixels wide down to single ones")
+      .range(1, 8);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, on each level").range(1, 1000);
+  fields.value("noise", options.noise, "deviation of a level from the map [log units]")
+      .range(0.001, 10);
+  fields
+      .value("place_px", options.place_px,
+             "deviation of the place where the map shows a level: it is sampled at points")
+      .range(0, 10);
+  fields
+      .value("edge_step", config.frames_map.edge_step,
+             "the map is smoothed where neighbours differ by more [log units]")
+      .range(0.001, 100);
+  fields
+      .value("blur_px", config.frames_map.blur_px,
+             "deviation of that Gaussian; 0: nothing is smoothed")
+      .range(0, 10);
+  fields
+      .value("information", options.information,
+             "share of the information of independent residuals: neighbouring ones err alike")
+      .range(1e-6, 1);
+  fields
+      .value("min_inliers", options.min_inliers,
+             "share of pixels that agree with the map below which the pose is lost")
+      .range(0, 1);
 }
 
 void describe_motion(config::Fields& fields, PredictionOptions& options) {
@@ -244,8 +279,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
   TrackerOptions& tracker = config.tracker;
   fields.choice(
       "method", config.method,
-      {{"edges", TrackConfig::Method::kEdges}, {"intensity", TrackConfig::Method::kIntensity}},
-      "edges against event frames (the thesis), or log intensity at each event");
+      {{"edges", TrackConfig::Method::kEdges},
+       {"intensity", TrackConfig::Method::kIntensity},
+       {"frames", TrackConfig::Method::kFrames}},
+      "edges against event frames (the thesis), log intensity at each event, or grey frames");
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "where the map comes from");
@@ -265,6 +302,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
     fields.group(
         "intensity", [&](Fields& f) { describe_intensity(f, config); },
         "how a pose is found from the log intensity at each event");
+  if (config.method == TrackConfig::Method::kFrames)
+    fields.group(
+        "frames", [&](Fields& f) { describe_frames(f, config); },
+        "how a pose is found from a grey frame");
   fields.group(
       "motion",
       [&](Fields& f) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/config/fields.h"
+#include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/tracker.h"
@@ -13,13 +14,15 @@ namespace saccade {
 
 /// The configuration of `saccade run track`; describe() names the keys, ranges and defaults.
 struct TrackConfig {
-  enum class Method { kEdges, kIntensity };
+  enum class Method { kEdges, kIntensity, kFrames };
 
   Method method = Method::kEdges;
   ReferenceOptions reference;
   MapOptions map;
   TrackerOptions tracker;
   IntensityOptions intensity;
+  FrameTrackOptions frames;
+  IntensityMapOptions frames_map{.blur_px = 0};
   std::optional<double> contrast;  ///< [log units]; default: the dataset's
   /// tx ty tz qx qy qz qw, world from camera at the start; default: the ground truth.
   std::optional<std::array<double, 7>> initial_pose;

@@ -16,6 +16,8 @@
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
 #include "estimator/run_writer.h"
+#include "estimator/tracking/frame_tracker.h"
+#include "estimator/tracking/grey_frames.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/reference_view.h"
@@ -32,18 +34,21 @@ double seconds_since(Clock::time_point start) {
 
 /// Everything that tracking needs, read from the dataset.
 struct TrackInput {
-  Events events;
+  Events events;                  ///< none where frames are tracked
+  std::vector<GreyFrame> frames;  ///< none where events are
   RunRecord::Window window;
   std::vector<ReferenceView> references;
   Rigid3 initial_world_from_camera;
   Gyroscope gyroscope;  ///< empty unless it is needed
 };
 
-RunRecord::Window window_of(const RunRequest& request, const Events& events) {
+/// `measurements`: events or frames, at least one.
+template <class Measurements>
+RunRecord::Window window_of(const RunRequest& request, const Measurements& measurements) {
   RunRecord::Window window;
-  window.start_s = request.start_s.value_or(seconds_from_ns(events.front().t_ns));
+  window.start_s = request.start_s.value_or(seconds_from_ns(measurements.front().t_ns));
   window.end_s = request.duration_s ? window.start_s + *request.duration_s
-                                    : seconds_from_ns(events.back().t_ns);
+                                    : seconds_from_ns(measurements.back().t_ns);
   return window;
 }
 
@@ -92,13 +97,26 @@ Events load_window(const RunRequest& request, const Dataset& dataset) {
   return events;
 }
 
+std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double first_s = dataset.frames().empty() ? 0 : dataset.frames().front().t_s;
+  const double start_s = request.start_s.value_or(first_s);
+  return load_grey_frames(dataset, start_s,
+                          request.duration_s ? start_s + *request.duration_s : infinity);
+}
+
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,
                       const Dataset& dataset) {
   TrackInput input;
-  input.events = load_window(request, dataset);
-  if (input.events.empty())
-    throw InputError(dataset.folder().string(), "holds no events in the window to be tracked");
-  input.window = window_of(request, input.events);
+  if (config.method == TrackConfig::Method::kFrames) {
+    input.frames = load_frame_window(request, dataset);
+    input.window = window_of(request, input.frames);
+  } else {
+    input.events = load_window(request, dataset);
+    if (input.events.empty())
+      throw InputError(dataset.folder().string(), "holds no events in the window to be tracked");
+    input.window = window_of(request, input.events);
+  }
   input.references =
       load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
@@ -142,15 +160,15 @@ EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
   return {*facts.contrast_on, *facts.contrast_off};
 }
 
-/// Any tracker over all events, `repeat` times.
-template <class AnyTracker>
-void track_repeatedly(AnyTracker& tracker, const TrackInput& input, int repeat,
-                      TrackOutput& output) {
-  Progress progress("track", input.events.size() * static_cast<std::size_t>(repeat), "events");
+/// Any tracker over all of its measurements, events or frames, `repeat` times.
+template <class AnyTracker, class Measurements>
+void track_repeatedly(AnyTracker& tracker, const Measurements& measurements, const char* unit,
+                      const Rigid3& initial_world_from_camera, int repeat, TrackOutput& output) {
+  Progress progress("track", measurements.size() * static_cast<std::size_t>(repeat), unit);
   for (int i = 0; i < repeat; ++i) {
-    tracker.reset(input.events.front().t_ns, input.initial_world_from_camera);
+    tracker.reset(measurements.front().t_ns, initial_world_from_camera);
     const auto start = Clock::now();
-    output.poses = tracker.track(input.events, [&](std::size_t n) { progress.add(n); });
+    output.poses = tracker.track(measurements, [&](std::size_t n) { progress.add(n); });
     output.timing.wall_s.push_back(seconds_since(start));
   }
   const TrackTiming& stages = tracker.timing();
@@ -163,10 +181,13 @@ void track_repeatedly(AnyTracker& tracker, const TrackInput& input, int repeat,
 TrackOutput track(const TrackConfig& config, const Dataset& dataset, const TrackInput& input,
                   int repeat) {
   const PinholeCamera& camera = dataset.camera();
+  const Rigid3& start = input.initial_world_from_camera;
   TrackOutput output;
   const auto map_start = Clock::now();
   output.map = map_of(config, camera.undistorted(), input.references);
-  const IntensityMap map(camera.undistorted(), input.references, config.intensity.map);
+  const bool is_of_frames = config.method == TrackConfig::Method::kFrames;
+  const IntensityMap map(camera.undistorted(), input.references,
+                         is_of_frames ? config.frames_map : config.intensity.map);
   output.timing.stages_s = {{"map", seconds_since(map_start)}};
   Tracker edges(config.tracker, camera, output.map, map.world_from_map(), config.seed);
   edges.set_gyroscope(input.gyroscope);
@@ -174,9 +195,12 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map, edges);
     tracker.set_gyroscope(input.gyroscope);
-    track_repeatedly(tracker, input, repeat, output);
+    track_repeatedly(tracker, input.events, "events", start, repeat, output);
+  } else if (config.method == TrackConfig::Method::kFrames) {
+    FrameTracker tracker(config.frames, config.tracker.motion, map);
+    track_repeatedly(tracker, input.frames, "frames", start, repeat, output);
   } else {
-    track_repeatedly(edges, input, repeat, output);
+    track_repeatedly(edges, input.events, "events", start, repeat, output);
   }
   output.timing.events = input.events.size();
   output.timing.poses = output.poses.size();

@@ -103,6 +103,19 @@ TEST(Srgb, ToneCurveGoesThroughGainAndGamma) {
   EXPECT_EQ(codes({.gain = 2, .gamma = 2}), (std::vector<int>{180, 255, 0, 0}));
 }
 
+TEST(Srgb, EveryCodeOfAToneCurveStandsForARadianceThatGivesItBack) {
+  for (const ToneCurve& curve :
+       {ToneCurve{}, ToneCurve{.gain = 0.2, .gamma = {}}, ToneCurve{.gain = 3, .gamma = 2.2},
+        ToneCurve{.gain = 1, .gamma = 1}}) {
+    const std::array<float, 256> radiance = linear_of_codes(curve);
+    ImageF linear(256, 1);
+    std::copy(radiance.begin(), radiance.end(), linear.pixels().begin());
+    const ImageU8 codes = codes_from_linear(linear, curve);
+    for (int code = 0; code < 256; ++code) EXPECT_EQ(codes(code, 0), code);
+  }
+  EXPECT_NEAR(linear_of_codes({.gain = 0.5, .gamma = {}})[255], 2, 1e-6);
+}
+
 TEST(Srgb, CurveHasItsKnownValues) {
   EXPECT_NEAR(linear_from_srgb(0.5), 0.21404114048, 1e-10);
   EXPECT_NEAR(linear_from_srgb(0.02), 0.02 / 12.92, 1e-15);

@@ -19,6 +19,7 @@
 #include "core/progress.h"
 #include "core/srgb.h"
 #include "tests/support/closed_form_plane.h"
+#include "tests/support/command.h"
 
 namespace saccade {
 namespace {
@@ -183,6 +184,18 @@ TEST_F(SimulatePlane, ExposureAveragesLinearRadiance) {
       }
       EXPECT_NEAR(frame(x, y), mean, 0.01 * mean);
     }
+}
+
+TEST_F(SimulatePlane, TheRadianceMayShowTheInstantBesideAPictureOfTheExposure) {
+  simulate(config("frames: {rate_hz: 10}\n"), output("sharp"));
+  simulate(config("frames: {rate_hz: 10, exposure_s: 0.05}\n"), output("exposed"));
+  simulate(config("frames: {rate_hz: 10, exposure_s: 0.05, radiance: instant}\n"), output("both"));
+  const auto bytes = [&](const std::string& dataset, const std::string& type) {
+    return testing::read_file(output(dataset) / ("images/frame_00000001." + type));
+  };
+  EXPECT_EQ(bytes("both", "exr"), bytes("sharp", "exr"));
+  EXPECT_EQ(bytes("both", "png"), bytes("exposed", "png"));
+  EXPECT_NE(bytes("both", "png"), bytes("sharp", "png"));
 }
 
 TEST_F(SimulatePlane, BytesDoNotDependOnTheThreads) {

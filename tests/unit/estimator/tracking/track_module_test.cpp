@@ -267,6 +267,32 @@ TEST_F(TrackModule, AWindowWithoutEvents) {
   EXPECT_THAT(error(request("run")), HasSubstr("event"));
 }
 
+TEST_F(TrackModule, FramesAreTrackedWithoutAnyEvents) {
+  remove("events.txt");
+  const std::string frames =
+      "{method: frames, reference: {planar_depth_m: 1.5}, motion: "
+      "{prediction: constant_velocity}}";
+  const RunSummary summary = run_track(request("run", frames));
+  EXPECT_EQ(summary.poses, 2U);
+  EXPECT_EQ(summary.lost_poses, 0U);
+  EXPECT_EQ(summary.events, 0U);
+  const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  ASSERT_EQ(trajectory.size(), 2U);
+  EXPECT_EQ(trajectory.poses()[1].t_s, 0.2);
+  EXPECT_GT(error_px({}, 0.2), 3) << "the camera must move";
+  for (const StampedPose& pose : trajectory.poses())
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 0.2) << pose.t_s;
+}
+
+TEST_F(TrackModule, AWindowWithoutFrames) {
+  RunRequest late = request("run", "{method: frames, reference: {planar_depth_m: 1.5}}");
+  late.start_s = 0.25;
+  EXPECT_THAT(error(late), HasSubstr("no frames in the window"));
+  folder_.write("wall/images.txt", "0 images/a.png\n0.2 images/missing.png\n");
+  EXPECT_THAT(error(request("run", "{method: frames, reference: {planar_depth_m: 1.5}}")),
+              HasSubstr("missing.png"));
+}
+
 TEST_F(TrackModule, AnEmptyMapIsLostTracking) {
   // A frame without texture is input that can be read: the poses say that it did not work.
   write_png(dataset_ / "images/a.png", ImageU8(80, 60, 128));
