@@ -80,6 +80,7 @@ TrackedPose FrameTracker::track_frame(const GreyFrame& frame) {
     pose.status = TrackStatus::kLost;
   }
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
+  pose.set_sigmas(motion_.covariance());
   return pose;
 }
 

@@ -237,6 +237,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   }
   pose.residual = noise_scale_ * options_.noise;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
+  pose.set_sigmas(motion_.covariance());
   timing_.template_s += drawn_s - start_s;
   timing_.event_frame_s += loaded_s - drawn_s;
   timing_.align_s += now_s() - loaded_s;

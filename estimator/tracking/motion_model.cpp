@@ -87,6 +87,8 @@ void MotionModel::update(const Rigid3& map_from_camera, const Matrix6& informati
     velocity_covariance_ -= regression * (pose_covariance_ - posterior) * regression.transpose();
     cross_covariance_ = regression * posterior;
     pose_covariance_ = posterior;
+  } else {
+    pose_covariance_ = inverse_symmetric<6>(information);
   }
   map_from_camera_ = map_from_camera;
 }

@@ -57,6 +57,9 @@ class MotionModel {
   void stop();
 
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
+  /// Of the pose after the last update(), in the camera's frame (v, w) [m, rad]: what the residuals
+  /// and the expected motion let expect.
+  [[nodiscard]] const Matrix6& covariance() const { return pose_covariance_; }
   /// In the camera's frame [m/s, rad/s].
   [[nodiscard]] const Twist& velocity() const { return velocity_; }
   /// The same as image motion at a depth [px/s].

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "core/config/config.h"
@@ -220,12 +221,13 @@ std::vector<StampedPose> stamped_poses(const std::vector<TrackedPose>& poses) {
 }
 
 void write_poses_csv(const std::filesystem::path& file, const std::vector<TrackedPose>& poses) {
-  CsvTable table(
-      {"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations", "residual"});
+  CsvTable table({"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations",
+                  "residual", "position_sigma_m", "rotation_sigma_deg"});
   for (const TrackedPose& p : poses)
     table.add({seconds_from_ns(p.t_ns), seconds_from_ns(p.first_ns), seconds_from_ns(p.last_ns),
                std::string(p.status == TrackStatus::kOk ? "ok" : "lost"), p.inlier_ratio,
-               static_cast<long long>(p.iterations), p.residual});
+               static_cast<long long>(p.iterations), p.residual, p.position_sigma_m,
+               p.rotation_sigma_rad * 180 / std::numbers::pi});
   table.save(file);
 }
 

@@ -160,6 +160,7 @@ TrackedPose Tracker::track_frame() {
   }
   pose.status = judge(aligned);
   pose.world_from_camera = world_from_map_ * motion_.pose();
+  pose.set_sigmas(motion_.covariance());
   return pose;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -45,6 +46,14 @@ struct TrackedPose {
   int iterations = 0;
   double inlier_ratio = 0;  ///< see AlignResult
   double residual = 0;
+  double position_sigma_m = 0;    ///< standard deviation as the residuals let expect it
+  double rotation_sigma_rad = 0;  ///< the same
+
+  /// Takes both from a covariance (v, w) [m, rad].
+  void set_sigmas(const Matrix6& covariance) {
+    position_sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+    rotation_sigma_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  }
 };
 
 /// Seconds that went into each stage since the last reset.

@@ -189,5 +189,23 @@ TEST(MotionModel, TwoFramesAtTheSameTime) {
   EXPECT_TRUE(prediction.precision.allFinite());
 }
 
+TEST(MotionModel, StatesTheCovarianceOfThePose) {
+  const Matrix6 information = 1e4 * Matrix6::Identity();
+  MotionModel alone({}, 200);
+  alone.reset(0, Rigid3());
+  (void)alone.predict(1'000'000, 2);
+  alone.update(Rigid3(), information);
+  EXPECT_TRUE(alone.covariance().isApprox(1e-4 * Matrix6::Identity()));
+
+  PredictionOptions options;
+  options.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  MotionModel expecting(options, 200);
+  expecting.reset(0, Rigid3());
+  const PosePrediction predicted = expecting.predict(1'000'000, 2);
+  expecting.update(Rigid3(), information);
+  const Matrix6 both = predicted.precision + information;
+  EXPECT_TRUE((expecting.covariance() * both).isApprox(Matrix6::Identity(), 1e-9));
+}
+
 }  // namespace
 }  // namespace saccade
