@@ -1,5 +1,6 @@
 #include "estimator/tracking/event_chunk.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,16 @@ namespace {
 constexpr float kReach_px = 3;
 /// Residuals beyond this many deviations weigh less than half.
 constexpr float kTail = 2.4F;
+constexpr float kNearest_m = 1e-6F;
+
+/// Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
+using Lanes = std::array<float, EventChunk::kLanes>;
+
+double total(Lanes sums) {
+  for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
+    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
+  return static_cast<double>(sums[0]);
+}
 
 }  // namespace
 
@@ -61,7 +72,8 @@ void EventChunk::evaluate(const PinholeCamera& camera, const ImageF& atlas, cons
     const float px = ax - dt * (v.x() + w.y() * az - w.z() * ay);
     const float py = ay - dt * (v.y() + w.z() * ax - w.x() * az);
     const float pz = az - dt * (v.z() + w.x() * ay - w.y() * ax);
-    const float inverse = 1 / pz;
+    // Finite in the camera's very centre, too, where the padding of a new chunk may lie.
+    const float inverse = 1 / std::max(pz, kNearest_m);
     const float x = px * inverse;
     const float y = py * inverse;
     const float ex = pixel_x_[i] - (fx * x + cx);
@@ -136,23 +148,25 @@ void EventChunk::weigh(const Noise& noise) {
 
 void EventChunk::add_to(Sums& sums) {
   constexpr float kClose = 1 / (kTail * kTail);
-  float visible = 0;
-  float close = 0;
-  float inliers = 0;
-  float trust = 0;
-  float weight = 0;
-  for (std::size_t i = 0; i < padded(); ++i) {
-    visible += visible_[i] * trust_[i];
-    inliers += relative_[i] < 1 ? visible_[i] * trust_[i] : 0;
-    close += relative_[i] < kClose ? visible_[i] * trust_[i] : 0;
-    trust += trust_[i];
-    weight += visible_[i] * trust_[i] / (1 + relative_[i]);
-  }
-  sums.visible += static_cast<double>(visible);
-  sums.inliers += static_cast<double>(inliers);
-  sums.trust += static_cast<double>(trust);
-  sums.weight += static_cast<double>(weight);
-  sums.close += static_cast<double>(close);
+  Lanes visible{}, inliers{}, close{}, trust{}, weight{}, squares{};
+  for (std::size_t first = 0; first < padded(); first += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t i = first + lane;
+      const float seen = visible_[i] * trust_[i];
+      const float cauchy = seen / (1 + relative_[i]);
+      visible[lane] += seen;
+      inliers[lane] += relative_[i] < 1 ? seen : 0;
+      close[lane] += relative_[i] < kClose ? seen : 0;
+      trust[lane] += trust_[i];
+      weight[lane] += cauchy;
+      squares[lane] += cauchy * residual_[i] * residual_[i];
+    }
+  sums.visible += total(visible);
+  sums.inliers += total(inliers);
+  sums.close += total(close);
+  sums.trust += total(trust);
+  sums.weight += total(weight);
+  sums.squares += total(squares);
   for (std::size_t c = 0; c < 6; ++c) {
     for (std::size_t i = 0; i < padded(); ++i) weighted_[c][i] = weight_[i] * columns_[c][i];
     const auto column = static_cast<Eigen::Index>(c);
@@ -163,13 +177,10 @@ void EventChunk::add_to(Sums& sums) {
 }
 
 double EventChunk::dot(const Floats& a, const Floats& b) const {
-  // Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
-  float sums[kLanes] = {};
+  Lanes sums{};
   for (std::size_t i = 0; i < padded(); i += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-  for (std::size_t width = kLanes / 2; width > 0; width /= 2)
-    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return static_cast<double>(sums[0]);
+  return total(sums);
 }
 
 float EventChunk::residual(int i) const {

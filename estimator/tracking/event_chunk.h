@@ -45,7 +45,8 @@ class EventChunk {
   ///   place = seen place + scale (pixel - pi(p)),   p = p_c - t (v + w x p_c),   p_c = R P + t_c
   /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
   /// map's slope in the image:
-  ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y).
+  ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
+  /// where the turn w t within the events' time is left out.
   void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
 
   /// What residuals deviate by: sigma^2 = scale^2 (level^2 + (place_px |grad L|)^2).
@@ -54,17 +55,18 @@ class EventChunk {
     float place_px;  ///< of what a map of point samples shows between them
     float scale;
   };
-  /// Weights trust (level / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy); 0 where nothing of the
-  /// map is seen.
+  /// Weights trust (scale level / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy): at most 1, where
+  /// the map is flat; 0 where nothing of it is seen.
   void weigh(const Noise& noise);
 
   struct Sums {
     Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< J^T W r
     Matrix6 normal = Matrix6::Zero();  ///< J^T W J, upper triangle
-    double weight = 0;
-    double visible = 0;  ///< events that see a known place, by trust
-    double inliers = 0;  ///< of them those within 2.4 sigma
-    double close = 0;    ///< and those within sigma
+    double weight = 0;                 ///< trust / (1 + (r / (2.4 sigma))^2)
+    double squares = 0;                ///< r^2 by this weight
+    double visible = 0;                ///< events that see a known place, by trust
+    double inliers = 0;                ///< of them those within 2.4 sigma
+    double close = 0;                  ///< and those within sigma
     double trust = 0;
   };
   void add_to(Sums& sums);

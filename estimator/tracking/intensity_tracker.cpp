@@ -235,7 +235,8 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
     lose();
     pose.status = TrackStatus::kLost;
   }
-  pose.residual = noise_scale_ * options_.noise;
+  pose.residual =
+      estimate.sums.weight > 0 ? std::sqrt(estimate.sums.squares / estimate.sums.weight) : 0;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
   pose.set_sigmas(motion_.covariance());
   timing_.template_s += drawn_s - start_s;

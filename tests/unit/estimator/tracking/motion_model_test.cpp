@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace saccade {
 namespace {
@@ -180,6 +181,42 @@ TEST(MotionModel, ABetterGyroscopeKnowsTheRotationBetter) {
   };
   EXPECT_GT(precision(0.01)(4, 4), 1.5 * precision(1)(4, 4));
   EXPECT_NEAR(precision(0.01)(0, 0) / precision(1)(0, 0), 1, 0.01) << "translation is as before";
+}
+
+TEST(MotionModel, WhatMovesFastIsExpectedToChangeFast) {
+  // Precision of the prediction after a while at constant velocity; in the direction of a turn.
+  const auto precision = [](double share, double speed) {
+    PredictionOptions options = constant_velocity();
+    options.agility_share = share;
+    MotionModel model(options, kFocal);
+    model.reset(0, {});
+    const Twist moving = speed * velocity();
+    for (int i = 1; i <= 10; ++i) {
+      static_cast<void>(model.predict(i * kStep, kDepth));
+      model.update(Rigid3::exp(moving * seconds_from_ns(i * kStep)), 1e12 * Matrix6::Identity());
+    }
+    return model.predict(11 * kStep, kDepth).precision(4, 4);
+  };
+  EXPECT_NEAR(precision(0, 10) / precision(0, 1), 1, 0.01);
+  EXPECT_LT(precision(6, 10), 0.1 * precision(6, 1));
+  EXPECT_LT(precision(6, 1), precision(0, 1));
+}
+
+TEST(MotionModel, AStartIsAsPreciseAsItIsSaidToBe) {
+  // At the start itself, before the unknown velocity counts.
+  const auto deviation_px = [](double px) {
+    MotionModel model(constant_velocity(), kFocal);
+    model.reset(0, {}, px);
+    return kFocal / std::sqrt(model.predict(0, kDepth).precision(4, 4));
+  };
+  EXPECT_NEAR(deviation_px(0.2), 0.2, 1e-6);
+  EXPECT_NEAR(deviation_px(4), 4, 1e-6);
+}
+
+TEST(MotionModel, SpeedInTheImageIsThatOfTurnAndShift) {
+  const Twist v = velocity();
+  EXPECT_NEAR(trained(10).speed_px(kDepth),
+              kFocal * (v.tail<3>().norm() + v.head<3>().norm() / kDepth), 2);
 }
 
 TEST(MotionModel, TwoFramesAtTheSameTime) {

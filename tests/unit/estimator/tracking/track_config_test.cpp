@@ -37,6 +37,11 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   EXPECT_EQ(fast.tracker.align.samples, 50);
   EXPECT_EQ(fast.tracker.align.iterations, 5);
   EXPECT_EQ(fast.tracker.event_frame.ratio, 0.15);
+  const auto best = config::read<TrackConfig>(config::load(folder + "best.yaml"));
+  EXPECT_EQ(best.method, TrackConfig::Method::kIntensity);
+  EXPECT_EQ(best.intensity.events, 1000);
+  EXPECT_EQ(best.reference.turn_deg, 15);
+  EXPECT_FALSE(best.contrast) << "the dataset's";
 }
 
 TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
@@ -52,6 +57,22 @@ TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
   EXPECT_EQ(again.initial_pose, config.initial_pose);
   EXPECT_EQ(again.reference.region_px, config.reference.region_px);
   EXPECT_EQ(again.tracker.templates.splat, TemplateOptions::Splat::kNearest);
+}
+
+TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
+  const TrackConfig config = parse(
+      "{method: intensity, reference: {turn_deg: 7}, intensity: {events: 321, place_px: 0.4, "
+      "blur_px: 0, contrast: 0.17}, motion: {prediction: constant_velocity, agility_share: 3}}");
+  const std::string printed = config::print(config);
+  EXPECT_EQ(config::print(parse(printed)), printed);
+  const TrackConfig again = parse(printed);
+  EXPECT_EQ(again.method, TrackConfig::Method::kIntensity);
+  EXPECT_EQ(again.reference.turn_deg, 7);
+  EXPECT_EQ(again.intensity.events, 321);
+  EXPECT_EQ(again.intensity.place_px, 0.4);
+  EXPECT_EQ(again.intensity.map.blur_px, 0);
+  EXPECT_EQ(again.contrast, 0.17);
+  EXPECT_EQ(again.tracker.motion.agility_share, 3);
 }
 
 struct Fault {
@@ -103,6 +124,15 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{method: frames, intensity: {events: 100}}", "intensity"},
       {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
       {"{lost: {frames: 0}}", "lost.frames"},
+      {"{method: levels}", "method"},
+      {"{intensity: {events: 500}}", "intensity"},
+      {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
+      {"{method: intensity, intensity: {correction: 1.5}}", "intensity.correction"},
+      {"{method: intensity, intensity: {contrast: 0}}", "intensity.contrast"},
+      {"{method: intensity, intensity: {information: 0}}", "intensity.information"},
+      {"{reference: {turn_deg: 0}}", "reference.turn_deg"},
+      {"{motion: {prediction: none, agility_share: 1}}", "agility_share"},
+      {"{motion: {prediction: constant_velocity, agility_share: -1}}", "motion.agility_share"},
       {"{initial_pose: [0, 0, 0]}", "initial_pose"},
       {"{seed: -1}", "seed"},
   };

@@ -227,6 +227,46 @@ TEST_F(TrackModule, TurnsByTheGyroscopeOfTheDataset) {
   EXPECT_EQ(summary.lost_poses, 0U);
 }
 
+TEST_F(TrackModule, FollowsTheTrueMotionByLogIntensity) {
+  const RunSummary summary = run_track(
+      request("run",
+              "{method: intensity, reference: {planar_depth_m: 1.5}, intensity: {events: 500, "
+              "contrast: 0.12}, motion: {prediction: constant_velocity}}"));
+  EXPECT_EQ(summary.poses, summary.events / 500);
+  EXPECT_EQ(summary.lost_poses, 0U);
+  const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  for (const StampedPose& pose : trajectory.poses())
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 0.8) << pose.t_s;
+}
+
+TEST_F(TrackModule, WithoutContrastNamesTheCure) {
+  EXPECT_THAT(error(request("run", "{method: intensity, reference: {planar_depth_m: 1.5}}")),
+              HasSubstr("intensity.contrast"));
+}
+
+TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {
+  // The second frame is turned by 1.7 degrees.
+  const auto points = [&](const std::string& name, const std::string& turn_deg) {
+    static_cast<void>(run_track(
+        request(name, "reference: {frame: 0, planar_depth_m: 1.5, turn_deg: " + turn_deg + "}")));
+    const PointCloud map = read_ply(folder_.path() / name / "map.ply");
+    for (const Eigen::Vector3f& point : map.positions)
+      EXPECT_NEAR(point.z(), kDepth_m, 0.02) << "both are taken for planes at this depth";
+    return map.positions.size();
+  };
+  const std::size_t one = points("one", "~");
+  EXPECT_EQ(points("still_one", "3"), one);
+  EXPECT_GT(points("two", "1"), one * 3 / 2);
+}
+
+TEST_F(TrackModule, FurtherFramesNeedTheTruth) {
+  remove("groundtruth.txt");
+  EXPECT_THAT(error(request("run",
+                            "{reference: {planar_depth_m: 1.5, turn_deg: 1}, initial_pose: "
+                            "[0, 0, 0, 0, 0, 0, 1]}")),
+              HasSubstr("turn_deg"));
+}
+
 TEST_F(TrackModule, WithoutTruthNamesTheCure) {
   remove("groundtruth.txt");
   EXPECT_THAT(error(request("run")), HasSubstr("initial_pose"));

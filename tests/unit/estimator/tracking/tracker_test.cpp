@@ -346,6 +346,27 @@ TEST(Tracker, DoesNotDependOnWhereTheWorldBegins) {
               0.02);
 }
 
+TEST(Tracker, TellsHowManyEventsTheNextFrameTakes) {
+  Tracker tracker = tracker_from(accurate());
+  const std::size_t needed = tracker.next_frame_events();
+  EXPECT_GT(needed, static_cast<std::size_t>(accurate().event_frame.min_events));
+  EXPECT_TRUE(tracker.track(std::span(recording().events).first(needed - 1)).empty());
+  tracker.reset(0, corner_motion(0));
+  EXPECT_EQ(tracker.track(std::span(recording().events).first(needed)).size(), 1U);
+}
+
+TEST(Tracker, AnUncertainStartIsLeftFasterThanASureOne) {
+  const Rigid3 beside({1, 0, 0, 0}, {0.03, 0.01, 0});
+  TrackerOptions options = accurate();
+  options.motion.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  const auto error_of_the_first = [&](double deviation_px) {
+    Tracker tracker = tracker_from(options);
+    tracker.reset(0, corner_motion(0) * beside, deviation_px);
+    return error_px(tracker.track(std::span(recording().events).first(20000)).front());
+  };
+  EXPECT_LT(error_of_the_first(4), error_of_the_first(0.02));
+}
+
 TEST(Tracker, KeptTemplatesAreDrawnLessOften) {
   TrackerOptions always = accurate();
   always.templates.redraw_px = 0;

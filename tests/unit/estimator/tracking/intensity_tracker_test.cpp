@@ -1,0 +1,325 @@
+#include "estimator/tracking/intensity_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/config/config.h"
+#include "estimator/tracking/track_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_motion;
+using testing::corner_world;
+using testing::PlanarWorld;
+
+constexpr double kEnd_s = 0.3;  ///< some 60 px of image motion
+constexpr double kContrast = 0.15;
+
+/// Two walls and a smaller plane before them whose texels are larger than a pixel, so that the
+/// picture of a view shows all there is.
+PlanarWorld resolved_world() {
+  using testing::patch_texture;
+  return {corner_world(160, 120).camera(),
+          {{{-2.6, -1.6, 1.8}, {2.8, 0, 1.6}, {0, 3.2, 0}, patch_texture(90, 90, 1)},
+           {{0.2, -1.6, 3.4}, {2.4, 0, -1.8}, {0, 3.2, 0}, patch_texture(90, 90, 2)},
+           {{-0.5, -0.2, 1.5}, {0.7, 0, 0.1}, {0, 0.6, 0}, patch_texture(32, 28, 3)}}};
+}
+
+/// The map of the first view and the events since then; made once. Steps of 0.2 ms, a twentieth of
+/// a pixel, so that linear interpolation between them is as good as exact.
+struct Recording {
+  PlanarWorld world = resolved_world();
+  ReferenceView view{world.log_intensity(corner_motion(0)), world.depth(corner_motion(0)),
+                     corner_motion(0)};
+  Events events = world.simulate(corner_motion, 0, kEnd_s, 2e-4, kContrast);
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+TrackConfig best() {
+  const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/best.yaml";
+  return config::read<TrackConfig>(config::load(file));
+}
+
+/// The tracker with all that has to outlive it.
+class Tracking {
+ public:
+  explicit Tracking(const TrackConfig& config = best(), double contrast = kContrast,
+                    const ReferenceView& view = recording().view)
+      : map_(recording().world.camera(), std::span(&view, 1), config.intensity.map),
+        points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
+        edges_(config.tracker, map_.camera(), points_, map_.world_from_map(), config.seed),
+        tracker_(config.intensity, config.tracker.motion, {contrast, contrast}, map_.camera(), map_,
+                 edges_) {
+    tracker_.reset(0, view.world_from_reference);
+  }
+
+  IntensityTracker& operator*() { return tracker_; }
+  IntensityTracker* operator->() { return &tracker_; }
+
+ private:
+  IntensityMap map_;
+  MapPoints points_;
+  Tracker edges_;
+  IntensityTracker tracker_;
+};
+
+/// RMS distance of the map's points in the view between a pose and the true one [px].
+double error_px(const TrackedPose& pose) {
+  const PinholeCamera& camera = recording().world.camera();
+  const Rigid3 truth = corner_motion(seconds_from_ns(pose.t_ns)).inverse() * corner_motion(0);
+  const Rigid3 estimate = pose.world_from_camera.inverse() * corner_motion(0);
+  double squared = 0;
+  double count = 0;
+  for (int y = 0; y < camera.height; y += 5)
+    for (int x = 0; x < camera.width; x += 5) {
+      const double depth = static_cast<double>(recording().view.depth(x, y));
+      if (!(depth > 0)) continue;
+      const Eigen::Vector3d point = depth * camera.ray({x, y});
+      const Eigen::Vector2d u = camera.project(truth * point);
+      if (!camera.contains(u)) continue;
+      squared += (u - camera.project(estimate * point)).squaredNorm();
+      ++count;
+    }
+  return std::sqrt(squared / count);
+}
+
+struct Errors {
+  double mean = 0;
+  double largest = 0;
+};
+
+Errors errors_of(const std::vector<TrackedPose>& poses) {
+  Errors errors;
+  for (const TrackedPose& pose : poses) {
+    const double error = error_px(pose);
+    errors.mean += error / static_cast<double>(poses.size());
+    errors.largest = std::max(errors.largest, error);
+  }
+  return errors;
+}
+
+/// The poses from a time on, all of which must be sure of themselves.
+std::vector<TrackedPose> from(double start_s, const std::vector<TrackedPose>& poses) {
+  std::vector<TrackedPose> later;
+  for (const TrackedPose& pose : poses)
+    if (seconds_from_ns(pose.t_ns) >= start_s) {
+      EXPECT_EQ(pose.status, TrackStatus::kOk) << seconds_from_ns(pose.t_ns);
+      later.push_back(pose);
+    }
+  EXPECT_GT(later.size(), 10U);
+  return later;
+}
+
+void expect_equal(const std::vector<TrackedPose>& a, const std::vector<TrackedPose>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t_ns, b[i].t_ns);
+    EXPECT_EQ(a[i].status, b[i].status);
+    EXPECT_EQ(a[i].world_from_camera.translation(), b[i].world_from_camera.translation());
+    EXPECT_EQ(a[i].world_from_camera.rotation().coeffs(),
+              b[i].world_from_camera.rotation().coeffs());
+    EXPECT_EQ(a[i].inlier_ratio, b[i].inlier_ratio);
+  }
+}
+
+Events without(double from_s, double to_s) {
+  Events events;
+  for (const Event& event : recording().events)
+    if (seconds_from_ns(event.t_ns) < from_s || seconds_from_ns(event.t_ns) >= to_s)
+      events.push_back(event);
+  return events;
+}
+
+TEST(IntensityTracker, RecoversEveryPoseAndBeatsTheEdges) {
+  Tracking tracking;
+  const Errors errors = errors_of(from(0, tracking->track(recording().events)));
+  EXPECT_LT(errors.mean, 0.09);
+  EXPECT_LT(errors.largest, 0.6);
+
+  const TrackConfig edges =
+      config::read<TrackConfig>(config::load(SACCADE_SOURCE_DIR "/configs/tracking/accurate.yaml"));
+  const ReferenceView& view = recording().view;
+  const PinholeCamera& camera = recording().world.camera();
+  const MapPoints points = extract_map(view.log_intensity, view.depth, camera, edges.map);
+  Tracker tracker(edges.tracker, camera, points, view.world_from_reference, 1);
+  tracker.reset(0, view.world_from_reference);
+  const Errors by_edges = errors_of(tracker.track(recording().events));
+  EXPECT_LT(3 * errors.mean, by_edges.mean);
+}
+
+TEST(IntensityTracker, PosesFollowOneAnotherInTime) {
+  Tracking tracking;
+  std::size_t done = 0;
+  const auto poses = tracking->track(recording().events, [&](std::size_t n) { done += n; });
+  EXPECT_EQ(poses.size(), recording().events.size() / 1000);
+  EXPECT_EQ(done, poses.size() * 1000);
+  TimeNs last = -1;
+  for (const TrackedPose& pose : poses) {
+    EXPECT_GE(pose.first_ns, last);
+    EXPECT_LE(pose.first_ns, pose.t_ns);
+    EXPECT_LE(pose.t_ns, pose.last_ns);
+    EXPECT_GT(pose.inlier_ratio, 0.5);
+    EXPECT_LE(pose.inlier_ratio, 1);
+    EXPECT_GT(pose.residual, 0.005);
+    EXPECT_LT(pose.residual, 0.3) << "of events 0.15 apart";
+    last = pose.last_ns;
+  }
+}
+
+TEST(IntensityTracker, RepeatsItsBits) {
+  const Events gap = without(0.1, 0.15);
+  for (const Events* events : {&recording().events, &gap}) {
+    Tracking tracking;
+    const auto first = tracking->track(*events);
+    Tracking other;
+    expect_equal(first, other->track(*events));
+    tracking->reset(0, corner_motion(0));
+    expect_equal(first, tracking->track(*events));
+  }
+}
+
+TEST(IntensityTracker, DoesNotDependOnWhereTheWorldBegins) {
+  const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
+  ReferenceView moved = recording().view;
+  moved.world_from_reference = elsewhere * corner_motion(0);
+  Tracking here;
+  Tracking there(best(), kContrast, moved);
+  const auto a = here->track(recording().events);
+  const auto b = there->track(recording().events);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_LT(
+        (b[i].world_from_camera.inverse() * (elsewhere * a[i].world_from_camera)).log().norm(),
+        0.002);
+}
+
+TEST(IntensityTracker, AGapOfEventsIsReportedLostAndRecoveredFrom) {
+  constexpr double kGap_s = 0.1, kGapEnd_s = 0.15;
+  Tracking tracking;
+  const auto poses = tracking->track(without(kGap_s, kGapEnd_s));
+  std::size_t lost = 0;
+  for (const TrackedPose& pose : poses) {
+    const double t_s = seconds_from_ns(pose.t_ns);
+    if (pose.status == TrackStatus::kLost) {
+      ++lost;
+      EXPECT_GE(t_s, kGap_s - 0.005);
+      EXPECT_LT(t_s, 0.25);
+    } else {
+      EXPECT_LT(error_px(pose), 3) << "lost without knowing at " << t_s;
+    }
+  }
+  EXPECT_GT(lost, 0U);
+  const Errors errors = errors_of(from(0.27, poses));
+  // The levels that were taken from where the edges found the pose are forgotten little by little.
+  EXPECT_LT(errors.mean, 0.5);
+}
+
+TEST(IntensityTracker, StartsInTheMiddleOfARecording) {
+  // By then the pixels have fired anywhere within a threshold around what the map shows.
+  constexpr double kStart_s = 0.05;
+  const Events events = without(0, kStart_s);
+  Tracking tracking;
+  tracking->reset(ns_from_seconds(kStart_s), corner_motion(kStart_s));
+  const Errors errors = errors_of(from(0.1, tracking->track(events)));
+  EXPECT_LT(errors.mean, 0.12);
+}
+
+TEST(IntensityTracker, WrongLevelsAtTheStartAreForgotten) {
+  // A third of the pixels is blind at first: what they miss is wrong in their levels.
+  Events events;
+  for (const Event& event : recording().events)
+    if (event.t_ns > ns_from_seconds(0.03) || (event.x + event.y) % 3 != 0) events.push_back(event);
+  Tracking tracking;
+  const auto poses = tracking->track(events);
+  const Errors errors = errors_of(from(0.1, poses));
+  EXPECT_LT(errors.mean, 0.12);
+}
+
+TEST(IntensityTracker, AStartBesideTheTruthIsPulledBack) {
+  Tracking tracking;
+  const Rigid3 beside({1, 0, 0, 0}, {0.03, 0, 0});
+  tracking->reset(0, corner_motion(0) * beside);
+  const auto poses = tracking->track(recording().events);
+  TrackedPose start;
+  start.world_from_camera = corner_motion(0) * beside;
+  const Errors errors = errors_of(from(0.15, poses));
+  EXPECT_GT(error_px(start), 1.5) << "the test must start beside it";
+  EXPECT_LT(errors.mean, 0.2);
+}
+
+TEST(IntensityTracker, AWrongContrastIsBornByTheCorrections) {
+  Tracking tracking(best(), 1.1 * kContrast);
+  const Errors errors = errors_of(from(0, tracking->track(recording().events)));
+  EXPECT_LT(errors.mean, 0.3);
+}
+
+double mean_residual(const std::vector<TrackedPose>& poses) {
+  double sum = 0;
+  for (const TrackedPose& pose : poses) sum += pose.residual;
+  return sum / static_cast<double>(poses.size());
+}
+
+TEST(IntensityTracker, TheResidualTellsAWrongContrast) {
+  const auto residual = [](double share) {
+    Tracking tracking(best(), share * kContrast);
+    return mean_residual(tracking->track(recording().events));
+  };
+  const double right = residual(1);
+  EXPECT_GT(residual(0.7), 1.2 * right);
+  EXPECT_GT(residual(1.3), 1.2 * right);
+}
+
+TEST(IntensityTracker, TooFewEventsGiveNoPose) {
+  Tracking tracking;
+  EXPECT_TRUE(tracking->track({}).empty());
+  EXPECT_TRUE(tracking->track(std::span(recording().events).first(999)).empty());
+  EXPECT_EQ(tracking->track(std::span(recording().events).first(1000)).size(), 1U);
+}
+
+void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
+  EXPECT_FALSE(poses.empty());
+  for (const TrackedPose& pose : poses) {
+    EXPECT_EQ(pose.status, TrackStatus::kLost);
+    EXPECT_TRUE(pose.world_from_camera.translation().allFinite());
+    EXPECT_TRUE(pose.world_from_camera.rotation().coeffs().allFinite());
+    EXPECT_TRUE(std::isfinite(pose.inlier_ratio));
+  }
+}
+
+TEST(IntensityTracker, WithoutTheMapInViewItIsLost) {
+  Tracking tracking;
+  const Rigid3 turned(so3_exp({0, std::numbers::pi, 0}), {0, 0, 0});
+  tracking->reset(0, corner_motion(0) * turned);
+  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+}
+
+TEST(IntensityTracker, AMapOfNothingIsLostFromTheStart) {
+  ReferenceView nothing = recording().view;
+  nothing.depth.fill(0);
+  Tracking tracking(best(), kContrast, nothing);
+  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+}
+
+TEST(IntensityTracker, TheViewIsDrawnAnewOnlyWhereItHasMoved) {
+  TrackConfig often = best();
+  often.intensity.redraw_px = 1;
+  Tracking every_px(often);
+  Tracking usual;
+  const Errors finely = errors_of(from(0, every_px->track(recording().events)));
+  static_cast<void>(usual->track(recording().events));
+  EXPECT_LT(usual->templates_drawn(), every_px->templates_drawn() / 2);
+  EXPECT_LT(finely.mean, 0.09);
+}
+
+}  // namespace
+}  // namespace saccade
