@@ -136,19 +136,18 @@ void EventChunk::read(const ImageF& atlas) {
 void EventChunk::weigh(const Noise& noise) {
   const float level = noise.level * noise.level;
   const float place = noise.place_px * noise.place_px;
-  const float tail = 1 / (kTail * kTail * noise.scale * noise.scale);
+  constexpr float kScale = 1 / (kTail * kTail);
   for (std::size_t i = 0; i < padded(); ++i) {
     const float gx = slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i];
     const float gy = slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i];
     const float precision = 1 / (level + place * (gx * gx + gy * gy));
-    relative_[i] = residual_[i] * residual_[i] * precision * tail;
+    relative_[i] = residual_[i] * residual_[i] * precision * kScale;
     weight_[i] = visible_[i] * trust_[i] * level * precision / (1 + relative_[i]);
   }
 }
 
 void EventChunk::add_to(Sums& sums) {
-  constexpr float kClose = 1 / (kTail * kTail);
-  Lanes visible{}, inliers{}, close{}, trust{}, weight{}, squares{};
+  Lanes visible{}, inliers{}, trust{}, weight{}, squares{};
   for (std::size_t first = 0; first < padded(); first += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t i = first + lane;
@@ -156,14 +155,12 @@ void EventChunk::add_to(Sums& sums) {
       const float cauchy = seen / (1 + relative_[i]);
       visible[lane] += seen;
       inliers[lane] += relative_[i] < 1 ? seen : 0;
-      close[lane] += relative_[i] < kClose ? seen : 0;
       trust[lane] += trust_[i];
       weight[lane] += cauchy;
       squares[lane] += cauchy * residual_[i] * residual_[i];
     }
   sums.visible += total(visible);
   sums.inliers += total(inliers);
-  sums.close += total(close);
   sums.trust += total(trust);
   sums.weight += total(weight);
   sums.squares += total(squares);

@@ -49,13 +49,12 @@ class EventChunk {
   /// where the turn w t within the events' time is left out.
   void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
 
-  /// What residuals deviate by: sigma^2 = scale^2 (level^2 + (place_px |grad L|)^2).
+  /// What residuals deviate by: sigma^2 = level^2 + (place_px |grad L|)^2.
   struct Noise {
     float level;     ///< [log units]
     float place_px;  ///< of what a map of point samples shows between them
-    float scale;
   };
-  /// Weights trust (scale level / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy): at most 1, where
+  /// Weights trust (level / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy): at most 1, where
   /// the map is flat; 0 where nothing of it is seen.
   void weigh(const Noise& noise);
 
@@ -66,7 +65,6 @@ class EventChunk {
     double squares = 0;                ///< r^2 by this weight
     double visible = 0;                ///< events that see a known place, by trust
     double inliers = 0;                ///< of them those within 2.4 sigma
-    double close = 0;                  ///< and those within sigma
     double trust = 0;
   };
   void add_to(Sums& sums);

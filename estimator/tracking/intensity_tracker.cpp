@@ -18,7 +18,6 @@ constexpr std::size_t kFewEvents = 100;
 constexpr float kKnownLooks = 10;
 /// Beyond the image the view is drawn this much further than it may move before it is redrawn.
 constexpr int kSpare_px = 4;
-constexpr double kMostNoise = 1;  // scale, either way
 
 int margin_of(const IntensityOptions& options) {
   return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
@@ -58,7 +57,6 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options, const Predic
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, map_.world_from_map().inverse() * world_from_camera);
-  noise_scale_ = 1;
   has_view_ = false;
   views_drawn_ = 0;
   timing_ = {};
@@ -300,10 +298,8 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
   Estimate estimate;
   estimate.map_from_camera = predicted.map_from_camera;
   const EventChunk::Noise noise{static_cast<float>(options_.noise),
-                                static_cast<float>(options_.place_px),
-                                static_cast<float>(noise_scale_)};
-  const double deviation_of_one = noise_scale_ * options_.noise;
-  const double weight = options_.information / (deviation_of_one * deviation_of_one);
+                                static_cast<float>(options_.place_px)};
+  const double weight = options_.information / (options_.noise * options_.noise);
   const Matrix6 prior = predicted.precision / weight;
   Twist deviation = Twist::Zero();
   for (int i = 0; i <= options_.iterations; ++i) {
@@ -324,20 +320,10 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
     deviation += step;
   }
   if (estimate.sums.weight < least_weight(options_)) return estimate;
-  learn_noise(estimate.sums);
   const Matrix6 normal = estimate.sums.normal;
   estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
   estimate.is_valid = true;
   return estimate;
-}
-
-void IntensityTracker::learn_noise(const EventChunk::Sums& sums) {
-  // The scale at which as many residuals are within one deviation as of a Gaussian.
-  constexpr double kWithin = 0.6827;
-  constexpr double kPace = 0.2;
-  if (!(sums.visible > 0)) return;
-  noise_scale_ *= std::exp(kPace * (kWithin - sums.close / sums.visible));
-  noise_scale_ = std::clamp(noise_scale_, 1 / kMostNoise, kMostNoise);
 }
 
 void IntensityTracker::correct_levels() {

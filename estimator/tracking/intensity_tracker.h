@@ -81,7 +81,6 @@ class IntensityTracker {
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
                                 const EventChunk::Motion& motion, SeenPlace& seen) const;
   [[nodiscard]] Estimate align(const PosePrediction& predicted);
-  void learn_noise(const EventChunk::Sums& sums);
   void correct_levels();
   [[nodiscard]] EventChunk::Motion motion_at(const Rigid3& map_from_camera) const;
 
@@ -93,7 +92,6 @@ class IntensityTracker {
   PixelLevels levels_;
   MotionModel motion_;
   bool has_view_ = false;
-  double noise_scale_ = 1;
   TimeNs last_event_ns_ = 0;
   double usual_inliers_ = 0;  ///< running mean while it is tracked; 0: not known
   int misfits_ = 0;           ///< batches in a row that fit worse than usual

@@ -161,9 +161,7 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
   fields.value("events", options.events, "per pose").range(1, 1e6);
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
-  fields
-      .value("noise", options.noise,
-             "deviation of a level from the map [log units], before the scale that is measured")
+  fields.value("noise", options.noise, "deviation of a level from the map [log units]")
       .range(0.001, 10);
   fields
       .value("place_px", options.place_px,
