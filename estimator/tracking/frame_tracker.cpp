@@ -1,12 +1,12 @@
 #include "estimator/tracking/frame_tracker.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "core/check.h"
 #include "estimator/tracking/cholesky.h"
+#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {
@@ -16,10 +16,6 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kTail = 2.4;
 /// What less of the picture shows the map has been left behind.
 constexpr double kLeastSeen = 0.02;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -94,10 +90,7 @@ auto FrameTracker::align(const GreyFrame& frame, const PosePrediction& predicted
     // The last round of all is for the evidence.
     for (int i = 0; i < options_.iterations + (level == 0 ? 1 : 0); ++i) {
       draw(estimate.map_from_camera);
-      const double drawn_s = now_s();
-      average(frame.log_intensity, 1 << level);
-      estimate.sums = compare();
-      timing_.align_s += now_s() - drawn_s;
+      estimate.sums = compare(frame.log_intensity, 1 << level);
       if (i == options_.iterations) break;
       Cholesky<6> factors;
       if (!factors.factor(estimate.sums.normal + prior)) return estimate;
@@ -121,7 +114,7 @@ int FrameTracker::coarsest_level() const {
 }
 
 void FrameTracker::draw(const Rigid3& map_from_camera) {
-  const double start_s = now_s();
+  const StageClock clock(timing_.template_s);
   view_.draw(map_from_camera);
   for (int y = 0; y < shown_.height(); ++y)
     for (int x = 0; x < shown_.width(); ++x) {
@@ -130,7 +123,6 @@ void FrameTracker::draw(const Rigid3& map_from_camera) {
           seen.inverse_depth > 0 && is_inside(map_.atlas(), seen.place.x(), seen.place.y());
       shown_(x, y) = is_seen ? sample(map_.atlas(), seen.place.x(), seen.place.y()) : kUnknown;
     }
-  timing_.template_s += now_s() - start_s;
 }
 
 void FrameTracker::average(const ImageF& frame, int square_px) {
@@ -155,7 +147,9 @@ void FrameTracker::average(const ImageF& frame, int square_px) {
     }
 }
 
-auto FrameTracker::compare() const -> Sums {
+auto FrameTracker::compare(const ImageF& frame, int square_px) -> Sums {
+  const StageClock clock(timing_.align_s);
+  average(frame, square_px);
   Sums sums;
   const ImageF& picture = pictures_.map;
   const double area = static_cast<double>(picture.size());

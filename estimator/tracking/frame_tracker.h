@@ -64,7 +64,7 @@ class FrameTracker {
   [[nodiscard]] int coarsest_level() const;
   void draw(const Rigid3& map_from_camera);
   void average(const ImageF& frame, int square_px);
-  [[nodiscard]] Sums compare() const;
+  [[nodiscard]] Sums compare(const ImageF& frame, int square_px);
   void add_pixel(int x, int y, Sums& sums) const;
 
   FrameTrackOptions options_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 
@@ -91,9 +92,11 @@ IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const Referenc
     : camera_(camera) {
   SACCADE_CHECK(!views.empty());
   world_from_map_ = views.front().world_from_reference;
-  atlas_ = ImageF(camera.width, camera.height * static_cast<int>(views.size()));
+  const int step = camera.height + 1;
+  atlas_ = ImageF(camera.width, step * static_cast<int>(views.size()) - 1,
+                  std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const int first_row = camera.height * static_cast<int>(i);
+    const int first_row = step * static_cast<int>(i);
     const ImageF picture =
         smoothed_at_edges(views[i].log_intensity, options.blur_px, options.edge_step);
     std::copy(picture.pixels().begin(), picture.pixels().end(), &atlas_(0, first_row));

@@ -42,7 +42,8 @@ class IntensityMap {
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
   [[nodiscard]] const Rigid3& world_from_map() const { return world_from_map_; }
 
-  /// Log intensities, NaN where the lens shows nothing.
+  /// Log intensities, NaN where the lens shows nothing and in a row between two pictures, so that
+  /// none goes on into the next.
   [[nodiscard]] const ImageF& atlas() const { return atlas_; }
 
  private:

@@ -1,18 +1,19 @@
 #include "estimator/tracking/intensity_tracker.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/check.h"
 #include "estimator/tracking/cholesky.h"
 #include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {
 
-/// Fewer do not make a pose.
+/// Fewer do not make a pose before a silence.
 constexpr std::size_t kFewEvents = 100;
 /// Pixels are said to be known as well at the start as after this many corrections.
 constexpr float kKnownLooks = 10;
@@ -21,16 +22,6 @@ constexpr int kSpare_px = 4;
 
 int margin_of(const IntensityOptions& options) {
   return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
-}
-
-/// Weight of events that a pose must rest on; fewer than twice its unknowns lean on the prediction.
-double least_weight(const IntensityOptions& options) {
-  constexpr int kUnknowns = 6;
-  return options.events < 2 * kUnknowns ? 0 : kUnknowns;
-}
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -63,6 +54,7 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   last_event_ns_ = t_ns;
   usual_inliers_ = 0;
   misfits_ = 0;
+  judged_ = {};
   attempts_ = 0;
   is_lost_ = false;
   draw_view(motion_.pose());
@@ -70,6 +62,7 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
 }
 
 void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
+  const StageClock clock(timing_.template_s);
   if (has_view_ && view_fits(map_from_camera)) return;
   view_.draw(map_from_camera);
   has_view_ = true;
@@ -123,7 +116,7 @@ std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
       if (done == 0) break;  // too few events are left
     } else {
       done = before_silence(events.first(count));
-      if (done >= kFewEvents) poses.push_back(track_batch(events.first(done)));
+      if (done == count || done >= kFewEvents) poses.push_back(track_batch(events.first(done)));
       if (done < count) lose();
     }
     if (done > 0) last_event_ns_ = events[done - 1].t_ns;
@@ -134,16 +127,29 @@ std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
 }
 
 std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
+  // However fast the camera seems to move: a velocity from few events may be anything.
+  constexpr double kShortest_s = 0.005;
   const double speed_px = motion_.speed_px(view_.typical_depth_m());
   TimeNs before_ns = last_event_ns_;
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (seconds_from_ns(events[i].t_ns - before_ns) * speed_px > options_.silence_px) return i;
+    const double gap_s = seconds_from_ns(events[i].t_ns - before_ns);
+    if (gap_s > kShortest_s && gap_s * speed_px > options_.silence_px) return i;
     before_ns = events[i].t_ns;
   }
   return events.size();
 }
 
-bool IntensityTracker::fits_worse(double inlier_ratio) {
+bool IntensityTracker::fits_worse(const EventChunk::Sums& sums, std::size_t events) {
+  // Few events say little: those of several poses are judged together.
+  constexpr std::size_t kEnough = 1000;
+  constexpr double kUnknowns = 6;
+  judged_.visible += sums.visible;
+  judged_.inliers += sums.inliers;
+  judged_.events += events;
+  if (judged_.events < kEnough) return false;
+  const Evidence evidence = std::exchange(judged_, {});
+  if (evidence.visible < kUnknowns) return true;  // the map is not in view
+  const double inlier_ratio = evidence.inliers / evidence.visible;
   constexpr int kPatience = 5;
   constexpr double kForget = 0.01;
   // While the levels are still uncertain fewer residuals fit.
@@ -163,6 +169,7 @@ void IntensityTracker::lose() {
   if (attempts_ == 0) lost_at_ = motion_.pose();
   is_lost_ = true;
   misfits_ = 0;
+  judged_ = {};
 }
 
 Rigid3 IntensityTracker::guess(TimeNs t_ns) const {
@@ -216,12 +223,9 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   pose.first_ns = events.front().t_ns;
   pose.last_ns = events.back().t_ns;
   pose.t_ns = mean_time(events);
-  const double start_s = now_s();
   const PosePrediction predicted = motion_.predict(pose.t_ns, view_.typical_depth_m());
   draw_view(predicted.map_from_camera);
-  const double drawn_s = now_s();
   load(events, pose.t_ns, motion_at(predicted.map_from_camera));
-  const double loaded_s = now_s();
   const Estimate estimate = align(predicted);
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
@@ -229,7 +233,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   }
   pose.iterations = options_.iterations;
   pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
-  if (!estimate.is_valid || fits_worse(pose.inlier_ratio)) {
+  if (fits_worse(estimate.sums, events.size())) {
     lose();
     pose.status = TrackStatus::kLost;
   }
@@ -237,14 +241,12 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
       estimate.sums.weight > 0 ? std::sqrt(estimate.sums.squares / estimate.sums.weight) : 0;
   pose.world_from_camera = map_.world_from_map() * motion_.pose();
   pose.set_sigmas(motion_.covariance());
-  timing_.template_s += drawn_s - start_s;
-  timing_.event_frame_s += loaded_s - drawn_s;
-  timing_.align_s += now_s() - loaded_s;
   return pose;
 }
 
 void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
                             const EventChunk::Motion& motion) {
+  const StageClock clock(timing_.event_frame_s);
   chunk_count_ = 0;
   loaded_pixels_.clear();
   for (const Event& event : events) {
@@ -295,6 +297,7 @@ bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
 }
 
 auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
+  const StageClock clock(timing_.align_s);
   Estimate estimate;
   estimate.map_from_camera = predicted.map_from_camera;
   const EventChunk::Noise noise{static_cast<float>(options_.noise),
@@ -319,7 +322,6 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
     estimate.map_from_camera = estimate.map_from_camera * Rigid3::exp(step);
     deviation += step;
   }
-  if (estimate.sums.weight < least_weight(options_)) return estimate;
   const Matrix6 normal = estimate.sums.normal;
   estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
   estimate.is_valid = true;
@@ -327,6 +329,7 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
 }
 
 void IntensityTracker::correct_levels() {
+  const StageClock clock(timing_.align_s);
   std::size_t i = 0;
   for (std::size_t k = 0; k < chunk_count_; ++k)
     for (int j = 0; j < chunks_[k].size(); ++j, ++i) {

@@ -67,9 +67,14 @@ class IntensityTracker {
 
  private:
   struct Estimate;
+  /// Evidence since the last judgement.
+  struct Evidence {
+    double visible = 0, inliers = 0;  ///< see EventChunk::Sums
+    std::size_t events = 0;
+  };
   using Poses = std::vector<TrackedPose>;
   [[nodiscard]] std::size_t before_silence(std::span<const Event> events) const;
-  [[nodiscard]] bool fits_worse(double inlier_ratio);
+  [[nodiscard]] bool fits_worse(const EventChunk::Sums& sums, std::size_t events);
   std::size_t relocalise(std::span<const Event> events, Poses& poses);
   void lose();
   [[nodiscard]] Rigid3 guess(TimeNs t_ns) const;
@@ -94,10 +99,11 @@ class IntensityTracker {
   bool has_view_ = false;
   TimeNs last_event_ns_ = 0;
   double usual_inliers_ = 0;  ///< running mean while it is tracked; 0: not known
-  int misfits_ = 0;           ///< batches in a row that fit worse than usual
+  Evidence judged_;
+  int misfits_ = 0;  ///< judgements in a row that it fits worse than usual
   bool is_lost_ = false;
   int attempts_ = 0;  ///< to find the pose again, since it was tracked for long
-  int fits_ = 0;      ///< batches since it was found that fit
+  int fits_ = 0;      ///< judgements since it was found that it fits
   Rigid3 lost_at_;    ///< the last pose before
   Tracker& edges_;
   std::vector<EventChunk> chunks_;

@@ -240,16 +240,15 @@ void describe_motion(config::Fields& fields, PredictionOptions& options) {
                  {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity},
                  {"imu", PredictionOptions::Prediction::kImu}},
                 "first guess of the next pose");
-  if (options.prediction != PredictionOptions::Prediction::kNone)
-    fields
-        .value("agility_px", options.agility_px,
-               "change of the image velocity within a second [px/s] that is expected")
-        .range(1, 1e6);
-  if (options.prediction != PredictionOptions::Prediction::kNone)
-    fields
-        .value("agility_share", options.agility_share,
-               "that, added for each px/s of image velocity: what moves fast is about to turn back")
-        .range(0, 1e3);
+  if (options.prediction == PredictionOptions::Prediction::kNone) return;
+  fields
+      .value("agility_px", options.agility_px,
+             "change of the image velocity within a second [px/s] that is expected")
+      .range(1, 1e6);
+  fields
+      .value("agility_share", options.agility_share,
+             "that, added for each px/s of image velocity: what moves fast is about to turn back")
+      .range(0, 1e3);
 }
 
 void describe_gyroscope(config::Fields& fields, PredictionOptions& options) {

@@ -1,25 +1,12 @@
 #include "estimator/tracking/tracker.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {
-
-/// Adds its lifetime to a sum of seconds.
-class StageClock {
- public:
-  explicit StageClock(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
-  ~StageClock() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  StageClock(const StageClock&) = delete;
-  StageClock& operator=(const StageClock&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& seconds_;
-  Clock::time_point start_;
-};
 
 /// Harmonic mean of the depths [m], by a few points spread over the template; 1 for none.
 double typical_depth(std::span<const TemplatePoint> points) {

@@ -102,14 +102,15 @@ TEST(IntensityMap, PicturesOfSeveralViewsLieOneBelowTheOther) {
   const IntensityMap map(some_camera(), views, {});
   ASSERT_EQ(map.views().size(), 2U);
   EXPECT_EQ(map.atlas().width(), 24);
-  EXPECT_EQ(map.atlas().height(), 36);
+  EXPECT_EQ(map.atlas().height(), 37);
   EXPECT_EQ(map.views()[0].first_row, 0);
-  EXPECT_EQ(map.views()[1].first_row, 18);
+  EXPECT_EQ(map.views()[1].first_row, 19);
   for (int y = 0; y < 18; ++y)
     for (int x = 0; x < 24; ++x) {
       EXPECT_EQ(map.atlas()(x, y), views[0].log_intensity(x, y));
-      EXPECT_EQ(map.atlas()(x, 18 + y), views[1].log_intensity(x, y));
+      EXPECT_EQ(map.atlas()(x, 19 + y), views[1].log_intensity(x, y));
     }
+  for (int x = 0; x < 24; ++x) EXPECT_TRUE(std::isnan(map.atlas()(x, 18)));
   // The map's frame is that of the first view, and so are all points.
   EXPECT_LT((map.world_from_map().inverse() * world_from_first).log().norm(), 1e-9);
   EXPECT_LT((map.views()[1].view_from_map * first_from_second).log().norm(), 1e-9);

@@ -286,6 +286,18 @@ TEST(IntensityTracker, TooFewEventsGiveNoPose) {
   EXPECT_EQ(tracking->track(std::span(recording().events).first(1000)).size(), 1U);
 }
 
+TEST(IntensityTracker, AFewEventsAPoseFollowAsWell) {
+  const auto events = std::span(recording().events).first(20000);
+  for (const int count : {1, 20}) {
+    TrackConfig few = best();
+    few.intensity.events = count;
+    Tracking tracking(few);
+    const auto poses = from(0, tracking->track(events));
+    EXPECT_EQ(poses.size(), events.size() / static_cast<std::size_t>(count));
+    EXPECT_LT(errors_of(poses).mean, 0.15);
+  }
+}
+
 void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
   EXPECT_FALSE(poses.empty());
   for (const TrackedPose& pose : poses) {

@@ -218,7 +218,7 @@ IntensityMap turned_views(const std::vector<double>& angles) {
 /// Which view the place belongs to; -1: none.
 int view_at(const MapView& view, int x, int y) {
   const SeenPlace& seen = view(x, y);
-  return seen.inverse_depth > 0 ? static_cast<int>(seen.place.y() + 0.5F) / kHeight : -1;
+  return seen.inverse_depth > 0 ? static_cast<int>(seen.place.y() + 0.5F) / (kHeight + 1) : -1;
 }
 
 TEST(MapView, TheViewNearestInAngleIsShownWhereItCan) {
