@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
@@ -43,11 +46,11 @@ class TemplateDrawer {
   /// Projects the map into the camera, keeps the nearer of two surfaces that meet in a pixel, blurs
   /// mask and mask * depth, and divides (4.20). The points come in row-major order; those on the
   /// border, whose gradient is unknown, are left out. Valid until the next draw.
-  [[nodiscard]] const std::vector<TemplatePoint>& draw(const Rigid3& camera_from_map);
+  [[nodiscard]] std::span<const TemplatePoint> draw(const Rigid3& camera_from_map);
 
   /// For a drawer without a map, of half the size: the template is the last draw of `finer` in
   /// means of 2 x 2 pixels, blurred anew. Beyond the border it knows half of its own margin.
-  [[nodiscard]] const std::vector<TemplatePoint>& draw_halved(const TemplateDrawer& finer);
+  [[nodiscard]] std::span<const TemplatePoint> draw_halved(const TemplateDrawer& finer);
 
   /// n_map: pixels of the last draw's template above min_value, whatever their gradient.
   [[nodiscard]] std::size_t lit_pixels() const { return lit_pixels_; }
@@ -61,13 +64,24 @@ class TemplateDrawer {
   /// The blurred template T of the last draw, for pictures.
   [[nodiscard]] const PaddedImage& image() const { return blurred_mask_; }
 
+  /// What the points add up to in one pixel: mask and mask * depth side by side, as both are
+  /// written together.
+  struct Splat {
+    float mask = 0;
+    float depth = 0;
+    void add(float weight, float z) {
+      mask += weight;
+      depth += weight * z;
+    }
+  };
+
  private:
   void project(const Rigid3& camera_from_map);
-  [[nodiscard]] std::size_t nearest_pixel(std::size_t i) const;
   void find_nearest();
   void splat_nearest();
   void splat_bilinear();
   void blur_and_collect();
+  [[nodiscard]] std::size_t find_points(int y);
   void collect();
 
   PinholeCamera camera_;
@@ -75,14 +89,22 @@ class TemplateDrawer {
   const MapPoints* map_;  ///< nullptr: none
   GaussianBlur blur_;
   /// Projected map points in pixels of the padded images (whose margins are drawn too, or the blur
-  /// would see every edge end at the border), and their depth [m]; u = -1 when not visible.
+  /// would see every edge end at the border), their depth [m], and the nearest pixel; -1 when not
+  /// visible.
   std::vector<float> u_, v_, z_;
-  PaddedImage nearest_;       ///< smallest depth per pixel [m], 0 = none
-  PaddedImage mask_, depth_;  ///< mask, mask * depth
+  std::vector<std::int32_t> pixel_;
+  std::vector<Splat> splats_;  ///< of every pixel of the padded images
+  PaddedImage nearest_;        ///< smallest depth per pixel [m], 0 = none
+  PaddedImage mask_, depth_;   ///< mask, mask * depth
   PaddedImage blurred_mask_, blurred_depth_;
   std::vector<float> ray_x_;  ///< x of K^-1 u for every column
-  std::vector<int> columns_;  ///< template points of one row
-  std::vector<TemplatePoint> points_;
+  /// One row of collect(): what passes (1 or 0), the differences across a pixel, and the columns of
+  /// the template points.
+  std::vector<std::uint8_t> is_point_;
+  std::vector<float> gx_, gy_;
+  std::vector<std::uint16_t> columns_;
+  std::vector<TemplatePoint> points_;  ///< room for every pixel; the first point_count_ are in use
+  std::size_t point_count_ = 0;
   std::size_t lit_pixels_ = 0;
 };
 

@@ -49,8 +49,9 @@ class EventFrame {
   [[nodiscard]] const std::uint8_t* data() const { return pixels_.data() + origin_; }
   [[nodiscard]] std::uint8_t operator()(int x, int y) const { return data()[y * stride_ + x]; }
 
-  /// Adds events; their coordinates lie on the sensor (contract of every event reader).
-  void draw(std::span<const Event> events);
+  /// Adds events; their coordinates lie on the sensor (contract of every event reader). Returns
+  /// their mean time [ns], as they pass through the cache only once; `events` is not empty.
+  TimeNs draw(std::span<const Event> events);
   /// In place of draw(), on an empty frame: exp((t - t_newest) / tau) of each pixel's last event
   /// (nearest pixel). `events` is in order of time and not empty, `tau_s` > 0. The mean time of the
   /// events under these weights, which is what the frame shows [ns].
@@ -71,7 +72,7 @@ class EventFrame {
   void remove(std::span<const Event> events);
 
  private:
-  void draw_nearest(std::span<const Event> events);
+  TimeNs draw_nearest(std::span<const Event> events);
   void draw_bilinear(std::span<const Event> events);
   [[nodiscard]] std::int32_t nearest_target(const Event& event) const;
   template <class Write>

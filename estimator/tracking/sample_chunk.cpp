@@ -8,8 +8,6 @@
 namespace saccade {
 namespace {
 
-constexpr int kLanes = 16;
-
 /// A mixing of 32 bits in which every input bit changes every output bit about half of the time
 /// (multiply-xorshift): enough for choosing samples, and vector code.
 std::uint32_t mix(std::uint32_t x) {
@@ -19,6 +17,30 @@ std::uint32_t mix(std::uint32_t x) {
   x *= 0x846ca68bU;
   x ^= x >> 16;
   return x;
+}
+
+using Quad = float __attribute__((vector_size(16)));
+using QuadPlaces = std::int32_t __attribute__((vector_size(16)));
+
+Quad lower_halves(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{0, 1, 4, 5}); }
+Quad upper_halves(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{2, 3, 6, 7}); }
+Quad even_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{0, 2, 4, 6}); }
+Quad odd_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{1, 3, 5, 7}); }
+void store(Quad quad, float* target) { std::memcpy(target, &quad, sizeof quad); }
+
+SampleChunk::Lanes lanes(const SampleChunk::Floats& floats, std::size_t i) {
+  SampleChunk::Lanes lanes;
+  std::memcpy(&lanes, &floats[i], sizeof lanes);
+  return lanes;
+}
+
+/// The sum of the lanes, in a fixed order: vector code without reassociation by the compiler.
+double total(SampleChunk::Lanes lanes) {
+  std::array<float, SampleChunk::kLanes> sums;
+  std::memcpy(sums.data(), &lanes, sizeof sums);
+  for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
+    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
+  return static_cast<double>(sums[0]);
 }
 
 }  // namespace
@@ -51,14 +73,30 @@ void SampleChunk::load_all(std::span<const TemplatePoint> points) {
 }
 
 void SampleChunk::gather(std::span<const TemplatePoint> points) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
-    const TemplatePoint& p = points[static_cast<std::size_t>(pixel_[i])];
-    ray_x_[i] = p.ray.x();
-    ray_y_[i] = p.ray.y();
-    inverse_depth_[i] = p.inverse_depth;
-    value_[i] = p.value;
-    slope_x_[i] = p.slope.x();
-    slope_y_[i] = p.slope.y();
+  // Four points at a time, transposed in registers: a gather instruction per field costs thrice
+  // that.
+  static_assert(sizeof(TemplatePoint) == 2 * sizeof(Quad));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += 4) {
+    Quad head[4];  // ray x, ray y, inverse depth, value
+    Quad tail[4];  // slope x, slope y, nothing
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto* point =
+          reinterpret_cast<const char*>(&points[static_cast<std::size_t>(pixel_[i + k])]);
+      std::memcpy(&head[k], point, sizeof(Quad));
+      std::memcpy(&tail[k], point + sizeof(Quad), sizeof(Quad));
+    }
+    const Quad x01 = lower_halves(head[0], head[1]);
+    const Quad x23 = lower_halves(head[2], head[3]);
+    const Quad z01 = upper_halves(head[0], head[1]);
+    const Quad z23 = upper_halves(head[2], head[3]);
+    const Quad s01 = lower_halves(tail[0], tail[1]);
+    const Quad s23 = lower_halves(tail[2], tail[3]);
+    store(even_lanes(x01, x23), &ray_x_[i]);
+    store(odd_lanes(x01, x23), &ray_y_[i]);
+    store(even_lanes(z01, z23), &inverse_depth_[i]);
+    store(odd_lanes(z01, z23), &value_[i]);
+    store(even_lanes(s01, s23), &slope_x_[i]);
+    store(odd_lanes(s01, s23), &slope_y_[i]);
   }
 }
 
@@ -173,36 +211,45 @@ void SampleChunk::weigh(RobustWeight kind, float sigma) {
   if (kind == RobustWeight::kTukey) apply(RobustWeight::kTukey);
 }
 
+[[gnu::always_inline]] inline std::array<SampleChunk::Lanes, SampleChunk::kColumns>
+SampleChunk::columns_at(std::size_t i) const {
+  const Lanes visible = lanes(visible_, i);
+  const Lanes a = lanes(slope_x_, i) * visible;
+  const Lanes b = lanes(slope_y_, i) * visible;
+  const Lanes x = lanes(ray_x_, i);
+  const Lanes y = lanes(ray_y_, i);
+  const Lanes inverse_depth = lanes(inverse_depth_, i);
+  const Lanes radial = a * x + b * y;
+  return {a * inverse_depth, b * inverse_depth, -radial * inverse_depth,    -y * radial - b,
+          x * radial + a,    b * x - a * y,     lanes(value_, i) * visible, visible};
+}
+
 void SampleChunk::differentiate() {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
-    const float a = slope_x_[i] * visible_[i];
-    const float b = slope_y_[i] * visible_[i];
-    const float x = ray_x_[i];
-    const float y = ray_y_[i];
-    const float radial = a * x + b * y;
-    columns_[0][i] = a * inverse_depth_[i];
-    columns_[1][i] = b * inverse_depth_[i];
-    columns_[2][i] = -radial * inverse_depth_[i];
-    columns_[3][i] = -y * radial - b;
-    columns_[4][i] = x * radial + a;
-    columns_[5][i] = b * x - a * y;
-    columns_[6][i] = value_[i] * visible_[i];
-    columns_[7][i] = visible_[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes) {
+    const auto columns = columns_at(i);
+    for (std::size_t k = 0; k < kColumns; ++k)
+      std::memcpy(&columns_[k][i], &columns[k], sizeof(Lanes));
   }
 }
 
-double SampleChunk::dot(const Floats& a, const Floats& b) const {
-  // Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
-  float sums[kLanes] = {};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-  for (std::size_t width = kLanes / 2; width > 0; width /= 2)
-    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return static_cast<double>(sums[0]);
+std::array<double, SampleChunk::kColumns> SampleChunk::columns_dot_residual() const {
+  // All sums in one pass, without a detour of the columns through memory.
+  std::array<Lanes, kColumns> sums{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes) {
+    const auto columns = columns_at(i);
+    const Lanes residual = lanes(residual_, i);
+    for (std::size_t k = 0; k < kColumns; ++k) sums[k] += columns[k] * residual;
+  }
+  std::array<double, kColumns> totals{};
+  for (std::size_t k = 0; k < kColumns; ++k) totals[k] = total(sums[k]);
+  return totals;
 }
 
-double SampleChunk::column_dot_residual(int column) const {
-  return dot(columns_[static_cast<std::size_t>(column)], residual_);
+double SampleChunk::dot(const Floats& a, const Floats& b) const {
+  Lanes sums{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes)
+    sums += lanes(a, i) * lanes(b, i);
+  return total(sums);
 }
 
 double SampleChunk::column_dot_column(int a, int b) const {

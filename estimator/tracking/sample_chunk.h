@@ -18,6 +18,10 @@ class SampleChunk {
  public:
   static constexpr int kCapacity = 256;
   static constexpr int kColumns = 8;  ///< J (6), T, 1
+  static constexpr int kLanes = 16;
+  using Floats = std::array<float, kCapacity>;
+  /// Samples that are worked on together; the compiler splits it where registers are shorter.
+  using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
   /// Loads the samples first .. first + count - 1 of `total`. Sample k is uniform in the k-th of
   /// `total` equal runs of the points, so that a draw covers the image evenly, and with as many
@@ -44,12 +48,12 @@ class SampleChunk {
   /// visible() becomes the sum of the weights. A sigma of 0 leaves them alike.
   void weigh(RobustWeight kind, float sigma);
 
-  /// The columns J, T, 1 of the normal equations, with
+  /// For column_dot_column(): the columns J, T, 1 of the normal equations, with
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
   /// which is grad T times the interaction matrix (4.17, for the point's motion), (a, b) = slope.
   void differentiate();
 
-  [[nodiscard]] double column_dot_residual(int column) const;
+  [[nodiscard]] std::array<double, kColumns> columns_dot_residual() const;
   [[nodiscard]] double column_dot_column(int a, int b) const;
   [[nodiscard]] double squared_residual() const;
   [[nodiscard]] double visible() const;
@@ -57,10 +61,10 @@ class SampleChunk {
   [[nodiscard]] double agreeing(float mean_value, float mean_frame) const;
 
  private:
-  using Floats = std::array<float, kCapacity>;
   void gather(std::span<const TemplatePoint> points);
   void read_bilinear(const EventFrame& frame);
   void read_smooth(const EventFrame& frame);
+  [[nodiscard]] std::array<Lanes, kColumns> columns_at(std::size_t i) const;
   [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
 
   int count_ = 0;

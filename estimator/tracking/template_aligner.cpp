@@ -138,9 +138,12 @@ Means TemplateAligner::draw_means(const EventFrame& frame, const State& state, i
     means.visible += chunk.visible();
     chunk.weigh(options_.weights, static_cast<float>(state.sigma));
     weights += chunk.visible();
-    chunk.differentiate();
-    for (int i = 0; i < kUnknowns; ++i) means.rhs(i) += chunk.column_dot_residual(i);
-    if (options_.hessian == AlignOptions::Hessian::kSamples) add_normal(chunk, means.normal);
+    const auto sums = chunk.columns_dot_residual();
+    means.rhs += Eigen::Map<const Vector>(sums.data());
+    if (options_.hessian == AlignOptions::Hessian::kSamples) {
+      chunk.differentiate();
+      add_normal(chunk, means.normal);
+    }
   });
   const double scale = means.visible > 0 ? 1 / means.visible : 0;
   const double weight_scale = weights > 0 ? 1 / weights : 0;

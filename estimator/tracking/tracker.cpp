@@ -100,20 +100,21 @@ void Tracker::draw_frame(TrackedPose& pose) {
   const std::span<const Event> events = window_.events();
   pose.first_ns = events.front().t_ns;
   pose.last_ns = events.back().t_ns;
-  pose.t_ns = window_.mean_time();
   if (options_.event_frame.kind == EventFrameOptions::Kind::kTimeSurface) {
     frame_.clear();
     pose.t_ns = frame_.draw_surface(events, time_constant(options_.event_frame, events));
   } else if (options_.event_frame.motion_compensation) {
     frame_.clear();
+    pose.t_ns = window_.mean_time();
     frame_.draw_moved(events, pose.t_ns,
                       MotionField(camera_, motion_.velocity(), drawer_, typical_depth_m_));
   } else if (options_.event_frame.window == EventFrameOptions::Window::kSliding) {
+    pose.t_ns = window_.mean_time();
     frame_.remove(window_.left());
     frame_.add(window_.entered());
   } else {
     frame_.clear();
-    frame_.draw(events);
+    pose.t_ns = frame_.draw(events);
   }
 }
 

@@ -24,7 +24,7 @@ Rigid3 slide(double px) {
 struct World {
   MapPoints map = rectangle_map();
   TemplateDrawer drawer{small_camera(), {}, map};
-  std::vector<TemplatePoint> points = drawer.draw({});
+  std::span<const TemplatePoint> points = drawer.draw({});
   EventFrame frame = random_frame(map, {}, 0.8, 0.05, 1);
 
   [[nodiscard]] std::optional<Rigid3> approach(int levels, const Rigid3& prediction,

@@ -30,7 +30,7 @@ Eigen::Vector2i pixel_of(const TemplatePoint& p) {
           static_cast<int>(std::lround(p.ray.y() * c.fy + c.cy))};
 }
 
-std::optional<TemplatePoint> find(const std::vector<TemplatePoint>& points, int x, int y) {
+std::optional<TemplatePoint> find(std::span<const TemplatePoint> points, int x, int y) {
   for (const TemplatePoint& p : points)
     if (pixel_of(p) == Eigen::Vector2i(x, y)) return p;
   return std::nullopt;
@@ -108,7 +108,7 @@ TEST(EdgeTemplate, DivisionRestoresTheDepthOfAPlane) {
           add_point(map, ray * (2 / (1 - slope * ray.x())));  // z = 2 + slope * x
         }
     TemplateDrawer drawer(small_camera(), TemplateOptions{}, map);
-    const auto& points = drawer.draw({});
+    const auto points = drawer.draw({});
     ASSERT_GT(points.size(), 1000U);
     for (const TemplatePoint& p : points) {
       const double z = 2 / (1 - slope * static_cast<double>(p.ray.x()));
@@ -123,7 +123,7 @@ TEST(EdgeTemplate, SlopeIsTheCentralDifferenceOfTheImage) {
   const MapPoints map = rectangle_map();
   const PinholeCamera camera = small_camera();
   TemplateDrawer drawer(camera, TemplateOptions{}, map);
-  const auto& points = drawer.draw({});
+  const auto points = drawer.draw({});
   const PaddedImage& image = drawer.image();
   ASSERT_GT(points.size(), 1000U);
   double steepest = 0;
@@ -202,9 +202,9 @@ TEST(EdgeTemplate, ADrawDoesNotRememberTheLastOne) {
   const MapPoints map = rectangle_map();
   TemplateDrawer used(small_camera(), TemplateOptions{}, map);
   static_cast<void>(used.draw(Rigid3(so3_exp({0, 0, 1}), {0.3, 0, -0.5})));
-  const std::vector<TemplatePoint> again = used.draw({});
+  const std::span<const TemplatePoint> again = used.draw({});
   TemplateDrawer fresh(small_camera(), TemplateOptions{}, map);
-  const std::vector<TemplatePoint> once = fresh.draw({});
+  const std::span<const TemplatePoint> once = fresh.draw({});
   ASSERT_EQ(again.size(), once.size());
   for (std::size_t i = 0; i < once.size(); ++i) {
     EXPECT_EQ(again[i].value, once[i].value);

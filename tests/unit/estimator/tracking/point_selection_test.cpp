@@ -16,7 +16,8 @@ using Kind = SelectionOptions::Kind;
 std::vector<TemplatePoint> rectangles() {
   static const MapPoints map = testing::rectangle_map();
   TemplateDrawer drawer(small_camera(), {}, map);
-  return drawer.draw({});
+  const std::span<const TemplatePoint> drawn = drawer.draw({});
+  return {drawn.begin(), drawn.end()};
 }
 
 float gradient(const TemplatePoint& p) {

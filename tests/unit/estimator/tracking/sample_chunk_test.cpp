@@ -143,7 +143,7 @@ TEST(SampleChunk, ReadsTheFrameWhereTheWarpSays) {
     const double residual = expected[i] - 0.5 - 0.125;  // I - gain T - offset
     EXPECT_NEAR(chunk.squared_residual(), residual * residual, 1e-4) << i;
     chunk.differentiate();
-    EXPECT_NEAR(chunk.column_dot_residual(7), residual, 1e-4) << i;
+    EXPECT_NEAR(chunk.columns_dot_residual()[7], residual, 1e-4) << i;
   }
 }
 
@@ -183,7 +183,7 @@ TEST(SampleChunk, WeighingScalesEverySumByTheWeights) {
     EXPECT_LT(outlier, 0.5);
     EXPECT_NEAR(chunk.visible(), 2 + outlier, 5e-3);
     EXPECT_NEAR(chunk.column_dot_column(7, 7), 2 + outlier, 5e-3);
-    EXPECT_NEAR(chunk.column_dot_residual(7), outlier, 5e-3);
+    EXPECT_NEAR(chunk.columns_dot_residual()[7], outlier, 5e-3);
   }
 }
 
@@ -197,7 +197,7 @@ TEST(SampleChunk, SmoothReadsTheMeanOfThreeByThreePixels) {
     chunk.warp(small_camera(), frame, Rigid3{});
     chunk.compare(frame, true, 0, 0);
     chunk.differentiate();
-    return chunk.column_dot_residual(7);
+    return chunk.columns_dot_residual()[7];
   };
   EXPECT_NEAR(read(50, 40), 2.0 / 9, 1e-4);
   EXPECT_NEAR(read(49, 39), 1.0 / 9, 1e-4);
@@ -221,8 +221,22 @@ TEST(SampleChunk, SmoothReadsStayInsideTheMemoryOfTheFrame) {
       chunk.warp(small_camera(), frame, Rigid3{});
       chunk.compare(frame, true, 0, 0);
       chunk.differentiate();
-      EXPECT_NEAR(chunk.column_dot_residual(7), 1.0 / 9, 2e-3) << x << ", " << y;
+      EXPECT_NEAR(chunk.columns_dot_residual()[7], 1.0 / 9, 2e-3) << x << ", " << y;
     }
+}
+
+TEST(SampleChunk, BothWaysToTheColumnsAgree) {
+  const auto points = row_of_points(60, 40, 50);
+  const EventFrame empty(small_camera(), EventFrameOptions::Drawing::kNearest);
+  SampleChunk chunk;
+  chunk.load(points, 0, 40, 40, 0);
+  chunk.warp(small_camera(), empty, {});
+  chunk.compare(empty, false, 0, -1);  // a residual of one everywhere
+  chunk.differentiate();
+  for (std::size_t c = 0; c < SampleChunk::kColumns; ++c)
+    EXPECT_NEAR(chunk.columns_dot_residual()[c],
+                chunk.column_dot_column(static_cast<int>(c), SampleChunk::kColumns - 1), 1e-4)
+        << c;
 }
 
 TEST(SampleChunk, SamplesOutsideTheFrameCountForNothing) {
@@ -241,7 +255,7 @@ TEST(SampleChunk, SamplesOutsideTheFrameCountForNothing) {
     EXPECT_EQ(chunk.squared_residual(), 0);
     EXPECT_EQ(chunk.agreeing(0.5F, 0.5F), 0);
     for (int c = 0; c < SampleChunk::kColumns; ++c) {
-      EXPECT_EQ(chunk.column_dot_residual(c), 0);
+      EXPECT_EQ(chunk.columns_dot_residual()[static_cast<std::size_t>(c)], 0);
       EXPECT_EQ(chunk.column_dot_column(c, c), 0);
     }
   }

@@ -43,7 +43,8 @@ class Alignment {
         truth_(truth),
         frame_(random_frame(map_, truth, kGain, kOffset, 1)) {
     TemplateDrawer drawer(small_camera(), TemplateOptions{}, map_);
-    points_ = drawer.draw({});
+    const std::span<const TemplatePoint> drawn = drawer.draw({});
+    points_.assign(drawn.begin(), drawn.end());
     aligner_.set_template(points_);
   }
 
