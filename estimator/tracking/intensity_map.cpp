@@ -9,6 +9,42 @@
 namespace saccade {
 namespace {
 
+/// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
+/// the next ones go on in the same way.
+constexpr float kStep = 0.03F;
+
+/// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
+bool is_joined(float before, float b, float c, float after) {
+  if (!(b > 0 && c > 0)) return false;
+  const float step = std::abs(c - b);
+  if (step <= kStep * std::max(b, c)) return true;
+  const auto goes_on = [&](float difference) {
+    return std::abs(difference - (c - b)) < 0.3F * step;
+  };
+  return before > 0 && after > 0 && goes_on(b - before) && goes_on(after - c);
+}
+
+/// Of every pixel, whether the square with its neighbours to the right and below is one surface.
+std::vector<std::uint8_t> joined_squares(const std::vector<float>& inverse_depth, int width,
+                                         int height) {
+  const auto depth = [&](int x, int y) {
+    const bool is_inside = x >= 0 && y >= 0 && x < width && y < height;
+    return is_inside ? inverse_depth[static_cast<std::size_t>(y * width + x)] : 0;
+  };
+  const auto across = [&](int x, int y) {
+    return is_joined(depth(x - 1, y), depth(x, y), depth(x + 1, y), depth(x + 2, y));
+  };
+  const auto down = [&](int x, int y) {
+    return is_joined(depth(x, y - 1), depth(x, y), depth(x, y + 1), depth(x, y + 2));
+  };
+  std::vector<std::uint8_t> joined(inverse_depth.size());
+  for (int y = 0; y + 1 < height; ++y)
+    for (int x = 0; x + 1 < width; ++x)
+      joined[static_cast<std::size_t>(y * width + x)] =
+          across(x, y) && across(x, y + 1) && down(x, y) && down(x + 1, y) ? 1 : 0;
+  return joined;
+}
+
 IntensityMap::View lift(const PinholeCamera& camera, const ReferenceView& reference,
                         const Rigid3& map_from_view, int first_row) {
   IntensityMap::View view;
@@ -23,6 +59,7 @@ IntensityMap::View lift(const PinholeCamera& camera, const ReferenceView& refere
       view.points.emplace_back(point.cast<float>());
       view.inverse_depth.push_back(is_known ? 1 / depth : 0);
     }
+  view.is_joined = joined_squares(view.inverse_depth, camera.width, camera.height);
   return view;
 }
 

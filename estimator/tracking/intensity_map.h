@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,9 @@ class IntensityMap {
     int first_row = 0;                    ///< in the atlas
     std::vector<Eigen::Vector3f> points;  ///< in the map's frame, row by row
     std::vector<float> inverse_depth;     ///< [1/m]; 0 where there is none
+    /// 1 where a pixel and its neighbours to the right, below, and both show one surface. Very
+    /// different depths belong to different surfaces.
+    std::vector<std::uint8_t> is_joined;
   };
   [[nodiscard]] const std::vector<View>& views() const { return views_; }
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }

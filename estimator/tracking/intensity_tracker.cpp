@@ -18,10 +18,23 @@ constexpr std::size_t kFewEvents = 100;
 /// Pixels are said to be known as well at the start as after this many corrections.
 constexpr float kKnownLooks = 10;
 /// Beyond the image the view is drawn this much further than it may move before it is redrawn.
-constexpr int kSpare_px = 4;
+constexpr int kSpareNodes = 4;
 
-int margin_of(const IntensityOptions& options) {
-  return static_cast<int>(std::ceil(options.redraw_px)) + kSpare_px;
+/// Events go to random places: those of a later one are fetched that many events before.
+constexpr std::size_t kAhead = 16;
+
+/// A view of some 320 columns is fine enough: what lies between its nodes is extrapolated.
+int step_of(const PinholeCamera& camera) {
+  constexpr double kColumns = 320;
+  return std::max(1, static_cast<int>(std::lround(camera.width / kColumns)));
+}
+
+double redraw_px(const IntensityOptions& options, const PinholeCamera& camera) {
+  return camera.fx * options.redraw_deg * std::numbers::pi / 180;
+}
+
+int margin_of(const IntensityOptions& options, const PinholeCamera& camera) {
+  return static_cast<int>(std::ceil(redraw_px(options, camera) / step_of(camera))) + kSpareNodes;
 }
 
 }  // namespace
@@ -41,7 +54,7 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options, const Predic
       camera_(camera.undistorted()),
       undistortion_(camera),
       map_(map),
-      view_(map, margin_of(options)),
+      view_(map, margin_of(options, camera), step_of(camera)),
       levels_(camera.width, camera.height, contrast.on, contrast.off, options.correction),
       motion_(motion, camera.fx),
       edges_(edges) {}
@@ -71,18 +84,20 @@ void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
 
 bool IntensityTracker::view_fits(const Rigid3& map_from_camera) const {
   // How far a few points spread over the view have moved since it was drawn.
-  constexpr int kStep = 31;
+  constexpr int kEvery = 31;
+  const int step = view_.step_px();
   const Rigid3 camera_from_map = map_from_camera.inverse();
   double furthest = 0;
-  for (int y = kStep / 2; y < camera_.height; y += kStep)
-    for (int x = kStep / 2; x < camera_.width; x += kStep) {
+  for (int y = kEvery / 2; y < camera_.height / step; y += kEvery)
+    for (int x = kEvery / 2; x < camera_.width / step; x += kEvery) {
       const SeenPlace& seen = view_(x, y);
       if (!(seen.inverse_depth > 0)) continue;
       const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
       if (point.z() <= 0) return false;
-      furthest = std::max(furthest, (camera_.project(point) - Eigen::Vector2d(x, y)).norm());
+      furthest =
+          std::max(furthest, (camera_.project(point) - Eigen::Vector2d(x * step, y * step)).norm());
     }
-  return furthest < options_.redraw_px;
+  return furthest < redraw_px(options_, camera_);
 }
 
 void IntensityTracker::start_levels(float looks) {
@@ -90,13 +105,11 @@ void IntensityTracker::start_levels(float looks) {
   for (int y = 0; y < camera_.height; ++y)
     for (int x = 0; x < camera_.width; ++x) {
       const Eigen::Vector2f pixel = undistortion_(x, y);
-      const int nearest_x = static_cast<int>(std::lround(pixel.x()));
-      const int nearest_y = static_cast<int>(std::lround(pixel.y()));
-      if (!view_.contains(nearest_x, nearest_y)) continue;
-      const SeenPlace& seen = view_(nearest_x, nearest_y);
+      const Eigen::Vector2i node = view_.node_at(pixel);
+      if (!view_.contains(node.x(), node.y())) continue;
+      const SeenPlace& seen = view_(node.x(), node.y());
       if (!(seen.inverse_depth > 0)) continue;
-      const Eigen::Vector2f offset(pixel.x() - static_cast<float>(nearest_x),
-                                   pixel.y() - static_cast<float>(nearest_y));
+      const Eigen::Vector2f offset = pixel - (view_.step_px() * node).cast<float>();
       const Eigen::Vector2f place = seen.place + seen.scale * offset;
       if (!is_inside(map_.atlas(), place.x(), place.y())) continue;
       const float level = sample(map_.atlas(), place.x(), place.y());
@@ -249,7 +262,9 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   const StageClock clock(timing_.event_frame_s);
   chunk_count_ = 0;
   loaded_pixels_.clear();
-  for (const Event& event : events) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
+    prefetch(events[std::min(i + kAhead, events.size() - 1)]);
     const std::size_t pixel = levels_.index(event);
     EventMeasurement measurement;
     measurement.level = levels_.step(pixel, event.polarity);
@@ -267,6 +282,12 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   }
 }
 
+void IntensityTracker::prefetch(const Event& event) const {
+  levels_.prefetch(levels_.index(event));
+  const Eigen::Vector2i node = view_.node_at(undistortion_(event.x, event.y));
+  if (view_.contains(node.x(), node.y())) __builtin_prefetch(&view_(node.x(), node.y()));
+}
+
 bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
                                   const EventChunk::Motion& motion, SeenPlace& seen) const {
   const auto project = [&](const Eigen::Vector3f& point) -> Eigen::Vector2f {
@@ -279,10 +300,9 @@ bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
         static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy)};
   };
   const auto look = [&](const Eigen::Vector2f& at) -> const SeenPlace* {
-    const int x = static_cast<int>(std::floor(at.x() + 0.5F));
-    const int y = static_cast<int>(std::floor(at.y() + 0.5F));
-    if (!view_.contains(x, y)) return nullptr;
-    const SeenPlace& place = view_(x, y);
+    const Eigen::Vector2i node = view_.node_at(at);
+    if (!view_.contains(node.x(), node.y())) return nullptr;
+    const SeenPlace& place = view_(node.x(), node.y());
     return place.inverse_depth > 0 ? &place : nullptr;
   };
   // What is seen there now was elsewhere in the view that was drawn: one step of a fixed point.

@@ -25,7 +25,7 @@ struct IntensityOptions {
   double noise = 0.05;        ///< deviation of a level from the map [log units]
   double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
   double correction = 0.02;   ///< least share by which a level is drawn to the map at each event
-  double redraw_px = 4;       ///< the map is drawn anew when the view has moved this far
+  double redraw_deg = 1.15;   ///< the map is drawn anew when the view has moved this far
   double inlier_drop = 0.75;  ///< lost below this share of the inlier ratio that is usual
   double silence_px = 2;      ///< lost where the camera should have moved so far without an event
   double information = 0.1;   ///< of that of independent residuals: neighbouring ones err alike
@@ -83,6 +83,7 @@ class IntensityTracker {
   void start_levels(float looks);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
   void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
+  void prefetch(const Event& event) const;
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
                                 const EventChunk::Motion& motion, SeenPlace& seen) const;
   [[nodiscard]] Estimate align(const PosePrediction& predicted);

@@ -4,39 +4,46 @@
 #include <cmath>
 #include <utility>
 
+#include "core/check.h"
+
 namespace saccade {
 namespace {
 
-/// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
-/// the next ones go on in the same way.
-constexpr float kStep = 0.03F;
 /// What two views show of one surface differs by less than this in inverse depth: the first one
 /// drawn remains.
 constexpr float kNearer = 1.01F;
 
-/// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
-bool is_joined(float before, float b, float c, float after) {
-  const float step = std::abs(c - b);
-  if (step <= kStep * std::max(b, c)) return true;
-  const auto goes_on = [&](float difference) {
-    return std::abs(difference - (c - b)) < 0.3F * step;
-  };
-  return before > 0 && after > 0 && goes_on(b - before) && goes_on(after - c);
-}
-
 }  // namespace
 
-MapView::MapView(const IntensityMap& map, int margin_px)
+MapView::MapView(const IntensityMap& map, int margin, int step_px)
     : map_(map),
-      margin_(margin_px),
-      places_(map.camera().width + 2 * margin_px, map.camera().height + 2 * margin_px) {}
+      margin_(margin),
+      step_(step_px),
+      columns_((map.camera().width - 1) / step_px + 1),
+      rows_((map.camera().height - 1) / step_px + 1),
+      places_(columns_ + 2 * margin, rows_ + 2 * margin) {
+  SACCADE_CHECK(step_px >= 1 && margin >= 0);
+  for (const IntensityMap::View& view : map.views()) {
+    std::vector<std::uint8_t>& joined = is_joined_.emplace_back();
+    for (int y = 0; y < rows_; ++y)
+      for (int x = 0; x < columns_; ++x) joined.push_back(is_one_surface(view, x, y) ? 1 : 0);
+  }
+}
+
+bool MapView::is_one_surface(const IntensityMap::View& view, int x, int y) const {
+  if (x + 1 >= columns_ || y + 1 >= rows_) return false;
+  for (int v = y * step_; v < (y + 1) * step_; ++v)
+    for (int u = x * step_; u < (x + 1) * step_; ++u)
+      if (view.is_joined[static_cast<std::size_t>(v * map_.camera().width + u)] == 0) return false;
+  return true;
+}
 
 void MapView::draw(const Rigid3& map_from_camera) {
   map_from_camera_ = map_from_camera;
   for (SeenPlace& place : places_.pixels()) place.inverse_depth = 0;
   for (const std::size_t i : nearest_views()) {
     project(map_.views()[i]);
-    draw_view(map_.views()[i]);
+    draw_view(map_.views()[i], is_joined_[i]);
   }
   measure();
 }
@@ -60,55 +67,62 @@ void MapView::project(const IntensityMap::View& view) {
   const Eigen::Matrix3f r = camera_from_map.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = camera_from_map.translation().cast<float>();
   const PinholeCamera& camera = map_.camera();
-  const auto fx = static_cast<float>(camera.fx);
-  const auto fy = static_cast<float>(camera.fy);
-  const auto cx = static_cast<float>(camera.cx);
-  const auto cy = static_cast<float>(camera.cy);
-  vertices_.resize(view.points.size());
-  for (std::size_t i = 0; i < view.points.size(); ++i) {
-    const Eigen::Vector3f p = r * view.points[i] + t;
-    const bool is_known = view.inverse_depth[i] > 0 && p.z() > 0;
-    const float inverse = is_known ? 1 / p.z() : 0;
-    vertices_[i] = {fx * p.x() * inverse + cx, fy * p.y() * inverse + cy, inverse};
-  }
-}
-
-void MapView::draw_view(const IntensityMap::View& view) {
-  const int width = map_.camera().width;
-  const int height = map_.camera().height;
-  const auto depth = [&](int x, int y) {
-    const bool is_inside = x >= 0 && y >= 0 && x < width && y < height;
-    return is_inside ? view.inverse_depth[static_cast<std::size_t>(y * width + x)] : 0;
-  };
-  const auto corner = [&](int x, int y) -> Corner {
-    const auto i = static_cast<std::size_t>(y * width + x);
-    return {vertices_[i],
-            view.points[i],
-            {static_cast<float>(x), static_cast<float>(view.first_row + y)}};
-  };
-  for (int y = 0; y + 1 < height; ++y)
-    for (int x = 0; x + 1 < width; ++x) {
-      const Corner a = corner(x, y);
-      const Corner b = corner(x + 1, y);
-      const Corner c = corner(x, y + 1);
-      const Corner d = corner(x + 1, y + 1);
-      if (!(std::min(std::min(a.vertex.inverse_depth, b.vertex.inverse_depth),
-                     std::min(c.vertex.inverse_depth, d.vertex.inverse_depth)) > 0))
-        continue;
-      const auto across = [&](int row) {
-        return is_joined(depth(x - 1, row), depth(x, row), depth(x + 1, row), depth(x + 2, row));
-      };
-      const auto down = [&](int column) {
-        return is_joined(depth(column, y - 1), depth(column, y), depth(column, y + 1),
-                         depth(column, y + 2));
-      };
-      if (!across(y) || !across(y + 1) || !down(x) || !down(x + 1)) continue;
-      draw_triangle(a, b, c);
-      draw_triangle(b, d, c);
+  const auto fx = static_cast<float>(camera.fx / step_);
+  const auto fy = static_cast<float>(camera.fy / step_);
+  const auto cx = static_cast<float>(camera.cx / step_);
+  const auto cy = static_cast<float>(camera.cy / step_);
+  vertices_.clear();
+  for (int y = 0; y < rows_; ++y)
+    for (int x = 0; x < columns_; ++x) {
+      const std::size_t i = pixel_of(x, y);
+      const Eigen::Vector3f p = r * view.points[i] + t;
+      const bool is_known = view.inverse_depth[i] > 0 && p.z() > 0;
+      const float inverse = is_known ? 1 / p.z() : 0;
+      vertices_.push_back({fx * p.x() * inverse + cx, fy * p.y() * inverse + cy, inverse});
     }
 }
 
-void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c) {
+void MapView::draw_view(const IntensityMap::View& view,
+                        const std::vector<std::uint8_t>& is_joined) {
+  const auto corner = [&](std::size_t node, int x, int y) -> Corner {
+    return {vertices_[node],
+            view.points[pixel_of(x, y)],
+            {static_cast<float>(x * step_), static_cast<float>(view.first_row + y * step_)}};
+  };
+  const auto row = static_cast<std::size_t>(columns_);
+  for (int y = 0; y + 1 < rows_; ++y)
+    for (int x = 0; x + 1 < columns_; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+      if (is_joined[i] == 0) continue;
+      const Nodes nodes =
+          nodes_between(vertices_[i], vertices_[i + 1], vertices_[i + row], vertices_[i + row + 1]);
+      if (nodes.is_empty()) continue;
+      const Corner b = corner(i + 1, x + 1, y);
+      const Corner c = corner(i + row, x, y + 1);
+      draw_triangle(corner(i, x, y), b, c, nodes);
+      draw_triangle(b, corner(i + row + 1, x + 1, y + 1), c, nodes);
+    }
+}
+
+MapView::Nodes MapView::nodes_between(const Vertex& a, const Vertex& b, const Vertex& c,
+                                      const Vertex& d) const {
+  const float nearest = std::min(std::min(a.inverse_depth, b.inverse_depth),
+                                 std::min(c.inverse_depth, d.inverse_depth));
+  const float left = std::min(std::min(a.x, b.x), std::min(c.x, d.x));
+  const float right = std::max(std::max(a.x, b.x), std::max(c.x, d.x));
+  const float top = std::min(std::min(a.y, b.y), std::min(c.y, d.y));
+  const float bottom = std::max(std::max(a.y, b.y), std::max(c.y, d.y));
+  const auto edge = static_cast<float>(margin_);
+  if (!(nearest > 0 && right >= -edge && bottom >= -edge &&
+        left < static_cast<float>(places_.width()) && top < static_cast<float>(places_.height())))
+    return {};
+  return {std::max(static_cast<int>(std::ceil(left)), -margin_),
+          std::max(static_cast<int>(std::ceil(top)), -margin_),
+          std::min(static_cast<int>(std::floor(right)), places_.width() - margin_ - 1),
+          std::min(static_cast<int>(std::floor(bottom)), places_.height() - margin_ - 1)};
+}
+
+void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c, const Nodes& nodes) {
   constexpr float kSmallest = 0.02F;  // seen edge-on, or from behind
   const Vertex& p = a.vertex;
   const float bx = b.vertex.x - p.x;
@@ -117,51 +131,40 @@ void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c) {
   const float cy = c.vertex.y - p.y;
   const float area = bx * cy - by * cx;
   if (!(area > kSmallest)) return;
-  const auto [left, right] = std::minmax({p.x, b.vertex.x, c.vertex.x});
-  const auto [top, bottom] = std::minmax({p.y, b.vertex.y, c.vertex.y});
-  const auto edge = static_cast<float>(margin_);
-  if (!(right >= -edge && bottom >= -edge && left < static_cast<float>(places_.width()) &&
-        top < static_cast<float>(places_.height())))
-    return;
-  const int x0 = std::max(static_cast<int>(std::ceil(left)), -margin_);
-  const int y0 = std::max(static_cast<int>(std::ceil(top)), -margin_);
-  const int x1 = std::min(static_cast<int>(std::floor(right)), places_.width() - margin_ - 1);
-  const int y1 = std::min(static_cast<int>(std::floor(bottom)), places_.height() - margin_ - 1);
-  if (x0 > x1 || y0 > y1) return;
   const float scale = 1 / area;
+  const float per_pixel = 1 / static_cast<float>(step_);
   Eigen::Matrix2f from_image;
   from_image << cy, -cx, -by, bx;
   from_image *= scale;
-  Eigen::Matrix2f places;
-  places << b.place - a.place, c.place - a.place;
-  const Eigen::Matrix2f slope = places * from_image;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
+  for (int y = nodes.top; y <= nodes.bottom; ++y)
+    for (int x = nodes.left; x <= nodes.right; ++x) {
       const Eigen::Vector2f offset(static_cast<float>(x) - p.x, static_cast<float>(y) - p.y);
       const Eigen::Vector2f weights = from_image * offset;
-      // Half a thousandth of room, lest a pixel falls between two triangles.
+      // Half a thousandth of room, lest a node falls between two triangles.
       if (!(weights.x() >= -5e-4F && weights.y() >= -5e-4F && weights.sum() <= 1 + 5e-4F)) continue;
       const float inverse_depth = p.inverse_depth +
                                   weights.x() * (b.vertex.inverse_depth - p.inverse_depth) +
                                   weights.y() * (c.vertex.inverse_depth - p.inverse_depth);
       SeenPlace& seen = places_(x + margin_, y + margin_);
       if (inverse_depth <= kNearer * seen.inverse_depth) continue;
+      Eigen::Matrix2f places;
+      places << b.place - a.place, c.place - a.place;
+      const Eigen::Matrix2f slope = places * from_image;
       seen = {a.point + weights.x() * (b.point - a.point) + weights.y() * (c.point - a.point),
-              inverse_depth, a.place + slope * offset, slope};
+              inverse_depth, a.place + slope * offset, slope * per_pixel};
     }
 }
 
 void MapView::measure() {
   double sum = 0;
   std::size_t known = 0;
-  const PinholeCamera& camera = map_.camera();
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
+  for (int y = 0; y < rows_; ++y)
+    for (int x = 0; x < columns_; ++x) {
       const float inverse_depth = (*this)(x, y).inverse_depth;
       sum += static_cast<double>(inverse_depth);
       known += inverse_depth > 0 ? 1 : 0;
     }
-  coverage_ = static_cast<double>(known) / (camera.width * camera.height);
+  coverage_ = static_cast<double>(known) / (columns_ * rows_);
   typical_depth_m_ = known > 0 ? static_cast<double>(known) / sum : 1;
 }
 

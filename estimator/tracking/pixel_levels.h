@@ -31,6 +31,7 @@ class PixelLevels {
   /// What a pixel fired at is known as well as after `looks` corrections.
   void set(std::size_t i, float level, float looks) { pixels_[i] = {level, looks, 0}; }
 
+  void prefetch(std::size_t i) const { __builtin_prefetch(&pixels_[i]); }
   /// Takes an event in; returns the level that its pixel has reached.
   float step(std::size_t i, int polarity) {
     pixels_[i].level += polarity > 0 ? on_ : -off_;

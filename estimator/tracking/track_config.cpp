@@ -178,9 +178,9 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
   fields.value("blur_px", options.map.blur_px, "deviation of that Gaussian; 0: nothing is smoothed")
       .range(0, 10);
   fields
-      .value("redraw_px", options.redraw_px,
+      .value("redraw_deg", options.redraw_deg,
              "the map is drawn anew when the view has moved this far")
-      .range(0.1, 100);
+      .range(0.05, 20);
   fields
       .value("inlier_drop", options.inlier_drop,
              "lost below this share of the inlier ratio that is usual")

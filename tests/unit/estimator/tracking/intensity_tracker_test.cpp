@@ -324,12 +324,12 @@ TEST(IntensityTracker, AMapOfNothingIsLostFromTheStart) {
 
 TEST(IntensityTracker, TheViewIsDrawnAnewOnlyWhereItHasMoved) {
   TrackConfig often = best();
-  often.intensity.redraw_px = 1;
-  Tracking every_px(often);
+  often.intensity.redraw_deg = 0.3;
+  Tracking often_drawn(often);
   Tracking usual;
-  const Errors finely = errors_of(from(0, every_px->track(recording().events)));
+  const Errors finely = errors_of(from(0, often_drawn->track(recording().events)));
   static_cast<void>(usual->track(recording().events));
-  EXPECT_LT(usual->templates_drawn(), every_px->templates_drawn() / 2);
+  EXPECT_LT(usual->templates_drawn(), often_drawn->templates_drawn() / 2);
   EXPECT_LT(finely.mean, 0.09);
 }
 
