@@ -121,7 +121,7 @@ void IntensityTracker::start_levels(float looks) {
 std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
                                                  const std::function<void(std::size_t)>& progress) {
   Poses poses;
-  const auto count = static_cast<std::size_t>(options_.events);
+  const std::size_t count = events_per_pose();
   while (events.size() >= count) {
     std::size_t done = 0;
     if (is_lost_) {
@@ -137,6 +137,14 @@ std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
     if (progress) progress(done);
   }
   return poses;
+}
+
+std::size_t IntensityTracker::events_per_pose() const {
+  if (options_.events) return static_cast<std::size_t>(*options_.events);
+  constexpr double kEvents = 1000;
+  constexpr double kPixels = 240 * 180;
+  const double pixels = static_cast<double>(camera_.width) * camera_.height;
+  return static_cast<std::size_t>(std::lround(kEvents * std::max(1.0, pixels / kPixels)));
 }
 
 std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
@@ -262,12 +270,17 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   const StageClock clock(timing_.event_frame_s);
   chunk_count_ = 0;
   loaded_pixels_.clear();
+  const auto samples = static_cast<std::size_t>(options_.samples);
+  // One in `every` events is aligned, the others only count for their pixels.
+  const std::size_t every = (events.size() + samples - 1) / samples;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
-    prefetch(events[std::min(i + kAhead, events.size() - 1)]);
+    const std::size_t ahead = std::min(i + kAhead, events.size() - 1);
+    prefetch(events[ahead], ahead % every == 0);
     const std::size_t pixel = levels_.index(event);
     EventMeasurement measurement;
     measurement.level = levels_.step(pixel, event.polarity);
+    if (i % every != 0) continue;
     measurement.pixel = undistortion_(event.x, event.y);
     measurement.time_s = static_cast<float>(seconds_from_ns(event.t_ns - t_ns));
     measurement.trust = levels_.trust(pixel);
@@ -282,8 +295,9 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   }
 }
 
-void IntensityTracker::prefetch(const Event& event) const {
+void IntensityTracker::prefetch(const Event& event, bool is_aligned) const {
   levels_.prefetch(levels_.index(event));
+  if (!is_aligned) return;
   const Eigen::Vector2i node = view_.node_at(undistortion_(event.x, event.y));
   if (view_.contains(node.x(), node.y())) __builtin_prefetch(&view_(node.x(), node.y()));
 }

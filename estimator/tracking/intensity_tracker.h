@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,7 +21,10 @@ namespace saccade {
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
   IntensityMapOptions map;
-  int events = 1000;          ///< per pose
+  /// Per pose; by default 1000, and more in proportion on sensors above 240 x 180, as the same
+  /// motion then gives as many poses.
+  std::optional<int> events;
+  int samples = 1000;         ///< at most so many of them are aligned, evenly spread
   int iterations = 4;         ///< of Gauss-Newton
   double noise = 0.05;        ///< deviation of a level from the map [log units]
   double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
@@ -82,8 +86,9 @@ class IntensityTracker {
   [[nodiscard]] bool view_fits(const Rigid3& map_from_camera) const;
   void start_levels(float looks);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
+  [[nodiscard]] std::size_t events_per_pose() const;
   void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
-  void prefetch(const Event& event) const;
+  void prefetch(const Event& event, bool is_aligned) const;
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
                                 const EventChunk::Motion& motion, SeenPlace& seen) const;
   [[nodiscard]] Estimate align(const PosePrediction& predicted);

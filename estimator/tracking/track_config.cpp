@@ -158,7 +158,14 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
 
 void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
-  fields.value("events", options.events, "per pose").range(1, 1e6);
+  fields
+      .value("events", options.events,
+             "per pose; ~: 1000, and more in proportion on sensors above 240 x 180")
+      .range(1, 1e6);
+  fields
+      .value("samples", options.samples,
+             "at most so many of a pose's events are aligned, evenly spread; the others only count")
+      .range(10, 1e6);
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
   fields.value("noise", options.noise, "deviation of a level from the map [log units]")

@@ -298,6 +298,16 @@ TEST(IntensityTracker, AFewEventsAPoseFollowAsWell) {
   }
 }
 
+TEST(IntensityTracker, OneInThreeEventsAlignsNearlyAsWell) {
+  TrackConfig sparse = best();
+  sparse.intensity.events = 3000;
+  sparse.intensity.samples = 1000;
+  Tracking tracking(sparse);
+  const auto poses = from(0, tracking->track(recording().events));
+  EXPECT_EQ(poses.size(), recording().events.size() / 3000);
+  EXPECT_LT(errors_of(poses).mean, 0.12);
+}
+
 void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
   EXPECT_FALSE(poses.empty());
   for (const TrackedPose& pose : poses) {

@@ -94,6 +94,30 @@ Truth truth_at(int x, int y, const Rigid3& map_from_camera) {
   return is_in_view ? Truth::kFar : Truth::kBorder;
 }
 
+TEST(MapView, ACoarseViewSeesAtItsNodesWhatAFineOneSees) {
+  const IntensityMap map = two_planes();
+  const MapView fine = view_of(map, beside());
+  for (const int step : {2, 3}) {
+    MapView coarse(map, 2, step);
+    coarse.draw(beside());
+    EXPECT_EQ(coarse.node_at({10.4F * static_cast<float>(step), 0}), Eigen::Vector2i(10, 0));
+    int seen_nodes = 0;
+    for (int y = 0; y * step < kHeight; ++y)
+      for (int x = 0; x * step < kWidth; ++x) {
+        const SeenPlace& node = coarse(x, y);
+        const SeenPlace& pixel = fine(x * step, y * step);
+        if (!(node.inverse_depth > 0)) continue;
+        if (truth_at(x * step, y * step, beside()) == Truth::kBorder) continue;
+        ++seen_nodes;
+        EXPECT_NEAR(node.inverse_depth, pixel.inverse_depth, 1e-5) << x << " " << y;
+        EXPECT_LT((node.point - pixel.point).norm(), 1e-3) << x << " " << y;
+        EXPECT_LT((node.place - pixel.place).norm(), 5e-3) << x << " " << y;
+        EXPECT_LT((node.scale - pixel.scale).norm(), 5e-3) << x << " " << y;
+      }
+    EXPECT_GT(seen_nodes, kWidth * kHeight / (step * step) / 2);
+  }
+}
+
 TEST(MapView, TheNearerPlaneHidesTheFartherAndTheGapIsUnknown) {
   const IntensityMap map = two_planes();
   const MapView view = view_of(map, beside());
