@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -23,6 +24,9 @@ constexpr int kSpareNodes = 4;
 /// Events go to random places: those of a later one are fetched that many events before.
 constexpr std::size_t kAhead = 16;
 
+/// In place of the pixel whose level an alignment corrects.
+constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
+
 /// A view of some 320 columns is fine enough: what lies between its nodes is extrapolated.
 int step_of(const PinholeCamera& camera) {
   constexpr double kColumns = 320;
@@ -35,6 +39,12 @@ double redraw_px(const IntensityOptions& options, const PinholeCamera& camera) {
 
 int margin_of(const IntensityOptions& options, const PinholeCamera& camera) {
   return static_cast<int>(std::ceil(redraw_px(options, camera) / step_of(camera))) + kSpareNodes;
+}
+
+/// Between its events a pixel is anywhere within a threshold: a uniform deviation beside the noise.
+float trust_between_events(const EventContrast& contrast, double noise) {
+  const double step = 0.5 * (contrast.on + contrast.off);
+  return static_cast<float>(noise * noise / (noise * noise + step * step / 12));
 }
 
 }  // namespace
@@ -56,6 +66,7 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options, const Predic
       map_(map),
       view_(map, margin_of(options, camera), step_of(camera)),
       levels_(camera.width, camera.height, contrast.on, contrast.off, options.correction),
+      between_trust_(trust_between_events(contrast, options.noise)),
       motion_(motion, camera.fx),
       edges_(edges) {}
 
@@ -78,6 +89,7 @@ void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
   const StageClock clock(timing_.template_s);
   if (has_view_ && view_fits(map_from_camera)) return;
   view_.draw(map_from_camera);
+  list_steep_pixels();
   has_view_ = true;
   ++views_drawn_;
 }
@@ -273,8 +285,14 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   const auto samples = static_cast<std::size_t>(options_.samples);
   // One in `every` events is aligned, the others only count for their pixels.
   const std::size_t every = (events.size() + samples - 1) / samples;
+  bool has_pixels = options_.pixels == 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
+    // When the pose is sought, half of the events have happened.
+    if (!has_pixels && event.t_ns >= t_ns) {
+      load_pixels(motion);
+      has_pixels = true;
+    }
     const std::size_t ahead = std::min(i + kAhead, events.size() - 1);
     prefetch(events[ahead], ahead % every == 0);
     const std::size_t pixel = levels_.index(event);
@@ -286,13 +304,61 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
     measurement.trust = levels_.trust(pixel);
     SeenPlace seen;
     if (!find_place(measurement.pixel, measurement.time_s, motion, seen)) continue;
-    if (loaded_pixels_.size() % EventChunk::kCapacity == 0) {
-      if (chunk_count_ == chunks_.size()) chunks_.emplace_back();
-      chunks_[chunk_count_++].clear();
-    }
-    chunks_[chunk_count_ - 1].add(measurement, seen);
-    loaded_pixels_.push_back(static_cast<std::uint32_t>(pixel));
+    add(measurement, seen, static_cast<std::uint32_t>(pixel));
   }
+}
+
+void IntensityTracker::load_pixels(const EventChunk::Motion& motion) {
+  // Every n-th of those that tell where they look, others each time.
+  const std::size_t every =
+      std::max<std::size_t>(1, steep_pixels_.size() / static_cast<std::size_t>(options_.pixels));
+  constexpr std::size_t kNext = 7919;
+  first_pixel_ = (first_pixel_ + kNext) % every;
+  Eigen::Vector2f shift;
+  for (std::size_t i = first_pixel_; i < steep_pixels_.size(); i += every) {
+    const std::size_t pixel = steep_pixels_[i];
+    const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
+    const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
+    EventMeasurement measurement;
+    measurement.level = levels_.between(pixel);
+    measurement.pixel = undistortion_(x, y);
+    measurement.time_s = 0;
+    measurement.trust = between_trust_ * levels_.trust(pixel);
+    SeenPlace seen;
+    if (find_place(measurement.pixel, 0, motion, seen)) add(measurement, seen, kNotCorrected);
+  }
+}
+
+void IntensityTracker::list_steep_pixels() {
+  steep_pixels_.clear();
+  if (options_.pixels == 0) return;
+  const auto least = static_cast<float>(options_.least_slope);
+  const ImageF& atlas = map_.atlas();
+  const int step = view_.step_px();
+  for (int y = 0; y < camera_.height; y += step)
+    for (int x = 0; x < camera_.width; x += step) {
+      const Eigen::Vector2i node = view_.node_at(undistortion_(x, y));
+      if (!view_.contains(node.x(), node.y())) continue;
+      const SeenPlace& seen = view_(node.x(), node.y());
+      if (!(seen.inverse_depth > 0)) continue;
+      const int u = static_cast<int>(seen.place.x());
+      const int v = static_cast<int>(seen.place.y());
+      if (u < 0 || v < 0 || u + 1 >= atlas.width() || v + 1 >= atlas.height()) continue;
+      const Eigen::Vector2f slope(atlas(u + 1, v) - atlas(u, v), atlas(u, v + 1) - atlas(u, v));
+      // Not so where it is unknown.
+      if ((seen.scale.transpose() * slope).squaredNorm() >= least * least)
+        steep_pixels_.push_back(static_cast<std::uint32_t>(y * camera_.width + x));
+    }
+}
+
+void IntensityTracker::add(const EventMeasurement& measurement, const SeenPlace& seen,
+                           std::uint32_t pixel) {
+  loaded_pixels_.push_back(pixel);
+  if (chunk_count_ == 0 || chunks_[chunk_count_ - 1].size() == EventChunk::kCapacity) {
+    if (chunk_count_ == chunks_.size()) chunks_.emplace_back();
+    chunks_[chunk_count_++].clear();
+  }
+  chunks_[chunk_count_ - 1].add(measurement, seen);
 }
 
 void IntensityTracker::prefetch(const Event& event, bool is_aligned) const {
@@ -367,10 +433,12 @@ void IntensityTracker::correct_levels() {
   std::size_t i = 0;
   for (std::size_t k = 0; k < chunk_count_; ++k)
     for (int j = 0; j < chunks_[k].size(); ++j, ++i) {
+      if (loaded_pixels_[i] == kNotCorrected) continue;
       const float excess = chunks_[k].residual(j);
       if (std::isfinite(excess)) levels_.correct(loaded_pixels_[i], excess);
     }
-  for (const std::uint32_t pixel : loaded_pixels_) levels_.settle(pixel);
+  for (const std::uint32_t pixel : loaded_pixels_)
+    if (pixel != kNotCorrected) levels_.settle(pixel);
 }
 
 }  // namespace saccade

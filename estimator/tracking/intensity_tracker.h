@@ -25,6 +25,8 @@ struct IntensityOptions {
   /// motion then gives as many poses.
   std::optional<int> events;
   int samples = 1000;         ///< at most so many of them are aligned, evenly spread
+  int pixels = 0;
+  double least_slope = 0.05;
   int iterations = 4;         ///< of Gauss-Newton
   double noise = 0.05;        ///< deviation of a level from the map [log units]
   double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
@@ -88,6 +90,9 @@ class IntensityTracker {
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
   [[nodiscard]] std::size_t events_per_pose() const;
   void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
+  void load_pixels(const EventChunk::Motion& motion);
+  void list_steep_pixels();
+  void add(const EventMeasurement& measurement, const SeenPlace& seen, std::uint32_t pixel);
   void prefetch(const Event& event, bool is_aligned) const;
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
                                 const EventChunk::Motion& motion, SeenPlace& seen) const;
@@ -101,6 +106,7 @@ class IntensityTracker {
   const IntensityMap& map_;
   MapView view_;
   PixelLevels levels_;
+  float between_trust_;
   MotionModel motion_;
   bool has_view_ = false;
   TimeNs last_event_ns_ = 0;
@@ -115,6 +121,8 @@ class IntensityTracker {
   std::vector<EventChunk> chunks_;
   std::size_t chunk_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of the events in the chunks, in order
+  std::vector<std::uint32_t> steep_pixels_;
+  std::size_t first_pixel_ = 0;
   std::size_t views_drawn_ = 0;
   TrackTiming timing_;
 };

@@ -29,13 +29,21 @@ class PixelLevels {
   /// Nothing is known of any pixel.
   void forget() { std::fill(pixels_.begin(), pixels_.end(), Pixel{}); }
   /// What a pixel fired at is known as well as after `looks` corrections.
-  void set(std::size_t i, float level, float looks) { pixels_[i] = {level, looks, 0}; }
+  void set(std::size_t i, float level, float looks) { pixels_[i] = {level, looks, 0, 0}; }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&pixels_[i]); }
   /// Takes an event in; returns the level that its pixel has reached.
   float step(std::size_t i, int polarity) {
-    pixels_[i].level += polarity > 0 ? on_ : -off_;
-    return pixels_[i].level;
+    Pixel& pixel = pixels_[i];
+    pixel.half_step = 0.5F * (polarity > 0 ? on_ : -off_);
+    pixel.level += 2 * pixel.half_step;
+    return pixel.level;
+  }
+
+  /// What a pixel sees between its events: within a threshold of its level and most likely half of
+  /// one further in the direction of its last event, as it went on until the next.
+  [[nodiscard]] float between(std::size_t i) const {
+    return pixels_[i].level + pixels_[i].half_step;
   }
 
   /// 0 for an unknown level, towards 1 for one that has been corrected often.
@@ -60,6 +68,7 @@ class PixelLevels {
     float level = 0;
     float looks = 0;
     float corrected = 0;
+    float half_step = 0;  ///< of the last event; 0 before the first
   };
 
   int width_;

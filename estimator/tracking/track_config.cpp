@@ -166,6 +166,8 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
       .value("samples", options.samples,
              "at most so many of a pose's events are aligned, evenly spread; the others only count")
       .range(10, 1e6);
+  fields.value("pixels", options.pixels, "x").range(0, 1e6);
+  fields.value("least_slope", options.least_slope, "x").range(0, 1);
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
   fields.value("noise", options.noise, "deviation of a level from the map [log units]")
