@@ -76,6 +76,7 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   views_drawn_ = 0;
   timing_ = {};
   last_event_ns_ = t_ns;
+  first_pixel_ = 0;
   usual_inliers_ = 0;
   misfits_ = 0;
   judged_ = {};
@@ -154,9 +155,8 @@ std::vector<TrackedPose> IntensityTracker::track(std::span<const Event> events,
 std::size_t IntensityTracker::events_per_pose() const {
   if (options_.events) return static_cast<std::size_t>(*options_.events);
   constexpr double kEvents = 1000;
-  constexpr double kPixels = 240 * 180;
-  const double pixels = static_cast<double>(camera_.width) * camera_.height;
-  return static_cast<std::size_t>(std::lround(kEvents * std::max(1.0, pixels / kPixels)));
+  constexpr double kWidth = 240;
+  return static_cast<std::size_t>(std::lround(kEvents * std::max(1.0, camera_.width / kWidth)));
 }
 
 std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
@@ -285,12 +285,14 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   const auto samples = static_cast<std::size_t>(options_.samples);
   // One in `every` events is aligned, the others only count for their pixels.
   const std::size_t every = (events.size() + samples - 1) / samples;
-  bool has_pixels = options_.pixels == 0;
+  const auto pixels = static_cast<std::size_t>(std::lround(
+      options_.pixels_per_event * static_cast<double>(events.size()) / static_cast<double>(every)));
+  bool has_pixels = pixels == 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     // When the pose is sought, half of the events have happened.
     if (!has_pixels && event.t_ns >= t_ns) {
-      load_pixels(motion);
+      load_pixels(pixels, motion);
       has_pixels = true;
     }
     const std::size_t ahead = std::min(i + kAhead, events.size() - 1);
@@ -308,10 +310,9 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
   }
 }
 
-void IntensityTracker::load_pixels(const EventChunk::Motion& motion) {
+void IntensityTracker::load_pixels(std::size_t count, const EventChunk::Motion& motion) {
   // Every n-th of those that tell where they look, others each time.
-  const std::size_t every =
-      std::max<std::size_t>(1, steep_pixels_.size() / static_cast<std::size_t>(options_.pixels));
+  const std::size_t every = std::max<std::size_t>(1, steep_pixels_.size() / count);
   constexpr std::size_t kNext = 7919;
   first_pixel_ = (first_pixel_ + kNext) % every;
   Eigen::Vector2f shift;
@@ -320,7 +321,7 @@ void IntensityTracker::load_pixels(const EventChunk::Motion& motion) {
     const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
     const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
     EventMeasurement measurement;
-    measurement.level = levels_.between(pixel);
+    measurement.level = options_.half_step ? levels_.between(pixel) : levels_.level(pixel);
     measurement.pixel = undistortion_(x, y);
     measurement.time_s = 0;
     measurement.trust = between_trust_ * levels_.trust(pixel);
@@ -331,7 +332,7 @@ void IntensityTracker::load_pixels(const EventChunk::Motion& motion) {
 
 void IntensityTracker::list_steep_pixels() {
   steep_pixels_.clear();
-  if (options_.pixels == 0) return;
+  if (!(options_.pixels_per_event > 0)) return;
   const auto least = static_cast<float>(options_.least_slope);
   const ImageF& atlas = map_.atlas();
   const int step = view_.step_px();

@@ -24,17 +24,18 @@ struct IntensityOptions {
   /// Per pose; by default 1000, and more in proportion on sensors above 240 x 180, as the same
   /// motion then gives as many poses.
   std::optional<int> events;
-  int samples = 1000;         ///< at most so many of them are aligned, evenly spread
-  int pixels = 0;
-  double least_slope = 0.05;
-  int iterations = 4;         ///< of Gauss-Newton
-  double noise = 0.05;        ///< deviation of a level from the map [log units]
-  double place_px = 0.3;      ///< of the place where the map shows it, see EventChunk::Noise
-  double correction = 0.02;   ///< least share by which a level is drawn to the map at each event
-  double redraw_deg = 1.15;   ///< the map is drawn anew when the view has moved this far
-  double inlier_drop = 0.75;  ///< lost below this share of the inlier ratio that is usual
-  double silence_px = 2;      ///< lost where the camera should have moved so far without an event
-  double information = 0.1;   ///< of that of independent residuals: neighbouring ones err alike
+  int samples = 1000;           ///< at most so many of them are aligned, evenly spread
+  double pixels_per_event = 1;  ///< aligned beside them: pixels between their events
+  double least_slope = 0.1;     ///< of the map where such a pixel looks [log units/px]
+  bool half_step = true;        ///< a pixel is taken to have gone on by half a threshold
+  int iterations = 4;           ///< of Gauss-Newton
+  double noise = 0.05;          ///< deviation of a level from the map [log units]
+  double place_px = 0.2;        ///< of the place where the map shows it, see EventChunk::Noise
+  double correction = 0.15;     ///< least share by which a level is drawn to the map at each event
+  double redraw_deg = 1.15;     ///< the map is drawn anew when the view has moved this far
+  double inlier_drop = 0.75;    ///< lost below this share of the inlier ratio that is usual
+  double silence_px = 2;        ///< lost where the camera should have moved so far without an event
+  double information = 0.1;     ///< of that of independent residuals: neighbouring ones err alike
 };
 
 /// The part of a sensor's model that the tracker knows.
@@ -46,6 +47,7 @@ struct EventContrast {
 /// at its instant: the first value plus the thresholds of all its events. The pose is sought at
 /// which the map shows the same there:
 ///   r_k = level_k - L(W(u_k; pose at t_k)),   pose(t) = pose exp((t - t_0) velocity)
+/// and beside the events some pixels between theirs, whose levels are known to within a threshold,
 /// by Gauss-Newton with Cauchy weights, pulled towards a constant velocity by the prediction's
 /// precision. Lost - fewer residuals fit than usual, or no event came although the camera moves -
 /// the levels say nothing any more: the edges of the map are sought around the expected pose until
@@ -90,8 +92,10 @@ class IntensityTracker {
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
   [[nodiscard]] std::size_t events_per_pose() const;
   void load(std::span<const Event> events, TimeNs t_ns, const EventChunk::Motion& motion);
-  void load_pixels(const EventChunk::Motion& motion);
+  /// Some `count` pixels between their events, at the time of the pose.
+  void load_pixels(std::size_t count, const EventChunk::Motion& motion);
   void list_steep_pixels();
+  /// `pixel`: whose level the alignment will correct.
   void add(const EventMeasurement& measurement, const SeenPlace& seen, std::uint32_t pixel);
   void prefetch(const Event& event, bool is_aligned) const;
   [[nodiscard]] bool find_place(const Eigen::Vector2f& pixel, float time_s,
@@ -106,7 +110,7 @@ class IntensityTracker {
   const IntensityMap& map_;
   MapView view_;
   PixelLevels levels_;
-  float between_trust_;
+  float between_trust_;  ///< in a pixel between its events
   MotionModel motion_;
   bool has_view_ = false;
   TimeNs last_event_ns_ = 0;
@@ -121,8 +125,8 @@ class IntensityTracker {
   std::vector<EventChunk> chunks_;
   std::size_t chunk_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of the events in the chunks, in order
-  std::vector<std::uint32_t> steep_pixels_;
-  std::size_t first_pixel_ = 0;
+  std::vector<std::uint32_t> steep_pixels_;  ///< where the map is steep, in the view that was drawn
+  std::size_t first_pixel_ = 0;              ///< of them that was aligned
   std::size_t views_drawn_ = 0;
   TrackTiming timing_;
 };

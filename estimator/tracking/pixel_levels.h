@@ -40,6 +40,8 @@ class PixelLevels {
     return pixel.level;
   }
 
+  /// At the pixel's last event.
+  [[nodiscard]] float level(std::size_t i) const { return pixels_[i].level; }
   /// What a pixel sees between its events: within a threshold of its level and most likely half of
   /// one further in the direction of its last event, as it went on until the next.
   [[nodiscard]] float between(std::size_t i) const {

@@ -160,14 +160,22 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
   fields
       .value("events", options.events,
-             "per pose; ~: 1000, and more in proportion on sensors above 240 x 180")
+             "per pose; ~: 1000, and more in proportion to the width of a sensor wider than 240 px")
       .range(1, 1e6);
   fields
       .value("samples", options.samples,
              "at most so many of a pose's events are aligned, evenly spread; the others only count")
       .range(10, 1e6);
-  fields.value("pixels", options.pixels, "x").range(0, 1e6);
-  fields.value("least_slope", options.least_slope, "x").range(0, 1);
+  fields
+      .value("pixels_per_event", options.pixels_per_event,
+             "pixels between their events that are aligned, too, for each event that is")
+      .range(0, 1000);
+  fields
+      .value("least_slope", options.least_slope,
+             "of the map where such a pixel looks [log units/px]")
+      .range(0, 100);
+  fields.value("half_step", options.half_step,
+               "such a pixel is taken to have gone on by half a threshold since its last event");
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
   fields.value("noise", options.noise, "deviation of a level from the map [log units]")

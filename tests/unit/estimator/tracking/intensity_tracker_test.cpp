@@ -298,6 +298,20 @@ TEST(IntensityTracker, AFewEventsAPoseFollowAsWell) {
   }
 }
 
+TEST(IntensityTracker, PixelsBetweenTheirEventsHoldThePose) {
+  const auto error_with = [](double pixels, bool half_step) {
+    TrackConfig config = best();
+    config.intensity.pixels_per_event = pixels;
+    config.intensity.half_step = half_step;
+    Tracking tracking(config);
+    return errors_of(from(0, tracking->track(recording().events))).mean;
+  };
+  const double events_alone = error_with(0, true);
+  const double with_pixels = error_with(1, true);
+  EXPECT_LT(with_pixels, 0.9 * events_alone);
+  EXPECT_LT(with_pixels, error_with(1, false)) << "half a threshold nearer to the truth";
+}
+
 TEST(IntensityTracker, OneInThreeEventsAlignsNearlyAsWell) {
   TrackConfig sparse = best();
   sparse.intensity.events = 3000;
