@@ -10,6 +10,7 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/tracking/map_view.h"
+#include "estimator/tracking/posterior_pose.h"
 
 namespace saccade {
 
@@ -58,13 +59,11 @@ class EventChunk {
   /// the map is flat; 0 where nothing of it is seen.
   void weigh(const Noise& noise);
 
-  struct Sums {
-    Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< J^T W r
-    Matrix6 normal = Matrix6::Zero();  ///< J^T W J, upper triangle
-    double weight = 0;                 ///< trust / (1 + (r / (2.4 sigma))^2)
-    double squares = 0;                ///< r^2 by this weight
-    double visible = 0;                ///< events that see a known place, by trust
-    double inliers = 0;                ///< of them those within 2.4 sigma
+  struct Sums : PoseEquations {
+    double weight = 0;   ///< trust / (1 + (r / (2.4 sigma))^2)
+    double squares = 0;  ///< r^2 by this weight
+    double visible = 0;  ///< events that see a known place, by trust
+    double inliers = 0;  ///< of them those within 2.4 sigma
     double trust = 0;
   };
   void add_to(Sums& sums);

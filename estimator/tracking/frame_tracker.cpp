@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/check.h"
-#include "estimator/tracking/cholesky.h"
+#include "estimator/tracking/posterior_pose.h"
 #include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
@@ -20,12 +20,10 @@ constexpr double kLeastSeen = 0.02;
 }  // namespace
 
 /// The normal equations of one step, with their evidence.
-struct FrameTracker::Sums {
-  Matrix6 normal = Matrix6::Zero();  ///< J^T W J, upper triangle
-  Twist rhs = Twist::Zero();         ///< J^T W r
-  double visible = 0;                ///< pixels that are compared
-  double inliers = 0;                ///< of them those within the tail
-  double squared = 0;                ///< sum of their squared residuals
+struct FrameTracker::Sums : PoseEquations {
+  double visible = 0;  ///< pixels that are compared
+  double inliers = 0;  ///< of them those within the tail
+  double squared = 0;  ///< sum of their squared residuals
 };
 
 /// The outcome of one alignment.
@@ -81,27 +79,18 @@ TrackedPose FrameTracker::track_frame(const GreyFrame& frame) {
 }
 
 auto FrameTracker::align(const GreyFrame& frame, const PosePrediction& predicted) -> Estimate {
+  PosteriorPose pose(predicted, options_.information / (options_.noise * options_.noise));
   Estimate estimate;
-  estimate.map_from_camera = predicted.map_from_camera;
-  const double weight = options_.information / (options_.noise * options_.noise);
-  const Matrix6 prior = predicted.precision / weight;
-  Twist deviation = Twist::Zero();
   for (int level = coarsest_level(); level >= 0; --level)
     // The last round of all is for the evidence.
     for (int i = 0; i < options_.iterations + (level == 0 ? 1 : 0); ++i) {
+      estimate.map_from_camera = pose.map_from_camera();
       draw(estimate.map_from_camera);
       estimate.sums = compare(frame.log_intensity, 1 << level);
-      if (i == options_.iterations) break;
-      Cholesky<6> factors;
-      if (!factors.factor(estimate.sums.normal + prior)) return estimate;
-      const Twist step = factors.solve(estimate.sums.rhs - prior * deviation);
-      if (!step.allFinite()) return estimate;
-      estimate.map_from_camera = estimate.map_from_camera * Rigid3::exp(step);
-      deviation += step;
+      if (i < options_.iterations && !pose.step(estimate.sums)) return estimate;
     }
   const double pixels = std::min<double>(options_.samples, static_cast<double>(shown_.size()));
-  const Matrix6 normal = estimate.sums.normal;
-  estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
+  estimate.information = pose.information(estimate.sums);
   estimate.is_valid = estimate.sums.visible > kLeastSeen * pixels;
   return estimate;
 }

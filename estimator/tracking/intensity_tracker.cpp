@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/check.h"
-#include "estimator/tracking/cholesky.h"
 #include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/posterior_pose.h"
 #include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
@@ -399,14 +399,12 @@ bool IntensityTracker::find_place(const Eigen::Vector2f& pixel, float time_s,
 
 auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
   const StageClock clock(timing_.align_s);
-  Estimate estimate;
-  estimate.map_from_camera = predicted.map_from_camera;
   const EventChunk::Noise noise{static_cast<float>(options_.noise),
                                 static_cast<float>(options_.place_px)};
-  const double weight = options_.information / (options_.noise * options_.noise);
-  const Matrix6 prior = predicted.precision / weight;
-  Twist deviation = Twist::Zero();
+  PosteriorPose pose(predicted, options_.information / (options_.noise * options_.noise));
+  Estimate estimate;
   for (int i = 0; i <= options_.iterations; ++i) {
+    estimate.map_from_camera = pose.map_from_camera();
     const EventChunk::Motion motion = motion_at(estimate.map_from_camera);
     estimate.sums = {};
     for (std::size_t k = 0; k < chunk_count_; ++k) {
@@ -415,16 +413,9 @@ auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
       chunks_[k].add_to(estimate.sums);
     }
     // The last round is for the evidence.
-    if (i == options_.iterations) break;
-    Cholesky<6> factors;
-    if (!factors.factor(estimate.sums.normal + prior)) return estimate;
-    const Twist step = factors.solve(estimate.sums.rhs - prior * deviation);
-    if (!step.allFinite()) return estimate;
-    estimate.map_from_camera = estimate.map_from_camera * Rigid3::exp(step);
-    deviation += step;
+    if (i < options_.iterations && !pose.step(estimate.sums)) return estimate;
   }
-  const Matrix6 normal = estimate.sums.normal;
-  estimate.information = weight * Matrix6(normal.selfadjointView<Eigen::Upper>());
+  estimate.information = pose.information(estimate.sums);
   estimate.is_valid = true;
   return estimate;
 }

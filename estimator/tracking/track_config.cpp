@@ -216,6 +216,41 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
       .above(0);
 }
 
+void describe_polarity(config::Fields& fields, PolarityOptions& options) {
+  fields.value("events", options.events, "per pose").range(1, 1e6);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
+      .range(1, 1000);
+  fields.value("reversals", options.reversals,
+               "an event that turns its pixel's polarity round counts twice: two thresholds were "
+               "crossed");
+  fields
+      .value("min_slope", options.min_slope,
+             "slope of the increments that are compared, as a share of the RMS of all")
+      .range(0, 100);
+  fields
+      .value("noise", options.noise,
+             "deviation of a pixel's sum of polarities from what is expected [thresholds]")
+      .range(0.001, 10);
+  fields
+      .value("place_px", options.place_px,
+             "deviation of the place where the map shows an increment: it is sampled at points")
+      .range(0, 10);
+  fields
+      .value("redraw_px", options.redraw_px,
+             "the map is drawn anew when the view has moved this far")
+      .range(0.1, 100);
+  fields
+      .value("information", options.information,
+             "share of the information of independent residuals: neighbouring ones err alike")
+      .range(1e-6, 1);
+  fields
+      .value(
+          "min_agreement", options.min_agreement,
+          "share of the increments that have the expected sign, below which the edges take over; "
+          "0.5 is chance")
+      .range(0, 1);
+}
+
 void describe_frames(config::Fields& fields, TrackConfig& config) {
   FrameTrackOptions& options = config.frames;
   fields
@@ -295,8 +330,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
       "method", config.method,
       {{"edges", TrackConfig::Method::kEdges},
        {"intensity", TrackConfig::Method::kIntensity},
+       {"polarity", TrackConfig::Method::kPolarity},
        {"frames", TrackConfig::Method::kFrames}},
-      "edges against event frames (the thesis), log intensity at each event, or grey frames");
+      "edges against event frames (the thesis), log intensity at each event, brightness increments "
+      "against signed event frames, or grey frames");
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "where the map comes from");
@@ -316,6 +353,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
     fields.group(
         "intensity", [&](Fields& f) { describe_intensity(f, config); },
         "how a pose is found from the log intensity at each event");
+  if (config.method == TrackConfig::Method::kPolarity)
+    fields.group(
+        "polarity", [&](Fields& f) { describe_polarity(f, config.polarity); },
+        "how a pose is found from the signs of the events");
   if (config.method == TrackConfig::Method::kFrames)
     fields.group(
         "frames", [&](Fields& f) { describe_frames(f, config); },
@@ -330,6 +371,9 @@ void describe(config::Fields& fields, TrackConfig& config) {
   fields.expect(!tracker.event_frame.motion_compensation ||
                     tracker.motion.prediction != PredictionOptions::Prediction::kNone,
                 "event_frame", "motion_compensation needs a motion.prediction");
+  fields.expect(config.method != TrackConfig::Method::kPolarity ||
+                    tracker.motion.prediction != PredictionOptions::Prediction::kNone,
+                "method", "polarity needs a motion.prediction");
   fields.group(
       "lost", [&](Fields& f) { describe_lost(f, tracker.lost); }, "when a pose is called lost");
   fields.value("initial_pose", config.initial_pose,

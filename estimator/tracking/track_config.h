@@ -7,6 +7,7 @@
 #include "core/config/fields.h"
 #include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/intensity_tracker.h"
+#include "estimator/tracking/polarity_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/tracker.h"
 
@@ -14,13 +15,14 @@ namespace saccade {
 
 /// The configuration of `saccade run track`; describe() names the keys, ranges and defaults.
 struct TrackConfig {
-  enum class Method { kEdges, kIntensity, kFrames };
+  enum class Method { kEdges, kIntensity, kPolarity, kFrames };
 
   Method method = Method::kEdges;
   ReferenceOptions reference;
   MapOptions map;
   TrackerOptions tracker;
   IntensityOptions intensity;
+  PolarityOptions polarity;
   FrameTrackOptions frames;
   IntensityMapOptions frames_map{.blur_px = 0};
   std::optional<double> contrast;  ///< [log units]; default: the dataset's

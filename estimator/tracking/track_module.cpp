@@ -179,6 +179,13 @@ void track_repeatedly(AnyTracker& tracker, const Measurements& measurements, con
                                  {"align", stages.align_s}});
 }
 
+/// How the map's picture is smoothed for the method.
+const IntensityMapOptions& smoothing_of(const TrackConfig& config) {
+  if (config.method == TrackConfig::Method::kFrames) return config.frames_map;
+  if (config.method == TrackConfig::Method::kPolarity) return config.polarity.map;
+  return config.intensity.map;
+}
+
 TrackOutput track(const TrackConfig& config, const Dataset& dataset, const TrackInput& input,
                   int repeat) {
   const PinholeCamera& camera = dataset.camera();
@@ -186,15 +193,17 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   TrackOutput output;
   const auto map_start = Clock::now();
   output.map = map_of(config, camera.undistorted(), input.references);
-  const bool is_of_frames = config.method == TrackConfig::Method::kFrames;
-  const IntensityMap map(camera.undistorted(), input.references,
-                         is_of_frames ? config.frames_map : config.intensity.map);
+  const IntensityMap map(camera.undistorted(), input.references, smoothing_of(config));
   output.timing.stages_s = {{"map", seconds_since(map_start)}};
   Tracker edges(config.tracker, camera, output.map, map.world_from_map(), config.seed);
   edges.set_gyroscope(input.gyroscope);
   if (config.method == TrackConfig::Method::kIntensity) {
     IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
                              camera, map, edges);
+    tracker.set_gyroscope(input.gyroscope);
+    track_repeatedly(tracker, input.events, "events", start, repeat, output);
+  } else if (config.method == TrackConfig::Method::kPolarity) {
+    PolarityTracker tracker(config.polarity, config.tracker.motion, camera, map, edges);
     tracker.set_gyroscope(input.gyroscope);
     track_repeatedly(tracker, input.events, "events", start, repeat, output);
   } else if (config.method == TrackConfig::Method::kFrames) {

@@ -2,53 +2,25 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
-#include "core/config/config.h"
-#include "estimator/tracking/track_config.h"
-#include "tests/support/planar_world.h"
+#include "tests/unit/estimator/tracking/corner_recording.h"
 
 namespace saccade {
 namespace {
 
 using testing::corner_motion;
-using testing::corner_world;
-using testing::PlanarWorld;
+using testing::expect_equal;
+using testing::tracking_config;
 
-constexpr double kEnd_s = 0.3;  ///< some 60 px of image motion
-constexpr double kContrast = 0.15;
+constexpr double kContrast = testing::kRecordedContrast;
 
-/// Two walls and a smaller plane before them whose texels are larger than a pixel, so that the
-/// picture of a view shows all there is.
-PlanarWorld resolved_world() {
-  using testing::patch_texture;
-  return {corner_world(160, 120).camera(),
-          {{{-2.6, -1.6, 1.8}, {2.8, 0, 1.6}, {0, 3.2, 0}, patch_texture(90, 90, 1)},
-           {{0.2, -1.6, 3.4}, {2.4, 0, -1.8}, {0, 3.2, 0}, patch_texture(90, 90, 2)},
-           {{-0.5, -0.2, 1.5}, {0.7, 0, 0.1}, {0, 0.6, 0}, patch_texture(32, 28, 3)}}};
-}
+const testing::CornerRecording& recording() { return testing::resolved_recording(); }
 
-/// The map of the first view and the events since then; made once. Steps of 0.2 ms, a twentieth of
-/// a pixel, so that linear interpolation between them is as good as exact.
-struct Recording {
-  PlanarWorld world = resolved_world();
-  ReferenceView view{world.log_intensity(corner_motion(0)), world.depth(corner_motion(0)),
-                     corner_motion(0)};
-  Events events = world.simulate(corner_motion, 0, kEnd_s, 2e-4, kContrast);
-};
+TrackConfig best() { return tracking_config("best"); }
 
-const Recording& recording() {
-  static const Recording recording;
-  return recording;
-}
-
-TrackConfig best() {
-  const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/best.yaml";
-  return config::read<TrackConfig>(config::load(file));
-}
+double error_px(const TrackedPose& pose) { return recording().error_px(pose); }
 
 /// The tracker with all that has to outlive it.
 class Tracking {
@@ -73,40 +45,8 @@ class Tracking {
   IntensityTracker tracker_;
 };
 
-/// RMS distance of the map's points in the view between a pose and the true one [px].
-double error_px(const TrackedPose& pose) {
-  const PinholeCamera& camera = recording().world.camera();
-  const Rigid3 truth = corner_motion(seconds_from_ns(pose.t_ns)).inverse() * corner_motion(0);
-  const Rigid3 estimate = pose.world_from_camera.inverse() * corner_motion(0);
-  double squared = 0;
-  double count = 0;
-  for (int y = 0; y < camera.height; y += 5)
-    for (int x = 0; x < camera.width; x += 5) {
-      const double depth = static_cast<double>(recording().view.depth(x, y));
-      if (!(depth > 0)) continue;
-      const Eigen::Vector3d point = depth * camera.ray({x, y});
-      const Eigen::Vector2d u = camera.project(truth * point);
-      if (!camera.contains(u)) continue;
-      squared += (u - camera.project(estimate * point)).squaredNorm();
-      ++count;
-    }
-  return std::sqrt(squared / count);
-}
-
-struct Errors {
-  double mean = 0;
-  double largest = 0;
-};
-
-Errors errors_of(const std::vector<TrackedPose>& poses) {
-  Errors errors;
-  for (const TrackedPose& pose : poses) {
-    const double error = error_px(pose);
-    errors.mean += error / static_cast<double>(poses.size());
-    errors.largest = std::max(errors.largest, error);
-  }
-  return errors;
-}
+using Errors = testing::CornerRecording::Errors;
+Errors errors_of(const std::vector<TrackedPose>& poses) { return recording().errors_of(poses); }
 
 /// The poses from a time on, all of which must be sure of themselves.
 std::vector<TrackedPose> from(double start_s, const std::vector<TrackedPose>& poses) {
@@ -118,18 +58,6 @@ std::vector<TrackedPose> from(double start_s, const std::vector<TrackedPose>& po
     }
   EXPECT_GT(later.size(), 10U);
   return later;
-}
-
-void expect_equal(const std::vector<TrackedPose>& a, const std::vector<TrackedPose>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].t_ns, b[i].t_ns);
-    EXPECT_EQ(a[i].status, b[i].status);
-    EXPECT_EQ(a[i].world_from_camera.translation(), b[i].world_from_camera.translation());
-    EXPECT_EQ(a[i].world_from_camera.rotation().coeffs(),
-              b[i].world_from_camera.rotation().coeffs());
-    EXPECT_EQ(a[i].inlier_ratio, b[i].inlier_ratio);
-  }
 }
 
 Events without(double from_s, double to_s) {
@@ -146,8 +74,7 @@ TEST(IntensityTracker, RecoversEveryPoseAndBeatsTheEdges) {
   EXPECT_LT(errors.mean, 0.09);
   EXPECT_LT(errors.largest, 0.6);
 
-  const TrackConfig edges =
-      config::read<TrackConfig>(config::load(SACCADE_SOURCE_DIR "/configs/tracking/accurate.yaml"));
+  const TrackConfig edges = tracking_config("accurate");
   const ReferenceView& view = recording().view;
   const PinholeCamera& camera = recording().world.camera();
   const MapPoints points = extract_map(view.log_intensity, view.depth, camera, edges.map);

@@ -43,6 +43,9 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   EXPECT_EQ(best.intensity.samples, 1000);
   EXPECT_EQ(best.reference.turn_deg, 15);
   EXPECT_FALSE(best.contrast) << "the dataset's";
+  const auto polarity = config::read<TrackConfig>(config::load(folder + "polarity.yaml"));
+  EXPECT_EQ(polarity.method, TrackConfig::Method::kPolarity);
+  EXPECT_EQ(polarity.polarity.events, 3000);
 }
 
 TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
@@ -74,6 +77,19 @@ TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
   EXPECT_EQ(again.intensity.map.blur_px, 0);
   EXPECT_EQ(again.contrast, 0.17);
   EXPECT_EQ(again.tracker.motion.agility_share, 3);
+}
+
+TEST(TrackConfig, PrintedPolarityConfigurationMeansTheSame) {
+  const TrackConfig config = parse(
+      "{method: polarity, polarity: {events: 321, reversals: false, min_slope: 0.4}, motion: "
+      "{prediction: constant_velocity}}");
+  const std::string printed = config::print(config);
+  EXPECT_EQ(config::print(parse(printed)), printed);
+  const TrackConfig again = parse(printed);
+  EXPECT_EQ(again.method, TrackConfig::Method::kPolarity);
+  EXPECT_EQ(again.polarity.events, 321);
+  EXPECT_EQ(again.polarity.min_slope, 0.4);
+  EXPECT_FALSE(again.polarity.reversals);
 }
 
 struct Fault {
@@ -126,6 +142,9 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
       {"{lost: {frames: 0}}", "lost.frames"},
       {"{method: levels}", "method"},
+      {"{method: polarity}", "polarity needs a motion.prediction"},
+      {"{method: polarity, polarity: {events: 0}}", "polarity.events"},
+      {"{polarity: {events: 100}}", "polarity"},
       {"{intensity: {events: 500}}", "intensity"},
       {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
       {"{method: intensity, intensity: {correction: 1.5}}", "intensity.correction"},

@@ -239,6 +239,18 @@ TEST_F(TrackModule, FollowsTheTrueMotionByLogIntensity) {
     EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 0.8) << pose.t_s;
 }
 
+TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
+  const RunSummary summary = run_track(
+      request("run",
+              "{method: polarity, reference: {planar_depth_m: 1.5}, polarity: {events: 1000}, "
+              "motion: {prediction: constant_velocity}}"));
+  EXPECT_GT(summary.poses, 20U);
+  EXPECT_EQ(summary.lost_poses, 0U);
+  const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  for (const StampedPose& pose : trajectory.poses())
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 1.5) << pose.t_s;
+}
+
 TEST_F(TrackModule, WithoutContrastNamesTheCure) {
   EXPECT_THAT(error(request("run", "{method: intensity, reference: {planar_depth_m: 1.5}}")),
               HasSubstr("intensity.contrast"));

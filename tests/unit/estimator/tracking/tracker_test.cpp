@@ -2,47 +2,37 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
-#include "core/config/config.h"
 #include "core/random.h"
-#include "estimator/tracking/track_config.h"
-#include "tests/support/planar_world.h"
+#include "tests/unit/estimator/tracking/corner_recording.h"
 
 namespace saccade {
 namespace {
 
 using testing::corner_motion;
-using testing::corner_world;
-using testing::PlanarWorld;
+using testing::expect_equal;
 
 constexpr double kEnd_s = 0.25;  ///< some 60 px of image motion
 
-/// The map of the first view and the events since then; made once.
-struct Recording {
-  PlanarWorld world = corner_world(160, 120);
-  MapPoints map = extract_map(world.log_intensity(corner_motion(0)), world.depth(corner_motion(0)),
-                              world.camera(), {});
-  Events events = world.simulate(corner_motion, 0, kEnd_s, 1e-3, 0.15);
-};
-
-const Recording& recording() {
-  static const Recording recording;
+const testing::CornerRecording& recording() {
+  static const testing::CornerRecording recording(testing::corner_world(160, 120), kEnd_s, 1e-3);
   return recording;
 }
 
-TrackerOptions setting(const std::string& name) {
-  const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/" + name + ".yaml";
-  return config::read<TrackConfig>(config::load(file)).tracker;
+const MapPoints& map() {
+  static const MapPoints map = extract_map(recording().view.log_intensity, recording().view.depth,
+                                           recording().world.camera(), {});
+  return map;
 }
+
+TrackerOptions setting(const std::string& name) { return testing::tracking_config(name).tracker; }
 
 TrackerOptions accurate() { return setting("accurate"); }
 TrackerOptions fast() { return setting("fast"); }
 
 Tracker tracker_from(const TrackerOptions& options, std::uint64_t seed = 1) {
-  Tracker tracker(options, recording().world.camera(), recording().map, corner_motion(0), seed);
+  Tracker tracker(options, recording().world.camera(), map(), corner_motion(0), seed);
   tracker.reset(0, corner_motion(0));
   return tracker;
 }
@@ -51,38 +41,10 @@ std::vector<TrackedPose> track(const TrackerOptions& options, std::uint64_t seed
   return tracker_from(options, seed).track(recording().events);
 }
 
-/// RMS distance of the map's points in the view between a pose and the true one [px].
-double error_px(const TrackedPose& pose) {
-  const PinholeCamera& camera = recording().world.camera();
-  const MapPoints& map = recording().map;
-  const Rigid3 truth = corner_motion(seconds_from_ns(pose.t_ns)).inverse() * corner_motion(0);
-  const Rigid3 estimate = pose.world_from_camera.inverse() * corner_motion(0);
-  double squared = 0;
-  double count = 0;
-  for (std::size_t i = 0; i < map.size(); i += 7) {
-    const Eigen::Vector3d point(map.x[i], map.y[i], map.z[i]);
-    const Eigen::Vector2d u = camera.project(truth * point);
-    if (!camera.contains(u)) continue;
-    squared += (u - camera.project(estimate * point)).squaredNorm();
-    ++count;
-  }
-  return std::sqrt(squared / count);
-}
+double error_px(const TrackedPose& pose) { return recording().error_px(pose); }
 
-struct Errors {
-  double mean = 0;
-  double largest = 0;
-};
-
-Errors errors_of(const std::vector<TrackedPose>& poses) {
-  Errors errors;
-  for (const TrackedPose& pose : poses) {
-    const double error = error_px(pose);
-    errors.mean += error / static_cast<double>(poses.size());
-    errors.largest = std::max(errors.largest, error);
-  }
-  return errors;
-}
+using Errors = testing::CornerRecording::Errors;
+Errors errors_of(const std::vector<TrackedPose>& poses) { return recording().errors_of(poses); }
 
 void expect_within(const std::vector<TrackedPose>& poses, double mean_px, double largest_px) {
   ASSERT_GT(poses.size(), 30U);
@@ -299,17 +261,6 @@ TEST(Tracker, OneBadFrameIsNotALoss) {
     EXPECT_EQ(poses[i].status, TrackStatus::kLost);
 }
 
-void expect_equal(const std::vector<TrackedPose>& a, const std::vector<TrackedPose>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].t_ns, b[i].t_ns);
-    EXPECT_EQ(a[i].world_from_camera.translation(), b[i].world_from_camera.translation());
-    EXPECT_EQ(a[i].world_from_camera.rotation().coeffs(),
-              b[i].world_from_camera.rotation().coeffs());
-    EXPECT_EQ(a[i].inlier_ratio, b[i].inlier_ratio);
-  }
-}
-
 TEST(Tracker, TheSeedRepeatsTheRun) {
   for (const TrackerOptions& options : {accurate(), fast()}) {
     const auto first = track(options, 5);
@@ -332,8 +283,7 @@ TEST(Tracker, ResetStartsAnew) {
 
 TEST(Tracker, DoesNotDependOnWhereTheWorldBegins) {
   const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
-  Tracker tracker(accurate(), recording().world.camera(), recording().map,
-                  elsewhere * corner_motion(0), 1);
+  Tracker tracker(accurate(), recording().world.camera(), map(), elsewhere * corner_motion(0), 1);
   tracker.reset(0, elsewhere * corner_motion(0));
   const auto moved = tracker.track(recording().events);
   const auto poses = track(accurate());
