@@ -15,24 +15,13 @@ constexpr float kReach_px = 3;
 constexpr float kTail = 2.4F;
 constexpr float kNearest_m = 1e-6F;
 
-/// Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
-using Lanes = std::array<float, EventChunk::kLanes>;
-
-double total(Lanes sums) {
-  for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
-    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return static_cast<double>(sums[0]);
-}
-
 }  // namespace
 
 void EventChunk::add(const EventMeasurement& event, const SeenPlace& seen) {
   SACCADE_CHECK(count_ < kCapacity);
-  if (count_ % kLanes == 0) {
-    // What fills the lanes behind the last event weighs nothing.
-    for (int i = count_; i < count_ + kLanes; ++i) trust_[static_cast<std::size_t>(i)] = 0;
-  }
   const auto i = static_cast<std::size_t>(count_++);
+  // What fills the lanes behind the last event weighs nothing.
+  if (i % kLanes == 0) std::fill_n(&trust_[i], kLanes, 0.0F);
   point_x_[i] = seen.point.x();
   point_y_[i] = seen.point.y();
   point_z_[i] = seen.point.z();
@@ -147,7 +136,7 @@ void EventChunk::weigh(const Noise& noise) {
 }
 
 void EventChunk::add_to(Sums& sums) {
-  Lanes visible{}, inliers{}, trust{}, weight{}, squares{};
+  LaneSums visible{}, inliers{}, trust{}, weight{}, squares{};
   for (std::size_t first = 0; first < padded(); first += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t i = first + lane;
@@ -167,17 +156,11 @@ void EventChunk::add_to(Sums& sums) {
   for (std::size_t c = 0; c < 6; ++c) {
     for (std::size_t i = 0; i < padded(); ++i) weighted_[c][i] = weight_[i] * columns_[c][i];
     const auto column = static_cast<Eigen::Index>(c);
-    sums.rhs(column) += dot(weighted_[c], residual_);
+    sums.rhs(column) += dot(weighted_[c].data(), residual_.data(), padded());
     for (std::size_t d = 0; d <= c; ++d)
-      sums.normal(static_cast<Eigen::Index>(d), column) += dot(weighted_[c], columns_[d]);
+      sums.normal(static_cast<Eigen::Index>(d), column) +=
+          dot(weighted_[c].data(), columns_[d].data(), padded());
   }
-}
-
-double EventChunk::dot(const Floats& a, const Floats& b) const {
-  Lanes sums{};
-  for (std::size_t i = 0; i < padded(); i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-  return total(sums);
 }
 
 float EventChunk::residual(int i) const {

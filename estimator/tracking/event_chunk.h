@@ -9,6 +9,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/lanes.h"
 #include "estimator/tracking/map_view.h"
 #include "estimator/tracking/posterior_pose.h"
 
@@ -27,7 +28,6 @@ struct EventMeasurement {
 class EventChunk {
  public:
   static constexpr int kCapacity = 256;
-  static constexpr int kLanes = 16;
 
   [[nodiscard]] int size() const { return count_; }
   void clear() { count_ = 0; }
@@ -74,10 +74,9 @@ class EventChunk {
  private:
   using Floats = std::array<float, kCapacity>;
   [[nodiscard]] std::size_t padded() const {
-    return static_cast<std::size_t>((count_ + kLanes - 1) / kLanes * kLanes);
+    return padded_to_lanes(static_cast<std::size_t>(count_));
   }
   void read(const ImageF& atlas);
-  [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
 
   int count_ = 0;
   alignas(64) Floats point_x_{}, point_y_{}, point_z_{};

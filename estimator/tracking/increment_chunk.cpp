@@ -10,23 +10,7 @@ namespace {
 
 /// Residuals beyond this many deviations weigh less than half.
 constexpr float kTail = 2.4F;
-static_assert(IncrementPoints::kSpare >= IncrementChunk::kLanes);
-
-/// Sixteen partial sums in a fixed order: vector code without reassociation by the compiler.
-using Lanes = std::array<float, IncrementChunk::kLanes>;
-
-double total(Lanes sums) {
-  for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
-    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return static_cast<double>(sums[0]);
-}
-
-double dot(const float* a, const float* b, std::size_t count) {
-  Lanes sums{};
-  for (std::size_t i = 0; i < count; i += sums.size())
-    for (std::size_t lane = 0; lane < sums.size(); ++lane) sums[lane] += a[i + lane] * b[i + lane];
-  return total(sums);
-}
+static_assert(IncrementPoints::kSpare >= kLanes);
 
 }  // namespace
 
@@ -36,7 +20,7 @@ void IncrementChunk::evaluate(const PinholeCamera& camera, const ImageF& frame,
                               const Noise& noise) {
   SACCADE_CHECK(first < points.count);
   count_ = std::min(points.count - first, kCapacity);
-  padded_ = (count_ + kLanes - 1) / kLanes * kLanes;
+  padded_ = padded_to_lanes(count_);
   gain_ = gain;
   for (std::size_t c = 0; c < 6; ++c) columns_[c] = points.by_pose[c].data() + first;
   columns_[6] = points.increment.data() + first;
@@ -108,7 +92,7 @@ void IncrementChunk::read(const ImageF& frame) {
 }
 
 void IncrementChunk::add_to(Sums& sums) {
-  Lanes visible{}, weight{}, squares{}, product{}, absolute{}, expected{};
+  LaneSums visible{}, weight{}, squares{}, product{}, absolute{}, expected{};
   for (std::size_t begin = 0; begin < padded_; begin += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t i = begin + lane;

@@ -10,6 +10,7 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/tracking/increment_template.h"
+#include "estimator/tracking/lanes.h"
 #include "estimator/tracking/posterior_pose.h"
 
 namespace saccade {
@@ -19,7 +20,6 @@ namespace saccade {
 class IncrementChunk {
  public:
   static constexpr std::size_t kCapacity = 256;
-  static constexpr std::size_t kLanes = 16;
 
   /// What residuals deviate by: sigma^2 = count^2 + (place_px k |grad M|)^2.
   struct Noise {

@@ -88,29 +88,11 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
 
 void IntensityTracker::draw_view(const Rigid3& map_from_camera) {
   const StageClock clock(timing_.template_s);
-  if (has_view_ && view_fits(map_from_camera)) return;
+  if (has_view_ && view_.moved_px(map_from_camera) < redraw_px(options_, camera_)) return;
   view_.draw(map_from_camera);
   list_steep_pixels();
   has_view_ = true;
   ++views_drawn_;
-}
-
-bool IntensityTracker::view_fits(const Rigid3& map_from_camera) const {
-  // How far a few points spread over the view have moved since it was drawn.
-  constexpr int kEvery = 31;
-  const int step = view_.step_px();
-  const Rigid3 camera_from_map = map_from_camera.inverse();
-  double furthest = 0;
-  for (int y = kEvery / 2; y < camera_.height / step; y += kEvery)
-    for (int x = kEvery / 2; x < camera_.width / step; x += kEvery) {
-      const SeenPlace& seen = view_(x, y);
-      if (!(seen.inverse_depth > 0)) continue;
-      const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
-      if (point.z() <= 0) return false;
-      furthest =
-          std::max(furthest, (camera_.project(point) - Eigen::Vector2d(x * step, y * step)).norm());
-    }
-  return furthest < redraw_px(options_, camera_);
 }
 
 void IntensityTracker::start_levels(float looks) {
@@ -229,6 +211,7 @@ std::size_t IntensityTracker::relocalise(std::span<const Event> events, Poses& p
   const std::size_t done = kFrames * edges_.next_frame_events();
   if (done > events.size()) return 0;
   Poses found = edges_.track(events.first(done));
+  timing_ += edges_.timing();
   double inliers = 0;
   for (TrackedPose& pose : found) {
     pose.status = TrackStatus::kLost;

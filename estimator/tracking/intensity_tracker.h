@@ -87,7 +87,6 @@ class IntensityTracker {
   void lose();
   [[nodiscard]] Rigid3 guess(TimeNs t_ns) const;
   void draw_view(const Rigid3& map_from_camera);
-  [[nodiscard]] bool view_fits(const Rigid3& map_from_camera) const;
   void start_levels(float looks);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
   [[nodiscard]] std::size_t events_per_pose() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -46,6 +47,22 @@ void MapView::draw(const Rigid3& map_from_camera) {
     draw_view(map_.views()[i], is_joined_[i]);
   }
   measure();
+}
+
+double MapView::moved_px(const Rigid3& map_from_camera) const {
+  constexpr int kEvery = 31;
+  const Rigid3 camera_from_map = map_from_camera.inverse();
+  double furthest = 0;
+  for (int y = kEvery / 2; y < rows_; y += kEvery)
+    for (int x = kEvery / 2; x < columns_; x += kEvery) {
+      const SeenPlace& seen = (*this)(x, y);
+      if (!(seen.inverse_depth > 0)) continue;
+      const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
+      if (point.z() <= 0) return std::numeric_limits<double>::infinity();
+      const Eigen::Vector2d drawn_at(x * step_, y * step_);
+      furthest = std::max(furthest, (map_.camera().project(point) - drawn_at).norm());
+    }
+  return furthest;
 }
 
 std::vector<std::size_t> MapView::nearest_views() const {

@@ -30,6 +30,10 @@ class MapView {
 
   void draw(const Rigid3& map_from_camera);
 
+  /// How far its points have moved in the image since it was drawn: the furthest of a few spread
+  /// over it [px]; infinity where one is behind the camera.
+  [[nodiscard]] double moved_px(const Rigid3& map_from_camera) const;
+
   [[nodiscard]] const Rigid3& map_from_camera() const { return map_from_camera_; }
   /// Node (x, y) is pixel (step x, step y).
   [[nodiscard]] int step_px() const { return step_; }

@@ -14,23 +14,6 @@ namespace {
 /// What the last pose is off by when the edges take over, as image motion.
 constexpr double kUncertain_px = 4;
 
-/// How far the points of a view have moved in the image since it was drawn: the furthest of a few
-/// spread over it; infinity where one is behind the camera.
-double moved_px(const MapView& view, const PinholeCamera& camera, const Rigid3& map_from_camera) {
-  constexpr int kStep = 31;
-  const Rigid3 camera_from_map = map_from_camera.inverse();
-  double furthest = 0;
-  for (int y = kStep / 2; y < camera.height; y += kStep)
-    for (int x = kStep / 2; x < camera.width; x += kStep) {
-      const SeenPlace& seen = view(x, y);
-      if (!(seen.inverse_depth > 0)) continue;
-      const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
-      if (point.z() <= 0) return std::numeric_limits<double>::infinity();
-      furthest = std::max(furthest, (camera.project(point) - Eigen::Vector2d(x, y)).norm());
-    }
-  return furthest;
-}
-
 }  // namespace
 
 /// The outcome of one alignment.
@@ -84,6 +67,7 @@ std::size_t PolarityTracker::follow_edges(std::span<const Event> events, Poses& 
   const std::size_t done = kFrames * edges_.next_frame_events();
   if (done > events.size()) return 0;
   Poses found = edges_.track(events.first(done));
+  timing_ += edges_.timing();
   double inliers = 0;
   for (const TrackedPose& pose : found)
     inliers += pose.inlier_ratio / static_cast<double>(found.size());
@@ -99,7 +83,7 @@ std::size_t PolarityTracker::follow_edges(std::span<const Event> events, Poses& 
 
 void PolarityTracker::draw_view(const Rigid3& map_from_camera) {
   const StageClock clock(timing_.template_s);
-  if (has_view_ && moved_px(view_, camera_, map_from_camera) < options_.redraw_px) return;
+  if (has_view_ && view_.moved_px(map_from_camera) < options_.redraw_px) return;
   view_.draw(map_from_camera);
   template_.draw(view_, map_.atlas());
   has_view_ = true;

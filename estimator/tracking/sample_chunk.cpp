@@ -34,13 +34,10 @@ SampleChunk::Lanes lanes(const SampleChunk::Floats& floats, std::size_t i) {
   return lanes;
 }
 
-/// The sum of the lanes, in a fixed order: vector code without reassociation by the compiler.
 double total(SampleChunk::Lanes lanes) {
-  std::array<float, SampleChunk::kLanes> sums;
+  LaneSums sums;
   std::memcpy(sums.data(), &lanes, sizeof sums);
-  for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
-    for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return static_cast<double>(sums[0]);
+  return saccade::total(sums);
 }
 
 }  // namespace
@@ -49,11 +46,11 @@ void SampleChunk::load(std::span<const TemplatePoint> points, int first, int cou
                        std::uint32_t key) {
   SACCADE_CHECK(count > 0 && count <= kCapacity && !points.empty());
   count_ = count;
-  padded_count_ = (count + kLanes - 1) / kLanes * kLanes;
+
   const auto size = static_cast<float>(points.size());
   const float run = size / static_cast<float>(total);
   const int last = static_cast<int>(points.size()) - 1;
-  for (int i = 0; i < padded_count_; ++i) {
+  for (int i = 0; i < static_cast<int>(padded()); ++i) {
     constexpr float kUnit = 0x1p-24F;
     const auto draw = static_cast<std::uint32_t>(first + i);
     const float uniform = static_cast<float>(mix(draw * 0x9E3779B9U + key) >> 8) * kUnit;
@@ -66,8 +63,8 @@ void SampleChunk::load(std::span<const TemplatePoint> points, int first, int cou
 void SampleChunk::load_all(std::span<const TemplatePoint> points) {
   SACCADE_CHECK(points.size() <= kCapacity && !points.empty());
   count_ = static_cast<int>(points.size());
-  padded_count_ = (count_ + kLanes - 1) / kLanes * kLanes;
-  for (int i = 0; i < padded_count_; ++i)
+
+  for (int i = 0; i < static_cast<int>(padded()); ++i)
     pixel_[static_cast<std::size_t>(i)] = std::min(i, count_ - 1);
   gather(points);
 }
@@ -76,7 +73,7 @@ void SampleChunk::gather(std::span<const TemplatePoint> points) {
   // Four points at a time, transposed in registers: a gather instruction per field costs thrice
   // that.
   static_assert(sizeof(TemplatePoint) == 2 * sizeof(Quad));
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += 4) {
+  for (std::size_t i = 0; i < padded(); i += 4) {
     Quad head[4];  // ray x, ray y, inverse depth, value
     Quad tail[4];  // slope x, slope y, nothing
     for (std::size_t k = 0; k < 4; ++k) {
@@ -112,7 +109,7 @@ void SampleChunk::warp(const PinholeCamera& camera, const EventFrame& frame,
   const auto right = static_cast<float>(camera.width - 1);
   const auto bottom = static_cast<float>(camera.height - 1);
   const int stride = frame.stride();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     const float x = ray_x_[i];
     const float y = ray_y_[i];
     const float w = inverse_depth_[i];
@@ -131,9 +128,7 @@ void SampleChunk::warp(const PinholeCamera& camera, const EventFrame& frame,
     fraction_y_[i] = safe_v - static_cast<float>(row);
     pixel_[i] = row * stride + column;
   }
-  for (std::size_t i = static_cast<std::size_t>(count_);
-       i < static_cast<std::size_t>(padded_count_); ++i)
-    visible_[i] = 0;
+  for (std::size_t i = static_cast<std::size_t>(count_); i < padded(); ++i) visible_[i] = 0;
 }
 
 void SampleChunk::show_all() {
@@ -147,20 +142,20 @@ void SampleChunk::compare(const EventFrame& frame, bool smooth, float gain, floa
   } else {
     read_bilinear(frame);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i)
+  for (std::size_t i = 0; i < padded(); ++i)
     residual_[i] = visible_[i] * (frame_value_[i] - gain * value_[i] - offset);
 }
 
 void SampleChunk::read_smooth(const EventFrame& frame) {
   const std::uint8_t* pixels = frame.data();
   const int stride = frame.stride();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     std::uint32_t rows[4];
     for (int k = 0; k < 4; ++k)
       std::memcpy(&rows[k], pixels + pixel_[i] + (k - 1) * stride - 1, sizeof rows[k]);
     for (std::size_t k = 0; k < 4; ++k) windows_[k][i] = rows[k];
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     const float fx = fraction_x_[i];
     const float fy = fraction_y_[i];
     const auto line = [&](std::size_t k) {
@@ -178,14 +173,14 @@ void SampleChunk::read_smooth(const EventFrame& frame) {
 void SampleChunk::read_bilinear(const EventFrame& frame) {
   const std::uint8_t* pixels = frame.data();
   const int stride = frame.stride();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     std::uint16_t above = 0;
     std::uint16_t below = 0;
     std::memcpy(&above, pixels + pixel_[i], sizeof above);
     std::memcpy(&below, pixels + pixel_[i] + stride, sizeof below);
     neighbours_[i] = above | static_cast<std::uint32_t>(below) << 16;
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     constexpr float kScale = 1.0F / EventFrame::kFull;
     const std::uint32_t n = neighbours_[i];
     const auto byte = [n](int k) {
@@ -200,7 +195,7 @@ void SampleChunk::read_bilinear(const EventFrame& frame) {
 void SampleChunk::weigh(RobustWeight kind, float sigma) {
   if (!(sigma > 0)) return;
   const auto apply = [&](RobustWeight fixed_kind) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+    for (std::size_t i = 0; i < padded(); ++i) {
       const float root = sqrt_weight(fixed_kind, residual_[i] / sigma);
       visible_[i] *= root;
       residual_[i] *= root;
@@ -225,7 +220,7 @@ SampleChunk::columns_at(std::size_t i) const {
 }
 
 void SampleChunk::differentiate() {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes) {
+  for (std::size_t i = 0; i < padded(); i += kLanes) {
     const auto columns = columns_at(i);
     for (std::size_t k = 0; k < kColumns; ++k)
       std::memcpy(&columns_[k][i], &columns[k], sizeof(Lanes));
@@ -235,7 +230,7 @@ void SampleChunk::differentiate() {
 std::array<double, SampleChunk::kColumns> SampleChunk::columns_dot_residual() const {
   // All sums in one pass, without a detour of the columns through memory.
   std::array<Lanes, kColumns> sums{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes) {
+  for (std::size_t i = 0; i < padded(); i += kLanes) {
     const auto columns = columns_at(i);
     const Lanes residual = lanes(residual_, i);
     for (std::size_t k = 0; k < kColumns; ++k) sums[k] += columns[k] * residual;
@@ -245,24 +240,20 @@ std::array<double, SampleChunk::kColumns> SampleChunk::columns_dot_residual() co
   return totals;
 }
 
-double SampleChunk::dot(const Floats& a, const Floats& b) const {
-  Lanes sums{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); i += kLanes)
-    sums += lanes(a, i) * lanes(b, i);
-  return total(sums);
-}
-
 double SampleChunk::column_dot_column(int a, int b) const {
-  return dot(columns_[static_cast<std::size_t>(a)], columns_[static_cast<std::size_t>(b)]);
+  return dot(columns_[static_cast<std::size_t>(a)].data(),
+             columns_[static_cast<std::size_t>(b)].data(), padded());
 }
 
-double SampleChunk::squared_residual() const { return dot(residual_, residual_); }
+double SampleChunk::squared_residual() const {
+  return dot(residual_.data(), residual_.data(), padded());
+}
 
-double SampleChunk::visible() const { return dot(visible_, visible_); }
+double SampleChunk::visible() const { return dot(visible_.data(), visible_.data(), padded()); }
 
 double SampleChunk::agreeing(float mean_value, float mean_frame) const {
   int count = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_count_); ++i) {
+  for (std::size_t i = 0; i < padded(); ++i) {
     const bool agrees = (value_[i] > mean_value) == (frame_value_[i] > mean_frame);
     count += static_cast<int>(agrees & (visible_[i] > 0));
   }

@@ -8,6 +8,7 @@
 #include "core/rigid3.h"
 #include "estimator/tracking/edge_template.h"
 #include "estimator/tracking/event_frame.h"
+#include "estimator/tracking/lanes.h"
 #include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
@@ -18,7 +19,6 @@ class SampleChunk {
  public:
   static constexpr int kCapacity = 256;
   static constexpr int kColumns = 8;  ///< J (6), T, 1
-  static constexpr int kLanes = 16;
   using Floats = std::array<float, kCapacity>;
   /// Samples that are worked on together; the compiler splits it where registers are shorter.
   using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
@@ -61,14 +61,16 @@ class SampleChunk {
   [[nodiscard]] double agreeing(float mean_value, float mean_frame) const;
 
  private:
+  /// Whole lanes; what is behind the last sample is invisible.
+  [[nodiscard]] std::size_t padded() const {
+    return padded_to_lanes(static_cast<std::size_t>(count_));
+  }
   void gather(std::span<const TemplatePoint> points);
   void read_bilinear(const EventFrame& frame);
   void read_smooth(const EventFrame& frame);
   [[nodiscard]] std::array<Lanes, kColumns> columns_at(std::size_t i) const;
-  [[nodiscard]] double dot(const Floats& a, const Floats& b) const;
 
   int count_ = 0;
-  int padded_count_ = 0;  ///< count_ rounded up to whole vectors; the rest is invisible
   alignas(64) Floats ray_x_, ray_y_, inverse_depth_, value_, slope_x_, slope_y_;
   alignas(64) Floats visible_;  ///< 1 or 0; after weigh() the root of the weight
   alignas(64) Floats fraction_x_, fraction_y_;

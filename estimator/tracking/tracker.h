@@ -61,6 +61,13 @@ struct TrackTiming {
   double template_s = 0;
   double event_frame_s = 0;
   double align_s = 0;
+
+  TrackTiming& operator+=(const TrackTiming& other) {
+    template_s += other.template_s;
+    event_frame_s += other.event_frame_s;
+    align_s += other.align_s;
+    return *this;
+  }
 };
 
 /// 6-DoF pose of an event camera against a known map (thesis chapter 4): a pose for every
