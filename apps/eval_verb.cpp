@@ -16,6 +16,9 @@ namespace {
 struct EvalOptions {
   std::filesystem::path run;
   std::filesystem::path trajectory;
+  std::filesystem::path depth;
+  std::filesystem::path cloud;
+  std::optional<double> at_s;
   EvaluateOptions evaluate;
   std::optional<std::filesystem::path> output;
   CommonOptions common;
@@ -25,9 +28,24 @@ void show(const EvalOptions& options, const Metrics& metrics, const std::string&
   if (!options.common.quiet) fmt::print("{}", format_metrics(metrics, title));
 }
 
+/// What the option names was found by any program.
+bool is_foreign(const EvalOptions& options) {
+  return !options.trajectory.empty() || !options.depth.empty() || !options.cloud.empty();
+}
+
+void evaluate_foreign_depth(const EvalOptions& options) {
+  ForeignDepth depth;
+  depth.is_cloud = options.depth.empty();
+  depth.file = depth.is_cloud ? options.cloud : options.depth;
+  depth.at_s = options.at_s;
+  show(options, evaluate_depth(depth, *options.evaluate.dataset, options.output),
+       depth.file.string());
+}
+
 void evaluate_foreign(const EvalOptions& options) {
   if (!options.evaluate.dataset)
-    throw InputError("--data", "a trajectory is scored against a dataset: --data DATASET");
+    throw InputError("--data", "it is scored against a dataset: --data DATASET");
+  if (options.trajectory.empty()) return evaluate_foreign_depth(options);
   const Metrics metrics = evaluate_trajectory(options.trajectory, *options.evaluate.dataset,
                                               options.output, options.evaluate.mean_depth_m);
   show(options, metrics, options.trajectory.string());
@@ -35,11 +53,15 @@ void evaluate_foreign(const EvalOptions& options) {
 
 void evaluate(const EvalOptions& options) {
   options.common.apply();
-  if (options.run.empty() == options.trajectory.empty())
-    throw InputError("eval", "name either a run folder or --trajectory EST.txt");
-  if (!options.trajectory.empty()) return evaluate_foreign(options);
+  const int named =
+      static_cast<int>(!options.run.empty()) + static_cast<int>(!options.trajectory.empty()) +
+      static_cast<int>(!options.depth.empty()) + static_cast<int>(!options.cloud.empty());
+  if (named != 1)
+    throw InputError("eval", "name one of: a run folder, --trajectory, --depth, --cloud");
+  if (is_foreign(options)) return evaluate_foreign(options);
   if (options.output)
-    throw InputError("-o", "the scores of a run go to RUN/metrics.json; -o is for --trajectory");
+    throw InputError(
+        "-o", "the scores of a run go to RUN/metrics.json; -o is for other programs' results");
   show(options, evaluate_run(options.run, options.evaluate), options.run.string());
 }
 
@@ -52,17 +74,26 @@ void add_eval_verb(CLI::App& command) {
   verb->add_option("RUN", options->run, "Run folder; its metrics.json is written");
   verb->add_option("--trajectory", options->trajectory,
                    "Trajectory of any program (TUM: t tx ty tz qx qy qz qw)");
+  verb->add_option("--depth", options->depth,
+                   "Depth map of any program (EXR: z [m], 0 = unknown, undistorted), or a folder "
+                   "with depth maps and views.yaml");
+  verb->add_option("--cloud", options->cloud, "Point cloud of any program (PLY, world frame)");
+  verb->add_option("--at-s", options->at_s,
+                   "Time of the view of --depth or --cloud (default: of the first depth map)")
+      ->check(finite_number());
   verb->add_option("--data", options->evaluate.dataset,
                    "Dataset to score against (default: the one the run used)");
   verb->add_option("--mean-depth-m", options->evaluate.mean_depth_m,
                    "d of dt_rel, where the dataset states none")
       ->check(positive_number());
-  verb->add_option("-o,--output", options->output, "Where the scores of --trajectory go (JSON)");
+  verb->add_option("-o,--output", options->output,
+                   "Where the scores of another program's result go (JSON)");
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"
       "  saccade eval runs/walls\n"
-      "  saccade eval --trajectory mine.txt --data data/walls -o mine.json");
+      "  saccade eval --trajectory mine.txt --data data/walls -o mine.json\n"
+      "  saccade eval --depth mine.exr --at-s 0.5 --data data/walls");
   verb->callback([options] { evaluate(*options); });
 }
 

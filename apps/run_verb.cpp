@@ -30,6 +30,13 @@ std::string module_list() {
 
 void show(const RunVerbOptions& options, const RunSummary& summary) {
   const double wall_s = summary.wall_s;
+  if (find_module(options.module).takes_poses) {
+    fmt::print("{}: {} points in {} views from {:.3f} M events in {:.3f} s: {:.3f} M events/s\n",
+               options.request.output.string(), summary.points, summary.views,
+               1e-6 * static_cast<double>(summary.events), wall_s,
+               wall_s > 0 ? 1e-6 * static_cast<double>(summary.events) / wall_s : 0);
+    return;
+  }
   fmt::print("{}: {} poses ({} lost) from {:.3f} M events in {:.3f} s: {:.0f} poses/s\n",
              options.request.output.string(), summary.poses, summary.lost_poses,
              1e-6 * static_cast<double>(summary.events), wall_s,
@@ -49,7 +56,7 @@ void run(RunVerbOptions options) {
   if (options.request.output.empty())
     throw InputError("-o", "name the run folder to write: -o RUN");
   options.request.threads = thread_count();
-  const RunSummary summary = module.run(options.request);
+  const RunSummary summary = run_module(options.module, options.request);
   if (!options.common.quiet) show(options, summary);
 }
 
@@ -65,6 +72,9 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("-o,--output", request.output, "Run folder to write")->type_name("RUN");
   verb->add_option("-c,--config", options->config, "Configuration of the module (YAML)")
       ->type_name("CONFIG");
+  verb->add_option("--poses-from", request.poses_from,
+                   "Poses of this run or trajectory file (TUM) in place of the ground truth's")
+      ->type_name("RUN");
   verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)")
       ->check(finite_number());
   verb->add_option("--duration-s", request.duration_s, "Length of the window")
@@ -76,7 +86,9 @@ void add_run_verb(CLI::App& command) {
   add_common_options(*verb, options->common);
   verb->footer(
       "Example:\n"
-      "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls");
+      "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
+      "  saccade run depth --data data/walls --poses-from runs/walls -c configs/depth/thesis.yaml "
+      "-o runs/walls_depth");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

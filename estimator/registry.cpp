@@ -1,14 +1,17 @@
 #include "estimator/registry.h"
 
 #include "core/error.h"
+#include "estimator/depth/depth_module.h"
 #include "estimator/tracking/track_module.h"
 
 namespace saccade {
 namespace {
 
 constexpr Module kModules[] = {
-    {"track", "pose of the camera against a known map (thesis chapter 4)", run_track,
+    {"track", "pose of the camera against a known map (thesis chapter 4)", false, run_track,
      print_track_config},
+    {"depth", "depth of the edges from events and poses (thesis chapter 5)", true, run_depth,
+     print_depth_config},
 };
 
 }  // namespace
@@ -25,7 +28,10 @@ const Module& find_module(const std::string& name) {
 }
 
 RunSummary run_module(const std::string& name, const RunRequest& request) {
-  return find_module(name).run(request);
+  const Module& module = find_module(name);
+  if (request.poses_from && !module.takes_poses)
+    throw InputError("--poses-from", std::string(name) + " takes no poses");
+  return module.run(request);
 }
 
 }  // namespace saccade

@@ -15,8 +15,11 @@ struct RunRequest {
   std::filesystem::path dataset;
   std::filesystem::path output;  ///< run folder; appears under this name only when complete
   config::Document config = config::Document::empty();
-  std::optional<double> start_s;      ///< from the dataset's time zero; default: its first event
-  std::optional<double> duration_s;   ///< default: to its last event
+  std::optional<double> start_s;     ///< from the dataset's time zero; default: its first event
+  std::optional<double> duration_s;  ///< default: to its last event
+  /// A run folder or a trajectory file whose poses stand in for the ground truth's; of modules that
+  /// take poses.
+  std::optional<std::filesystem::path> poses_from;
   std::optional<std::uint64_t> seed;  ///< in place of the configuration's
   int threads = 1;                    ///< as stated in run.yaml
   int repeat = 1;                     ///< how often the work is done, for timing; >= 1
@@ -28,7 +31,9 @@ struct RunSummary {
   std::size_t events = 0;  ///< given to the estimator
   std::size_t poses = 0;
   std::size_t lost_poses = 0;
-  double wall_s = 0;  ///< median over the repetitions, without reading and writing
+  std::size_t views = 0;   ///< depth maps written
+  std::size_t points = 0;  ///< in all of them
+  double wall_s = 0;       ///< median over the repetitions, without reading and writing
 };
 
 }  // namespace saccade

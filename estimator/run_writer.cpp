@@ -88,6 +88,8 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   record.module = module;
   record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
   record.dataset_sha256 = dataset_hash(dataset);
+  if (request.poses_from)
+    record.poses_from = std::filesystem::absolute(*request.poses_from).lexically_normal();
   record.window = window;
   record.seed = seed;
   record.threads = request.threads;

@@ -1,7 +1,10 @@
 #include "eval/evaluate.h"
 
+#include <vector>
+
 #include "core/error.h"
 #include "core/io/atomic_file.h"
+#include "eval/depth_views.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/trajectory_metrics.h"
 
@@ -16,12 +19,21 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
   for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
 }
 
-}  // namespace
+/// What `run` found of depth, and how far it is off.
+struct ScoredDepth {
+  std::vector<DepthView> views;
+  std::vector<DepthErrors> errors;
 
-Metrics score_run(const RunFolder& run, const Dataset& dataset,
-                  const std::optional<double>& mean_depth_m) {
+  ScoredDepth(const RunFolder& run, const Dataset& dataset)
+      : views(load_depth_views(run.folder)), errors(compare_views(views, dataset)) {}
+};
+
+Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& depth,
+              const std::optional<double>& mean_depth_m) {
   Metrics metrics;
   merge(metrics, run.timing, "speed.");
+  if (!depth.views.empty())
+    merge(metrics, score_depth(depth.views, depth.errors, dataset.camera()), "");
   if (!run.trajectory) return metrics;
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;
@@ -31,13 +43,23 @@ Metrics score_run(const RunFolder& run, const Dataset& dataset,
   return metrics;
 }
 
+}  // namespace
+
+Metrics score_run(const RunFolder& run, const Dataset& dataset,
+                  const std::optional<double>& mean_depth_m) {
+  return score(run, dataset, ScoredDepth(run, dataset), mean_depth_m);
+}
+
 Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options) {
   check_depth(options.mean_depth_m);
   const RunFolder run = RunFolder::open(run_folder);
   const Dataset dataset = run.open_dataset(options.dataset);
-  const Metrics metrics = score_run(
-      run, dataset, options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m);
+  const ScoredDepth depth(run, dataset);
+  const Metrics metrics =
+      score(run, dataset, depth,
+            options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m);
   write_atomically(run_folder / "metrics.json", to_json(metrics));
+  if (!depth.views.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth.errors);
   return metrics;
 }
 
@@ -52,6 +74,25 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
   input.truth = dataset.groundtruth();
   input.mean_depth_m = mean_depth_m ? mean_depth_m : dataset.facts().mean_depth_m;
   const Metrics metrics = score_trajectory(input);
+  if (output) write_atomically(*output, to_json(metrics));
+  return metrics;
+}
+
+Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
+                       const std::optional<std::filesystem::path>& output) {
+  const Dataset dataset = Dataset::open(dataset_folder);
+  std::vector<DepthView> views;
+  if (std::filesystem::is_directory(depth.file)) {
+    views = load_depth_views(depth.file);
+    if (views.empty()) throw InputError(depth.file.string(), "holds no views.yaml with depth maps");
+  } else {
+    if (!depth.at_s && dataset.depth_maps().empty())
+      throw InputError("--at-s", "state the time of the view: the dataset has no depth maps");
+    const double t_s = depth.at_s ? *depth.at_s : dataset.depth_maps().front().t_s;
+    views = {depth.is_cloud ? load_cloud(depth.file, dataset, t_s)
+                            : load_depth_map(depth.file, dataset, t_s)};
+  }
+  const Metrics metrics = score_depth(views, compare_views(views, dataset), dataset.camera());
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }

@@ -17,8 +17,9 @@ struct EvaluateOptions {
 };
 
 /// Scores a run folder against the ground truth of its dataset and writes RUN/metrics.json
-/// (docs/metrics.md). What cannot be measured is null: a dataset without ground truth still gives
-/// the speed. Throws InputError for a folder that is no run, a missing dataset, malformed files.
+/// (docs/metrics.md), of depth also RUN/depth_views.csv with the scores of every view. What cannot
+/// be measured is null: a dataset without ground truth still gives the speed. Throws InputError for
+/// a folder that is no run, a missing dataset, malformed files.
 Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options = {});
 
 /// The same without reading and writing folders; `mean_depth_m` is d of dt_rel, nullopt: unknown.
@@ -31,6 +32,20 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
                             const std::filesystem::path& dataset_folder,
                             const std::optional<std::filesystem::path>& output = std::nullopt,
                             const std::optional<double>& mean_depth_m = std::nullopt);
+
+/// Depth that any program found.
+struct ForeignDepth {
+  /// A point cloud in the world (PLY), a depth map (EXR), or a folder with depth maps that
+  /// views.yaml lists.
+  std::filesystem::path file;
+  bool is_cloud = false;
+  /// Time of the view, not of a folder; default: of the dataset's first depth map.
+  std::optional<double> at_s;
+};
+
+/// Scores it as evaluate_run() scores a run of `depth`.
+Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
+                       const std::optional<std::filesystem::path>& output = std::nullopt);
 
 /// The scores as a table for a terminal, below a line with `title`; a dash where a score is null.
 [[nodiscard]] std::string format_metrics(const Metrics& metrics, const std::string& title);

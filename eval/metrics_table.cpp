@@ -50,14 +50,47 @@ void add_tracking(std::string& text, const Metrics& metrics) {
                     fixed(get("reprojection_px.max"), 2));
 }
 
+void add_depth(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const std::string& key) { return metrics.get("depth." + key); };
+  const auto percent = [&](const std::string& key, int decimals = 2) {
+    std::optional<double> value = get(key);
+    if (value) *value *= 100;
+    return fixed(value, decimals);
+  };
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "depth", "median %",
+                      "mean %", "> 5 %", "RMSE [m]", "1 sigma %", "2 sigma %");
+  for (const std::string prefix : {"", "strict."})
+    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
+                        prefix.empty() ? "best of 3 x 3" : "strict", percent(prefix + "rel_median"),
+                        percent(prefix + "rel_mean"), percent(prefix + "outlier_5_percent"),
+                        fixed(get(prefix + "rmse_m"), 4), percent(prefix + "within_1_sigma", 1),
+                        percent(prefix + "within_2_sigma", 1));
+  text += fmt::format("  {} points in {} views, completeness {} %\n", grouped(get("points")),
+                      grouped(get("views.count")), percent("completeness", 1));
+  const auto spread = [&](const char* name) {
+    const std::string key = std::string("views.") + name;
+    return fmt::format("{} (worst {})", percent(key + ".median"), percent(key + ".worst"));
+  };
+  text += fmt::format("  per view: median {} %, mean {} %, over 5 % {} %, completeness {} %\n",
+                      spread("rel_median"), spread("rel_mean"), spread("outlier_5_percent"),
+                      spread("completeness"));
+  text += fmt::format("  per view: {} points (fewest {})\n", grouped(get("views.points.median")),
+                      grouped(get("views.points.worst")));
+  if (get("two_planes.angle_deg"))
+    text += fmt::format("  two planes at {} deg hold {} % of the points\n",
+                        fixed(get("two_planes.angle_deg"), 2), percent("two_planes.share", 1));
+}
+
 void add_speed(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) {
     return speed_value(metrics, std::string("speed.") + key);
   };
   std::optional<double> wall_ms = get("wall_s");
   if (wall_ms) *wall_ms *= 1000;
-  text += fmt::format("  {} ms, {} events/s, {} poses/s, {} x real time\n", fixed(wall_ms, 1),
-                      grouped(get("events_per_s")), grouped(get("poses_per_s")),
+  const bool has_poses = metrics.values().contains("trajectory.poses");
+  text += fmt::format("  {} ms, {} events/s, {}{} x real time\n", fixed(wall_ms, 1),
+                      grouped(get("events_per_s")),
+                      has_poses ? grouped(get("poses_per_s")) + " poses/s, " : "",
                       fixed(get("realtime_factor"), 2));
 }
 
@@ -75,6 +108,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
     add_alignments(text, metrics);
     add_tracking(text, metrics);
   }
+  if (metrics.values().contains("depth.points")) add_depth(text, metrics);
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;
 }

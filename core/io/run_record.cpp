@@ -23,6 +23,8 @@ void describe(config::Fields& fields, RunRecord& record) {
         dataset.value("sha256", record.dataset_sha256, "of dataset.yaml or of the events");
       },
       "what it was given");
+  if (fields.has("poses_from") || (!fields.reading() && !record.poses_from.empty()))
+    fields.value("poses_from", record.poses_from, "whose poses it took in place of the truth's");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);

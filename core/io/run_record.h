@@ -19,10 +19,11 @@ struct RunRecord {
   };
 
   int format_version = 1;
-  std::string module;             ///< "track", "depth", ...
-  std::filesystem::path dataset;  ///< folder; in the file relative to run.yaml, or absolute
-  std::string dataset_sha256;     ///< of its dataset.yaml, or of its events where it has none
-  std::optional<Window> window;   ///< nullopt: the whole dataset
+  std::string module;                ///< "track", "depth", ...
+  std::filesystem::path dataset;     ///< folder; in the file relative to run.yaml, or absolute
+  std::string dataset_sha256;        ///< of its dataset.yaml, or of its events where it has none
+  std::filesystem::path poses_from;  ///< run or trajectory file; empty: not in place of the truth's
+  std::optional<Window> window;      ///< nullopt: the whole dataset
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0: not stated
   std::string tool_version;  ///< "0.1.0 (1234567890ab)"

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/check.h"
+#include "estimator/mean_time.h"
 
 namespace saccade {
 namespace {
@@ -177,14 +178,6 @@ double time_constant(const EventFrameOptions& options, std::span<const Event> ev
   if (options.tau_s) return *options.tau_s;
   const TimeNs duration = events.back().t_ns - events.front().t_ns;
   return options.tau_share * seconds_from_ns(std::max<TimeNs>(duration, 1));
-}
-
-TimeNs mean_time(std::span<const Event> events) {
-  SACCADE_CHECK(!events.empty());
-  const TimeNs first = events.front().t_ns;
-  TimeNs sum = 0;
-  for (const Event& e : events) sum += e.t_ns - first;
-  return first + sum / static_cast<TimeNs>(events.size());
 }
 
 }  // namespace saccade

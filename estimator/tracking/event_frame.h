@@ -99,7 +99,4 @@ class EventFrame {
 /// The time constant of a surface of these events [s], > 0; at least one event.
 [[nodiscard]] double time_constant(const EventFrameOptions& options, std::span<const Event> events);
 
-/// Mean time of the events [ns], which stamps the pose of their frame; at least one event.
-[[nodiscard]] TimeNs mean_time(std::span<const Event> events);
-
 }  // namespace saccade

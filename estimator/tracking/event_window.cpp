@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "estimator/mean_time.h"
 
 namespace saccade {
 

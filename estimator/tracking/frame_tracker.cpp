@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/check.h"
+#include "estimator/stage_clock.h"
 #include "estimator/tracking/posterior_pose.h"
-#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "core/check.h"
+#include "estimator/mean_time.h"
+#include "estimator/stage_clock.h"
 #include "estimator/tracking/event_frame.h"
 #include "estimator/tracking/posterior_pose.h"
-#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {

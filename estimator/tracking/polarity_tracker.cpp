@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/mean_time.h"
+#include "estimator/stage_clock.h"
 #include "estimator/tracking/event_frame.h"
 #include "estimator/tracking/posterior_pose.h"
-#include "estimator/tracking/stage_clock.h"
 
 namespace saccade {
 namespace {

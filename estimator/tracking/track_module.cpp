@@ -16,6 +16,7 @@
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
+#include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/grey_frames.h"
@@ -45,12 +46,9 @@ struct TrackInput {
 
 /// `measurements`: events or frames, at least one.
 template <class Measurements>
-RunRecord::Window window_of(const RunRequest& request, const Measurements& measurements) {
-  RunRecord::Window window;
-  window.start_s = request.start_s.value_or(seconds_from_ns(measurements.front().t_ns));
-  window.end_s = request.duration_s ? window.start_s + *request.duration_s
-                                    : seconds_from_ns(measurements.back().t_ns);
-  return window;
+RunRecord::Window window_over(const RunRequest& request, const Measurements& measurements) {
+  return window_of(request, seconds_from_ns(measurements.front().t_ns),
+                   seconds_from_ns(measurements.back().t_ns));
 }
 
 Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double start_s) {
@@ -83,21 +81,6 @@ Gyroscope load_gyroscope(const TrackConfig& config, const Dataset& dataset) {
   return {samples, camera_from_imu.rotation_matrix(), config.tracker.motion.gyro_bias};
 }
 
-Events load_window(const RunRequest& request, const Dataset& dataset) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double start_s = request.start_s.value_or(-infinity);
-  if (!request.duration_s) return dataset.load_events(start_s);
-  if (request.start_s) return dataset.load_events(start_s, start_s + *request.duration_s);
-  // The start is the first event, which only the file knows.
-  Events events = dataset.load_events();
-  if (events.empty()) return events;
-  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(*request.duration_s);
-  const auto end = std::find_if(events.begin(), events.end(),
-                                [end_ns](const Event& e) { return e.t_ns >= end_ns; });
-  events.erase(end, events.end());
-  return events;
-}
-
 std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double first_s = dataset.frames().empty() ? 0 : dataset.frames().front().t_s;
@@ -111,12 +94,10 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
   TrackInput input;
   if (config.method == TrackConfig::Method::kFrames) {
     input.frames = load_frame_window(request, dataset);
-    input.window = window_of(request, input.frames);
+    input.window = window_over(request, input.frames);
   } else {
-    input.events = load_window(request, dataset);
-    if (input.events.empty())
-      throw InputError(dataset.folder().string(), "holds no events in the window to be tracked");
-    input.window = window_of(request, input.events);
+    input.events = load_events(request, dataset);
+    input.window = window_over(request, input.events);
   }
   input.references =
       load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
@@ -255,9 +236,7 @@ void write_map(const std::filesystem::path& file, const MapPoints& map,
 RunSummary run_track(const RunRequest& request) {
   TrackConfig config = config::read<TrackConfig>(request.config);
   if (request.seed) config.seed = *request.seed;
-  if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
-  if (request.duration_s && !(*request.duration_s > 0))
-    throw InputError("--duration-s", "must be above 0");
+  check(request);
   RunWriter writer(request);
 
   const auto read_start = Clock::now();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/tracking/stage_clock.h"
+#include "estimator/stage_clock.h"
 
 namespace saccade {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/io/event_file.h"
 #include "eval/picture/canvas.h"
+#include "eval/picture/colour_bar.h"
 #include "eval/picture/event_picture.h"
 #include "eval/picture/map_overlay.h"
 
@@ -21,29 +22,6 @@ std::size_t current_file(const std::vector<StampedFile>& files, double t_s) {
   std::size_t index = 0;
   while (index + 1 < files.size() && files[index + 1].t_s <= t_s) ++index;
   return index;
-}
-
-/// The colours of the depths with their metres, along the lower edge.
-ImageRgb8 with_colour_bar(ImageRgb8 picture, const DepthRange& range) {
-  Canvas canvas(std::move(picture));
-  const int left = canvas.width() / 2;
-  const int right = canvas.width() - 12;
-  const int bottom = canvas.height() - 10;
-  for (int x = left; x <= right; ++x) {
-    const double share = static_cast<double>(x - left) / (right - left);
-    const double inverse = (1 - share) / range.near_m + share / range.far_m;
-    canvas.line(Eigen::Vector2d(x, bottom), Eigen::Vector2d(x, bottom - 8),
-                depth_colour(1 / inverse, range));
-  }
-  const auto label = [&](const std::string& text, double x) {
-    for (const auto& [dx, dy] : {std::pair{1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
-      canvas.text(text, Eigen::Vector2d(x + dx, bottom - 13 + dy), {0, 0, 0});
-    canvas.text(text, Eigen::Vector2d(x, bottom - 13), {255, 255, 255});
-  };
-  const std::string far = fmt::format("{:.3g} m", range.far_m);
-  label(fmt::format("{:.3g} m", range.near_m), left);
-  label(far, right - Canvas::text_width(far));
-  return canvas.image();
 }
 
 }  // namespace
@@ -94,7 +72,7 @@ std::optional<ImageRgb8> SensorView::frame(double t_s) const {
 std::optional<ImageRgb8> SensorView::depth(double t_s) const {
   std::optional<DepthPicture> plain = plain_depth(t_s);
   if (!plain) return std::nullopt;
-  return with_colour_bar(upscale(plain->image, style_.upscale), plain->range);
+  return with_depth_bar(upscale(plain->image, style_.upscale), plain->range);
 }
 
 std::optional<DepthPicture> SensorView::plain_depth(double t_s) const {

@@ -46,8 +46,10 @@ std::string sections(const std::vector<RunData>& runs) {
 /// Links to the tables that are there and to every run.
 std::string contents(const std::vector<RunData>& runs, const std::string& tables) {
   std::string html;
-  for (const auto& [id, name] :
-       {std::pair{"accuracy", "Accuracy"}, {"datasets", "Datasets"}, {"speed", "Speed"}})
+  for (const auto& [id, name] : {std::pair{"accuracy", "Accuracy"},
+                                 {"depth", "Depth"},
+                                 {"datasets", "Datasets"},
+                                 {"speed", "Speed"}})
     if (tables.find(fmt::format("id=\"{}\"", id)) != std::string::npos)
       html += fmt::format("<a href=\"#{}\">{}</a>", id, name);
   for (const RunData& data : runs)
@@ -63,7 +65,8 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   std::vector<RunData> runs;
   for (const std::filesystem::path& folder : run_folders)
     runs.push_back(gather_run(folder, runs.size() + 1));
-  const std::string tables = accuracy_table(runs) + dataset_table(runs) + speed_table(runs);
+  const std::string tables =
+      accuracy_table(runs) + depth_table(runs) + dataset_table(runs) + speed_table(runs);
   const std::string page = fill_page(
       assets::page_html,
       {{"title", escape_html(options.title)},

@@ -6,6 +6,7 @@
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"
+#include "eval/report/depth_section.h"
 #include "eval/report/html.h"
 
 namespace saccade {
@@ -28,13 +29,24 @@ std::string key_numbers(const RunData& data) {
   if (!m.get("trajectory.dt_rel_percent.mean")) score("dt_m.mean", 1e3, "mm", "mean &Delta;t");
   score("dtheta_deg.mean", 1, "deg", "mean &Delta;&theta;");
   score("reprojection_px.rms", 1, "px", "map in the image, RMS");
+  const auto depth = [&](const char* key, const char* label) {
+    std::optional<double> value = m.get(std::string("depth.") + key);
+    if (value) *value *= 100;
+    add(value, significant(value), "%", label);
+  };
+  depth("rel_median", "median error of depth");
+  depth("rel_mean", "mean error of depth");
+  depth("completeness", "of the edge pixels found");
+  add(m.get("depth.points"), grouped(m.get("depth.points")), "", "points");
   std::optional<double> coverage = m.get("trajectory.coverage");
   if (coverage) *coverage *= 100;
   add(coverage, fixed(coverage, 1), "%", "of the time covered");
   const std::optional<double> poses = m.get("trajectory.poses");
   add(poses, grouped(poses), "", "poses");
-  const std::optional<double> rate = speed_value(m, "speed.poses_per_s");
-  add(rate, grouped(rate), "/s", "poses");
+  const bool has_poses = poses.has_value() || !m.get("depth.points");
+  const char* unit = has_poses ? "poses" : "events";
+  const std::optional<double> rate = speed_value(m, fmt::format("speed.{}_per_s", unit));
+  add(rate, grouped(rate), "/s", unit);
   return html.empty() ? "" : "<ul class=\"keys\">" + html + "</ul>\n";
 }
 
@@ -177,6 +189,7 @@ std::string provenance(const RunData& data) {
   add("command", r.command);
   add("module", r.module);
   add("dataset", r.dataset.string());
+  add("poses from", r.poses_from.string());
   add("dataset hash", r.dataset_sha256);
   if (r.window)
     add("window", fmt::format("{:.6f} .. {:.6f} s", r.window->start_s, r.window->end_s));
@@ -220,7 +233,7 @@ std::string run_section(const RunData& data) {
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));
   html += key_numbers(data) + views(data);
-  if (data.data) html += map_pictures(data);
+  if (data.data) html += map_pictures(data) + depth_section(data);
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
 }
 

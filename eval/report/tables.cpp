@@ -74,6 +74,27 @@ std::string accuracy_row(const RunData& data) {
          fmt::format("<td class=\"space\">{} %</td></tr>\n", fixed(coverage, 1));
 }
 
+std::string depth_row(const RunData& data) {
+  const auto percent = [&](const std::string& key, int decimals) {
+    std::optional<double> value = data.metrics.get("depth." + key);
+    if (value) *value *= 100;
+    return fixed(value, decimals);
+  };
+  const auto with_worst = [&](const std::string& key, int decimals, bool starts_group) {
+    return cell(percent(key, decimals), percent("views." + key + ".worst", decimals), starts_group);
+  };
+  const auto alone = [&](const std::string& key, int decimals, bool starts_group) {
+    return cell(percent(key, decimals), fixed(std::nullopt, 0), starts_group);
+  };
+  return "<tr>" + name_cell(data) + with_worst("rel_median", 2, true) +
+         with_worst("rel_mean", 2, false) + with_worst("outlier_5_percent", 2, false) +
+         alone("strict.rel_median", 2, true) + alone("strict.rel_mean", 2, false) +
+         with_worst("completeness", 1, true) +
+         cell(grouped(data.metrics.get("depth.views.points.median")),
+              grouped(data.metrics.get("depth.views.points.worst"))) +
+         alone("within_1_sigma", 1, true) + alone("within_2_sigma", 1, false) + "</tr>\n";
+}
+
 std::string deviation_cell(const std::optional<double>& ours, const std::optional<double>& theirs,
                            const std::string& shown) {
   std::string reference = printed(theirs);
@@ -104,8 +125,14 @@ std::string dataset_row(const RunData& data) {
          cell(fixed(ratio(n.path_m, n.mean_depth_m), 2), fixed(thesis_ratio, 2)) + "</tr>\n";
 }
 
+/// Table 8.3 is about tracking; other modules have nothing to be compared with.
+const thesis::Tracking* thesis_speed(const RunData& data) {
+  if (data.run.record.module != "track") return nullptr;
+  return thesis::find_tracking(data.dataset, data.fast);
+}
+
 std::string speed_row(const RunData& data) {
-  const thesis::Tracking* thesis = thesis::find_tracking(data.dataset, data.fast);
+  const thesis::Tracking* thesis = thesis_speed(data);
   const auto value = [&](const char* key, double scale) {
     std::optional<double> v = speed_value(data.metrics, std::string("speed.") + key);
     if (v) *v *= scale;
@@ -116,7 +143,8 @@ std::string speed_row(const RunData& data) {
     return thesis->*member;
   };
   const std::optional<double> rate = value("events_per_s", 1e-6);
-  const std::optional<double> poses = value("poses_per_s", 1);
+  std::optional<double> poses = value("poses_per_s", 1);
+  if (data.metrics.get("depth.points") && !data.metrics.get("trajectory.poses")) poses.reset();
   return "<tr>" + name_cell(data) +
          cell(significant(value("wall_s", 1e3)), printed(theirs(&thesis::Tracking::time_ms)),
               true) +
@@ -156,6 +184,23 @@ std::string accuracy_table(std::span<const RunData> runs) {
   html += "<th class=\"space\">coverage</th></tr></thead><tbody>\n";
   for (const RunData& data : runs)
     if (data.metrics.get("trajectory.poses")) html += accuracy_row(data);
+  return html + "</tbody></table></div></section>\n";
+}
+
+std::string depth_table(std::span<const RunData> runs) {
+  if (!has_any(runs, "depth.")) return "";
+  std::string html =
+      "<section id=\"depth\"><h2>Depth</h2>\n<p>Relative errors |d - d<sub>truth</sub>| / "
+      "d<sub>truth</sub> against the best pixel of the 3 x 3 around a point, over all views; "
+      "strict: "
+      "at its exact position. The smaller number below is that of the worst view.</p>\n"
+      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>run</th>"
+      "<th class=\"space\">median [%]</th><th>mean [%]</th><th>over 5 % [%]</th>"
+      "<th class=\"space\">strict median [%]</th><th>strict mean [%]</th>"
+      "<th class=\"space\">complete [%]</th><th>points per view</th>"
+      "<th class=\"space\">within 1 &sigma; [%]</th><th>2 &sigma; [%]</th></tr></thead><tbody>\n";
+  for (const RunData& data : runs)
+    if (data.metrics.get("depth.points")) html += depth_row(data);
   return html + "</tbody></table></div></section>\n";
 }
 

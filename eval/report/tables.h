@@ -13,6 +13,8 @@ namespace saccade {
 
 /// Thesis table 8.2; empty where no run has a trajectory score.
 [[nodiscard]] std::string accuracy_table(std::span<const RunData> runs);
+/// Scores of depth; empty where no run has any.
+[[nodiscard]] std::string depth_table(std::span<const RunData> runs);
 /// Thesis table 8.1, one row per dataset.
 [[nodiscard]] std::string dataset_table(std::span<const RunData> runs);
 /// Thesis table 8.3; empty where no run was timed.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "estimator/mean_time.h"
+
 namespace saccade {
 namespace {
 

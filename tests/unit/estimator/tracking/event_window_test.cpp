@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/mean_time.h"
+
 namespace saccade {
 namespace {
 

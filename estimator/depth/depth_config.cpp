@@ -1,0 +1,128 @@
+#include "estimator/depth/depth_config.h"
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+void describe_window(config::Fields& fields, DepthWindowOptions& options) {
+  using By = DepthWindowOptions::By;
+  using Reference = DepthWindowOptions::Reference;
+  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
+                "what the windows share alike");
+  if (options.by == By::kTime)
+    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
+        .range(1e-4, 1e4);
+  if (options.by == By::kEvents)
+    fields.value("events", options.events, "most events of a window; all hold equally many")
+        .range(100, 1e9);
+  fields.choice(
+      "reference", options.reference,
+      {{"start", Reference::kStart}, {"middle", Reference::kMiddle}, {"end", Reference::kEnd}},
+      "where in its window the view lies");
+}
+
+void describe_limits(config::Fields& fields, DepthLimits& limits) {
+  fields.value("near", limits.near_m, "nearest depth").range(1e-3, 1e6);
+  fields.value("far", limits.far_m, "farthest depth").range(1e-3, 1e6);
+  fields.expect(limits.near_m < limits.far_m, "near", "must be below far");
+}
+
+void describe_keypoints(config::Fields& fields, KeypointOptions& options) {
+  fields.value("cell_px", options.cell_px, "side of a cell, which has at most one keypoint (5.5)")
+      .range(1, 1000);
+  fields
+      .value("min_weight", options.min_weight,
+             "of a cell, in units of the mean over the reference frame")
+      .range(0, 1e6);
+}
+
+void describe_search(config::Fields& fields, SearchOptions& options) {
+  fields
+      .value("patch_radius_px", options.patch_radius_px, "a patch has 2 r + 1 pixels on each side")
+      .range(1, 50);
+  fields.value("iterations", options.iterations, "of Gauss-Newton, at most").range(1, 1000);
+  fields
+      .value("max_shift_px", options.max_shift_px,
+             "farther along the line from where the current depth puts it, a match is refused")
+      .above(0);
+  fields
+      .value("min_alignment", options.min_alignment,
+             "a patch is refused when the mean cos^2 between its gradient and the line is less")
+      .range(0, 1);
+  fields.value("min_correlation", options.min_correlation, "of the matched patches").range(-1, 1);
+}
+
+void describe_filter(config::Fields& fields, FilterOptions& options) {
+  fields.value("error_px", options.error_px, "deviation of a match along the epipolar line")
+      .range(0.001, 100);
+  fields.value("prior_inliers", options.prior_inliers, "a of a new keypoint").range(0.1, 1e6);
+  fields.value("prior_outliers", options.prior_outliers, "b of a new keypoint").range(0.1, 1e6);
+  fields
+      .value("converged", options.converged,
+             "a point counts when the deviation of its inverse depth is below this share of it")
+      .above(0);
+  fields.value("min_inlier_probability", options.min_inlier_probability, "a point counts above it")
+      .range(0, 1);
+}
+
+void describe_outliers(config::Fields& fields, OutlierOptions& options) {
+  fields.value("radius", options.radius, "of the neighbourhood, as a share of the point's depth")
+      .above(0);
+  fields.value("neighbours", options.neighbours, "least other points in it; 0 keeps everything")
+      .range(0, 1000);
+}
+
+void describe_thesis(config::Fields& fields, ThesisDepthOptions& options) {
+  fields
+      .value("events_per_px", options.events_per_px,
+             "events of an event frame, per pixel of the sensor (5.4)")
+      .range(0.001, 100);
+  fields.group(
+      "keypoints", [&](config::Fields& f) { describe_keypoints(f, options.keypoints); },
+      "grid over the reference frame (5.5)");
+  fields.group(
+      "search", [&](config::Fields& f) { describe_search(f, options.search); },
+      "Lucas-Kanade along the epipolar line (5.1)");
+  fields.group(
+      "filter", [&](config::Fields& f) { describe_filter(f, options.filter); },
+      "Bayesian filter of the inverse depth (5.3)");
+  fields.group(
+      "outliers", [&](config::Fields& f) { describe_outliers(f, options.outliers); },
+      "radius outlier removal");
+  fields
+      .value("initial_depth_m", options.initial_depth_m,
+             "where keypoints start; ~ is the dataset's mean scene depth")
+      .above(0);
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, DepthConfig& config) {
+  fields.choice("method", config.method, {{"thesis", DepthConfig::Method::kThesis}},
+                "how depth is found");
+  fields.group(
+      "window", [&](config::Fields& f) { describe_window(f, config.window); },
+      "part of the events that makes one view");
+  fields.group(
+      "range_m", [&](config::Fields& f) { describe_limits(f, config.limits); },
+      "depths that may occur");
+  if (config.method == DepthConfig::Method::kThesis)
+    fields.group(
+        "thesis", [&](config::Fields& f) { describe_thesis(f, config.thesis); },
+        "keypoints of a reference frame, searched along epipolar lines (chapter 5)");
+  fields.value("seed", config.seed, "of random numbers; the thesis's method draws none");
+}
+
+std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,
+                                                     const PinholeCamera& camera,
+                                                     double mean_depth_m) {
+  SACCADE_CHECK(mean_depth_m > 0);
+  switch (config.method) {
+    case DepthConfig::Method::kThesis:
+      return std::make_unique<ThesisDepth>(config.thesis, config.limits, camera, mean_depth_m);
+  }
+  return nullptr;
+}
+
+}  // namespace saccade

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/event.h"
+#include "core/rigid3.h"
+#include "core/trajectory.h"
+
+namespace saccade {
+
+/// A point of an edge with its depth, in the reference view of its window.
+struct EdgeDepth {
+  float x_px = 0;  ///< undistorted pixel of the view, sub-pixel
+  float y_px = 0;
+  float inverse_depth = 0;  ///< 1 / z [1/m], > 0
+  float sigma = 0;          ///< standard deviation of inverse_depth [1/m], > 0
+};
+
+/// Depths that may occur [m], 0 < near < far; all that a method knows of the scene beforehand.
+struct DepthLimits {
+  double near_m = 0.5;
+  double far_m = 50;
+
+  [[nodiscard]] double min_inverse() const { return 1 / far_m; }
+  [[nodiscard]] double max_inverse() const { return 1 / near_m; }
+};
+
+/// What one view is estimated from.
+struct DepthWindow {
+  std::span<const Event> events;           ///< in order of time, sensor pixels
+  const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
+  double reference_s = 0;                  ///< time of the view, within the events or at their ends
+
+  [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
+};
+
+/// What a method found.
+struct DepthResult {
+  std::vector<EdgeDepth> points;  ///< in the view at reference_s
+  /// Where the method looked for depth, in the same view's pixels; for pictures. Points are among
+  /// them or near them.
+  std::vector<Eigen::Vector2f> candidates;
+  std::vector<std::pair<std::string, double>>
+      stages_s;  ///< time per stage, the same in all windows
+};
+
+/// A method that turns events and poses into depths of edges. Too few events or too little motion
+/// give few points or none, never an error.
+class DepthEstimator {
+ public:
+  virtual ~DepthEstimator() = default;
+  /// Thread-safe; the result depends on the window alone.
+  [[nodiscard]] virtual DepthResult estimate(const DepthWindow& window) const = 0;
+};
+
+}  // namespace saccade

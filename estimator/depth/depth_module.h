@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run depth`: depths of the edges in consecutive windows of a dataset, with the poses of
+/// the ground truth or of another run. Writes depth/, keypoints/, cloud.ply, views.yaml, run.yaml
+/// and timing.json. Windows run in parallel, with the same result for any number of threads. Throws
+/// InputError for bad input.
+RunSummary run_depth(const RunRequest& request);
+
+/// The resolved configuration, documented.
+[[nodiscard]] std::string print_depth_config(const config::Document& document);
+
+}  // namespace saccade

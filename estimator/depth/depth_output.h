@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "core/camera.h"
+#include "estimator/depth/depth_estimator.h"
+
+namespace saccade {
+
+/// Writes what was found into a run folder: depth/depth_%08d.exr (channels Z [m] and variance of Z
+/// [m^2]; a pixel holds the surest of the points that fall on it, 0 where there is none),
+/// keypoints/keypoints_%08d.png, views.yaml, and cloud.ply in the world with each point's view,
+/// pixel, depth and the depth's deviation. `results`: one per window.
+void write_depth(const std::filesystem::path& folder, const PinholeCamera& camera,
+                 std::span<const DepthWindow> windows, std::span<const DepthResult> results);
+
+}  // namespace saccade

@@ -1,0 +1,60 @@
+#include "estimator/run_input.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "core/io/trajectory_file.h"
+
+namespace saccade {
+namespace {
+
+Events load_stretch(const RunRequest& request, const Dataset& dataset) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double start_s = request.start_s.value_or(-infinity);
+  if (!request.duration_s) return dataset.load_events(start_s);
+  if (request.start_s) return dataset.load_events(start_s, start_s + *request.duration_s);
+  // The start is the first event, which only the file knows.
+  Events events = dataset.load_events();
+  if (events.empty()) return events;
+  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(*request.duration_s);
+  const auto end = std::find_if(events.begin(), events.end(),
+                                [end_ns](const Event& e) { return e.t_ns >= end_ns; });
+  events.erase(end, events.end());
+  return events;
+}
+
+}  // namespace
+
+void check(const RunRequest& request) {
+  if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
+  if (request.duration_s && !(*request.duration_s > 0))
+    throw InputError("--duration-s", "must be above 0");
+}
+
+Events load_events(const RunRequest& request, const Dataset& dataset) {
+  Events events = load_stretch(request, dataset);
+  if (events.empty())
+    throw InputError(dataset.folder().string(), "holds no events in the window that was asked for");
+  return events;
+}
+
+RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s) {
+  RunRecord::Window window;
+  window.start_s = request.start_s.value_or(first_s);
+  window.end_s = request.duration_s ? window.start_s + *request.duration_s : last_s;
+  return window;
+}
+
+Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
+  if (request.poses_from) {
+    const std::filesystem::path& from = *request.poses_from;
+    return read_trajectory(std::filesystem::is_directory(from) ? from / "trajectory.txt" : from);
+  }
+  if (dataset.groundtruth().empty())
+    throw InputError(dataset.folder().string(),
+                     "holds no groundtruth.txt; name a run or a trajectory: --poses-from RUN");
+  return dataset.groundtruth();
+}
+
+}  // namespace saccade

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/event.h"
+#include "core/io/dataset.h"
+#include "core/io/run_record.h"
+#include "core/trajectory.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// Throws InputError where no module could do what is asked for.
+void check(const RunRequest& request);
+
+/// The dataset's events in the window that was asked for. Throws InputError where there are none.
+[[nodiscard]] Events load_events(const RunRequest& request, const Dataset& dataset);
+
+/// The window [s] as run.yaml states it; `first_s` and `last_s` of what was loaded, where the
+/// request leaves it open.
+[[nodiscard]] RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s);
+
+/// world_from_camera of the run or the trajectory file at `poses_from`, without one the ground
+/// truth. Throws InputError where there is none.
+[[nodiscard]] Trajectory load_poses(const RunRequest& request, const Dataset& dataset);
+
+}  // namespace saccade

@@ -1,0 +1,100 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/parallel.h"
+#include "estimator/depth/depth_config.h"
+#include "estimator/depth/depth_windows.h"
+#include "estimator/depth/derotated_frame.h"
+#include "estimator/depth/epipolar.h"
+#include "estimator/depth/epipolar_search.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_motion;
+using testing::corner_world;
+using testing::PlanarWorld;
+
+Trajectory corner_trajectory() {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 400; ++i) poses.push_back({i * 1e-3, corner_motion(i * 1e-3)});
+  return Trajectory(poses);
+}
+
+/// A corner of textured walls at the DAVIS's 240 x 180 and its events of 0.4 s.
+struct Recording {
+  PlanarWorld world = corner_world(240, 180);
+  Trajectory trajectory = corner_trajectory();
+  Events events = world.simulate(corner_motion, 0, 0.4, 1e-3, 0.15);
+  UndistortionTable undistortion{world.camera()};
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+void items_per_second(benchmark::State& state, std::size_t count) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+}
+
+std::span<const Event> some_events() {
+  return std::span(recording().events)
+      .first(std::min<std::size_t>(12000, recording().events.size()));
+}
+
+ImageF frame() {
+  const Recording& r = recording();
+  const Derotation derotation(r.world.camera(), r.undistortion, r.trajectory, {1, 0, 0, 0});
+  ImageF image = derotation.draw(some_events());
+  normalise_frame(image);
+  return image;
+}
+
+void derotate(benchmark::State& state) {
+  static_cast<void>(recording());  // made before the clock runs
+  for (auto _ : state) benchmark::DoNotOptimize(frame().data());
+  items_per_second(state, some_events().size());
+}
+BENCHMARK(derotate)->Unit(benchmark::kMicrosecond);
+
+/// One keypoint in one frame. Argument: radius of the patch.
+void search(benchmark::State& state) {
+  const int radius = static_cast<int>(state.range(0));
+  const ImageF image = frame();
+  const Patch reference(image, {120.3, 90.6}, radius);
+  const SearchOptions options{.patch_radius_px = radius, .min_alignment = 0, .min_correlation = -1};
+  for (auto _ : state)
+    benchmark::DoNotOptimize(search_along(reference, image, {121.1, 90.6}, {1, 0}, options));
+  items_per_second(state, 1);
+}
+BENCHMARK(search)->Arg(3)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
+
+void dlt(benchmark::State& state) {
+  for (auto _ : state)
+    benchmark::DoNotOptimize(triangulate({0.1, 0.2, 1}, {0.15, 0.2, 1}, {0.1, 0, 0}));
+  items_per_second(state, 1);
+}
+BENCHMARK(dlt)->Unit(benchmark::kMicrosecond);
+
+/// The whole recording in four windows. Argument: threads.
+void depth(benchmark::State& state) {
+  set_thread_count(static_cast<int>(state.range(0)));
+  const Recording& r = recording();
+  const auto windows = cut_windows(r.events, r.trajectory, {.duration_s = 0.1});
+  const auto estimator = make_depth_estimator({}, r.world.camera(), 2.5);
+  for (auto _ : state)
+    parallel_for(windows.size(), [&](std::size_t i) {
+      benchmark::DoNotOptimize(estimator->estimate(windows[i]).points.size());
+    });
+  items_per_second(state, r.events.size());
+  set_thread_count(0);
+}
+BENCHMARK(depth)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,54 @@
+#include "estimator/depth/depth_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/config/config.h"
+#include "estimator/depth/depth_module.h"
+#include "tests/support/error_of.h"
+
+namespace saccade {
+namespace {
+
+using testing::error_of;
+using ::testing::HasSubstr;
+
+DepthConfig parsed(const std::string& yaml) {
+  return config::read<DepthConfig>(config::parse(yaml, "t.yaml"));
+}
+
+TEST(DepthConfig, TheShippedFileHoldsTheDefaults) {
+  const auto document = config::load(SACCADE_SOURCE_DIR "/configs/depth/thesis.yaml");
+  EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(DepthConfig{}));
+}
+
+TEST(DepthConfig, ReadsWhatItPrints) {
+  const std::string yaml =
+      "{window: {by: events, events: 5000, reference: end}, range_m: {near: 1, far: 9}, "
+      "thesis: {initial_depth_m: 2, search: {patch_radius_px: 3}}, seed: 5}";
+  const DepthConfig config = parsed(yaml);
+  EXPECT_EQ(config.window.events, 5000);
+  EXPECT_EQ(config.thesis.search.patch_radius_px, 3);
+  const std::string printed = config::print(config);
+  EXPECT_EQ(config::print(parsed(printed)), printed);
+}
+
+TEST(DepthConfig, NamesWhatIsWrong) {
+  const auto error = [](const std::string& yaml) { return error_of([&] { return parsed(yaml); }); };
+  EXPECT_THAT(error("method: guess"), HasSubstr("t.yaml:1"));
+  EXPECT_THAT(error("window: {duration_s: 0}"), HasSubstr("window.duration_s"));
+  EXPECT_THAT(error("window: {events: 100}"), HasSubstr("by: events"));
+  EXPECT_THAT(error("range_m: {near: 3, far: 2}"), HasSubstr("must be below far"));
+  EXPECT_THAT(error("range_m: {near: 0}"), HasSubstr("range_m.near"));
+  EXPECT_THAT(error("thesis: {events_per_px: -1}"), HasSubstr("events_per_px"));
+  EXPECT_THAT(error("thesis: {keypoints: {cell_px: 0}}"), HasSubstr("cell_px"));
+  EXPECT_THAT(error("thesis: {search: {patch_radius: 3}}"), HasSubstr("patch_radius_px"));
+  EXPECT_THAT(error("thesis: {filter: {converged: 0}}"), HasSubstr("converged"));
+  EXPECT_THAT(error("thesis: {outliers: {radius: .inf}}"), HasSubstr("radius"));
+  EXPECT_THAT(error("thesis: {initial_depth_m: 0}"), HasSubstr("initial_depth_m"));
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimator/depth/depth_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_world;
+using testing::PlanarWorld;
+
+constexpr double kEnd_s = 0.3;
+
+/// Mostly sideways, some 35 px of parallax, with a turn that derotation must take out.
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
+}
+
+Trajectory trajectory_of(const testing::Motion& motion) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
+  return Trajectory(poses);
+}
+
+struct Recording {
+  PlanarWorld world = corner_world(160, 120);
+  Trajectory trajectory = trajectory_of(glide);
+  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+
+  [[nodiscard]] DepthWindow window(double reference_s) const {
+    return {events, &trajectory, reference_s};
+  }
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+constexpr double kMeanDepth_m = 2.5;
+
+/// What every method promises.
+class EveryDepthMethod : public ::testing::TestWithParam<DepthConfig::Method> {
+ protected:
+  EveryDepthMethod() { config_.method = GetParam(); }
+  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const {
+    return make_depth_estimator(config_, recording().world.camera(), kMeanDepth_m)
+        ->estimate(window);
+  }
+
+  DepthConfig config_;
+};
+
+/// Relative errors against the best of the 3 x 3 pixels around each point.
+std::vector<double> relative_errors(const DepthResult& result, double t_s) {
+  const ImageF truth = recording().world.depth(glide(t_s));
+  std::vector<double> errors;
+  for (const EdgeDepth& point : result.points) {
+    const auto x = static_cast<int>(std::lround(point.x_px));
+    const auto y = static_cast<int>(std::lround(point.y_px));
+    double best = 1e9;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, truth.height() - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, truth.width() - 1); ++u)
+        if (truth(u, v) > 0)
+          best = std::min(best, std::abs(1 / static_cast<double>(point.inverse_depth) /
+                                             static_cast<double>(truth(u, v)) -
+                                         1));
+    errors.push_back(best);
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+TEST_P(EveryDepthMethod, RecoversTheDepthOfAKnownWorld) {
+  for (const double t_s : {0.0, kEnd_s / 2, kEnd_s}) {
+    const DepthResult result = estimate(recording().window(t_s));
+    const std::vector<double> errors = relative_errors(result, t_s);
+    ASSERT_GT(errors.size(), 300U) << t_s;
+    EXPECT_LT(errors[errors.size() / 2], 0.015) << t_s;
+    EXPECT_LT(errors[errors.size() * 9 / 10], 0.06) << t_s;
+    for (const EdgeDepth& point : result.points) {
+      EXPECT_GT(point.inverse_depth, 0);
+      EXPECT_GT(point.sigma, 0);
+    }
+    EXPECT_GE(result.candidates.size(), result.points.size());
+  }
+}
+
+TEST_P(EveryDepthMethod, DependsOnTheWindowAlone) {
+  const auto estimator = make_depth_estimator(config_, recording().world.camera(), kMeanDepth_m);
+  const DepthResult first = estimator->estimate(recording().window(0));
+  static_cast<void>(estimator->estimate(recording().window(kEnd_s)));
+  const DepthResult again = estimator->estimate(recording().window(0));
+  ASSERT_EQ(first.points.size(), again.points.size());
+  for (std::size_t i = 0; i < first.points.size(); ++i) {
+    EXPECT_EQ(first.points[i].x_px, again.points[i].x_px);
+    EXPECT_EQ(first.points[i].inverse_depth, again.points[i].inverse_depth);
+    EXPECT_EQ(first.points[i].sigma, again.points[i].sigma);
+  }
+}
+
+TEST_P(EveryDepthMethod, TooFewEventsGiveNoPoints) {
+  DepthWindow window = recording().window(0);
+  window.events = {};
+  EXPECT_TRUE(estimate(window).points.empty());
+  window.events = std::span(recording().events).first(5);
+  EXPECT_TRUE(estimate(window).points.empty());
+}
+
+TEST_P(EveryDepthMethod, PureRotationGivesNoPoints) {
+  // The same events, but the poses claim that the camera only turned.
+  const Trajectory turning = trajectory_of(
+      [](double t_s) { return Rigid3(glide(t_s).rotation(), Eigen::Vector3d::Zero()); });
+  DepthWindow window = recording().window(0);
+  window.trajectory = &turning;
+  EXPECT_TRUE(estimate(window).points.empty());
+}
+
+TEST_P(EveryDepthMethod, StatesTheSameStagesForEveryWindow) {
+  const DepthResult full = estimate(recording().window(0));
+  DepthWindow window = recording().window(0);
+  window.events = {};
+  const DepthResult none = estimate(window);
+  ASSERT_EQ(full.stages_s.size(), none.stages_s.size());
+  for (std::size_t i = 0; i < full.stages_s.size(); ++i)
+    EXPECT_EQ(full.stages_s[i].first, none.stages_s[i].first);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryDepthMethod, ::testing::Values(DepthConfig::Method::kThesis),
+                         [](const auto&) { return "thesis"; });
+
+TEST(ThesisDepth, StartsAtTheStatedDepth) {
+  // Far from the truth at the start, it still arrives.
+  DepthConfig config;
+  config.thesis.initial_depth_m = 12;
+  const auto estimator = make_depth_estimator(config, recording().world.camera(), kMeanDepth_m);
+  const auto errors = relative_errors(estimator->estimate(recording().window(0)), 0);
+  ASSERT_GT(errors.size(), 300U);
+  EXPECT_LT(errors[errors.size() / 2], 0.015);
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,67 @@
+#include "estimator/depth/depth_windows.h"
+
+#include <gtest/gtest.h>
+
+namespace saccade {
+namespace {
+
+using By = DepthWindowOptions::By;
+using Reference = DepthWindowOptions::Reference;
+
+Trajectory still(double start_s, double end_s) { return Trajectory({{start_s, {}}, {end_s, {}}}); }
+
+/// `count` events, `step_ns` apart.
+Events stream(int count, TimeNs step_ns) {
+  Events events;
+  for (int i = 0; i < count; ++i) events.push_back({i * step_ns, 0, 0, 1});
+  return events;
+}
+
+TEST(DepthWindows, HoldAllEventsOnceAndAreEven) {
+  const Events events = stream(1001, 1'000'000);  // 1 s
+  const Trajectory trajectory = still(0, 1);
+  for (const auto& options : {DepthWindowOptions{.by = By::kTime, .duration_s = 0.3},
+                              DepthWindowOptions{.by = By::kEvents, .events = 300}}) {
+    const auto windows = cut_windows(events, trajectory, options);
+    ASSERT_EQ(windows.size(), 4U);
+    const Event* next = events.data();
+    for (const DepthWindow& window : windows) {
+      EXPECT_EQ(window.events.data(), next);
+      next += window.events.size();
+      EXPECT_NEAR(static_cast<double>(window.events.size()), 250, 2);
+    }
+    EXPECT_EQ(next, events.data() + events.size());
+  }
+}
+
+TEST(DepthWindows, TheViewLiesWhereItIsAskedFor) {
+  const Events events = stream(101, 1'000'000);
+  const Trajectory trajectory = still(0, 1);
+  for (const auto& [reference, expected_s] :
+       {std::pair{Reference::kStart, 0.0}, {Reference::kMiddle, 0.05}, {Reference::kEnd, 0.1}}) {
+    const auto windows = cut_windows(events, trajectory, {.reference = reference});
+    ASSERT_EQ(windows.size(), 1U);
+    EXPECT_NEAR(windows[0].reference_s, expected_s, 1e-12);
+  }
+}
+
+TEST(DepthWindows, AStillCameraHasNoWindow) {
+  Events events = stream(10, 1'000'000);
+  for (int i = 0; i < 10; ++i) events.push_back({1'000'000'000 + i, 0, 0, 1});
+  const Trajectory trajectory = still(0, 2);
+  EXPECT_EQ(cut_windows(events, trajectory, {.duration_s = 0.1}).size(), 2U);
+  EXPECT_TRUE(cut_windows({}, trajectory, {}).empty());
+}
+
+TEST(DepthWindows, OnlyEventsWithPosesCount) {
+  const Events events = stream(1001, 1'000'000);
+  const auto inside = within(events, still(0.2, 0.6));
+  ASSERT_EQ(inside.size(), 401U);
+  EXPECT_EQ(inside.front().t_ns, 200'000'000);
+  EXPECT_EQ(inside.back().t_ns, 600'000'000);
+  EXPECT_TRUE(within(events, still(2, 3)).empty());
+  EXPECT_TRUE(within(events, Trajectory{}).empty());
+}
+
+}  // namespace
+}  // namespace saccade
