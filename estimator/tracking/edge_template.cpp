@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "core/check.h"
 
@@ -214,16 +215,19 @@ void TemplateDrawer::splat_nearest() {
   for (std::size_t i = 0; i < pixel_.size(); ++i) {
     if (pixel_[i] == kInvisible) continue;
     const auto pixel = static_cast<std::size_t>(pixel_[i]);
-    if (z_[i] <= nearest_.pixels[pixel]) splats_[pixel] = {map_->value[i], map_->value[i] * z_[i]};
+    if (z_[i] <= nearest_.pixels[pixel] || !options_.z_test)
+      splats_[pixel] = {map_->value[i], map_->value[i] * z_[i]};
   }
 }
 
 void TemplateDrawer::splat_bilinear() {
   const auto stride = static_cast<std::size_t>(mask_.stride);
+  const float same_surface =
+      options_.z_test ? kSameSurface : std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < pixel_.size(); ++i) {
     if (pixel_[i] == kInvisible) continue;
     const float z = z_[i];
-    if (z > kSameSurface * nearest_.pixels[static_cast<std::size_t>(pixel_[i])]) continue;
+    if (z > same_surface * nearest_.pixels[static_cast<std::size_t>(pixel_[i])]) continue;
     const int x = static_cast<int>(u_[i]);
     const int y = static_cast<int>(v_[i]);
     const float fx = u_[i] - static_cast<float>(x);

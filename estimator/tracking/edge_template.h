@@ -18,6 +18,7 @@ struct TemplateOptions {
 
   Splat splat =
       Splat::kBilinear;  ///< nearest is the thesis's; it rounds every point by up to half a pixel
+  bool z_test = true;    ///< nearer points hide farther ones; without it both are drawn
   int blur_size_px = 3;  ///< odd, 1..15
   double blur_sigma_px = 0.8;
   double min_value = 0.01;  ///< pixels of the blurred template above it are template points

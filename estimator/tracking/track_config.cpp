@@ -48,6 +48,7 @@ void describe_template(config::Fields& fields, TemplateOptions& options) {
                 {{"nearest", TemplateOptions::Splat::kNearest},
                  {"bilinear", TemplateOptions::Splat::kBilinear}},
                 "how a map point is drawn");
+  fields.value("z_test", options.z_test, "nearer points hide the farther ones of their pixel");
   fields.value("blur_size_px", options.blur_size_px, "taps of the Gaussian, odd").range(1, 15);
   fields.expect(options.blur_size_px % 2 == 1, "blur_size_px", "must be odd");
   fields.value("blur_sigma_px", options.blur_sigma_px, "its standard deviation").range(0.1, 10);

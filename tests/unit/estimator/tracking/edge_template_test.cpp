@@ -87,6 +87,17 @@ TEST(EdgeTemplate, NearerOfTwoSurfacesHidesTheOther) {
     }
 }
 
+TEST(EdgeTemplate, WithoutTheTestBothSurfacesAreDrawn) {
+  MapPoints map = one_point({40, 71}, 1);
+  add_point(map, 3 * small_camera().ray({40, 71}));
+  TemplateOptions options = plain(Splat::kBilinear);
+  options.z_test = false;
+  TemplateDrawer drawer(small_camera(), options, map);
+  const auto point = find(drawer.draw({}), 40, 71);
+  ASSERT_TRUE(point);
+  EXPECT_NEAR(1 / point->inverse_depth, 2, 1e-4) << "the mean of 1 and 3 m";
+}
+
 TEST(EdgeTemplate, PointsOfOneSurfaceShareAPixel) {
   MapPoints map = one_point({40, 71}, 2);
   add_point(map, 2.02 * small_camera().ray({40, 71}));
