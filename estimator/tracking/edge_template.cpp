@@ -215,8 +215,7 @@ void TemplateDrawer::splat_nearest() {
   for (std::size_t i = 0; i < pixel_.size(); ++i) {
     if (pixel_[i] == kInvisible) continue;
     const auto pixel = static_cast<std::size_t>(pixel_[i]);
-    if (z_[i] <= nearest_.pixels[pixel] || !options_.z_test)
-      splats_[pixel] = {map_->value[i], map_->value[i] * z_[i]};
+    if (z_[i] <= nearest_.pixels[pixel] || !options_.z_test) splats_[pixel] = {1, z_[i]};
   }
 }
 
@@ -232,13 +231,11 @@ void TemplateDrawer::splat_bilinear() {
     const int y = static_cast<int>(v_[i]);
     const float fx = u_[i] - static_cast<float>(x);
     const float fy = v_[i] - static_cast<float>(y);
-    const float bottom = map_->value[i] * fy;
-    const float top = map_->value[i] - bottom;
     Splat* corner = &splats_[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
-    corner[0].add(top - top * fx, z);
-    corner[1].add(top * fx, z);
-    corner[stride].add(bottom - bottom * fx, z);
-    corner[stride + 1].add(bottom * fx, z);
+    corner[0].add((1 - fx) * (1 - fy), z);
+    corner[1].add(fx * (1 - fy), z);
+    corner[stride].add((1 - fx) * fy, z);
+    corner[stride + 1].add(fx * fy, z);
   }
 }
 

@@ -84,7 +84,6 @@ MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const Pi
       map.x.push_back(static_cast<float>(ray.x()) * z);
       map.y.push_back(static_cast<float>(ray.y()) * z);
       map.z.push_back(z);
-      map.value.push_back(options.value == MapOptions::Value::kBinary ? 1 : g / largest);
     }
   return map;
 }

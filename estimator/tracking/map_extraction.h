@@ -10,21 +10,17 @@ namespace saccade {
 
 /// Which pixels of the reference frame become map points (thesis 4.4).
 struct MapOptions {
-  enum class Value { kBinary, kGradient };
-
   double min_gradient = 0.1;  ///< g_min, share of the largest gradient magnitude, 0..1
   /// At most this share of the pixels, the steepest ones: a map that covers the whole view leaves
   /// no contrast between edge and surface, and its template costs more than the alignment. 1: all.
   double max_share = 0.12;
   bool thin = false;             ///< keep only maxima across the edge (non-maximum suppression)
-  Value value = Value::kBinary;  ///< what a point draws into the template: 1, or its gradient
   bool foreground_depth = true;  ///< an edge between two depths belongs to the nearer one
 };
 
 /// Map points in the camera frame of the reference view, structure of arrays [m].
 struct MapPoints {
   std::vector<float> x, y, z;  ///< z > 0
-  std::vector<float> value;    ///< what the point draws into the template, (0, 1]
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
 };

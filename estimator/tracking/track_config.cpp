@@ -35,10 +35,6 @@ void describe_map(config::Fields& fields, MapOptions& options) {
       .above(0)
       .at_most(1);
   fields.value("thin", options.thin, "keep only the maxima across an edge");
-  fields.choice(
-      "value", options.value,
-      {{"binary", MapOptions::Value::kBinary}, {"gradient", MapOptions::Value::kGradient}},
-      "what a map point draws into the template");
   fields.value("foreground_depth", options.foreground_depth,
                "an edge between two depths belongs to the nearer one");
 }

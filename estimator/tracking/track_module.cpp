@@ -127,7 +127,6 @@ MapPoints map_of(const TrackConfig& config, const PinholeCamera& camera,
       all.x.push_back(static_cast<float>(point.x()));
       all.y.push_back(static_cast<float>(point.y()));
       all.z.push_back(static_cast<float>(point.z()));
-      all.value.push_back(points.value[i]);
     }
   }
   return all;

@@ -72,7 +72,6 @@ TEST(ExtractMap, BackProjectsExactly) {
     const Eigen::Vector2d pixel(std::round(u.x()), std::round(u.y()));
     EXPECT_LT((u - pixel).norm(), 1e-4);
     EXPECT_EQ(map.z[i], depth(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())));
-    EXPECT_EQ(map.value[i], 1);
   }
   EXPECT_EQ(columns_of(map), (std::set{19, 20}));
 }
@@ -102,19 +101,6 @@ TEST(ExtractMap, MaxShareKeepsTheSteepestPixels) {
   EXPECT_GE(map.size(), kWidth * kHeight / 5U);
   EXPECT_EQ(*columns_of(map).rbegin(), kWidth - 2);
   EXPECT_GE(*columns_of(map).begin(), 27);
-}
-
-TEST(ExtractMap, GradientValuesAreNormalised) {
-  ImageF image = step_at(30, 4);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 10; x < kWidth; ++x) image(x, y) += 1;
-  MapOptions options;
-  options.value = MapOptions::Value::kGradient;
-  const MapPoints map = extract_map(image, ImageF(kWidth, kHeight, 2.0F), camera(), options);
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const double column = camera().project({map.x[i], map.y[i], map.z[i]}).x();
-    EXPECT_NEAR(map.value[i], column < 20 ? 0.25 : 1, 1e-5);
-  }
 }
 
 TEST(ExtractMap, ThinKeepsOnePixelAcrossAnEdge) {

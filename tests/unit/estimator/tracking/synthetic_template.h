@@ -30,7 +30,6 @@ inline void add_point(MapPoints& map, const Eigen::Vector3d& point) {
   map.x.push_back(static_cast<float>(point.x()));
   map.y.push_back(static_cast<float>(point.y()));
   map.z.push_back(static_cast<float>(point.z()));
-  map.value.push_back(1);
 }
 
 /// Outlines of turned rectangles at depths of 1.5..3.5 m all over the view of small_camera() and

@@ -50,8 +50,8 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
 
 TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
   const TrackConfig config = parse(
-      "{reference: {planar_depth_m: 0.7, region_px: [1, 2, 30, 40]}, map: {thin: true, value: "
-      "gradient}, template: {splat: nearest, blur_size_px: 7}, align: {brightness: gain, hessian: "
+      "{reference: {planar_depth_m: 0.7, region_px: [1, 2, 30, 40]}, map: {thin: true},"
+      " template: {splat: nearest, blur_size_px: 7}, align: {brightness: gain, hessian: "
       "samples}, motion: {prediction: constant_velocity, agility_px: 123}, initial_pose: [1, 2, 3, "
       "0, 0, 0, 1], seed: 9}");
   const std::string printed = config::print(config);
