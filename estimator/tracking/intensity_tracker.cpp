@@ -28,9 +28,9 @@ constexpr std::size_t kAhead = 16;
 /// In place of the pixel whose level an alignment corrects.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
 
-/// A view of some 320 columns is fine enough: what lies between its nodes is extrapolated.
+/// A view of some 240 columns is fine enough: what lies between its nodes is extrapolated.
 int step_of(const PinholeCamera& camera) {
-  constexpr double kColumns = 320;
+  constexpr double kColumns = 240;
   return std::max(1, static_cast<int>(std::lround(camera.width / kColumns)));
 }
 
@@ -139,7 +139,11 @@ std::size_t IntensityTracker::events_per_pose() const {
   if (options_.events) return static_cast<std::size_t>(*options_.events);
   constexpr double kEvents = 1000;
   constexpr double kWidth = 240;
-  return static_cast<std::size_t>(std::lround(kEvents * std::max(1.0, camera_.width / kWidth)));
+  // Of the same motion an edge's length gives proportionally more events and its passage over more
+  // pixels as many again; but more pixels also tell more of the pose.
+  constexpr double kPower = 1.5;
+  const double wider = std::max(1.0, camera_.width / kWidth);
+  return static_cast<std::size_t>(std::lround(kEvents * std::pow(wider, kPower)));
 }
 
 std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {

@@ -21,8 +21,7 @@ namespace saccade {
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
   IntensityMapOptions map;
-  /// Per pose; by default 1000, and more in proportion on sensors above 240 x 180, as the same
-  /// motion then gives as many poses.
+  /// Per pose; by default 1000, times (width / 240 px)^1.5 on a wider sensor.
   std::optional<int> events;
   int samples = 1000;           ///< at most so many of them are aligned, evenly spread
   double pixels_per_event = 1;  ///< aligned beside them: pixels between their events

@@ -157,7 +157,7 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
   fields
       .value("events", options.events,
-             "per pose; ~: 1000, and more in proportion to the width of a sensor wider than 240 px")
+             "per pose; ~: 1000, times (width / 240 px)^1.5 on a wider sensor")
       .range(1, 1e6);
   fields
       .value("samples", options.samples,
