@@ -36,7 +36,7 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   const auto fast = config::read<TrackConfig>(config::load(folder + "fast.yaml"));
   EXPECT_EQ(fast.tracker.align.samples, 50);
   EXPECT_EQ(fast.tracker.align.iterations, 5);
-  EXPECT_EQ(fast.tracker.event_frame.ratio, 0.08);
+  EXPECT_EQ(fast.tracker.event_frame.ratio, 0.09);
   const auto best = config::read<TrackConfig>(config::load(folder + "best.yaml"));
   EXPECT_EQ(best.method, TrackConfig::Method::kIntensity);
   EXPECT_FALSE(best.intensity.events.has_value());
