@@ -1,6 +1,7 @@
 #include "estimator/depth/depth_config.h"
 
 #include "core/check.h"
+#include "estimator/depth/ray_depth_config.h"
 
 namespace saccade {
 namespace {
@@ -96,10 +97,30 @@ void describe_thesis(config::Fields& fields, ThesisDepthOptions& options) {
       .above(0);
 }
 
+void describe_sweep(config::Fields& fields, SweepDepthOptions& options) {
+  fields.value("planes", options.planes, "of equal steps in inverse depth").range(2, 10000);
+  fields
+      .value("threshold_side_px", options.threshold_side,
+             "of the Gaussian neighbourhood of the adaptive threshold, odd")
+      .range(3, 99);
+  fields.expect(options.threshold_side % 2 == 1, "threshold_side_px", "must be odd");
+  fields
+      .value("threshold", options.threshold,
+             "votes above the neighbourhood's mean; the most are 255")
+      .range(-255, 255);
+  fields.value("median_side_px", options.median_side, "of the median; 1: none").range(1, 99);
+  fields.group(
+      "outliers", [&](config::Fields& f) { describe_outliers(f, options.outliers); },
+      "radius outlier removal");
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, DepthConfig& config) {
-  fields.choice("method", config.method, {{"thesis", DepthConfig::Method::kThesis}},
+  fields.choice("method", config.method,
+                {{"thesis", DepthConfig::Method::kThesis},
+                 {"rays", DepthConfig::Method::kRays},
+                 {"sweep", DepthConfig::Method::kSweep}},
                 "how depth is found");
   fields.group(
       "window", [&](config::Fields& f) { describe_window(f, config.window); },
@@ -111,7 +132,15 @@ void describe(config::Fields& fields, DepthConfig& config) {
     fields.group(
         "thesis", [&](config::Fields& f) { describe_thesis(f, config.thesis); },
         "keypoints of a reference frame, searched along epipolar lines (chapter 5)");
-  fields.value("seed", config.seed, "of random numbers; the thesis's method draws none");
+  if (config.method == DepthConfig::Method::kRays)
+    fields.group(
+        "rays", [&](config::Fields& f) { describe(f, config.rays); },
+        "seeds of a sweep, each with a regression over the rays near it");
+  if (config.method == DepthConfig::Method::kSweep)
+    fields.group(
+        "sweep", [&](config::Fields& f) { describe_sweep(f, config.sweep); },
+        "votes on planes of inverse depth");
+  fields.value("seed", config.seed, "of random numbers; no method draws any yet");
 }
 
 std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,
@@ -121,6 +150,10 @@ std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,
   switch (config.method) {
     case DepthConfig::Method::kThesis:
       return std::make_unique<ThesisDepth>(config.thesis, config.limits, camera, mean_depth_m);
+    case DepthConfig::Method::kRays:
+      return std::make_unique<RayDepth>(config.rays, config.limits, camera);
+    case DepthConfig::Method::kSweep:
+      return std::make_unique<SweepDepth>(config.sweep, config.limits, camera);
   }
   return nullptr;
 }

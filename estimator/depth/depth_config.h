@@ -6,6 +6,8 @@
 #include "core/camera.h"
 #include "core/config/fields.h"
 #include "estimator/depth/depth_estimator.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/sweep_depth.h"
 #include "estimator/depth/thesis_depth.h"
 
 namespace saccade {
@@ -23,12 +25,14 @@ struct DepthWindowOptions {
 
 /// The configuration of `saccade run depth`; describe() names the keys, ranges and defaults.
 struct DepthConfig {
-  enum class Method { kThesis };
+  enum class Method { kThesis, kRays, kSweep };
 
   Method method = Method::kThesis;
   DepthWindowOptions window;
   DepthLimits limits;
   ThesisDepthOptions thesis;
+  RayDepthOptions rays;
+  SweepDepthOptions sweep;
   std::uint64_t seed = 1;
 };
 

@@ -10,6 +10,9 @@
 #include "estimator/depth/derotated_frame.h"
 #include "estimator/depth/epipolar.h"
 #include "estimator/depth/epipolar_search.h"
+#include "estimator/depth/event_rays.h"
+#include "estimator/depth/ray_regression.h"
+#include "estimator/depth/ray_votes.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -81,12 +84,51 @@ void dlt(benchmark::State& state) {
 }
 BENCHMARK(dlt)->Unit(benchmark::kMicrosecond);
 
-/// The whole recording in four windows. Argument: threads.
+/// Rays of the whole recording.
+void rays(benchmark::State& state) {
+  const Recording& r = recording();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        EventRays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32).size());
+  items_per_second(state, r.events.size());
+}
+BENCHMARK(rays)->Unit(benchmark::kMillisecond);
+
+/// Votes on one plane.
+void votes(benchmark::State& state) {
+  const Recording& r = recording();
+  const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
+  Image<Eigen::Vector2f> image(r.world.camera().width, r.world.camera().height,
+                               Eigen::Vector2f::Zero());
+  for (auto _ : state) {
+    vote_vectors(rays, 0, rays.size(), 0.4F, image);
+    benchmark::DoNotOptimize(image.data());
+  }
+  items_per_second(state, rays.size());
+}
+BENCHMARK(votes)->Unit(benchmark::kMicrosecond);
+
+/// One edge over the whole window: its rays, and the regression.
+void regression(benchmark::State& state) {
+  const Recording& r = recording();
+  const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
+  RayNeighbourhood near;
+  for (auto _ : state) {
+    gather_rays(rays, {0, 32, 1}, {{120, 90}, {1, 0}, 0.4F}, {}, near);
+    benchmark::DoNotOptimize(regress(near, {}).change);
+  }
+  items_per_second(state, std::max<std::size_t>(near.count, 1));
+}
+BENCHMARK(regression)->Unit(benchmark::kMicrosecond);
+
+/// The whole recording in four windows. Arguments: method, threads.
 void depth(benchmark::State& state) {
-  set_thread_count(static_cast<int>(state.range(0)));
+  DepthConfig config;
+  config.method = static_cast<DepthConfig::Method>(state.range(0));
+  set_thread_count(static_cast<int>(state.range(1)));
   const Recording& r = recording();
   const auto windows = cut_windows(r.events, r.trajectory, {.duration_s = 0.1});
-  const auto estimator = make_depth_estimator({}, r.world.camera(), 2.5);
+  const auto estimator = make_depth_estimator(config, r.world.camera(), 2.5);
   for (auto _ : state)
     parallel_for(windows.size(), [&](std::size_t i) {
       benchmark::DoNotOptimize(estimator->estimate(windows[i]).points.size());
@@ -94,7 +136,11 @@ void depth(benchmark::State& state) {
   items_per_second(state, r.events.size());
   set_thread_count(0);
 }
-BENCHMARK(depth)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(depth)
+    ->ArgsProduct({{0, 1, 2}, {1, 2}})
+    ->ArgNames({"method", "threads"})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace saccade

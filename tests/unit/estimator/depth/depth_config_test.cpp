@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "core/config/config.h"
 #include "estimator/depth/depth_module.h"
@@ -22,6 +23,19 @@ DepthConfig parsed(const std::string& yaml) {
 TEST(DepthConfig, TheShippedFileHoldsTheDefaults) {
   const auto document = config::load(SACCADE_SOURCE_DIR "/configs/depth/thesis.yaml");
   EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(DepthConfig{}));
+}
+
+TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
+  const std::pair<const char*, DepthConfig::Method> files[] = {
+      {"best", DepthConfig::Method::kRays}, {"sweep", DepthConfig::Method::kSweep}};
+  for (const auto& [name, method] : files) {
+    const auto document =
+        config::load(std::string(SACCADE_SOURCE_DIR "/configs/depth/") + name + ".yaml");
+    DepthConfig expected;
+    expected.method = method;
+    expected.window.reference = DepthWindowOptions::Reference::kMiddle;
+    EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(expected)) << name;
+  }
 }
 
 TEST(DepthConfig, ReadsWhatItPrints) {

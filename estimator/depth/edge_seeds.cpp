@@ -1,0 +1,180 @@
+#include "estimator/depth/edge_seeds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "core/image.h"
+#include "estimator/depth/ray_votes.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kMinPlanes = 8;
+constexpr float kMaxOffset_px = 0.6F;  ///< of a ridge from the centre of its pixel
+
+/// The votes of one plane and their lengths.
+struct Plane {
+  Image<Eigen::Vector2f> votes;
+  ImageF strength;
+  SweepPlane at;
+};
+
+/// Largest parallax per inverse depth [px m] of a slab's camera, anywhere in the view.
+double largest_parallax(const EventRays::Slab& slab, const PinholeCamera& camera) {
+  double largest = 0;
+  const Eigen::Vector3d o = slab.centre.cast<double>();
+  for (const double u : {-camera.cx, camera.width - 1 - camera.cx})
+    for (const double v : {-camera.cy, camera.height - 1 - camera.cy})
+      largest = std::max(largest,
+                         std::hypot(camera.fx * o.x() - o.z() * u, camera.fy * o.y() - o.z() * v));
+  return largest;
+}
+
+void blur(Image<Eigen::Vector2f>& votes, double sigma) {
+  cv::Mat view(votes.height(), votes.width(), CV_32FC2, votes.data());
+  const int side = 2 * static_cast<int>(std::ceil(2.5 * sigma)) + 1;
+  cv::GaussianBlur(view, view, {side, side}, sigma, sigma, cv::BORDER_CONSTANT);
+}
+
+class SeedFinder {
+ public:
+  SeedFinder(const EventRays& rays, const PinholeCamera& camera, const SeedOptions& options)
+      : rays_(rays), options_(options), best_(camera.width, camera.height) {
+    for (Plane& plane : planes_) {
+      plane.votes = Image<Eigen::Vector2f>(camera.width, camera.height);
+      plane.strength = ImageF(camera.width, camera.height);
+    }
+  }
+
+  std::vector<EdgeSeed> find(const std::vector<SweepPlane>& sweep) {
+    for (std::size_t k = 0; k < sweep.size(); ++k) {
+      vote(sweep[k], planes_[2]);
+      if (k > 0) collect();
+      std::swap(planes_[0], planes_[1]);
+      std::swap(planes_[1], planes_[2]);
+    }
+    std::vector<EdgeSeed> kept;
+    for (const EdgeSeed& seed : seeds_)
+      if (seed.score >= static_cast<float>(options_.min_share) * best_near(seed.pixel))
+        kept.push_back(seed);
+    return kept;
+  }
+
+ private:
+  void vote(const SweepPlane& at, Plane& plane) {
+    plane.at = at;
+    plane.votes.fill(Eigen::Vector2f::Zero());
+    const std::size_t begin = rays_.slab_begin(at.first_slab);
+    const std::size_t end = rays_.slab_begin(at.last_slab);
+    if (options_.votes == SeedOptions::Votes::kVector)
+      vote_vectors(rays_, begin, end, at.inverse_depth, plane.votes);
+    else
+      vote_counts(rays_, begin, end, at.inverse_depth, plane.votes);
+    blur(plane.votes, options_.blur_px);
+    for (std::size_t i = 0; i < plane.strength.size(); ++i) {
+      const float strength = plane.votes.pixels()[i].norm();
+      plane.strength.pixels()[i] = strength;
+      best_.pixels()[i] = std::max(best_.pixels()[i], strength);
+    }
+  }
+
+  /// The ridges of the middle plane that are stronger than the planes on both sides.
+  void collect() {
+    const ImageF& strength = planes_[1].strength;
+    const float least =
+        std::max(static_cast<float>(options_.min_votes),
+                 static_cast<float>(options_.min_density) * planes_[1].at.motion_px);
+    for (int y = 1; y + 1 < strength.height(); ++y)
+      for (int x = 1; x + 1 < strength.width(); ++x) {
+        const float s = strength(x, y);
+        if (s < least || s < planes_[0].strength(x, y) || s < planes_[2].strength(x, y)) continue;
+        add_ridge(x, y);
+      }
+  }
+
+  /// Steger's ridge: the largest eigenvector of the Hessian crosses it, the parabola along it has
+  /// its top within the pixel.
+  void add_ridge(int x, int y) {
+    const ImageF& s = planes_[1].strength;
+    const Eigen::Vector2f gradient((s(x + 1, y) - s(x - 1, y)) / 2,
+                                   (s(x, y + 1) - s(x, y - 1)) / 2);
+    const float xx = s(x + 1, y) - 2 * s(x, y) + s(x - 1, y);
+    const float yy = s(x, y + 1) - 2 * s(x, y) + s(x, y - 1);
+    const float xy = (s(x + 1, y + 1) - s(x + 1, y - 1) - s(x - 1, y + 1) + s(x - 1, y - 1)) / 4;
+    const float half = (xx - yy) / 2;
+    const float lowest = (xx + yy) / 2 - std::hypot(half, xy);
+    if (!(lowest < 0)) return;
+    const float angle = 0.5F * std::atan2(2 * xy, xx - yy) + static_cast<float>(M_PI_2);
+    Eigen::Vector2f normal(std::cos(angle), std::sin(angle));
+    const float offset = -gradient.dot(normal) / lowest;
+    if (std::abs(offset * normal.x()) > kMaxOffset_px ||
+        std::abs(offset * normal.y()) > kMaxOffset_px)
+      return;
+    const Eigen::Vector2f& rise = planes_[1].votes(x, y);
+    const float along = normal.dot(rise);
+    if (std::abs(along) < static_cast<float>(options_.min_alignment) * s(x, y)) return;
+    if (along < 0) normal = -normal;
+    const Eigen::Vector2f pixel =
+        Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
+        std::abs(offset) * (gradient.dot(normal) > 0 ? normal : Eigen::Vector2f(-normal));
+    seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), planes_[1].at});
+  }
+
+  [[nodiscard]] float best_near(const Eigen::Vector2f& pixel) const {
+    const int x = static_cast<int>(std::lround(pixel.x()));
+    const int y = static_cast<int>(std::lround(pixel.y()));
+    return best_(std::clamp(x, 0, best_.width() - 1), std::clamp(y, 0, best_.height() - 1));
+  }
+
+  const EventRays& rays_;
+  const SeedOptions& options_;
+  std::array<Plane, 3> planes_;  ///< the last three
+  ImageF best_;                  ///< over all planes
+  std::vector<EdgeSeed> seeds_;
+};
+
+}  // namespace
+
+std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera& camera,
+                                     const DepthLimits& limits, const SeedOptions& options) {
+  const auto slabs = rays.slabs();
+  if (slabs.empty()) return {};
+  std::vector<double> parallax;
+  for (const EventRays::Slab& slab : slabs) parallax.push_back(largest_parallax(slab, camera));
+  const auto at_reference = std::min_element(
+      slabs.begin(), slabs.end(), [](const EventRays::Slab& a, const EventRays::Slab& b) {
+        return std::abs(a.middle_s) < std::abs(b.middle_s);
+      });
+  const int middle = static_cast<int>(at_reference - slabs.begin());
+  std::vector<SweepPlane> planes;
+  for (double rho = limits.min_inverse(); rho < limits.max_inverse();) {
+    const double allowed = options.motion_px / (2 * rho);
+    const auto fits = [&](int slab) { return parallax[static_cast<std::size_t>(slab)] <= allowed; };
+    SweepPlane plane{static_cast<float>(rho), 0, 0, middle, middle + 1};
+    while (plane.first_slab > 0 && fits(plane.first_slab - 1)) --plane.first_slab;
+    while (plane.last_slab < rays.slab_count() && fits(plane.last_slab)) ++plane.last_slab;
+    double widest = 1e-9;
+    for (int k = plane.first_slab; k < plane.last_slab; ++k)
+      widest = std::max(widest, parallax[static_cast<std::size_t>(k)]);
+    // Little motion needs few planes, but not fewer than tell far from near.
+    const double range = limits.max_inverse() - limits.min_inverse();
+    const double step = std::min(options.spacing_px / (2 * widest), range / kMinPlanes);
+    plane.step = static_cast<float>(step);
+    plane.motion_px = static_cast<float>(2 * widest * rho);
+    planes.push_back(plane);
+    rho += step;
+  }
+  return planes;
+}
+
+std::vector<EdgeSeed> find_seeds(const EventRays& rays, const PinholeCamera& camera,
+                                 const DepthLimits& limits, const SeedOptions& options) {
+  if (rays.size() == 0) return {};
+  return SeedFinder(rays, camera, options).find(sweep_planes(rays, camera, limits, options));
+}
+
+}  // namespace saccade

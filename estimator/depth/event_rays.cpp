@@ -1,0 +1,170 @@
+#include "estimator/depth/event_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// Within a piece homography and centre are linear in time: at 10 rad/s the error stays below
+/// 0.003 px for f = 250 px.
+constexpr TimeNs kPieceNs = 1'000'000;
+/// Cells around the sensor, for what the lens puts outside it.
+constexpr int kMarginCells = 4;
+
+Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
+  Eigen::Matrix3d k;
+  k << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+  return k;
+}
+
+/// The camera at one instant: the homography K R K^-1 and the centre o, reference frame.
+struct View {
+  Eigen::Matrix3d homography;
+  Eigen::Vector3d centre;
+};
+
+class Views {
+ public:
+  Views(const DepthWindow& window, const PinholeCamera& camera)
+      : trajectory_(*window.trajectory),
+        reference_from_world_(window.world_from_reference().inverse()),
+        k_(intrinsics(camera)),
+        k_inverse_(k_.inverse()) {}
+
+  [[nodiscard]] Rigid3 pose(double t_s) const {
+    return reference_from_world_ * trajectory_.at_clamped(t_s);
+  }
+  [[nodiscard]] View at(double t_s) const {
+    const Rigid3 reference_from_camera = pose(t_s);
+    return {k_ * reference_from_camera.rotation_matrix() * k_inverse_,
+            reference_from_camera.translation()};
+  }
+  [[nodiscard]] const Eigen::Matrix3d& k() const { return k_; }
+  [[nodiscard]] const Eigen::Matrix3d& k_inverse() const { return k_inverse_; }
+
+ private:
+  const Trajectory& trajectory_;
+  Rigid3 reference_from_world_;
+  Eigen::Matrix3d k_;
+  Eigen::Matrix3d k_inverse_;
+};
+
+int cell_of(float pixel, int cells) {
+  const int cell = static_cast<int>(std::floor((pixel + 0.5F) / EventRays::kCell_px));
+  return std::clamp(cell + kMarginCells, 0, cells - 1);
+}
+
+int cells_across(int pixels) {
+  return (pixels + EventRays::kCell_px - 1) / EventRays::kCell_px + 2 * kMarginCells;
+}
+
+}  // namespace
+
+int EventRays::column_of(float x_px) const { return cell_of(x_px, columns_); }
+int EventRays::row_of(float y_px) const { return cell_of(y_px, rows_); }
+
+bool EventRays::on_grid(float x_px, float y_px) const {
+  const auto left = static_cast<float>(-kMarginCells * kCell_px);
+  return x_px >= left && y_px >= left && x_px < left + static_cast<float>(columns_ * kCell_px) &&
+         y_px < left + static_cast<float>(rows_ * kCell_px);
+}
+
+EventRays::EventRays(const DepthWindow& window, const PinholeCamera& camera,
+                     const UndistortionTable& undistortion, int slabs)
+    : columns_(cells_across(camera.width)), rows_(cells_across(camera.height)) {
+  SACCADE_CHECK(slabs >= 1);
+  const std::span<const Event> events = window.events;
+  if (events.empty()) return;
+  make_slabs(window, camera, slabs);
+  const std::vector<std::uint32_t> places = sort_events(events, undistortion);
+  line.resize(events.size());
+  rise.resize(events.size());
+
+  const Views views(window, camera);
+  const Eigen::Vector2d focal(camera.fx, camera.fy);
+  const Eigen::Vector2d principal(camera.cx, camera.cy);
+  for (std::size_t begin = 0; begin < events.size();) {
+    const TimeNs start_ns = events[begin].t_ns;
+    std::size_t end = begin + 1;
+    while (end < events.size() && events[end].t_ns - start_ns < kPieceNs) ++end;
+    // The last piece reaches back instead of beyond the poses.
+    const double piece_s = seconds_from_ns(kPieceNs);
+    const double from_s = std::min(seconds_from_ns(start_ns), window.trajectory->end_s() - piece_s);
+    const View from = views.at(from_s);
+    const View to = views.at(from_s + piece_s);
+    const double per_s = 1 / piece_s;
+    const Eigen::Matrix3d turn = (to.homography - from.homography) * per_s;
+    const Eigen::Vector3d velocity = (to.centre - from.centre) * per_s;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double t_s = seconds_from_ns(events[i].t_ns) - from_s;
+      const Eigen::Vector3d pixel =
+          undistortion(events[i].x, events[i].y).cast<double>().homogeneous();
+      const Eigen::Vector3d change = turn * pixel;
+      const Eigen::Vector3d h = from.homography * pixel + t_s * change;
+      const Eigen::Vector3d o = from.centre + t_s * velocity;
+      const Eigen::Vector2d a = h.hnormalized();
+      const Eigen::Vector2d a_rate = (change.head<2>() - a * change.z()) / h.z();
+      const Eigen::Vector2d b = focal.cwiseProduct(o.head<2>()) - o.z() * (a - principal);
+      const Eigen::Vector2d b_rate =
+          focal.cwiseProduct(velocity.head<2>()) - velocity.z() * (a - principal) - o.z() * a_rate;
+      const double p = events[i].polarity;
+      line[places[i]] = {static_cast<float>(a.x()), static_cast<float>(a.y()),
+                         static_cast<float>(b.x()), static_cast<float>(b.y())};
+      rise[places[i]] = {static_cast<float>(p * a_rate.x()), static_cast<float>(p * a_rate.y()),
+                         static_cast<float>(p * b_rate.x()), static_cast<float>(p * b_rate.y())};
+    }
+    begin = end;
+  }
+}
+
+void EventRays::make_slabs(const DepthWindow& window, const PinholeCamera& camera, int count) {
+  start_ns_ = window.events.front().t_ns;
+  slab_ns_ = (window.events.back().t_ns - start_ns_) / count + 1;
+  const Views views(window, camera);
+  const auto pixel_from_reference = [&](const Rigid3& pose) -> Eigen::Matrix3d {
+    return views.k() * pose.rotation_matrix().transpose() * views.k_inverse();
+  };
+  const auto centre_term = [&](const Rigid3& pose) -> Eigen::Vector3d {
+    return views.k() * pose.rotation_matrix().transpose() * pose.translation();
+  };
+  for (int i = 0; i < count; ++i) {
+    const double start_s = seconds_from_ns(start_ns_ + i * slab_ns_);
+    const double length_s = seconds_from_ns(slab_ns_);
+    const Rigid3 start = views.pose(start_s);
+    const Rigid3 middle = views.pose(start_s + length_s / 2);
+    const Rigid3 end = views.pose(start_s + length_s);
+    Slab slab;
+    slab.pixel_from_reference = pixel_from_reference(middle).cast<float>();
+    slab.centre_term = centre_term(middle).cast<float>();
+    slab.centre = middle.translation().cast<float>();
+    slab.pixel_rate =
+        ((pixel_from_reference(end) - pixel_from_reference(start)) / length_s).cast<float>();
+    slab.centre_rate = ((centre_term(end) - centre_term(start)) / length_s).cast<float>();
+    slab.middle_s = static_cast<float>(start_s + length_s / 2 - window.reference_s);
+    slabs_.push_back(slab);
+  }
+}
+
+std::vector<std::uint32_t> EventRays::sort_events(std::span<const Event> events,
+                                                  const UndistortionTable& undistortion) {
+  const std::size_t cells =
+      static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_) * 2 * slabs_.size();
+  offsets_.assign(cells + 1, 0);
+  std::vector<std::uint32_t> places(events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Eigen::Vector2f& pixel = undistortion(events[i].x, events[i].y);
+    const auto slab = static_cast<int>((events[i].t_ns - start_ns_) / slab_ns_);
+    places[i] = static_cast<std::uint32_t>(
+        index_of(slab, events[i].polarity > 0, column_of(pixel.x()), row_of(pixel.y())));
+    ++offsets_[places[i] + 1];
+  }
+  for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
+  std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (std::uint32_t& place : places) place = next[place]++;
+  return places;
+}
+
+}  // namespace saccade

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "estimator/depth/depth_estimator.h"
+
+namespace saccade {
+
+/// x(rho) = a + b rho in the reference view.
+struct RayLine {
+  float ax, ay;  ///< a [px]
+  float bx, by;  ///< b [px m]
+};
+
+/// p x'(rho) = qa + qb rho: the way in which the log intensity rises.
+struct RayRise {
+  float qax, qay;  ///< [px/s]
+  float qbx, qby;  ///< [px m/s]
+};
+
+/// The rays of a window's events as lines in the reference view. An event at pixel u of a camera
+/// with centre o and orientation R (both in the reference frame) saw a point of the ray o + l R
+/// K^-1 u. Where that point projects to in the reference view is linear in its inverse depth rho:
+///   x(rho) = a + b rho,   a = pi(R K^-1 u),   b = K_2 (o_xy - o_z (R K^-1 u)_xy / (R K^-1 u)_z)
+/// with K_2 the focal lengths; a is the pixel without the camera's rotation, b the parallax. The
+/// pixel's footprint moves over the surface with x'(rho) = a' + b' rho, so that an event of
+/// polarity p says p x'(rho) . grad L > 0.
+///
+/// Events are sorted by slab of time, by polarity within it, and by cell of the sensor, so that
+/// those near a given point are found by projecting it into every slab. Such runs are short and
+/// anywhere: what is read together lies together.
+class EventRays {
+ public:
+  static constexpr int kCell_px = 4;
+
+  /// `camera` undistorted. `slabs` >= 1 equal parts of the window's time.
+  EventRays(const DepthWindow& window, const PinholeCamera& camera,
+            const UndistortionTable& undistortion, int slabs);
+
+  /// A part of the window's time with its pose at half time.
+  struct Slab {
+    Eigen::Matrix3f pixel_from_reference;  ///< K R^T K^-1, homogeneous pixels
+    Eigen::Vector3f centre_term;           ///< K R^T o
+    Eigen::Vector3f centre;                ///< o [m], reference frame
+    Eigen::Matrix3f pixel_rate;            ///< d pixel_from_reference / dt
+    Eigen::Vector3f centre_rate;           ///< d centre_term / dt
+    float middle_s = 0;                    ///< from the reference time [s]
+
+    /// Where the reference view's pixel at inverse depth `rho` is seen, z <= 0 when behind.
+    [[nodiscard]] Eigen::Vector3f project(const Eigen::Vector2f& pixel, float rho) const {
+      return pixel_from_reference * pixel.homogeneous() - rho * centre_term;
+    }
+    /// d project / dt.
+    [[nodiscard]] Eigen::Vector3f project_rate(const Eigen::Vector2f& pixel, float rho) const {
+      return pixel_rate * pixel.homogeneous() - rho * centre_rate;
+    }
+  };
+
+  [[nodiscard]] std::size_t size() const { return line.size(); }
+  [[nodiscard]] std::span<const Slab> slabs() const { return slabs_; }
+  [[nodiscard]] int slab_count() const { return static_cast<int>(slabs_.size()); }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+
+  /// Index of the first event of a cell; the next cell of the row begins where it ends.
+  [[nodiscard]] std::uint32_t cell_begin(int slab, bool is_on, int column, int row) const {
+    return offsets_[index_of(slab, is_on, column, row)];
+  }
+  /// The cell of an undistorted sensor pixel; what lies outside the grid belongs to its border.
+  [[nodiscard]] int column_of(float x_px) const;
+  [[nodiscard]] int row_of(float y_px) const;
+  [[nodiscard]] bool on_grid(float x_px, float y_px) const;
+  /// Index of the first event of a slab; of slab_count(), the number of events.
+  [[nodiscard]] std::size_t slab_begin(int slab) const {
+    return offsets_[index_of(slab, false, 0, 0)];
+  }
+
+  std::vector<RayLine> line;
+  std::vector<RayRise> rise;
+
+ private:
+  [[nodiscard]] std::size_t index_of(int slab, bool is_on, int column, int row) const {
+    const std::size_t layer = 2 * static_cast<std::size_t>(slab) + (is_on ? 1 : 0);
+    return (layer * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(row)) *
+               static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+  void make_slabs(const DepthWindow& window, const PinholeCamera& camera, int count);
+  /// Where each event goes.
+  [[nodiscard]] std::vector<std::uint32_t> sort_events(std::span<const Event> events,
+                                                       const UndistortionTable& undistortion);
+
+  TimeNs start_ns_ = 0;
+  TimeNs slab_ns_ = 1;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<Slab> slabs_;
+  std::vector<std::uint32_t> offsets_;
+};
+
+}  // namespace saccade
