@@ -29,7 +29,8 @@ const std::vector<float>* find_scalar(const PointCloud& cloud, const std::string
 
 /// The points of the cloud that say which view they belong to and where they lie in it; false where
 /// the cloud does not say.
-bool add_points(const PointCloud& cloud, const std::string& place, std::vector<DepthView>& views) {
+bool add_points(const PointCloud& cloud, const std::string& place,
+                std::vector<EstimatedView>& views) {
   const auto* view = find_scalar(cloud, "view");
   const auto* x = find_scalar(cloud, "x_px");
   const auto* y = find_scalar(cloud, "y_px");
@@ -75,29 +76,30 @@ Rigid3 true_pose(const Dataset& dataset, double t_s) {
 
 }  // namespace
 
-std::vector<DepthView> load_depth_views(const std::filesystem::path& folder) {
+std::vector<EstimatedView> load_depth_views(const std::filesystem::path& folder) {
   const std::filesystem::path list = folder / "views.yaml";
   if (!std::filesystem::exists(list)) return {};
   const std::vector<RunView> entries = read_view_list(list);
-  std::vector<DepthView> views;
+  std::vector<EstimatedView> views;
   views.reserve(entries.size());
   for (const RunView& entry : entries) views.push_back({entry.t_s, entry.world_from_camera, {}});
   const std::filesystem::path cloud = folder / "cloud.ply";
   const bool is_exact = std::filesystem::exists(cloud) && add_points(read_ply(cloud), cloud, views);
   for (std::size_t i = 0; i < views.size() && !is_exact; ++i)
     if (!entries[i].depth.empty()) views[i].points = read_depth_map(entries[i].depth);
-  std::vector<DepthView> with_depth;
+  std::vector<EstimatedView> with_depth;
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!entries[i].depth.empty()) with_depth.push_back(std::move(views[i]));
   return with_depth;
 }
 
-DepthView load_depth_map(const std::filesystem::path& file, const Dataset& dataset, double t_s) {
+EstimatedView load_depth_map(const std::filesystem::path& file, const Dataset& dataset,
+                             double t_s) {
   return {t_s, true_pose(dataset, t_s), read_depth_map(file)};
 }
 
-DepthView load_cloud(const std::filesystem::path& file, const Dataset& dataset, double t_s) {
-  DepthView view{t_s, true_pose(dataset, t_s), {}};
+EstimatedView load_cloud(const std::filesystem::path& file, const Dataset& dataset, double t_s) {
+  EstimatedView view{t_s, true_pose(dataset, t_s), {}};
   const PinholeCamera camera = dataset.camera().undistorted();
   const Rigid3 camera_from_world = view.world_from_camera.inverse();
   const PointCloud cloud = read_ply(file);
@@ -112,10 +114,10 @@ DepthView load_cloud(const std::filesystem::path& file, const Dataset& dataset, 
   return view;
 }
 
-std::vector<DepthErrors> compare_views(const std::vector<DepthView>& views,
+std::vector<DepthErrors> compare_views(const std::vector<EstimatedView>& views,
                                        const Dataset& dataset) {
   std::vector<DepthErrors> errors;
-  for (const DepthView& view : views) {
+  for (const EstimatedView& view : views) {
     DepthErrors of_view;
     of_view.t_s = view.t_s;
     of_view.points = view.points.size();
@@ -126,20 +128,20 @@ std::vector<DepthErrors> compare_views(const std::vector<DepthView>& views,
   return errors;
 }
 
-std::vector<Eigen::Vector3d> points_in_world(const std::vector<DepthView>& views,
+std::vector<Eigen::Vector3d> points_in_world(const std::vector<EstimatedView>& views,
                                              const PinholeCamera& camera) {
   const PinholeCamera undistorted = camera.undistorted();
   std::vector<Eigen::Vector3d> points;
-  for (const DepthView& view : views)
+  for (const EstimatedView& view : views)
     for (const DepthPoint& point : view.points)
       points.push_back(view.world_from_camera * (point.depth_m * undistorted.ray(point.pixel)));
   return points;
 }
 
-std::vector<FittedPlane> planes_of(const std::vector<DepthView>& views,
+std::vector<FittedPlane> planes_of(const std::vector<EstimatedView>& views,
                                    const PinholeCamera& camera) {
   std::vector<double> depths;
-  for (const DepthView& view : views)
+  for (const EstimatedView& view : views)
     for (const DepthPoint& point : view.points) depths.push_back(point.depth_m);
   if (depths.empty()) return {};
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -147,12 +149,12 @@ std::vector<FittedPlane> planes_of(const std::vector<DepthView>& views,
   return fit_planes(points_in_world(views, camera), kPlaneTolerance * *middle, kPlanes);
 }
 
-Metrics score_depth(const std::vector<DepthView>& views, const std::vector<DepthErrors>& errors,
+Metrics score_depth(const std::vector<EstimatedView>& views, const std::vector<DepthErrors>& errors,
                     const PinholeCamera& camera) {
   Metrics metrics;
   set_depth_scores(metrics, errors);
   std::size_t points = 0;
-  for (const DepthView& view : views) points += view.points.size();
+  for (const EstimatedView& view : views) points += view.points.size();
   const auto planes = planes_of(views, camera);
   std::size_t held = 0;
   for (std::size_t i = 0; i < std::min<std::size_t>(planes.size(), 2); ++i)

@@ -21,7 +21,7 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
 
 /// What `run` found of depth, and how far it is off.
 struct ScoredDepth {
-  std::vector<DepthView> views;
+  std::vector<EstimatedView> views;
   std::vector<DepthErrors> errors;
 
   ScoredDepth(const RunFolder& run, const Dataset& dataset)
@@ -81,7 +81,7 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
 Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
                        const std::optional<std::filesystem::path>& output) {
   const Dataset dataset = Dataset::open(dataset_folder);
-  std::vector<DepthView> views;
+  std::vector<EstimatedView> views;
   if (std::filesystem::is_directory(depth.file)) {
     views = load_depth_views(depth.file);
     if (views.empty()) throw InputError(depth.file.string(), "holds no views.yaml with depth maps");

@@ -75,7 +75,7 @@ TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
   input.truth = dataset.groundtruth();
   input.mean_depth_m = dataset.facts().mean_depth_m;
   if (run.record.window)
-    input.window = Interval{run.record.window->start_s, run.record.window->end_s};
+    input.window = ScoredTime{run.record.window->start_s, run.record.window->end_s};
   if (run.poses) {
     input.reported.emplace();
     for (const PoseRow& row : *run.poses)

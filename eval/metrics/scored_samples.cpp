@@ -13,10 +13,10 @@ constexpr double kTimeRoundingS = 2e-9;
 
 }  // namespace
 
-std::optional<Interval> scored_interval(const Trajectory& truth,
-                                        const std::optional<Interval>& window) {
+std::optional<ScoredTime> scored_interval(const Trajectory& truth,
+                                          const std::optional<ScoredTime>& window) {
   if (truth.empty()) return std::nullopt;
-  Interval result{truth.start_s(), truth.end_s()};
+  ScoredTime result{truth.start_s(), truth.end_s()};
   if (window) {
     result.start_s = std::max(result.start_s, window->start_s);
     result.end_s = std::min(result.end_s, window->end_s);
@@ -37,7 +37,7 @@ Rigid3 held_pose(const Trajectory& estimate, double t_s) {
                      (t_s - pose.t_s) / (next.t_s - pose.t_s));
 }
 
-double coverage(const Trajectory& estimate, const Interval& interval) {
+double coverage(const Trajectory& estimate, const ScoredTime& interval) {
   double covered_s = 0;
   double covered_until = interval.start_s;
   bool touched = false;
@@ -54,7 +54,7 @@ double coverage(const Trajectory& estimate, const Interval& interval) {
 }
 
 ScoredSamples take_samples(const Trajectory& estimate, const Trajectory& truth,
-                           const Interval& interval) {
+                           const ScoredTime& interval) {
   ScoredSamples samples;
   if (estimate.empty()) return samples;
   const auto steps =

@@ -12,7 +12,7 @@ constexpr double kMaxPoseAgeS = 0.02;
 /// Spacing of the instants at which errors are taken [s].
 constexpr double kScoreStepS = 0.001;
 
-struct Interval {
+struct ScoredTime {
   double start_s = 0;
   double end_s = 0;
 
@@ -21,8 +21,8 @@ struct Interval {
 
 /// The time that is scored: `window` (what the estimator was given; the whole truth without one)
 /// cut to the ground truth. nullopt where there is no truth or nothing of it in the window.
-[[nodiscard]] std::optional<Interval> scored_interval(const Trajectory& truth,
-                                                      const std::optional<Interval>& window);
+[[nodiscard]] std::optional<ScoredTime> scored_interval(const Trajectory& truth,
+                                                        const std::optional<ScoredTime>& window);
 
 /// What an estimate claims at `t_s`: interpolated between poses at most 20 ms apart; in a longer
 /// gap the pose before it is held; before the first pose the first and after the last pose the
@@ -33,7 +33,7 @@ struct Interval {
 ///   | interval and union of [t_i, t_i + 20 ms] | / | interval |.
 /// What is missing before the first and after the last pose counts against it. An interval of
 /// length zero has coverage 1 if a pose covers it, else 0.
-[[nodiscard]] double coverage(const Trajectory& estimate, const Interval& interval);
+[[nodiscard]] double coverage(const Trajectory& estimate, const ScoredTime& interval);
 
 /// Estimate (as held) and truth at start, start + 1 ms, ... of the scored interval, so that frame
 /// density does not weigh.
@@ -45,6 +45,6 @@ struct ScoredSamples {
 
 /// Empty where `estimate` is empty.
 [[nodiscard]] ScoredSamples take_samples(const Trajectory& estimate, const Trajectory& truth,
-                                         const Interval& interval);
+                                         const ScoredTime& interval);
 
 }  // namespace saccade

@@ -59,7 +59,7 @@ std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
 }  // namespace
 
 ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
-  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
   return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
 }
 
@@ -69,7 +69,7 @@ ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
 
 std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
   std::vector<PosePair> pairs;
-  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
   if (!interval) return pairs;
   for (const StampedPose& pose : input.estimate.poses())
     if (pose.t_s >= interval->start_s && pose.t_s <= interval->end_s)
@@ -77,7 +77,7 @@ std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
   return pairs;
 }
 
-double reported_lost_s(const std::vector<PoseStatus>& reported, const Interval& interval) {
+double reported_lost_s(const std::vector<PoseStatus>& reported, const ScoredTime& interval) {
   double lost = 0;
   for (std::size_t i = 0; i < reported.size(); ++i) {
     if (!reported[i].is_lost) continue;
@@ -90,7 +90,7 @@ double reported_lost_s(const std::vector<PoseStatus>& reported, const Interval& 
 
 Metrics score_trajectory(const TrajectoryScoreInput& input) {
   Metrics metrics;
-  const std::optional<Interval> interval = scored_interval(input.truth, input.window);
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
   const ScoredSamples samples = scored_samples(input);
   const ErrorSeries series = series_of(samples, input.mean_depth_m);
   set_statistics(metrics, "trajectory.dt_rel_percent", series.dt_rel_percent);

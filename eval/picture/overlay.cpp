@@ -168,7 +168,8 @@ HidesPoint Overlay::occlusion_at(double t_s) const {
       [views = std::move(views)](const Eigen::Vector3d& point) { return is_hidden(views, point); };
 }
 
-Picture Overlay::over(Picture drawn, double t_s, int upscale, const Theme& theme) const {
+CaptionedPicture Overlay::over(CaptionedPicture drawn, double t_s, int upscale,
+                               const Theme& theme) const {
   const bool lost = is_lost(t_s);
   const ScreenView view{camera_, held_pose(poses_of(dataset_, run_), t_s), upscale};
   const bool seen =

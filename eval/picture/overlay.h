@@ -39,7 +39,8 @@ class Overlay {
   /// `drawn` of the moment `t_s` through the camera without distortion, `upscale` screen pixels per
   /// sensor pixel, with the picture in it; the caption says whose pose it is. Where the run states
   /// that it was lost, or has no pose younger than 20 ms, the picture is faint in a red frame.
-  [[nodiscard]] Picture over(Picture drawn, double t_s, int upscale, const Theme& theme) const;
+  [[nodiscard]] CaptionedPicture over(CaptionedPicture drawn, double t_s, int upscale,
+                                      const Theme& theme) const;
 
   [[nodiscard]] const PlacedPicture& picture() const { return picture_; }
 

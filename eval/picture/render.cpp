@@ -87,12 +87,12 @@ struct Scene {
 };
 
 /// Events and frame with the picture that hangs in the world.
-std::vector<Picture> overlaid_pictures_at(const Scene& scene, double t_s) {
+std::vector<CaptionedPicture> overlaid_pictures_at(const Scene& scene, double t_s) {
   const auto over = [&](std::string caption, ImageRgb8 image, double drawn_s) {
     return scene.overlay->over({std::move(caption), std::move(image)}, drawn_s, scene.upscale,
                                scene.view.theme());
   };
-  std::vector<Picture> pictures;
+  std::vector<CaptionedPicture> pictures;
   pictures.push_back(over("events", scene.view.undistorted_events(t_s), t_s));
   if (auto frame = scene.view.undistorted_frame(t_s))
     pictures.push_back(
@@ -101,11 +101,11 @@ std::vector<Picture> overlaid_pictures_at(const Scene& scene, double t_s) {
 }
 
 /// The pictures of one moment, left to right.
-std::vector<Picture> pictures_at(const Scene& scene, double t_s) {
+std::vector<CaptionedPicture> pictures_at(const Scene& scene, double t_s) {
   if (scene.overlay) return overlaid_pictures_at(scene, t_s);
   const Subject& subject = scene.subject;
   const SensorView& view = scene.view;
-  std::vector<Picture> pictures;
+  std::vector<CaptionedPicture> pictures;
   if (subject.has_poses()) {
     pictures.push_back(
         {"map (blue) over events",

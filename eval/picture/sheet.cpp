@@ -15,7 +15,7 @@ constexpr double kCaptionText = 8;
 
 }  // namespace
 
-void Sheet::add_row(std::string label, std::vector<Picture> pictures) {
+void Sheet::add_row(std::string label, std::vector<CaptionedPicture> pictures) {
   rows_.push_back({std::move(label), std::move(pictures)});
 }
 
@@ -25,7 +25,7 @@ ImageRgb8 Sheet::draw() const {
   for (const Row& row : rows_) {
     int row_width = kMargin;
     int row_height = 0;
-    for (const Picture& picture : row.pictures) {
+    for (const CaptionedPicture& picture : row.pictures) {
       row_width += picture.image.width() + kMargin;
       row_height = std::max(row_height, picture.image.height());
     }
@@ -38,7 +38,7 @@ ImageRgb8 Sheet::draw() const {
   for (const Row& row : rows_) {
     int x = kMargin;
     int row_height = 0;
-    for (const Picture& picture : row.pictures) {
+    for (const CaptionedPicture& picture : row.pictures) {
       const std::string caption =
           row.label.empty() ? picture.caption : row.label + "  " + picture.caption;
       canvas.text(caption, Eigen::Vector2d(x, y + 14), mix(theme_.faint, theme_.text, 0.75),

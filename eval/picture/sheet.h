@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-struct Picture {
+struct CaptionedPicture {
   std::string caption;
   ImageRgb8 image;
 };
@@ -19,13 +19,13 @@ class Sheet {
  public:
   Sheet(std::string title, const Theme& theme) : title_(std::move(title)), theme_(theme) {}
 
-  void add_row(std::string label, std::vector<Picture> pictures);
+  void add_row(std::string label, std::vector<CaptionedPicture> pictures);
   [[nodiscard]] ImageRgb8 draw() const;
 
  private:
   struct Row {
     std::string label;
-    std::vector<Picture> pictures;
+    std::vector<CaptionedPicture> pictures;
   };
 
   std::string title_;

@@ -60,7 +60,7 @@ std::vector<std::size_t> from_best_to_worst(const std::vector<DepthErrors>& view
 double largest_error(const std::string& dataset) { return dataset == "dunes" ? 0.045 : 0.07; }
 
 /// What the colours of a view span: its true depths or, where they are unknown, the estimated ones.
-DepthRange range_of(const DepthView& view, const std::optional<DepthTruth>& truth) {
+DepthRange range_of(const EstimatedView& view, const std::optional<DepthTruth>& truth) {
   if (truth) return depth_range(truth->depth);
   ImageF depths(static_cast<int>(view.points.size()), 1);
   for (std::size_t i = 0; i < view.points.size(); ++i)
@@ -68,7 +68,7 @@ DepthRange range_of(const DepthView& view, const std::optional<DepthTruth>& trut
   return depth_range(depths);
 }
 
-std::string view_pictures(const RunData& data, const DepthView& view, const DepthErrors& errors,
+std::string view_pictures(const RunData& data, const EstimatedView& view, const DepthErrors& errors,
                           const char* which) {
   const auto truth = depth_truth_at(*data.data, view.t_s);
   const PinholeCamera camera = data.data->camera().undistorted();
@@ -100,7 +100,7 @@ std::string planes_table(const std::vector<FittedPlane>& planes, std::size_t poi
   return html + "</tbody></table></div>";
 }
 
-std::string cloud(const RunData& data, const std::vector<DepthView>& views) {
+std::string cloud(const RunData& data, const std::vector<EstimatedView>& views) {
   const PinholeCamera& camera = data.data->camera();
   std::vector<Eigen::Vector3d> points = points_in_world(views, camera);
   const Rigid3 camera_from_world = views[views.size() / 2].world_from_camera.inverse();
@@ -116,7 +116,7 @@ std::string cloud(const RunData& data, const std::vector<DepthView>& views) {
 
 std::string depth_section(const RunData& data) {
   if (!data.data) return "";
-  const std::vector<DepthView> views = load_depth_views(data.run.folder);
+  const std::vector<EstimatedView> views = load_depth_views(data.run.folder);
   if (views.empty()) return "";
   const std::vector<DepthErrors> errors = compare_views(views, *data.data);
   std::string html = "<h4>Depth</h4>" + views_table(errors) +

@@ -30,7 +30,7 @@ class OverlayTest : public testing::FakeFolders {
   [[nodiscard]] Overlay over_run() const { return {options, data, &tracked, map, 0}; }
   [[nodiscard]] Overlay over_data() const { return {options, data, nullptr, {}, 0}; }
 
-  [[nodiscard]] static Picture drawn(const Overlay& overlay, double t_s) {
+  [[nodiscard]] static CaptionedPicture drawn(const Overlay& overlay, double t_s) {
     return overlay.over({"events", ImageRgb8(80, 60)}, t_s, 1, kDarkTheme);
   }
   [[nodiscard]] static int count_of(const ImageRgb8& image, const Rgb8& colour) {
@@ -82,7 +82,7 @@ TEST_F(OverlayTest, PoseAndWidthAreTakenAsGiven) {
 TEST_F(OverlayTest, WhatTheDepthMapsSeeNearerHidesIt) {
   const Rigid3 behind(Eigen::Quaterniond::Identity(), {0, 0, 30});
   options.world_from_picture = data.groundtruth().at_clamped(0) * behind;
-  const Picture hidden = drawn(over_data(), 0);
+  const CaptionedPicture hidden = drawn(over_data(), 0);
   EXPECT_EQ(count_of(hidden.image, kYellow), 0);
   EXPECT_THAT(hidden.caption, HasSubstr("(not seen)"));
   options.on_top = true;
@@ -96,10 +96,10 @@ TEST_F(OverlayTest, SaysWhosePoseItIs) {
 
 TEST_F(OverlayTest, LostPosesShow) {
   const Overlay overlay = over_run();
-  const Picture held = drawn(overlay, 0.09);
+  const CaptionedPicture held = drawn(overlay, 0.09);
   EXPECT_GT(count_of(held.image, kYellow), 0);
   EXPECT_THAT(held.caption, Not(HasSubstr("LOST")));
-  const Picture lost = drawn(overlay, 0.11);
+  const CaptionedPicture lost = drawn(overlay, 0.11);
   EXPECT_EQ(count_of(lost.image, kYellow), 0);
   EXPECT_GT(count_of(lost.image, kDarkTheme.off), 20);
   EXPECT_THAT(lost.caption, HasSubstr("LOST"));
@@ -115,7 +115,7 @@ TEST_F(OverlayTest, WithoutAPoseForLongItIsLost) {
 TEST_F(OverlayTest, TheTruthIsAnOutline) {
   const ImageRgb8 without = drawn(over_run(), 0).image;
   options.truth = true;
-  const Picture with = drawn(over_run(), 0);
+  const CaptionedPicture with = drawn(over_run(), 0);
   int changed = 0;
   for (std::size_t i = 0; i < without.size(); ++i)
     if (with.image.pixels()[i] != without.pixels()[i]) ++changed;
