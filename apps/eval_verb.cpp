@@ -18,6 +18,7 @@ struct EvalOptions {
   std::filesystem::path trajectory;
   std::filesystem::path depth;
   std::filesystem::path cloud;
+  std::filesystem::path image;
   std::optional<double> at_s;
   EvaluateOptions evaluate;
   std::optional<std::filesystem::path> output;
@@ -30,7 +31,8 @@ void show(const EvalOptions& options, const Metrics& metrics, const std::string&
 
 /// What the option names was found by any program.
 bool is_foreign(const EvalOptions& options) {
-  return !options.trajectory.empty() || !options.depth.empty() || !options.cloud.empty();
+  return !options.trajectory.empty() || !options.depth.empty() || !options.cloud.empty() ||
+         !options.image.empty();
 }
 
 void evaluate_foreign_depth(const EvalOptions& options) {
@@ -45,6 +47,11 @@ void evaluate_foreign_depth(const EvalOptions& options) {
 void evaluate_foreign(const EvalOptions& options) {
   if (!options.evaluate.dataset)
     throw InputError("--data", "it is scored against a dataset: --data DATASET");
+  if (!options.image.empty())
+    return show(
+        options,
+        evaluate_image(options.image, options.at_s, *options.evaluate.dataset, options.output),
+        options.image.string());
   if (options.trajectory.empty()) return evaluate_foreign_depth(options);
   const Metrics metrics = evaluate_trajectory(options.trajectory, *options.evaluate.dataset,
                                               options.output, options.evaluate.mean_depth_m);
@@ -55,9 +62,10 @@ void evaluate(const EvalOptions& options) {
   options.common.apply();
   const int named =
       static_cast<int>(!options.run.empty()) + static_cast<int>(!options.trajectory.empty()) +
-      static_cast<int>(!options.depth.empty()) + static_cast<int>(!options.cloud.empty());
+      static_cast<int>(!options.depth.empty()) + static_cast<int>(!options.cloud.empty()) +
+      static_cast<int>(!options.image.empty());
   if (named != 1)
-    throw InputError("eval", "name one of: a run folder, --trajectory, --depth, --cloud");
+    throw InputError("eval", "name one of: a run folder, --trajectory, --depth, --cloud, --image");
   if (is_foreign(options)) return evaluate_foreign(options);
   if (options.output)
     throw InputError(
@@ -78,8 +86,13 @@ void add_eval_verb(CLI::App& command) {
                    "Depth map of any program (EXR: z [m], 0 = unknown, undistorted), or a folder "
                    "with depth maps and views.yaml");
   verb->add_option("--cloud", options->cloud, "Point cloud of any program (PLY, world frame)");
+  verb->add_option(
+      "--image", options->image,
+      "Image of any program (EXR: log intensity, or an 8-bit picture; undistorted), or "
+      "a folder with images and views.yaml");
   verb->add_option("--at-s", options->at_s,
-                   "Time of the view of --depth or --cloud (default: of the first depth map)")
+                   "Time of the view of --image, --depth or --cloud (default of the latter: of the "
+                   "first depth map)")
       ->check(finite_number());
   verb->add_option("--data", options->evaluate.dataset,
                    "Dataset to score against (default: the one the run used)");
@@ -93,7 +106,8 @@ void add_eval_verb(CLI::App& command) {
       "Examples:\n"
       "  saccade eval runs/walls\n"
       "  saccade eval --trajectory mine.txt --data data/walls -o mine.json\n"
-      "  saccade eval --depth mine.exr --at-s 0.5 --data data/walls");
+      "  saccade eval --depth mine.exr --at-s 0.5 --data data/walls\n"
+      "  saccade eval --image mine.png --at-s 0.5 --data data/walls");
   verb->callback([options] { evaluate(*options); });
 }
 

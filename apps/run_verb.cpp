@@ -30,6 +30,13 @@ std::string module_list() {
 
 void show(const RunVerbOptions& options, const RunSummary& summary) {
   const double wall_s = summary.wall_s;
+  if (find_module(options.module).takes_depth) {
+    fmt::print("{}: {} views from {:.3f} M events in {:.3f} s: {:.3f} M events/s\n",
+               options.request.output.string(), summary.views,
+               1e-6 * static_cast<double>(summary.events), wall_s,
+               wall_s > 0 ? 1e-6 * static_cast<double>(summary.events) / wall_s : 0);
+    return;
+  }
   if (find_module(options.module).takes_poses) {
     fmt::print("{}: {} points in {} views from {:.3f} M events in {:.3f} s: {:.3f} M events/s\n",
                options.request.output.string(), summary.points, summary.views,
@@ -75,6 +82,9 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("--poses-from", request.poses_from,
                    "Poses of this run or trajectory file (TUM) in place of the ground truth's")
       ->type_name("RUN");
+  verb->add_option("--depth-from", request.depth_from,
+                   "Depth of this run in place of the dataset's depth maps")
+      ->type_name("RUN");
   verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)")
       ->check(finite_number());
   verb->add_option("--duration-s", request.duration_s, "Length of the window")
@@ -88,7 +98,9 @@ void add_run_verb(CLI::App& command) {
       "Example:\n"
       "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
       "  saccade run depth --data data/walls --poses-from runs/walls -c configs/depth/thesis.yaml "
-      "-o runs/walls_depth");
+      "-o runs/walls_depth\n"
+      "  saccade run reconstruct --data data/walls --depth-from runs/walls_depth "
+      "-c configs/reconstruction/best.yaml -o runs/walls_image");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

@@ -2,16 +2,19 @@
 
 #include "core/error.h"
 #include "estimator/depth/depth_module.h"
+#include "estimator/reconstruction/reconstruction_module.h"
 #include "estimator/tracking/track_module.h"
 
 namespace saccade {
 namespace {
 
 constexpr Module kModules[] = {
-    {"track", "pose of the camera against a known map (thesis chapter 4)", false, run_track,
+    {"track", "pose of the camera against a known map (thesis chapter 4)", false, false, run_track,
      print_track_config},
-    {"depth", "depth of the edges from events and poses (thesis chapter 5)", true, run_depth,
+    {"depth", "depth of the edges from events and poses (thesis chapter 5)", true, false, run_depth,
      print_depth_config},
+    {"reconstruct", "image of a view from events, poses and depth (thesis chapter 6)", true, true,
+     run_reconstruction, print_reconstruction_config},
 };
 
 }  // namespace
@@ -31,6 +34,8 @@ RunSummary run_module(const std::string& name, const RunRequest& request) {
   const Module& module = find_module(name);
   if (request.poses_from && !module.takes_poses)
     throw InputError("--poses-from", std::string(name) + " takes no poses");
+  if (request.depth_from && !module.takes_depth)
+    throw InputError("--depth-from", std::string(name) + " takes no depth");
   return module.run(request);
 }
 

@@ -13,6 +13,7 @@ struct Module {
   const char* name;
   const char* help;  ///< one line
   bool takes_poses;  ///< from the ground truth or RunRequest::poses_from
+  bool takes_depth;  ///< from the dataset or RunRequest::depth_from
   /// Runs over a dataset and writes the run folder. Throws InputError for bad input.
   RunSummary (*run)(const RunRequest&);
   /// The resolved configuration, documented, as YAML. Throws InputError for a bad one.

@@ -20,6 +20,8 @@ struct RunRequest {
   /// A run folder or a trajectory file whose poses stand in for the ground truth's; of modules that
   /// take poses.
   std::optional<std::filesystem::path> poses_from;
+  /// A run folder whose depth stands in for the dataset's; of modules that take depth.
+  std::optional<std::filesystem::path> depth_from;
   std::optional<std::uint64_t> seed;  ///< in place of the configuration's
   int threads = 1;                    ///< as stated in run.yaml
   int repeat = 1;                     ///< how often the work is done, for timing; >= 1

@@ -90,6 +90,8 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   record.dataset_sha256 = dataset_hash(dataset);
   if (request.poses_from)
     record.poses_from = std::filesystem::absolute(*request.poses_from).lexically_normal();
+  if (request.depth_from)
+    record.depth_from = std::filesystem::absolute(*request.depth_from).lexically_normal();
   record.window = window;
   record.seed = seed;
   record.threads = request.threads;

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "eval/depth_views.h"
+#include "eval/image_views.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/trajectory_metrics.h"
 
@@ -34,6 +35,8 @@ Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& d
   merge(metrics, run.timing, "speed.");
   if (!depth.views.empty())
     merge(metrics, score_depth(depth.views, depth.errors, dataset.camera()), "");
+  if (const auto images = load_image_views(run.folder); !images.empty())
+    merge(metrics, score_images(images, dataset), "");
   if (!run.trajectory) return metrics;
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;
@@ -93,6 +96,23 @@ Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& d
                             : load_depth_map(depth.file, dataset, t_s)};
   }
   const Metrics metrics = score_depth(views, compare_views(views, dataset), dataset.camera());
+  if (output) write_atomically(*output, to_json(metrics));
+  return metrics;
+}
+
+Metrics evaluate_image(const std::filesystem::path& file, const std::optional<double>& at_s,
+                       const std::filesystem::path& dataset_folder,
+                       const std::optional<std::filesystem::path>& output) {
+  const Dataset dataset = Dataset::open(dataset_folder);
+  std::vector<ImageView> views;
+  if (std::filesystem::is_directory(file)) {
+    views = load_image_views(file);
+    if (views.empty()) throw InputError(file.string(), "holds no views.yaml with images");
+  } else {
+    if (!at_s) throw InputError("--at-s", "state the time of the view of --image");
+    views = {load_image(file, dataset, *at_s)};
+  }
+  const Metrics metrics = score_images(views, dataset);
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }

@@ -47,6 +47,12 @@ struct ForeignDepth {
 Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
                        const std::optional<std::filesystem::path>& output = std::nullopt);
 
+/// Scores an image of any program (EXR of log intensity, or a picture; undistorted) at `at_s`, or a
+/// folder with images that views.yaml lists, as evaluate_run() scores a run of `reconstruct`.
+Metrics evaluate_image(const std::filesystem::path& file, const std::optional<double>& at_s,
+                       const std::filesystem::path& dataset_folder,
+                       const std::optional<std::filesystem::path>& output = std::nullopt);
+
 /// The scores as a table for a terminal, below a line with `title`; a dash where a score is null.
 [[nodiscard]] std::string format_metrics(const Metrics& metrics, const std::string& title);
 

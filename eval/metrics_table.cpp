@@ -81,6 +81,19 @@ void add_depth(std::string& text, const Metrics& metrics) {
                         fixed(get("two_planes.angle_deg"), 2), percent("two_planes.share", 1));
 }
 
+void add_reconstruction(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const std::string& key) { return metrics.get("reconstruction." + key); };
+  std::optional<double> observed = get("observed");
+  if (observed) *observed *= 100;
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}{:>12}{:>10}\n", "image", "SSIM", "Pearson",
+                      "RMSE log", "grad Pearson", "observed %", "views");
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}{:>12}{:>10}\n", "mean",
+                      fixed(get("ssim"), 4), fixed(get("pearson"), 4), fixed(get("rmse_log"), 4),
+                      fixed(get("gradient_pearson"), 4), fixed(observed, 1), grouped(get("views")));
+  text += fmt::format("  {:<14}{:>10}{:>10}\n", "worst view", fixed(get("worst.ssim"), 4),
+                      fixed(get("worst.pearson"), 4));
+}
+
 void add_speed(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) {
     return speed_value(metrics, std::string("speed.") + key);
@@ -109,6 +122,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
     add_tracking(text, metrics);
   }
   if (metrics.values().contains("depth.points")) add_depth(text, metrics);
+  if (metrics.values().contains("reconstruction.views")) add_reconstruction(text, metrics);
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;
 }

@@ -25,6 +25,8 @@ void describe(config::Fields& fields, RunRecord& record) {
       "what it was given");
   if (fields.has("poses_from") || (!fields.reading() && !record.poses_from.empty()))
     fields.value("poses_from", record.poses_from, "whose poses it took in place of the truth's");
+  if (fields.has("depth_from") || (!fields.reading() && !record.depth_from.empty()))
+    fields.value("depth_from", record.depth_from, "whose depth it took in place of the dataset's");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);

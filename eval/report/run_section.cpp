@@ -8,6 +8,7 @@
 #include "eval/picture/sensor_view.h"
 #include "eval/report/depth_section.h"
 #include "eval/report/html.h"
+#include "eval/report/image_section.h"
 
 namespace saccade {
 namespace {
@@ -190,6 +191,7 @@ std::string provenance(const RunData& data) {
   add("module", r.module);
   add("dataset", r.dataset.string());
   add("poses from", r.poses_from.string());
+  add("depth from", r.depth_from.string());
   add("dataset hash", r.dataset_sha256);
   if (r.window)
     add("window", fmt::format("{:.6f} .. {:.6f} s", r.window->start_s, r.window->end_s));
@@ -233,7 +235,7 @@ std::string run_section(const RunData& data) {
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));
   html += key_numbers(data) + views(data);
-  if (data.data) html += map_pictures(data) + depth_section(data);
+  if (data.data) html += map_pictures(data) + depth_section(data) + image_section(data);
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
 }
 

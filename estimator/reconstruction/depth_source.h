@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/io/dataset.h"
+#include "core/io/view_list.h"
+#include "core/trajectory.h"
+#include "estimator/reconstruction/place_finder.h"
+
+namespace saccade {
+
+struct DepthSourceOptions {
+  enum class Propagation { kSurface, kSplat };
+
+  /// How depth gets from the view where it is known to others: a surface between neighbouring
+  /// pixels, or the thesis's Gaussians (6.3).
+  Propagation propagation = Propagation::kSurface;
+  int kernel_px = 3;          ///< of kSplat; odd
+  double smoothness = 0.001;  ///< of a map through points: relative difference that counts linearly
+};
+
+/// Where the depth of the scene comes from: the depth maps of a dataset or the views of a depth
+/// run.
+class DepthSource {
+ public:
+  /// The dataset's maps or, where it is given, the run folder's. `trajectory`: world_from_camera.
+  /// Throws InputError where there is no depth.
+  DepthSource(const Dataset& dataset, const std::optional<std::filesystem::path>& depth_from,
+              const Trajectory& trajectory, const DepthSourceOptions& options);
+
+  /// The scene as known around `reference_s`: by the dataset's map nearest in time, or by all
+  /// points of the run's views, joined to a dense map of the view at `reference_s`.
+  [[nodiscard]] DepthScene scene_at(double reference_s) const;
+
+ private:
+  [[nodiscard]] DepthScene scene_of(const ImageF& depth, const PinholeCamera& camera,
+                                    const Rigid3& world_from_depth) const;
+  [[nodiscard]] ImageF joined_points(const Rigid3& world_from_reference) const;
+
+  const Dataset& dataset_;
+  const Trajectory& trajectory_;
+  DepthSourceOptions options_;
+  std::vector<RunView> views_;  ///< of the depth run; empty: the dataset's maps
+};
+
+}  // namespace saccade

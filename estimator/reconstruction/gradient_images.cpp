@@ -1,0 +1,28 @@
+#include "estimator/reconstruction/gradient_images.h"
+
+#include <cstddef>
+
+#include "core/check.h"
+
+namespace saccade {
+
+void set_gradient(Reconstruction& result, const PinholeCamera& camera,
+                  std::span<const GradientState> states, double observed_sigma) {
+  for (ImageF* image : {&result.gradient_x, &result.gradient_y, &result.covariance_xx,
+                        &result.covariance_xy, &result.covariance_yy})
+    *image = ImageF(camera.width, camera.height);
+  result.observed = ImageU8(camera.width, camera.height);
+  SACCADE_CHECK(states.size() == result.observed.size());
+  const auto limit = static_cast<float>(observed_sigma * observed_sigma);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const GradientState& s = states[i];
+    result.gradient_x.pixels()[i] = s.gx;
+    result.gradient_y.pixels()[i] = s.gy;
+    result.covariance_xx.pixels()[i] = s.pxx;
+    result.covariance_xy.pixels()[i] = s.pxy;
+    result.covariance_yy.pixels()[i] = s.pyy;
+    result.observed.pixels()[i] = s.least_variance() < limit ? 1 : 0;
+  }
+}
+
+}  // namespace saccade

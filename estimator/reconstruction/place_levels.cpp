@@ -1,0 +1,107 @@
+#include "estimator/reconstruction/place_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kBatch = 512;  ///< events between two looks at how far the camera has moved
+
+constexpr TimeNs kAtOnceNs = 2000;
+
+}  // namespace
+
+LevelFinder::LevelFinder(const PinholeCamera& camera, const DepthScene& scene,
+                         const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
+                         double contrast_on, double contrast_off, const LevelOptions& options)
+    : places_(camera, scene, world_from_reference, options.redraw_px),
+      reference_(reference_inverse_depth),
+      world_from_reference_(world_from_reference),
+      contrast_on_(static_cast<float>(contrast_on)),
+      contrast_off_(static_cast<float>(contrast_off)),
+      options_(options),
+      pixels_(camera.width, camera.height) {}
+
+void LevelFinder::find(std::span<const Event> events, const Trajectory& world_from_camera,
+                       std::vector<PlaceLevel>& levels) {
+  if (events.empty()) return;
+  const PoseTable poses(world_from_camera, world_from_reference_.inverse(), events.front().t_ns,
+                        events.back().t_ns);
+  int draws = places_.draws();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const CameraPose pose = poses.at(events[i].t_ns);
+    if (i % kBatch == 0) {
+      places_.prepare(pose);
+      if (options_.still && places_.draws() != draws) add_still(pose, levels);
+      draws = places_.draws();
+    }
+    add_event(events[i], pose, levels);
+  }
+  if (options_.still) add_still(poses.at(events.back().t_ns), levels);
+}
+
+void LevelFinder::add_event(const Event& event, const CameraPose& pose,
+                            std::vector<PlaceLevel>& levels) {
+  Pixel& pixel = pixels_(event.x, event.y);
+  const float step = event.polarity > 0 ? contrast_on_ : -contrast_off_;
+  pixel.level += step;
+  const auto place = places_.find(event.x, event.y, pose);
+  if (!place || !is_visible(*place)) return;
+  // At the edge of an occluder the level jumps past the threshold, by up to one more of them; so do
+  // several events at once.
+  const auto tolerance = static_cast<float>(options_.same_surface);
+  const bool is_jump = pixel.events > 0 && (std::abs(place->inverse_depth - pixel.inverse_depth) >
+                                                tolerance * pixel.inverse_depth ||
+                                            event.t_ns - pixel.t_ns < kAtOnceNs);
+  const auto sigma = static_cast<float>(options_.event_sigma);
+  const float deviation = is_jump ? std::hypot(sigma, step) : sigma;
+  if (pixel.events == 0 || pixel.events >= options_.track_events) {
+    if (pixel.events > 0)
+      levels.push_back({tracks_, pixel.x, pixel.y, pixel.level - step, sigma, 0, 0});
+    pixel.track = tracks_++;
+    pixel.events = 0;
+  }
+  levels.push_back({pixel.track, place->x, place->y, pixel.level, deviation, 0, 0});
+  pixel = {pixel.level,      place->inverse_depth,
+           place->x,         place->y,
+           place->x,         place->y,
+           event.t_ns,       pixel.track,
+           pixel.events + 1, static_cast<float>(event.polarity)};
+}
+
+void LevelFinder::add_still(const CameraPose& pose, std::vector<PlaceLevel>& levels) {
+  const auto far = static_cast<float>(options_.still_px);
+  // What passed a pixel most often are edges: the level went on, past that of the last event, by up
+  // to a threshold (C / 2 +- C / sqrt(12)). Without an event so far it may be on either side.
+  const float contrast = (contrast_on_ + contrast_off_) / 2;
+  for (int y = 0; y < pixels_.height(); ++y)
+    for (int x = 0; x < pixels_.width(); ++x) {
+      Pixel& pixel = pixels_(x, y);
+      const auto place = places_.find(x, y, pose);
+      if (!place || !is_visible(*place)) continue;
+      if (pixel.events == 0) {
+        pixel.track = tracks_++;
+        pixel.events = 1;
+      } else if (std::hypot(place->x - pixel.still_x, place->y - pixel.still_y) < far) {
+        continue;
+      }
+      const float beyond = pixel.last * contrast * static_cast<float>(options_.beyond);
+      const float deviation = contrast / std::sqrt(pixel.last == 0 ? 3.0F : 12.0F);
+      levels.push_back({pixel.track, place->x, place->y, pixel.level, deviation, contrast, beyond});
+      pixel.still_x = place->x;
+      pixel.still_y = place->y;
+    }
+}
+
+bool LevelFinder::is_visible(const Place& place) const {
+  if (!is_inside(reference_, place.x, place.y)) return false;
+  const BilinearCell<float> c(place.x, place.y, reference_.width(), reference_.height());
+  const auto tolerance = static_cast<float>(options_.same_surface);
+  const auto is_same = [&](float seen) {
+    return std::abs(seen - place.inverse_depth) <= tolerance * place.inverse_depth;
+  };
+  return is_same(reference_(c.x0 + (c.fx > 0.5F ? 1 : 0), c.y0 + (c.fy > 0.5F ? 1 : 0)));
+}
+
+}  // namespace saccade

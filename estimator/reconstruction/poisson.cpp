@@ -1,0 +1,136 @@
+#include "estimator/reconstruction/poisson.h"
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <numeric>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ImageMap = Eigen::Map<Matrix>;
+
+/// Orthonormal DST-I: symmetric and its own inverse.
+Matrix sine_matrix(int size) {
+  Matrix m(size, size);
+  const double scale = std::sqrt(2.0 / (size + 1));
+  for (int i = 0; i < size; ++i)
+    for (int k = 0; k < size; ++k)
+      m(i, k) = static_cast<float>(scale *
+                                   std::sin(std::numbers::pi * (i + 1.0) * (k + 1.0) / (size + 1)));
+  return m;
+}
+
+/// Orthonormal DCT-II, rows are the basis.
+Matrix cosine_matrix(int size) {
+  Matrix m(size, size);
+  for (int k = 0; k < size; ++k)
+    for (int i = 0; i < size; ++i)
+      m(k, i) = static_cast<float>(std::sqrt((k == 0 ? 1.0 : 2.0) / size) *
+                                   std::cos(std::numbers::pi * k * (i + 0.5) / size));
+  return m;
+}
+
+double second_difference(double angle) { return 2 - 2 * std::cos(angle); }
+
+ImageMap map_of(ImageF& image) { return {image.data(), image.height(), image.width()}; }
+
+ImageF solve_dirichlet(const ImageF& laplacian) {
+  ImageF image = laplacian;
+  const int w = image.width(), h = image.height();
+  const Matrix along_x = sine_matrix(w), along_y = sine_matrix(h);
+  ImageMap m = map_of(image);
+  Matrix coefficients = along_y * m * along_x;
+  for (int l = 0; l < h; ++l)
+    for (int k = 0; k < w; ++k)
+      coefficients(l, k) /=
+          -static_cast<float>(second_difference(std::numbers::pi * (k + 1) / (w + 1)) +
+                              second_difference(std::numbers::pi * (l + 1) / (h + 1)));
+  m = along_y * coefficients * along_x;
+  return image;
+}
+
+ImageF solve_neumann(const ImageF& laplacian) {
+  ImageF image = laplacian;
+  const CosineTransform transform(image.width(), image.height());
+  transform.forward(image);
+  for (int l = 0; l < image.height(); ++l)
+    for (int k = 0; k < image.width(); ++k)
+      image(k, l) = k + l == 0 ? 0 : image(k, l) / -static_cast<float>(transform.eigenvalue(k, l));
+  transform.inverse(image);
+  return image;
+}
+
+/// OpenCV's transform takes even sizes only; others are small matrices.
+void transform_cosine(ImageF& image, bool inverse) {
+  if (image.width() % 2 == 0 && image.height() % 2 == 0) {
+    const cv::Mat m(image.height(), image.width(), CV_32F, image.data());
+    cv::Mat result;
+    cv::dct(m, result, inverse ? cv::DCT_INVERSE : 0);
+    result.copyTo(m);
+    return;
+  }
+  const Matrix along_x = cosine_matrix(image.width()), along_y = cosine_matrix(image.height());
+  ImageMap m = map_of(image);
+  const Matrix result = inverse ? Matrix(along_y.transpose() * m * along_x)
+                                : Matrix(along_y * m * along_x.transpose());
+  m = result;
+}
+
+}  // namespace
+
+GradientField forward_gradient(const ImageF& image) {
+  GradientField g{ImageF(image.width(), image.height()), ImageF(image.width(), image.height())};
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      if (x + 1 < image.width()) g.x(x, y) = image(x + 1, y) - image(x, y);
+      if (y + 1 < image.height()) g.y(x, y) = image(x, y + 1) - image(x, y);
+    }
+  return g;
+}
+
+ImageF divergence(const GradientField& gradient) {
+  ImageF d(gradient.x.width(), gradient.x.height());
+  for (int y = 0; y < d.height(); ++y)
+    for (int x = 0; x < d.width(); ++x)
+      d(x, y) = (x + 1 < d.width() ? gradient.x(x, y) : 0) - (x > 0 ? gradient.x(x - 1, y) : 0) +
+                (y + 1 < d.height() ? gradient.y(x, y) : 0) - (y > 0 ? gradient.y(x, y - 1) : 0);
+  return d;
+}
+
+void subtract_mean(ImageF& image) {
+  const double mean = std::accumulate(image.pixels().begin(), image.pixels().end(), 0.0) /
+                      static_cast<double>(image.size());
+  for (float& value : image.pixels()) value -= static_cast<float>(mean);
+}
+
+ImageF solve_poisson(const ImageF& laplacian, Boundary boundary) {
+  return boundary == Boundary::kDirichlet ? solve_dirichlet(laplacian) : solve_neumann(laplacian);
+}
+
+CosineTransform::CosineTransform(int width, int height) : width_(width), height_(height) {
+  SACCADE_CHECK(width > 0 && height > 0);
+}
+
+void CosineTransform::forward(ImageF& image) const {
+  SACCADE_CHECK(image.width() == width_ && image.height() == height_);
+  transform_cosine(image, false);
+}
+
+void CosineTransform::inverse(ImageF& image) const {
+  SACCADE_CHECK(image.width() == width_ && image.height() == height_);
+  transform_cosine(image, true);
+}
+
+double CosineTransform::eigenvalue(int k, int l) const {
+  return second_difference(std::numbers::pi * k / width_) +
+         second_difference(std::numbers::pi * l / height_);
+}
+
+}  // namespace saccade

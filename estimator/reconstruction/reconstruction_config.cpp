@@ -1,0 +1,152 @@
+#include "estimator/reconstruction/reconstruction_config.h"
+
+namespace saccade {
+namespace {
+
+void describe_window(config::Fields& fields, ViewOptions& options) {
+  using By = ViewOptions::By;
+  using Reference = ViewOptions::Reference;
+  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
+                "what the windows share alike");
+  if (options.by == By::kTime)
+    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
+        .range(1e-4, 1e5);
+  if (options.by == By::kEvents)
+    fields.value("events", options.events, "most events of a window; all hold equally many")
+        .range(100, 1e9);
+  fields.choice(
+      "reference", options.reference,
+      {{"start", Reference::kStart},
+       {"middle", Reference::kMiddle},
+       {"end", Reference::kEnd},
+       {"frame", Reference::kFrame}},
+      "where in its window the view lies; frame: at the grey frame nearest to the middle");
+}
+
+void describe_depth(config::Fields& fields, DepthSourceOptions& options) {
+  using Propagation = DepthSourceOptions::Propagation;
+  fields.choice("propagation", options.propagation,
+                {{"surface", Propagation::kSurface}, {"splat", Propagation::kSplat}},
+                "from the view where depth is known to others: a surface, or Gaussians (6.3)");
+  if (options.propagation == Propagation::kSplat) {
+    fields.value("kernel_px", options.kernel_px, "side of a Gaussian, odd (fig. 6.2)").range(1, 99);
+    fields.expect(options.kernel_px % 2 == 1, "kernel_px", "must be odd");
+  }
+  fields
+      .value(
+          "smoothness", options.smoothness,
+          "of the map through the points of a depth run: how far neighbours may differ, relative")
+      .range(1e-5, 1);
+}
+
+void describe_levels(config::Fields& fields, LevelOptions& options) {
+  fields
+      .value("event_sigma", options.event_sigma,
+             "deviation of what an event says, beside the threshold [log units]")
+      .range(1e-4, 10);
+  fields
+      .value("track_events", options.track_events,
+             "events after which a pixel's offset has drifted away")
+      .range(1, 1e9);
+  fields.value("still", options.still, "pixels that moved without an event are measurements too");
+  fields.value("still_px", options.still_px, "each time they have moved this far").range(0.1, 1000);
+  fields
+      .value("beyond", options.beyond,
+             "a silent pixel's level goes on past its last event, by this share of a threshold")
+      .range(0, 1);
+  fields.value("redraw_px", options.redraw_px, "motion after which the depth is drawn anew")
+      .range(0.1, 100);
+  fields
+      .value("same_surface", options.same_surface,
+             "relative difference of depth up to which a place is the one that is seen (z-test)")
+      .range(1e-4, 10);
+}
+
+void describe_gradient(config::Fields& fields, GradientOptions& options) {
+  fields.value("prior_sigma", options.prior_sigma, "of a component, sqrt(P0) of (6.6) [1/px]")
+      .range(1e-4, 100);
+  fields
+      .value("observed_sigma", options.observed_sigma,
+             "a pixel is observed when its surest direction is this sure [1/px]")
+      .range(1e-6, 100);
+  fields.choice("boundary", options.boundary,
+                {{"dirichlet", Boundary::kDirichlet}, {"neumann", Boundary::kNeumann}},
+                "of Poisson's equation (6.20)");
+}
+
+void describe_equations(config::Fields& fields, EquationOptions& options) {
+  fields.value("scale", options.scale, "unknowns per pixel and direction").range(1, 4);
+  fields
+      .value("smoothness", options.smoothness,
+             "deviation of the difference of neighbours, all else unknown [log units]")
+      .range(1e-4, 1e4);
+  fields
+      .value("knee", options.knee,
+             "difference of neighbours from which on it counts by its size, not its square")
+      .range(1e-6, 1e3);
+  fields.value("across", options.across, "the same across the edge of an occluder")
+      .range(1e-4, 1e4);
+  fields.value("rounds", options.rounds, "from the second on, outliers count less").range(1, 20);
+  fields.value("outlier", options.outlier, "deviations beyond which an equation counts less")
+      .range(0.1, 1e6);
+  fields
+      .value("bound_sigma", options.bound_sigma,
+             "deviation beyond a silent pixel's bounds, from the second round on [log units]")
+      .range(1e-4, 100);
+  fields.value("iterations", options.iterations, "of conjugate gradients, per round")
+      .range(1, 10000);
+  fields.value("tolerance", options.tolerance, "of their residual").range(1e-9, 1);
+  fields.value("prior_sigma", options.prior_sigma, "of a component of the gradient [1/px]")
+      .range(1e-4, 100);
+  fields
+      .value("observed_sigma", options.observed_sigma,
+             "a pixel is observed when its surest direction is this sure [1/px]")
+      .range(1e-6, 100);
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, ReconstructionConfig& config) {
+  using Method = ReconstructionConfig::Method;
+  fields.choice("method", config.method,
+                {{"gradient", Method::kGradient}, {"equations", Method::kEquations}},
+                "how the image is found");
+  fields.group(
+      "window", [&](config::Fields& f) { describe_window(f, config.window); },
+      "part of the events that makes one view");
+  fields.group(
+      "depth", [&](config::Fields& f) { describe_depth(f, config.depth); },
+      "how depth gets from where it is known to where events are");
+  fields.value("contrast_on", config.contrast_on, "C+ [log units]; ~ is the dataset's, else 0.2")
+      .above(0);
+  fields.value("contrast_off", config.contrast_off, "C-").above(0);
+  LevelOptions& levels =
+      config.method == Method::kGradient ? config.gradient.levels : config.equations.levels;
+  fields.group(
+      "levels", [&](config::Fields& f) { describe_levels(f, levels); },
+      "what events say about the view");
+  if (config.method == Method::kGradient)
+    fields.group(
+        "gradient", [&](config::Fields& f) { describe_gradient(f, config.gradient); },
+        "pixel-wise Kalman filter and Poisson's equation (chapter 6)");
+  if (config.method == Method::kEquations)
+    fields.group(
+        "equations", [&](config::Fields& f) { describe_equations(f, config.equations); },
+        "one linear equation per event, least squares");
+  fields.value("growth", config.growth,
+               "numbers of events of the first window after which a picture is kept");
+  fields.value("seed", config.seed, "of random numbers; none are drawn");
+}
+
+std::unique_ptr<ImageEstimator> make_image_estimator(const ReconstructionConfig& config,
+                                                     const PinholeCamera& camera) {
+  switch (config.method) {
+    case ReconstructionConfig::Method::kGradient:
+      return std::make_unique<GradientReconstruction>(camera, config.gradient);
+    case ReconstructionConfig::Method::kEquations:
+      return std::make_unique<EquationReconstruction>(camera, config.equations);
+  }
+  return nullptr;
+}
+
+}  // namespace saccade

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/config/fields.h"
+#include "estimator/reconstruction/depth_source.h"
+#include "estimator/reconstruction/equation_reconstruction.h"
+#include "estimator/reconstruction/gradient_reconstruction.h"
+#include "estimator/reconstruction/image_estimator.h"
+
+namespace saccade {
+
+/// How the events of a run are cut into windows, one view each.
+struct ViewOptions {
+  enum class By { kTime, kEvents };
+  enum class Reference { kStart, kMiddle, kEnd, kFrame };
+
+  By by = By::kTime;
+  double duration_s = 3600;  ///< of kTime: longest; the windows are equally long
+  int events = 1000000;      ///< of kEvents: most; the windows hold equally many
+  /// kFrame: at the grey frame nearest to the middle, so that the two can be compared.
+  Reference reference = Reference::kFrame;
+};
+
+/// The configuration of `saccade run reconstruct`; describe() names the keys, ranges and defaults.
+struct ReconstructionConfig {
+  enum class Method { kGradient, kEquations };
+
+  Method method = Method::kGradient;
+  ViewOptions window;
+  DepthSourceOptions depth;
+  std::optional<double> contrast_on;  ///< nullopt: the dataset's, else 0.2
+  std::optional<double> contrast_off;
+  GradientOptions gradient;
+  EquationOptions equations;
+  std::vector<std::int64_t> growth;  ///< numbers of events after which a picture is kept
+  std::uint64_t seed = 1;
+};
+
+void describe(config::Fields& fields, ReconstructionConfig& config);
+
+/// The method that the configuration names. `camera` with its lens.
+[[nodiscard]] std::unique_ptr<ImageEstimator> make_image_estimator(
+    const ReconstructionConfig& config, const PinholeCamera& camera);
+
+}  // namespace saccade

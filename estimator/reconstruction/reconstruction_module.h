@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run reconstruct`: gradient and log intensity of views of a dataset, with the poses of
+/// the ground truth or of another run and the dataset's depth or that of a depth run. Writes
+/// gradient/, image/, growth/, views.yaml, run.yaml and timing.json. Windows run in parallel, with
+/// the same result for any number of threads. Throws InputError for bad input.
+RunSummary run_reconstruction(const RunRequest& request);
+
+/// The resolved configuration, documented.
+[[nodiscard]] std::string print_reconstruction_config(const config::Document& document);
+
+}  // namespace saccade

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "estimator/reconstruction/image_estimator.h"
+
+namespace saccade {
+
+/// The first window after its first events.
+struct GrowthPicture {
+  std::size_t events = 0;
+  ImageF log_image;
+};
+
+/// Writes into a run folder: gradient/gradient_%08d.exr (channels gx, gy [log units/px], their
+/// covariance Pxx, Pxy, Pyy), image/image_%08d.exr (L: log intensity of mean 0; observed: 0 or 1)
+/// with a PNG of its range, growth/growth_%09d.png by number of events, views.yaml.
+void write_reconstruction(const std::filesystem::path& folder,
+                          std::span<const ReconstructionWindow> windows,
+                          std::span<const Reconstruction> results,
+                          std::span<const GrowthPicture> growth);
+
+}  // namespace saccade

@@ -1,0 +1,40 @@
+#include "estimator/reconstruction/reference_grid.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/check.h"
+
+namespace saccade {
+
+ReferenceGrid::ReferenceGrid(ImageF inverse_depth, int scale, double same_surface)
+    : inverse_depth_(std::move(inverse_depth)),
+      scale_(scale),
+      same_surface_(static_cast<float>(same_surface)) {
+  SACCADE_CHECK(scale >= 1 && width() > 1 && height() > 1);
+}
+
+GridPoint ReferenceGrid::at(float x, float y) const {
+  const auto scale = static_cast<float>(scale_);
+  const BilinearCell<float> c(x * scale, y * scale, width(), height());
+  const int first = c.y0 * width() + c.x0;
+  GridPoint point{{first, first + 1, first + width(), first + width() + 1},
+                  {(1 - c.fx) * (1 - c.fy), c.fx * (1 - c.fy), (1 - c.fx) * c.fy, c.fx * c.fy}};
+  const int nearest = point.index[(c.fy > 0.5F ? 2U : 0U) + (c.fx > 0.5F ? 1U : 0U)];
+  float sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!is_joined(point.index[k], nearest)) point.weight[k] = 0;
+    sum += point.weight[k];
+  }
+  for (float& weight : point.weight) weight /= sum;
+  return point;
+}
+
+bool ReferenceGrid::is_joined(int i, int j) const {
+  const float a = inverse_depth_.pixels()[static_cast<std::size_t>(i)];
+  const float b = inverse_depth_.pixels()[static_cast<std::size_t>(j)];
+  return std::abs(a - b) <= same_surface_ * std::max(a, b);
+}
+
+}  // namespace saccade

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimator/reconstruction/depth_mesh.h"
+#include "estimator/reconstruction/depth_splat.h"
+#include "estimator/reconstruction/place_finder.h"
+#include "estimator/reconstruction/point_surface.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_motion;
+using testing::corner_world;
+
+/// Share of the pixels whose depth is within `tolerance` of the truth, of those that are known.
+double agreeing(const ImageF& inverse_depth, const ImageF& truth, double tolerance) {
+  double good = 0, known = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (!(truth.pixels()[i] > 0) || !(inverse_depth.pixels()[i] > 0)) continue;
+    const double ratio = static_cast<double>(inverse_depth.pixels()[i] * truth.pixels()[i]);
+    good += std::abs(ratio - 1) < tolerance ? 1 : 0;
+    ++known;
+  }
+  EXPECT_GT(known, 0.8 * static_cast<double>(truth.size()));
+  return good / known;
+}
+
+TEST(DepthMesh, SeesWhatTheWorldShowsFromElsewhere) {
+  const auto world = corner_world(120, 90);
+  const DepthMesh mesh(world.depth(corner_motion(0)), world.camera());
+  ImageF inverse(120, 90);
+  mesh.draw(corner_motion(0.1).inverse() * corner_motion(0), world.camera(), inverse);
+  EXPECT_GT(agreeing(inverse, world.depth(corner_motion(0.1)), 1e-3), 0.97);
+}
+
+TEST(DepthSplat, NearPointsHideFarOnes) {
+  const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
+  std::vector<Eigen::Vector3f> points;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const Eigen::Vector3f ray = camera.ray({x, y}).cast<float>();
+      points.push_back(3.0F * ray);
+      if (x >= 20) points.push_back(1.0F * ray);
+    }
+  ImageF inverse(40, 30);
+  DepthSplat(points, 7).draw(Rigid3(), camera, inverse);
+  EXPECT_NEAR(inverse(30, 15), 1, 1e-4);
+  EXPECT_NEAR(inverse(5, 15), 1 / 3.0, 1e-4);
+}
+
+TEST(DepthSplat, LargerKernelsReachFarther) {
+  const PinholeCamera camera{60, 60, 40, 40, 29.5, 29.5, {}};
+  const std::vector<Eigen::Vector3f> point = {2.0F * camera.ray({30, 30}).cast<float>()};
+  for (const int size : {3, 7, 15, 25}) {
+    ImageF inverse(60, 60);
+    DepthSplat(point, size).draw(Rigid3(), camera, inverse);
+    int known = 0;
+    for (const float value : inverse.pixels()) known += value > 0 ? 1 : 0;
+    EXPECT_EQ(known, size * size);
+  }
+}
+
+TEST(PlaceFinder, FindsWhereAPixelLooks) {
+  const auto world = corner_world(120, 90);
+  const PinholeCamera& camera = world.camera();
+  const DepthMesh mesh(world.depth(corner_motion(0)), camera);
+  DepthScene scene;
+  scene.typical_depth_m = mesh.typical_depth_m();
+  scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
+    mesh.draw(camera_from_world * corner_motion(0), target, inverse);
+  };
+  PlaceFinder finder(camera, scene, corner_motion(0), 2);
+  const auto pose_at = [&](double t_s) {
+    const Rigid3 pose = corner_motion(0).inverse() * corner_motion(t_s);
+    return CameraPose{pose.rotation_matrix().cast<float>(), pose.translation().cast<float>()};
+  };
+  // The surfaces are drawn for one moment and read at another, within the motion that is allowed.
+  finder.prepare(pose_at(0.1));
+  finder.prepare(pose_at(0.102));
+  EXPECT_EQ(finder.draws(), 1);
+  const ImageF depth = world.depth(corner_motion(0.102));
+  int found = 0, good = 0;
+  for (int y = 5; y < 85; ++y)
+    for (int x = 5; x < 115; ++x) {
+      const auto z = static_cast<double>(depth(x, y));
+      const auto place = finder.find(x, y, pose_at(0.102));
+      if (!(z > 0) || !place) continue;
+      const Eigen::Vector3d point =
+          corner_motion(0).inverse() * (corner_motion(0.102) * (z * camera.ray({x, y})));
+      const Eigen::Vector2d expected = camera.project(point);
+      ++found;
+      good += std::hypot(place->x - expected.x(), place->y - expected.y()) < 0.02 ? 1 : 0;
+    }
+  EXPECT_GT(found, 7000);
+  EXPECT_GT(good, 0.97 * found);
+}
+
+TEST(PointSurface, KeepsStepsAndIgnoresOutliers) {
+  const PinholeCamera camera{48, 36, 40, 40, 23.5, 17.5, {}};
+  std::vector<SurfacePoint> points;
+  for (int y = 1; y < 36; y += 4)
+    for (int x = 1; x < 48; x += 4)
+      points.push_back({(x < 24 ? 1.0 : 2.0) * camera.ray({x, y}), 0.01});
+  points[40].position *= 1.5;
+  const ImageF depth = surface_through(points, camera, 0.02);
+  EXPECT_NEAR(depth(10, 18), 1, 0.03);
+  EXPECT_NEAR(depth(40, 18), 2, 0.06);
+  EXPECT_GT(depth(27, 10) / depth(20, 10), 1.5F);
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,100 @@
+#include "estimator/reconstruction/level_system.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/random.h"
+#include "estimator/reconstruction/reference_grid.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kWidth = 12, kHeight = 10;
+
+struct Level {
+  GridPoint place;
+  float level, weight;
+};
+
+std::vector<std::vector<Level>> random_tracks(const ReferenceGrid& grid) {
+  const Random random(3);
+  std::uint64_t draw = 0;
+  const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
+  std::vector<std::vector<Level>> tracks(80);
+  for (auto& track : tracks)
+    for (int k = 0; k < 6; ++k)
+      track.push_back({grid.at((kWidth - 1) * uniform(), (kHeight - 1) * uniform()), uniform(),
+                       0.5F + uniform()});
+  return tracks;
+}
+
+/// The same least-squares problem with image and offsets as dense unknowns.
+Eigen::VectorXd dense_solution(const std::vector<std::vector<Level>>& tracks) {
+  const auto pixels = kWidth * kHeight;
+  const auto size = pixels + static_cast<int>(tracks.size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
+  for (std::size_t t = 0; t < tracks.size(); ++t)
+    for (const Level& level : tracks[t]) {
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
+      for (std::size_t k = 0; k < 4; ++k)
+        row[level.place.index[k]] += static_cast<double>(level.place.weight[k]);
+      row[pixels + static_cast<int>(t)] = -1;
+      a += static_cast<double>(level.weight) * row * row.transpose();
+      b += static_cast<double>(level.weight * level.level) * row;
+    }
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x + 1 < kWidth; ++x) {
+      const int i = y * kWidth + x;
+      a(i, i) += 0.1;
+      a(i + 1, i + 1) += 0.1;
+      a(i, i + 1) -= 0.1;
+      a(i + 1, i) -= 0.1;
+    }
+  a(0, 0) += 2;
+  b(0) += 2 * 1.5;
+  return a.ldlt().solve(b).head(pixels);
+}
+
+TEST(LevelSystem, EqualsTheDenseProblemWithOffsets) {
+  const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F), 1, 0.05);
+  const auto tracks = random_tracks(grid);
+  LevelSystem system(kWidth, kHeight);
+  for (const auto& track : tracks) {
+    system.begin_track();
+    for (const Level& level : track) system.add(level.place, level.level, level.weight);
+    system.end_track();
+  }
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x + 1 < kWidth; ++x)
+      system.add_smooth(y * kWidth + x + 1, y * kWidth + x, 0.1F);
+  system.add_value(0, 1.5F, 2);
+  const GridSolution solution = system.solve(500, 1e-6);
+  const Eigen::VectorXd expected = dense_solution(tracks);
+  for (int i = 0; i < kWidth * kHeight; ++i)
+    EXPECT_NEAR(solution.image.pixels()[static_cast<std::size_t>(i)], expected[i], 2e-3) << i;
+  // From its own solution there is nothing left to do.
+  EXPECT_LE(system.solve(500, 1e-4, solution.image).iterations, 3);
+}
+
+TEST(ReferenceGrid, DoesNotMixSurfaces) {
+  ImageF inverse_depth(4, 4, 1.0F);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 2; x < 4; ++x) inverse_depth(x, y) = 0.5F;
+  const ReferenceGrid grid(inverse_depth, 1, 0.05);
+  const GridPoint left = grid.at(1.4F, 1.0F);
+  EXPECT_FLOAT_EQ(left.weight[0], 1);
+  EXPECT_FLOAT_EQ(left.weight[1], 0);
+  const GridPoint right = grid.at(1.6F, 1.0F);
+  EXPECT_FLOAT_EQ(right.weight[0], 0);
+  EXPECT_FLOAT_EQ(right.weight[1], 1);
+  EXPECT_FALSE(grid.is_joined(1, 2));
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,147 @@
+#include "estimator/reconstruction/reconstruction_module.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "core/io/dataset.h"
+#include "core/io/exr_file.h"
+#include "core/io/view_list.h"
+#include "core/parallel.h"
+#include "estimator/registry.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/support/fake_run.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+constexpr const char* kBest =
+    "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1}, "
+    "equations: {smoothness: 0.05, rounds: 3}}";
+constexpr const char* kSparse =
+    "{method: equations, depth: {smoothness: 0.02}, levels: {event_sigma: 0.1}, "
+    "equations: {smoothness: 0.05, rounds: 3}}";
+constexpr const char* kThesis =
+    "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
+    "levels: {event_sigma: 0.1, still: false}}";
+
+class ReconstructionModule : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    testing::write_corner_dataset(dataset(), "corner", 0.3, 120);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  [[nodiscard]] static fs::path dataset() { return folder_->path() / "corner"; }
+  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
+
+  [[nodiscard]] static RunRequest request(const std::string& name, const std::string& yaml) {
+    RunRequest request;
+    request.dataset = dataset();
+    request.output = path(name);
+    request.config = config::parse(yaml, "t.yaml");
+    return request;
+  }
+
+  /// Correlation of the first view's log intensity with that of the true frame at its time.
+  [[nodiscard]] static double correlation(const std::string& name) {
+    const RunView view = read_view_list(path(name) / "views.yaml").at(0);
+    const Dataset data = Dataset::open(dataset());
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < data.frames().size(); ++i)
+      if (std::abs(data.frames()[i].t_s - view.t_s) <
+          std::abs(data.frames()[nearest].t_s - view.t_s))
+        nearest = i;
+    EXPECT_NEAR(data.frames()[nearest].t_s, view.t_s, 1e-6);
+    const ImageF truth = data.load_frame(nearest);
+    const ImageF image = read_exr_channels(view.image)[0].image;
+    double a = 0, b = 0, aa = 0, ab = 0, bb = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double x = std::log(static_cast<double>(truth.pixels()[i]) + 1e-3);
+      const auto y = static_cast<double>(image.pixels()[i]);
+      a += x, b += y, aa += x * x, ab += x * y, bb += y * y;
+    }
+    const auto n = static_cast<double>(truth.size());
+    return (ab - a * b / n) / std::sqrt((aa - a * a / n) * (bb - b * b / n));
+  }
+
+ private:
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(ReconstructionModule, EquationsRecoverTheImage) {
+  (void)run_reconstruction(request("best", kBest));
+  EXPECT_GT(correlation("best"), 0.85);
+  for (const char* file : {"image/image_00000000.exr", "image/image_00000000.png",
+                           "gradient/gradient_00000000.exr", "run.yaml", "timing.json"})
+    EXPECT_TRUE(fs::exists(path("best") / file)) << file;
+}
+
+TEST_F(ReconstructionModule, GradientFilterRecoversTheImageNotItsNegative) {
+  (void)run_reconstruction(request("thesis", kThesis));
+  EXPECT_GT(correlation("thesis"), 0.4);
+}
+
+TEST_F(ReconstructionModule, IsTheSameForAnyNumberOfThreads) {
+  const std::string windows = "window: {duration_s: 0.1}, growth: [2000, 5000]";
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    (void)run_reconstruction(
+        request("t" + std::to_string(threads), "{method: equations, " + windows + "}"));
+  }
+  set_thread_count(0);
+  for (const char* file :
+       {"image/image_00000000.exr", "image/image_00000002.exr", "gradient/gradient_00000001.exr",
+        "growth/growth_000002000.png", "views.yaml"})
+    EXPECT_EQ(read_file(path("t1") / file), read_file(path("t2") / file)) << file;
+}
+
+TEST_F(ReconstructionModule, TakesTheDepthOfARun) {
+  RunRequest depth = request("depth", "window: {duration_s: 0.15}");
+  (void)run_module("depth", depth);
+  // Few points, of which little is to be smoothed away.
+  RunRequest run = request("with_depth", kSparse);
+  run.depth_from = path("depth");
+  (void)run_module("reconstruct", run);
+  EXPECT_GT(correlation("with_depth"), 0.75);
+  EXPECT_THAT(read_file(path("with_depth") / "run.yaml"), HasSubstr("depth_from"));
+}
+
+TEST_F(ReconstructionModule, BadInputIsAnErrorWithItsPlace) {
+  RunRequest none = request("none", kBest);
+  none.depth_from = dataset();
+  EXPECT_THAT(error_of([&] { return run_reconstruction(none).views; }), HasSubstr("views.yaml"));
+  RunRequest track = request("track", "{}");
+  track.depth_from = dataset();
+  EXPECT_THAT(error_of([&] { return run_module("track", track).views; }),
+              HasSubstr("--depth-from"));
+  EXPECT_THAT(
+      error_of([&] {
+        return run_reconstruction(request("even", "depth: {propagation: splat, kernel_px: 4}"))
+            .views;
+      }),
+      HasSubstr("must be odd"));
+  const fs::path bare = path("bare");
+  fs::create_directories(bare);
+  fs::copy(dataset(), bare, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  fs::remove(bare / "depth.txt");
+  RunRequest without = request("without", kBest);
+  without.dataset = bare;
+  EXPECT_THAT(error_of([&] { return run_reconstruction(without).views; }),
+              HasSubstr("--depth-from"));
+  EXPECT_FALSE(fs::exists(path("without")));
+}
+
+}  // namespace
+}  // namespace saccade
