@@ -78,6 +78,8 @@ std::vector<std::string> print_call(const fs::path& config) {
   if (folder == "sweeps") return {"sweep", config.string(), "--print-config"};
   if (folder == "tracking") return {"run", "track", "-c", config.string(), "--print-config"};
   if (folder == "depth") return {"run", "depth", "-c", config.string(), "--print-config"};
+  if (folder == "reconstruction")
+    return {"run", "reconstruct", "-c", config.string(), "--print-config"};
   ADD_FAILURE() << config << ": state here which verb reads the configurations of its folder";
   return {};
 }
