@@ -6,23 +6,6 @@
 namespace saccade {
 namespace {
 
-void describe_window(config::Fields& fields, DepthWindowOptions& options) {
-  using By = DepthWindowOptions::By;
-  using Reference = DepthWindowOptions::Reference;
-  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
-                "what the windows share alike");
-  if (options.by == By::kTime)
-    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
-        .range(1e-4, 1e4);
-  if (options.by == By::kEvents)
-    fields.value("events", options.events, "most events of a window; all hold equally many")
-        .range(100, 1e9);
-  fields.choice(
-      "reference", options.reference,
-      {{"start", Reference::kStart}, {"middle", Reference::kMiddle}, {"end", Reference::kEnd}},
-      "where in its window the view lies");
-}
-
 void describe_limits(config::Fields& fields, DepthLimits& limits) {
   fields.value("near", limits.near_m, "nearest depth").range(1e-3, 1e6);
   fields.value("far", limits.far_m, "farthest depth").range(1e-3, 1e6);
@@ -123,7 +106,7 @@ void describe(config::Fields& fields, DepthConfig& config) {
                  {"sweep", DepthConfig::Method::kSweep}},
                 "how depth is found");
   fields.group(
-      "window", [&](config::Fields& f) { describe_window(f, config.window); },
+      "window", [&](config::Fields& f) { describe(f, config.window); },
       "part of the events that makes one view");
   fields.group(
       "range_m", [&](config::Fields& f) { describe_limits(f, config.limits); },

@@ -9,26 +9,16 @@
 #include "estimator/depth/ray_depth.h"
 #include "estimator/depth/sweep_depth.h"
 #include "estimator/depth/thesis_depth.h"
+#include "estimator/view_windows.h"
 
 namespace saccade {
-
-/// How the events of a run are cut into windows, one view each.
-struct DepthWindowOptions {
-  enum class By { kTime, kEvents };
-  enum class Reference { kStart, kMiddle, kEnd };
-
-  By by = By::kTime;
-  double duration_s = 0.4;                  ///< of kTime: longest; the windows are equally long
-  int events = 200000;                      ///< of kEvents: most; the windows hold equally many
-  Reference reference = Reference::kStart;  ///< where in its window the view lies
-};
 
 /// The configuration of `saccade run depth`; describe() names the keys, ranges and defaults.
 struct DepthConfig {
   enum class Method { kThesis, kRays, kSweep };
 
   Method method = Method::kThesis;
-  DepthWindowOptions window;
+  ViewWindowOptions window;
   DepthLimits limits;
   ThesisDepthOptions thesis;
   RayDepthOptions rays;

@@ -1,16 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "core/event.h"
-#include "core/rigid3.h"
-#include "core/trajectory.h"
+#include "estimator/view_windows.h"
 
 namespace saccade {
 
@@ -31,14 +28,7 @@ struct DepthLimits {
   [[nodiscard]] double max_inverse() const { return 1 / near_m; }
 };
 
-/// What one view is estimated from.
-struct DepthWindow {
-  std::span<const Event> events;           ///< in order of time, sensor pixels
-  const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
-  double reference_s = 0;                  ///< time of the view, within the events or at their ends
-
-  [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
-};
+using DepthWindow = ViewWindow;
 
 /// What a method found.
 struct DepthResult {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/depth_mesh.h"
 #include "core/error.h"
 #include "core/io/exr_file.h"
-#include "estimator/reconstruction/depth_mesh.h"
 #include "estimator/reconstruction/depth_splat.h"
 #include "estimator/reconstruction/point_surface.h"
 

@@ -1,28 +1,20 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/event.h"
 #include "core/image.h"
-#include "core/rigid3.h"
-#include "core/trajectory.h"
 #include "estimator/reconstruction/place_finder.h"
+#include "estimator/view_windows.h"
 
 namespace saccade {
 
 /// What one view is reconstructed from.
-struct ReconstructionWindow {
-  std::span<const Event> events;           ///< in order of time, sensor pixels
-  const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
-  double reference_s = 0;                  ///< time of the view
-  DepthScene scene;                        ///< the surfaces that are known
-  double contrast_on = 0.2;                ///< C+ > 0 [log units]
-  double contrast_off = 0.2;               ///< C- > 0
-
-  [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
+struct ReconstructionWindow : ViewWindow {
+  DepthScene scene;           ///< the surfaces that are known
+  double contrast_on = 0.2;   ///< C+ > 0 [log units]
+  double contrast_off = 0.2;  ///< C- > 0
 };
 
 /// A reconstructed view; all images have the size of the camera, undistorted.

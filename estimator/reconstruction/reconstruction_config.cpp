@@ -3,26 +3,6 @@
 namespace saccade {
 namespace {
 
-void describe_window(config::Fields& fields, ViewOptions& options) {
-  using By = ViewOptions::By;
-  using Reference = ViewOptions::Reference;
-  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
-                "what the windows share alike");
-  if (options.by == By::kTime)
-    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
-        .range(1e-4, 1e5);
-  if (options.by == By::kEvents)
-    fields.value("events", options.events, "most events of a window; all hold equally many")
-        .range(100, 1e9);
-  fields.choice(
-      "reference", options.reference,
-      {{"start", Reference::kStart},
-       {"middle", Reference::kMiddle},
-       {"end", Reference::kEnd},
-       {"frame", Reference::kFrame}},
-      "where in its window the view lies; frame: at the grey frame nearest to the middle");
-}
-
 void describe_depth(config::Fields& fields, DepthSourceOptions& options) {
   using Propagation = DepthSourceOptions::Propagation;
   fields.choice("propagation", options.propagation,
@@ -112,7 +92,7 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
                 {{"gradient", Method::kGradient}, {"equations", Method::kEquations}},
                 "how the image is found");
   fields.group(
-      "window", [&](config::Fields& f) { describe_window(f, config.window); },
+      "window", [&](config::Fields& f) { describe(f, config.window); },
       "part of the events that makes one view");
   fields.group(
       "depth", [&](config::Fields& f) { describe_depth(f, config.depth); },

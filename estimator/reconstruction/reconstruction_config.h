@@ -11,27 +11,18 @@
 #include "estimator/reconstruction/equation_reconstruction.h"
 #include "estimator/reconstruction/gradient_reconstruction.h"
 #include "estimator/reconstruction/image_estimator.h"
+#include "estimator/view_windows.h"
 
 namespace saccade {
-
-/// How the events of a run are cut into windows, one view each.
-struct ViewOptions {
-  enum class By { kTime, kEvents };
-  enum class Reference { kStart, kMiddle, kEnd, kFrame };
-
-  By by = By::kTime;
-  double duration_s = 3600;  ///< of kTime: longest; the windows are equally long
-  int events = 1000000;      ///< of kEvents: most; the windows hold equally many
-  /// kFrame: at the grey frame nearest to the middle, so that the two can be compared.
-  Reference reference = Reference::kFrame;
-};
 
 /// The configuration of `saccade run reconstruct`; describe() names the keys, ranges and defaults.
 struct ReconstructionConfig {
   enum class Method { kGradient, kEquations };
 
   Method method = Method::kGradient;
-  ViewOptions window;
+  /// The whole as one, at a grey frame that it can be compared with.
+  ViewWindowOptions window{
+      .duration_s = 3600, .events = 1000000, .reference = ViewWindowOptions::Reference::kFrame};
   DepthSourceOptions depth;
   std::optional<double> contrast_on;  ///< nullopt: the dataset's, else 0.2
   std::optional<double> contrast_off;

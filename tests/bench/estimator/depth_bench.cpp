@@ -6,13 +6,13 @@
 
 #include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
-#include "estimator/depth/depth_windows.h"
 #include "estimator/depth/derotated_frame.h"
 #include "estimator/depth/epipolar.h"
 #include "estimator/depth/epipolar_search.h"
 #include "estimator/depth/event_rays.h"
 #include "estimator/depth/ray_regression.h"
 #include "estimator/depth/ray_votes.h"
+#include "estimator/view_windows.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {

@@ -33,7 +33,7 @@ TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
         config::load(std::string(SACCADE_SOURCE_DIR "/configs/depth/") + name + ".yaml");
     DepthConfig expected;
     expected.method = method;
-    expected.window.reference = DepthWindowOptions::Reference::kMiddle;
+    expected.window.reference = ViewWindowOptions::Reference::kMiddle;
     EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(expected)) << name;
   }
 }

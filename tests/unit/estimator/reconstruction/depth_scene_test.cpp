@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimator/reconstruction/depth_mesh.h"
+#include "core/depth_mesh.h"
 #include "estimator/reconstruction/depth_splat.h"
 #include "estimator/reconstruction/place_finder.h"
 #include "estimator/reconstruction/point_surface.h"
@@ -13,27 +13,6 @@ namespace {
 
 using testing::corner_motion;
 using testing::corner_world;
-
-/// Share of the pixels whose depth is within `tolerance` of the truth, of those that are known.
-double agreeing(const ImageF& inverse_depth, const ImageF& truth, double tolerance) {
-  double good = 0, known = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (!(truth.pixels()[i] > 0) || !(inverse_depth.pixels()[i] > 0)) continue;
-    const double ratio = static_cast<double>(inverse_depth.pixels()[i] * truth.pixels()[i]);
-    good += std::abs(ratio - 1) < tolerance ? 1 : 0;
-    ++known;
-  }
-  EXPECT_GT(known, 0.8 * static_cast<double>(truth.size()));
-  return good / known;
-}
-
-TEST(DepthMesh, SeesWhatTheWorldShowsFromElsewhere) {
-  const auto world = corner_world(120, 90);
-  const DepthMesh mesh(world.depth(corner_motion(0)), world.camera());
-  ImageF inverse(120, 90);
-  mesh.draw(corner_motion(0.1).inverse() * corner_motion(0), world.camera(), inverse);
-  EXPECT_GT(agreeing(inverse, world.depth(corner_motion(0.1)), 1e-3), 0.97);
-}
 
 TEST(DepthSplat, NearPointsHideFarOnes) {
   const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};

@@ -1,12 +1,12 @@
-#include "estimator/depth/depth_windows.h"
+#include "estimator/view_windows.h"
 
 #include <gtest/gtest.h>
 
 namespace saccade {
 namespace {
 
-using By = DepthWindowOptions::By;
-using Reference = DepthWindowOptions::Reference;
+using By = ViewWindowOptions::By;
+using Reference = ViewWindowOptions::Reference;
 
 Trajectory still(double start_s, double end_s) { return Trajectory({{start_s, {}}, {end_s, {}}}); }
 
@@ -17,15 +17,15 @@ Events stream(int count, TimeNs step_ns) {
   return events;
 }
 
-TEST(DepthWindows, HoldAllEventsOnceAndAreEven) {
+TEST(ViewWindows, HoldAllEventsOnceAndAreEven) {
   const Events events = stream(1001, 1'000'000);  // 1 s
   const Trajectory trajectory = still(0, 1);
-  for (const auto& options : {DepthWindowOptions{.by = By::kTime, .duration_s = 0.3},
-                              DepthWindowOptions{.by = By::kEvents, .events = 300}}) {
+  for (const auto& options : {ViewWindowOptions{.by = By::kTime, .duration_s = 0.3},
+                              ViewWindowOptions{.by = By::kEvents, .events = 300}}) {
     const auto windows = cut_windows(events, trajectory, options);
     ASSERT_EQ(windows.size(), 4U);
     const Event* next = events.data();
-    for (const DepthWindow& window : windows) {
+    for (const ViewWindow& window : windows) {
       EXPECT_EQ(window.events.data(), next);
       next += window.events.size();
       EXPECT_NEAR(static_cast<double>(window.events.size()), 250, 2);
@@ -34,7 +34,7 @@ TEST(DepthWindows, HoldAllEventsOnceAndAreEven) {
   }
 }
 
-TEST(DepthWindows, TheViewLiesWhereItIsAskedFor) {
+TEST(ViewWindows, TheViewLiesWhereItIsAskedFor) {
   const Events events = stream(101, 1'000'000);
   const Trajectory trajectory = still(0, 1);
   for (const auto& [reference, expected_s] :
@@ -45,7 +45,19 @@ TEST(DepthWindows, TheViewLiesWhereItIsAskedFor) {
   }
 }
 
-TEST(DepthWindows, AStillCameraHasNoWindow) {
+TEST(ViewWindows, TheViewLiesAtTheFrameNearestToTheMiddle) {
+  const Events events = stream(101, 1'000'000);
+  const Trajectory trajectory = still(0, 1);
+  const auto view_at = [&](const std::vector<StampedFile>& frames) {
+    return cut_windows(events, trajectory, {.reference = Reference::kFrame}, frames)[0].reference_s;
+  };
+  EXPECT_EQ(view_at({{0.01, ""}, {0.04, ""}, {0.07, ""}, {0.2, ""}}), 0.04);
+  // One outside of the window is no place for its view.
+  EXPECT_NEAR(view_at({{0.11, ""}}), 0.05, 1e-12);
+  EXPECT_NEAR(view_at({}), 0.05, 1e-12);
+}
+
+TEST(ViewWindows, AStillCameraHasNoWindow) {
   Events events = stream(10, 1'000'000);
   for (int i = 0; i < 10; ++i) events.push_back({1'000'000'000 + i, 0, 0, 1});
   const Trajectory trajectory = still(0, 2);
@@ -53,7 +65,7 @@ TEST(DepthWindows, AStillCameraHasNoWindow) {
   EXPECT_TRUE(cut_windows({}, trajectory, {}).empty());
 }
 
-TEST(DepthWindows, OnlyEventsWithPosesCount) {
+TEST(ViewWindows, OnlyEventsWithPosesCount) {
   const Events events = stream(1001, 1'000'000);
   const auto inside = within(events, still(0.2, 0.6));
   ASSERT_EQ(inside.size(), 401U);

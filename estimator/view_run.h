@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/event.h"
+#include "core/io/dataset.h"
+#include "core/io/run_record.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/trajectory.h"
+#include "estimator/run.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+#include "estimator/view_windows.h"
+
+namespace saccade {
+
+/// What a module that estimates one view per window of events starts from.
+struct ViewInput {
+  Trajectory trajectory;  ///< world_from_camera
+  Events loaded;          ///< all in the window that was asked for
+  RunRecord::Window window;
+
+  /// Those that views can be estimated from.
+  [[nodiscard]] std::span<const Event> events() const { return within(loaded, trajectory); }
+};
+
+/// Loads poses and events; fills the timing's io_s, events and sequence_s. Throws InputError where
+/// poses are missing or no event lies within their time.
+[[nodiscard]] ViewInput load_view_input(const RunRequest& request, const Dataset& dataset,
+                                        RunTiming& timing);
+
+using StageSeconds = std::vector<std::pair<std::string, double>>;
+
+/// Adds stages of the same names; a list that is empty takes the names over.
+void add_stages(StageSeconds& sums, const StageSeconds& stages);
+
+/// estimate(window) for every window, in parallel, `repeat` times; the last results, which state
+/// their `stages_s`. Fills the timing's wall_s and stages_s; with several threads the stages are
+/// processor seconds.
+template <typename Result, typename Window, typename Estimate>
+[[nodiscard]] std::vector<Result> estimate_views(const std::string& name,
+                                                 const std::vector<Window>& windows, int repeat,
+                                                 RunTiming& timing, const Estimate& estimate) {
+  std::vector<Result> results(windows.size());
+  Progress progress(name, timing.events * static_cast<std::size_t>(repeat), "events");
+  for (int i = 0; i < repeat; ++i) {
+    double wall_s = 0;
+    {
+      const StageClock clock(wall_s);
+      parallel_for(windows.size(), [&](std::size_t k) {
+        results[k] = estimate(windows[k]);
+        progress.add(windows[k].events.size());
+      });
+    }
+    timing.wall_s.push_back(wall_s);
+  }
+  timing.stages_s.clear();
+  for (const Result& result : results) add_stages(timing.stages_s, result.stages_s);
+  return results;
+}
+
+}  // namespace saccade

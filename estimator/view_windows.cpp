@@ -1,0 +1,104 @@
+#include "estimator/view_windows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace saccade {
+namespace {
+
+using By = ViewWindowOptions::By;
+using Reference = ViewWindowOptions::Reference;
+
+std::size_t first_at(std::span<const Event> events, TimeNs t_ns) {
+  const auto at = std::partition_point(events.begin(), events.end(),
+                                       [t_ns](const Event& e) { return e.t_ns < t_ns; });
+  return static_cast<std::size_t>(at - events.begin());
+}
+
+/// Of the frame nearest to the middle and within; the middle without one.
+double time_of_frame(const std::vector<StampedFile>& frames, double start_s, double end_s) {
+  const double middle_s = (start_s + end_s) / 2;
+  std::optional<double> best_s;
+  for (const StampedFile& frame : frames) {
+    if (frame.t_s < start_s || frame.t_s > end_s) continue;
+    if (!best_s || std::abs(frame.t_s - middle_s) < std::abs(*best_s - middle_s))
+      best_s = frame.t_s;
+  }
+  return best_s.value_or(middle_s);
+}
+
+double reference_time(Reference reference, const std::vector<StampedFile>& frames, double start_s,
+                      double end_s) {
+  switch (reference) {
+    case Reference::kStart:
+      return start_s;
+    case Reference::kMiddle:
+      return (start_s + end_s) / 2;
+    case Reference::kEnd:
+      return end_s;
+    case Reference::kFrame:
+      return time_of_frame(frames, start_s, end_s);
+  }
+  return start_s;
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, ViewWindowOptions& options) {
+  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
+                "what the windows share alike");
+  if (options.by == By::kTime)
+    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
+        .range(1e-4, 1e5);
+  if (options.by == By::kEvents)
+    fields.value("events", options.events, "most events of a window; all hold equally many")
+        .range(100, 1e9);
+  fields.choice(
+      "reference", options.reference,
+      {{"start", Reference::kStart},
+       {"middle", Reference::kMiddle},
+       {"end", Reference::kEnd},
+       {"frame", Reference::kFrame}},
+      "where in its window the view lies; frame: at the grey frame nearest to the middle");
+}
+
+std::span<const Event> within(std::span<const Event> events, const Trajectory& trajectory) {
+  if (trajectory.empty()) return {};
+  const std::size_t begin = first_at(events, ns_from_seconds(trajectory.start_s()));
+  const std::size_t end = first_at(events, ns_from_seconds(trajectory.end_s()) + 1);
+  return events.subspan(begin, end - begin);
+}
+
+std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Trajectory& trajectory,
+                                    const ViewWindowOptions& options,
+                                    const std::vector<StampedFile>& frames) {
+  std::vector<ViewWindow> windows;
+  if (events.empty()) return windows;
+  const double start_s = seconds_from_ns(events.front().t_ns);
+  const double length_s = seconds_from_ns(events.back().t_ns) - start_s;
+  const auto size = static_cast<double>(events.size());
+  const bool by_time = options.by == By::kTime;
+  const double pieces = by_time ? length_s / options.duration_s : size / options.events;
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(pieces - 1e-9)));
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double end_share = static_cast<double>(i + 1) / static_cast<double>(count);
+    std::size_t end = events.size();
+    if (i + 1 < count)
+      end = by_time ? first_at(events, ns_from_seconds(start_s + end_share * length_s))
+                    : static_cast<std::size_t>(end_share * size);
+    if (end > begin) {
+      const auto part = events.subspan(begin, end - begin);
+      const double from_s = seconds_from_ns(part.front().t_ns);
+      const double to_s = seconds_from_ns(part.back().t_ns);
+      windows.push_back(
+          {part, &trajectory, reference_time(options.reference, frames, from_s, to_s)});
+    }
+    begin = end;
+  }
+  return windows;
+}
+
+}  // namespace saccade

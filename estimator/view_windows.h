@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/config/fields.h"
+#include "core/event.h"
+#include "core/io/dataset.h"
+#include "core/rigid3.h"
+#include "core/trajectory.h"
+
+namespace saccade {
+
+/// How the events of a run are cut into windows, one view each.
+struct ViewWindowOptions {
+  enum class By { kTime, kEvents };
+  enum class Reference { kStart, kMiddle, kEnd, kFrame };
+
+  By by = By::kTime;
+  double duration_s = 0.4;  ///< of kTime: longest; the windows are equally long
+  int events = 200000;      ///< of kEvents: most; the windows hold equally many
+  /// Where in its window the view lies. kFrame: at the grey frame nearest to the middle and within
+  /// the window, so that the two can be compared; the middle where there is none.
+  Reference reference = Reference::kStart;
+};
+
+void describe(config::Fields& fields, ViewWindowOptions& options);
+
+/// The events that one view is estimated from.
+struct ViewWindow {
+  std::span<const Event> events;           ///< in order of time, sensor pixels
+  const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
+  double reference_s = 0;                  ///< time of the view, within the events or at their ends
+
+  [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
+};
+
+/// Those of the events that lie within the poses' time: beyond it no pose is known.
+[[nodiscard]] std::span<const Event> within(std::span<const Event> events,
+                                            const Trajectory& trajectory);
+
+/// Cuts the stream into consecutive windows that together hold all of it, as few and as even as the
+/// longest allowed. Windows without events, where the camera stood still, are left out.
+/// `trajectory` spans the events and outlives the windows; `frames` are those of kFrame.
+[[nodiscard]] std::vector<ViewWindow> cut_windows(std::span<const Event> events,
+                                                  const Trajectory& trajectory,
+                                                  const ViewWindowOptions& options,
+                                                  const std::vector<StampedFile>& frames = {});
+
+}  // namespace saccade
