@@ -153,6 +153,30 @@ void describe_align(config::Fields& fields, AlignOptions& options) {
       .range(0, 1);
 }
 
+void describe_map_image(config::Fields& fields, IntensityMapOptions& options) {
+  fields
+      .value("edge_step", options.edge_step,
+             "the map is smoothed where neighbours differ by more [log units]")
+      .range(0.001, 100);
+  fields.value("blur_px", options.blur_px, "deviation of that Gaussian; 0: nothing is smoothed")
+      .range(0, 10);
+}
+
+void describe_level_noise(config::Fields& fields, double& noise, double& place_px) {
+  fields.value("noise", noise, "deviation of a level from the map [log units]").range(0.001, 10);
+  fields
+      .value("place_px", place_px,
+             "deviation of the place where the map shows a level: it is sampled at points")
+      .range(0, 10);
+}
+
+void describe_information(config::Fields& fields, double& information) {
+  fields
+      .value("information", information,
+             "share of the information of independent residuals: neighbouring ones err alike")
+      .range(1e-6, 1);
+}
+
 void describe_intensity(config::Fields& fields, TrackConfig& config) {
   IntensityOptions& options = config.intensity;
   fields
@@ -175,22 +199,12 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
                "such a pixel is taken to have gone on by half a threshold since its last event");
   fields.value("iterations", options.iterations, "of Gauss-Newton, always all of them")
       .range(1, 1000);
-  fields.value("noise", options.noise, "deviation of a level from the map [log units]")
-      .range(0.001, 10);
-  fields
-      .value("place_px", options.place_px,
-             "deviation of the place where the map shows a level: it is sampled at points")
-      .range(0, 10);
+  describe_level_noise(fields, options.noise, options.place_px);
   fields
       .value("correction", options.correction,
              "least share by which a pixel's level is drawn to the map at each of its events")
       .range(0, 1);
-  fields
-      .value("edge_step", options.map.edge_step,
-             "the map is smoothed where neighbours differ by more [log units]")
-      .range(0.001, 100);
-  fields.value("blur_px", options.map.blur_px, "deviation of that Gaussian; 0: nothing is smoothed")
-      .range(0, 10);
+  describe_map_image(fields, options.map);
   fields
       .value("redraw_deg", options.redraw_deg,
              "the map is drawn anew when the view has moved this far")
@@ -203,10 +217,7 @@ void describe_intensity(config::Fields& fields, TrackConfig& config) {
       .value("silence_px", options.silence_px,
              "lost where the camera should have moved so far without an event")
       .range(0.1, 1e6);
-  fields
-      .value("information", options.information,
-             "share of the information of independent residuals: neighbouring ones err alike")
-      .range(1e-6, 1);
+  describe_information(fields, options.information);
   fields
       .value("contrast", config.contrast,
              "threshold of both polarities [log units]; ~ takes the dataset's")
@@ -236,10 +247,7 @@ void describe_polarity(config::Fields& fields, PolarityOptions& options) {
       .value("redraw_px", options.redraw_px,
              "the map is drawn anew when the view has moved this far")
       .range(0.1, 100);
-  fields
-      .value("information", options.information,
-             "share of the information of independent residuals: neighbouring ones err alike")
-      .range(1e-6, 1);
+  describe_information(fields, options.information);
   fields
       .value(
           "min_agreement", options.min_agreement,
@@ -259,24 +267,9 @@ void describe_frames(config::Fields& fields, TrackConfig& config) {
              "of squares, from 2^(levels - 1) pixels wide down to single ones")
       .range(1, 8);
   fields.value("iterations", options.iterations, "of Gauss-Newton, on each level").range(1, 1000);
-  fields.value("noise", options.noise, "deviation of a level from the map [log units]")
-      .range(0.001, 10);
-  fields
-      .value("place_px", options.place_px,
-             "deviation of the place where the map shows a level: it is sampled at points")
-      .range(0, 10);
-  fields
-      .value("edge_step", config.frames_map.edge_step,
-             "the map is smoothed where neighbours differ by more [log units]")
-      .range(0.001, 100);
-  fields
-      .value("blur_px", config.frames_map.blur_px,
-             "deviation of that Gaussian; 0: nothing is smoothed")
-      .range(0, 10);
-  fields
-      .value("information", options.information,
-             "share of the information of independent residuals: neighbouring ones err alike")
-      .range(1e-6, 1);
+  describe_level_noise(fields, options.noise, options.place_px);
+  describe_map_image(fields, config.frames_map);
+  describe_information(fields, options.information);
   fields
       .value("min_inliers", options.min_inliers,
              "share of pixels that agree with the map below which the pose is lost")

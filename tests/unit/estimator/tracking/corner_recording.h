@@ -105,4 +105,15 @@ inline void expect_equal(const std::vector<TrackedPose>& a, const std::vector<Tr
   }
 }
 
+/// What a tracker does that sees nothing of its map.
+inline void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
+  EXPECT_FALSE(poses.empty());
+  for (const TrackedPose& pose : poses) {
+    EXPECT_EQ(pose.status, TrackStatus::kLost);
+    EXPECT_TRUE(pose.world_from_camera.translation().allFinite());
+    EXPECT_TRUE(pose.world_from_camera.rotation().coeffs().allFinite());
+    EXPECT_TRUE(std::isfinite(pose.inlier_ratio));
+  }
+}
+
 }  // namespace saccade::testing

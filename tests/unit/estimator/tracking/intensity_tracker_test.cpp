@@ -12,6 +12,7 @@ namespace {
 
 using testing::corner_motion;
 using testing::expect_equal;
+using testing::expect_lost_but_finite;
 using testing::tracking_config;
 
 constexpr double kContrast = testing::kRecordedContrast;
@@ -247,16 +248,6 @@ TEST(IntensityTracker, OneInThreeEventsAlignsNearlyAsWell) {
   const auto poses = from(0, tracking->track(recording().events));
   EXPECT_EQ(poses.size(), recording().events.size() / 3000);
   EXPECT_LT(errors_of(poses).mean, 0.12);
-}
-
-void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
-  EXPECT_FALSE(poses.empty());
-  for (const TrackedPose& pose : poses) {
-    EXPECT_EQ(pose.status, TrackStatus::kLost);
-    EXPECT_TRUE(pose.world_from_camera.translation().allFinite());
-    EXPECT_TRUE(pose.world_from_camera.rotation().coeffs().allFinite());
-    EXPECT_TRUE(std::isfinite(pose.inlier_ratio));
-  }
 }
 
 TEST(IntensityTracker, WithoutTheMapInViewItIsLost) {

@@ -13,6 +13,7 @@ namespace {
 
 using testing::corner_motion;
 using testing::expect_equal;
+using testing::expect_lost_but_finite;
 using testing::tracking_config;
 
 const testing::CornerRecording& recording() { return testing::resolved_recording(); }
@@ -195,15 +196,6 @@ TEST(PolarityTracker, EdgesGoOnWhereTheCameraTurnsBack) {
   EXPECT_GT(by_edges, 0);
   EXPECT_LT(by_edges, 20);
   EXPECT_LT(recording().error_px(poses.back()), 1);
-}
-
-void expect_lost_but_finite(const std::vector<TrackedPose>& poses) {
-  EXPECT_FALSE(poses.empty());
-  for (const TrackedPose& pose : poses) {
-    EXPECT_EQ(pose.status, TrackStatus::kLost);
-    EXPECT_TRUE(pose.world_from_camera.translation().allFinite());
-    EXPECT_TRUE(std::isfinite(pose.inlier_ratio));
-  }
 }
 
 TEST(PolarityTracker, WithoutTheMapInViewItIsLost) {
