@@ -36,11 +36,20 @@ std::vector<StampedPose> waypoint_poses(const MotionOptions& options) {
   return poses;
 }
 
-std::vector<StampedPose> file_poses(const std::filesystem::path& file) {
+/// After `rest_s` at the first of them.
+std::vector<StampedPose> file_poses(const std::filesystem::path& file, double rest_s) {
+  constexpr double kRestStep_s = 0.01;
   const Trajectory trajectory = read_trajectory(file);
   if (trajectory.size() < 2)
     throw InputError(file.string(), "holds one pose; a motion needs at least two");
-  return {trajectory.poses().begin(), trajectory.poses().end()};
+  std::vector<StampedPose> poses;
+  const StampedPose& first = trajectory.poses().front();
+  const auto steps = static_cast<int>(std::ceil(rest_s / kRestStep_s));
+  for (int i = 0; i < steps; ++i)
+    poses.push_back({first.t_s + rest_s * i / steps, first.world_from_camera});
+  for (const StampedPose& pose : trajectory.poses())
+    poses.push_back({pose.t_s + rest_s, pose.world_from_camera});
+  return poses;
 }
 
 Spline fitted(const MotionOptions& options, std::vector<StampedPose> poses,
@@ -97,7 +106,7 @@ Spline build_motion(const MotionOptions& options, const std::string& name) {
     case MotionSource::kWaypoints:
       return fitted(options, waypoint_poses(options), name + ".waypoints");
     case MotionSource::kFile:
-      return fitted(options, file_poses(options.file), options.file.string());
+      return fitted(options, file_poses(options.file, options.rest_s), options.file.string());
     default:
       return sampled(options);
   }

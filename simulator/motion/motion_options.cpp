@@ -218,6 +218,8 @@ void describe(config::Fields& fields, MotionOptions& options) {
       fields.path("file", options.file, "TUM or ECD text in s, or rpg_esim's CSV in ns")
           .required()
           .must_exist();
+      fields.value("rest_s", options.rest_s, "the camera stands at the first pose before it moves")
+          .range(0, 3600);
       describe_fit(fields, options);
       break;
     default:

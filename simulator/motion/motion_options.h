@@ -115,6 +115,7 @@ struct MotionOptions {
   std::filesystem::path file;
   Fit fit = Fit::kInterpolate;
   double knot_spacing_s = 0.04;  ///< of control poses without times and of Fit::kSmooth
+  double rest_s = 0;             ///< of kFile: the camera stands at the first pose before it moves
 
   double duration_s = 1;  ///< of the presets
   SliderOptions slider;

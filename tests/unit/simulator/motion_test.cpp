@@ -115,6 +115,23 @@ TEST(Motion, ReadsTextInSecondsAndCsvInNanoseconds) {
   }
 }
 
+TEST(Motion, ARecordedMotionMayBeginWithARest) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "a.txt")
+      << "10 1 0 0 0 0 0 1\n10.5 1.5 0 0 0 0 0 1\n11 2 0 0 0 0 0 1\n";
+  const std::string yaml = "source: file\nfile: a.txt\nrest_s: 2\nfit: ";
+  for (const std::string fit : {"interpolate", "smooth"}) {
+    const Spline motion = build_motion(options_of(yaml + fit, folder.path()));
+    EXPECT_EQ(motion.start_s(), 10);
+    EXPECT_NEAR(motion.end_s(), 13, 1e-12);
+    for (const double t_s : {10.0, 10.503, 11.0, 11.8}) {
+      expect_pose(motion.pose(t_s), {1, 0, 0}, Eigen::Quaterniond::Identity());
+      EXPECT_LT(motion.state(t_s).velocity_in_world.norm(), 1e-6) << t_s;
+    }
+    expect_pose(motion.pose(12.5), {1.5, 0, 0}, Eigen::Quaterniond::Identity(), 1e-3);
+  }
+}
+
 TEST(Motion, SmoothFitNeedNotPassThroughThePoses) {
   std::string yaml = "source: waypoints\nfit: smooth\nknot_spacing_s: 0.5\nwaypoints:\n";
   for (int i = 0; i <= 40; ++i)
