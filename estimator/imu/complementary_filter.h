@@ -61,12 +61,4 @@ class ComplementaryFilter {
   int gaps_ = 0;
 };
 
-/// dq of (3.12): takes the z axis to a direction of length 1, the shortest way; by half a turn
-/// about x where that points down.
-[[nodiscard]] Eigen::Quaterniond tilt_correction(const Eigen::Vector3d& predicted_gravity);
-
-/// world_from_imu at rest, from the specific force alone; heading as ComplementaryFilter has it.
-/// Identity where the force is zero.
-[[nodiscard]] Eigen::Quaterniond tilt_of(const Eigen::Vector3d& specific_force);
-
 }  // namespace saccade

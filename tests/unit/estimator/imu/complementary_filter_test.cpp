@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/rigid3.h"
+#include "estimator/imu/tilt.h"
 
 namespace saccade {
 namespace {
