@@ -82,10 +82,11 @@ TEST(InertialFilter, TellsGravityFromAccelerationInMotion) {
   const double error = std::sqrt(squares / count);
   EXPECT_LT(error, 0.5 * kDegree);
   EXPECT_LT(error, 0.2 * std::sqrt(complementary_squares / count));
-  // Nothing tells the part along the vertical.
-  const Eigen::Vector3d excess =
-      filter.world_from_imu() * Eigen::Vector3d(filter.bias() - Errors{}.rate_bias);
-  EXPECT_LT(std::hypot(excess.x(), excess.y()), 6e-4);
+  // Most of the bias has been found without a rest; nothing tells the part along the vertical.
+  const auto horizontal = [&](const Eigen::Vector3d& rate) {
+    return (filter.world_from_imu() * rate).head<2>().norm();
+  };
+  EXPECT_LT(horizontal(filter.bias() - Errors{}.rate_bias), 0.4 * horizontal(Errors{}.rate_bias));
 }
 
 TEST(InertialFilter, ItsErrorsAreAsLargeAsItSays) {
