@@ -20,6 +20,14 @@ struct ImuTruth {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();   ///< [rad/s]
 };
 
+/// What an orientation filter believes of a gyroscope at one reading.
+struct GyroBiasEstimate {
+  TimeNs t_ns = 0;
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< in the sensor's frame [rad/s]
+  double sigma = 0;                                ///< of one component [rad/s]
+  bool at_rest = false;                            ///< the sensor did not move lately
+};
+
 /// Continuous-time noise of one triad of an inertial sensor, as Kalibr states it. In SI units
 /// (U = rad/s or m/s^2).
 struct TriadNoise {

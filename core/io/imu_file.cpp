@@ -14,6 +14,7 @@ namespace {
 using Names = std::array<const char*, 3>;
 
 constexpr const char* kReading = "t ax ay az gx gy gz";
+constexpr const char* kGyroBias = "t bx by bz sigma at_rest";
 constexpr const char* kTruth = "t ax ay az gx gy gz bax bay baz bgx bgy bgz";
 
 Eigen::Vector3d read_vector(TextRow& row, const Names& names) {
@@ -93,6 +94,36 @@ void write_imu_truth(const std::filesystem::path& file, std::span<const ImuTruth
     append(text, one.accel_bias);
     append(text, one.gyro_bias);
     text.push_back('\n');
+  }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+std::vector<GyroBiasEstimate> read_gyro_biases(const std::filesystem::path& file) {
+  std::vector<GyroBiasEstimate> biases;
+  for_each_row(file, [&](TextRow& row) {
+    GyroBiasEstimate one;
+    one.t_ns = row.seconds("t");
+    if (!biases.empty()) expect_later(row, biases.back().t_ns, one.t_ns);
+    one.bias = read_vector(row, {"bx", "by", "bz"});
+    one.sigma = row.number("sigma");
+    const std::int64_t at_rest = row.integer("at_rest");
+    if (at_rest != 0 && at_rest != 1) row.fail("at_rest must be 0 or 1");
+    one.at_rest = at_rest == 1;
+    row.expect_end(kGyroBias);
+    biases.push_back(one);
+    return true;
+  });
+  return biases;
+}
+
+void write_gyro_biases(const std::filesystem::path& file,
+                       std::span<const GyroBiasEstimate> biases) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "# {}\n", kGyroBias);
+  for (const GyroBiasEstimate& one : biases) {
+    text.append(decimal_seconds(one.t_ns));
+    append(text, one.bias);
+    fmt::format_to(std::back_inserter(text), " {} {}\n", one.sigma, one.at_rest ? 1 : 0);
   }
   write_atomically(file, {text.data(), text.size()});
 }

@@ -18,6 +18,11 @@ void write_imu(const std::filesystem::path& file, std::span<const ImuSample> sam
 [[nodiscard]] std::vector<ImuTruth> read_imu_truth(const std::filesystem::path& file);
 void write_imu_truth(const std::filesystem::path& file, std::span<const ImuTruth> truth);
 
+/// Lines `t bx by bz sigma at_rest` below a comment that names the columns; `at_rest` is 0 or 1.
+/// Likewise.
+[[nodiscard]] std::vector<GyroBiasEstimate> read_gyro_biases(const std::filesystem::path& file);
+void write_gyro_biases(const std::filesystem::path& file, std::span<const GyroBiasEstimate> biases);
+
 /// imu.yaml in Kalibr's layout (accelerometer_noise_density ... update_rate). InputError with
 /// `file:line` where a key is missing or negative.
 [[nodiscard]] ImuCalibration read_imu_yaml(const std::filesystem::path& file);

@@ -21,13 +21,8 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr const char* kObject = "t object tx ty tz qx qy qz qw";
 constexpr const char* kTwist = "t vx vy vz wx wy wz";
 
-/// `tx ty tz qx qy qz qw`.
-Rigid3 read_pose(TextRow& row) {
-  Eigen::Vector3d t;
+Eigen::Quaterniond read_rotation(TextRow& row) {
   Eigen::Quaterniond q;
-  t.x() = row.number("tx");
-  t.y() = row.number("ty");
-  t.z() = row.number("tz");
   q.x() = row.number("qx");
   q.y() = row.number("qy");
   q.z() = row.number("qz");
@@ -36,7 +31,16 @@ Rigid3 read_pose(TextRow& row) {
   if (!(std::abs(norm - 1) <= kUnitTolerance))
     row.fail(fmt::format("the quaternion's length is {:.6g}; a rotation's is 1 (within {})", norm,
                          kUnitTolerance));
-  return {q, t};
+  return q;
+}
+
+/// `tx ty tz qx qy qz qw`.
+Rigid3 read_pose(TextRow& row) {
+  Eigen::Vector3d t;
+  t.x() = row.number("tx");
+  t.y() = row.number("ty");
+  t.z() = row.number("tz");
+  return {read_rotation(row), t};
 }
 
 std::string text_of(const Rigid3& pose) {
@@ -104,6 +108,27 @@ void write_tum_trajectory(const std::filesystem::path& file, std::span<const Sta
   for (const StampedPose& pose : poses) {
     fmt::format_to(std::back_inserter(text), "{:.9f} {}\n", pose.t_s,
                    text_of(pose.world_from_camera));
+  }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+Trajectory read_orientations(const std::filesystem::path& file) {
+  std::vector<StampedPose> poses;
+  for_each_row(file, [&](TextRow& row) {
+    const double t_s = row.number("t");
+    append(poses, {t_s, {read_rotation(row), Eigen::Vector3d::Zero()}}, row);
+    row.expect_end("t qx qy qz qw");
+    return true;
+  });
+  return finished(std::move(poses), file);
+}
+
+void write_orientations(const std::filesystem::path& file, std::span<const StampedPose> poses) {
+  fmt::memory_buffer text;
+  for (const StampedPose& pose : poses) {
+    const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
+    fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {}\n", pose.t_s, q.x(), q.y(), q.z(),
+                   q.w());
   }
   write_atomically(file, {text.data(), text.size()});
 }

@@ -24,6 +24,12 @@ namespace saccade {
 /// TUM text; times with 9 decimals, the rest exact in double.
 void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses);
 
+/// Lines `t qx qy qz qw`: seconds, world_from_camera; as poses at the origin, with the checks of
+/// read_tum_trajectory().
+[[nodiscard]] Trajectory read_orientations(const std::filesystem::path& file);
+/// Leaves the positions out; times with 9 decimals, the rest exact in double.
+void write_orientations(const std::filesystem::path& file, std::span<const StampedPose> poses);
+
 /// Lines `t vx vy vz wx wy wz` below a comment that names the columns: seconds with 9 decimals, the
 /// camera's velocity [m/s] and angular velocity [rad/s] in its own axes, exact in double. Times
 /// must increase; InputError with `file:line`.

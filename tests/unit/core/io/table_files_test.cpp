@@ -151,6 +151,26 @@ TEST_F(TableFiles, ImuTruthRoundTripIsExactAndNamesItsColumns) {
   }
 }
 
+TEST_F(TableFiles, GyroBiasRoundTripIsExactAndNamesWhatIsWrong) {
+  const std::filesystem::path file = folder_.path() / "gyro_bias.txt";
+  const std::vector<GyroBiasEstimate> biases{{0, {0.1, -1e-9, 3}, 0.01, true},
+                                             {1'000'000, {0.3, 0, 0}, 0.005, false}};
+  write_gyro_biases(file, biases);
+  const std::vector<GyroBiasEstimate> read = read_gyro_biases(file);
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read[i].t_ns, biases[i].t_ns);
+    EXPECT_EQ(read[i].bias, biases[i].bias);
+    EXPECT_EQ(read[i].sigma, biases[i].sigma);
+    EXPECT_EQ(read[i].at_rest, biases[i].at_rest);
+  }
+  const auto error = [&](const std::string& text) {
+    return error_of([&] { return read_gyro_biases(folder_.write("gyro_bias.txt", text)); });
+  };
+  EXPECT_THAT(error("0 1 2 3 4 2\n"), HasSubstr("gyro_bias.txt:1: at_rest must be 0 or 1"));
+  EXPECT_THAT(error("1 0 0 0 0 0\n1 0 0 0 0 0\n"), HasSubstr("gyro_bias.txt:2: times must"));
+}
+
 TEST_F(TableFiles, ImuYamlIsKalibrs) {
   const std::filesystem::path file = folder_.path() / "imu.yaml";
   write_imu_yaml(file, {200, {0.01, 2e-4}, {1.7e-3, 2e-5}});

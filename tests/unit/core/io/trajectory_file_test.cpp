@@ -41,6 +41,26 @@ TEST(TrajectoryFile, ReadsEsimCsvWithAnyHeader) {
   }
 }
 
+TEST(TrajectoryFile, OrientationsAreExactAndHaveNoPosition) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "orientation.txt";
+  const std::vector<StampedPose> poses{{0.25, {so3_exp({0.1, 2, -0.3}), {1, 2, 3}}}, {0.5, {}}};
+  write_orientations(file, poses);
+  const Trajectory read = read_orientations(file);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read.poses()[0].t_s, 0.25);
+  EXPECT_LT(angle_between(read.poses()[0].world_from_camera.rotation(),
+                          poses[0].world_from_camera.rotation()),
+            1e-15);
+  EXPECT_EQ(read.poses()[0].world_from_camera.translation().norm(), 0);
+  const auto error = [&](const std::string& text) {
+    return error_of([&] { return read_orientations(folder.write("orientation.txt", text)); });
+  };
+  EXPECT_THAT(error("0 0 0 0 2\n"), HasSubstr("orientation.txt:1: the quaternion's length is 2"));
+  EXPECT_THAT(error("1 0 0 0 1\n0 0 0 0 1\n"), HasSubstr("orientation.txt:2: times must"));
+  EXPECT_THAT(error("1 0 0 0 1 5\n"), HasSubstr("more fields"));
+}
+
 TEST(TrajectoryFile, NormalisesSlightlyWrongQuaternions) {
   const Trajectory t = parse("0 0 0 0 0 0 0 1.0009\n");
   EXPECT_DOUBLE_EQ(t.poses()[0].world_from_camera.rotation().w(), 1);
