@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <vector>
+
+#include "core/io/h5_table.h"
 
 namespace saccade {
 
@@ -26,19 +27,16 @@ struct EventLabels {
                                          std::uint64_t begin, std::uint64_t end);
 
 /// Writes labels.h5: /labels/depth, flow_x, flow_y (f32), object (i32) and origin (u8), in the
-/// events' order, chunked and deflated as events.h5 is. Nothing stands under the final name before
-/// close().
+/// events' order.
 class LabelsH5Writer {
  public:
   explicit LabelsH5Writer(const std::filesystem::path& file);
-  ~LabelsH5Writer();
   /// Labels of the events that follow those before.
   void append(const EventLabels& labels);
-  void close();
+  void close() { table_.close(); }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  H5TableWriter table_;
 };
 
 }  // namespace saccade
