@@ -7,9 +7,13 @@
 #include "core/io/trajectory_file.h"
 
 namespace saccade {
-namespace {
+void check(const RunRequest& request) {
+  if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
+  if (request.duration_s && !(*request.duration_s > 0))
+    throw InputError("--duration-s", "must be above 0");
+}
 
-Events load_stretch(const RunRequest& request, const Dataset& dataset) {
+Events load_events_if_any(const RunRequest& request, const Dataset& dataset) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double start_s = request.start_s.value_or(-infinity);
   if (!request.duration_s) return dataset.load_events(start_s);
@@ -24,16 +28,8 @@ Events load_stretch(const RunRequest& request, const Dataset& dataset) {
   return events;
 }
 
-}  // namespace
-
-void check(const RunRequest& request) {
-  if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
-  if (request.duration_s && !(*request.duration_s > 0))
-    throw InputError("--duration-s", "must be above 0");
-}
-
 Events load_events(const RunRequest& request, const Dataset& dataset) {
-  Events events = load_stretch(request, dataset);
+  Events events = load_events_if_any(request, dataset);
   if (events.empty())
     throw InputError(dataset.folder().string(), "holds no events in the window that was asked for");
   return events;

@@ -14,6 +14,9 @@ void check(const RunRequest& request);
 /// The dataset's events in the window that was asked for. Throws InputError where there are none.
 [[nodiscard]] Events load_events(const RunRequest& request, const Dataset& dataset);
 
+/// The same; none where there are none.
+[[nodiscard]] Events load_events_if_any(const RunRequest& request, const Dataset& dataset);
+
 /// The window [s] as run.yaml states it; `first_s` and `last_s` of what was loaded, where the
 /// request leaves it open.
 [[nodiscard]] RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s);

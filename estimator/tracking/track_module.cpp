@@ -11,11 +11,11 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/calibration_file.h"
 #include "core/io/csv_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
+#include "estimator/imu/imu_input.h"
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/tracking/frame_tracker.h"
@@ -68,17 +68,8 @@ Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double st
 
 /// The dataset's gyroscope, turned into the frame of the camera by camera.yaml.
 Gyroscope load_gyroscope(const TrackConfig& config, const Dataset& dataset) {
-  const std::string place = dataset.folder().string();
-  if (!dataset.has_imu())
-    throw InputError(place, "holds no imu.txt, which motion.prediction: imu needs");
-  const std::vector<ImuSample> samples = dataset.load_imu();
-  if (samples.empty())
-    throw InputError(place, "holds an imu.txt without readings; motion.prediction: imu needs them");
-  Rigid3 camera_from_imu;
-  const std::filesystem::path chain = dataset.folder() / "camera.yaml";
-  if (std::filesystem::exists(chain))
-    camera_from_imu = read_camera_chain(chain).front().camera_from_imu.value_or(Rigid3{});
-  return {samples, camera_from_imu.rotation_matrix(), config.tracker.motion.gyro_bias};
+  const ImuInput imu = load_imu_input(dataset, "motion.prediction: imu");
+  return {imu.samples, imu.camera_from_imu, config.tracker.motion.gyro_bias};
 }
 
 std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset) {

@@ -1,0 +1,168 @@
+#include "estimator/imu/stabilize_module.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/imu_file.h"
+#include "core/io/trajectory_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "estimator/imu/imu_input.h"
+#include "estimator/imu/stabilize_config.h"
+#include "estimator/imu/stabilize_output.h"
+#include "estimator/imu/stabilizer.h"
+#include "estimator/run_input.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+
+namespace saccade {
+namespace {
+
+/// Everything that stabilization starts from.
+struct StabilizeInput {
+  std::optional<ImuInput> imu;  ///< none where another run's poses are used
+  Trajectory poses;             ///< those
+  Events events;                ///< perhaps none
+};
+
+StabilizeInput load_input(const RunRequest& request, const Dataset& dataset) {
+  StabilizeInput input;
+  if (request.poses_from)
+    input.poses = load_poses(request, dataset);
+  else
+    input.imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
+  if (!dataset.events_file().empty()) input.events = load_events_if_any(request, dataset);
+  return input;
+}
+
+struct Stabilization {
+  Trajectory world_from_camera;
+  std::vector<GyroBiasEstimate> gyro;  ///< of the inertial sensor
+  Trajectory world_from_steady;
+  std::vector<StabilizedStretch> stretches;
+};
+
+/// The camera's orientations as the filter found them.
+Trajectory orientations_of(const ImuInput& imu, const OrientationOptions& options,
+                           std::vector<GyroBiasEstimate>& gyro) {
+  const Eigen::Quaterniond imu_from_camera(Eigen::Matrix3d(imu.camera_from_imu.transpose()));
+  std::vector<StampedPose> poses;
+  poses.reserve(imu.samples.size());
+  gyro.clear();
+  for (const ImuOrientation& one : estimate_orientations(imu.samples, options)) {
+    gyro.push_back(one.gyro);
+    poses.push_back({seconds_from_ns(one.gyro.t_ns),
+                     {one.world_from_imu * imu_from_camera, Eigen::Vector3d::Zero()}});
+  }
+  return Trajectory(std::move(poses));
+}
+
+/// Consecutive stretches of `window_s` from the first event on; those without events are left out.
+std::vector<StabilizedStretch> cut(std::span<const Event> events, double window_s) {
+  std::vector<StabilizedStretch> stretches;
+  if (events.empty()) return stretches;
+  const TimeNs window_ns = ns_from_seconds(window_s);
+  const TimeNs start_ns = events.front().t_ns;
+  while (!events.empty()) {
+    const TimeNs begin_ns = start_ns + (events.front().t_ns - start_ns) / window_ns * window_ns;
+    const TimeNs end_ns = begin_ns + window_ns;
+    const auto end = std::partition_point(events.begin(), events.end(),
+                                          [end_ns](const Event& e) { return e.t_ns < end_ns; });
+    const auto count = static_cast<std::size_t>(end - events.begin());
+    StabilizedStretch stretch;
+    stretch.window.start_s = seconds_from_ns(begin_ns);
+    stretch.window.end_s = seconds_from_ns(end_ns);
+    stretch.window.at_s = seconds_from_ns(begin_ns + window_ns / 2);
+    stretch.events = events.first(count);
+    stretches.push_back(std::move(stretch));
+    events = events.subspan(count);
+  }
+  return stretches;
+}
+
+void stabilize(const StabilizeInput& input, const StabilizeConfig& config,
+               const PinholeCamera& camera, Stabilization& result, RunTiming& timing) {
+  double orientation_s = 0, events_s = 0;
+  {
+    const StageClock clock(orientation_s);
+    result.world_from_camera =
+        input.imu ? orientations_of(*input.imu, config.orientation, result.gyro) : input.poses;
+    result.world_from_steady = steady_poses(result.world_from_camera, config.steady);
+  }
+  {
+    const StageClock clock(events_s);
+    const Stabilizer stabilizer(camera, result.world_from_camera);
+    result.stretches = cut(input.events, config.window_s);
+    parallel_for(result.stretches.size(), [&](std::size_t i) {
+      StabilizedStretch& stretch = result.stretches[i];
+      const double at_s = stretch.window.at_s;
+      const Eigen::Quaterniond steady = result.world_from_steady.at_clamped(at_s).rotation();
+      stretch.window.steady_from_camera =
+          steady.conjugate() * result.world_from_camera.at_clamped(at_s).rotation();
+      stretch.stabilized = stabilizer.stabilize(stretch.events, steady);
+    });
+  }
+  timing.wall_s.push_back(orientation_s + events_s);
+  timing.stages_s = {{"orientation", orientation_s}, {"events", events_s}};
+}
+
+void write(const std::filesystem::path& folder, const Dataset& dataset,
+           const StabilizeConfig& config, const Stabilization& result,
+           const RunRecord::Window& window) {
+  write_orientations(folder / "orientation.txt", result.world_from_camera.poses());
+  if (!result.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.gyro);
+  if (!result.stretches.empty())
+    write_stabilized_events(folder / "stabilized", dataset.camera(), result.stretches);
+  if (config.frames)
+    write_stabilized_frames(folder / "stabilized", dataset, window,
+                            Stabilizer(dataset.camera(), result.world_from_camera),
+                            result.world_from_steady);
+}
+
+}  // namespace
+
+RunSummary run_stabilization(const RunRequest& request) {
+  StabilizeConfig config = config::read<StabilizeConfig>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  check(request);
+  RunWriter writer(request);
+
+  RunTiming timing;
+  const Dataset dataset = Dataset::open(request.dataset);
+  StabilizeInput input;
+  {
+    const StageClock clock(timing.io_s);
+    input = load_input(request, dataset);
+  }
+  timing.events = input.events.size();
+  Stabilization result;
+  Progress progress("stabilize", timing.events * static_cast<std::size_t>(request.repeat),
+                    "events");
+  for (int i = 0; i < request.repeat; ++i) {
+    stabilize(input, config, dataset.camera(), result, timing);
+    progress.add(timing.events);
+  }
+  const Trajectory& poses = result.world_from_camera;
+  timing.sequence_s = poses.end_s() - poses.start_s();
+  const RunRecord::Window window = window_of(request, poses.start_s(), poses.end_s());
+  {
+    const StageClock clock(timing.io_s);
+    write(writer.path(), dataset, config, result, window);
+  }
+  writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
+
+  RunSummary summary;
+  summary.events = timing.events;
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+std::string print_stabilization_config(const config::Document& document) {
+  return config::print_documented(config::read<StabilizeConfig>(document));
+}
+
+}  // namespace saccade

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run stabilize`: orientation from a dataset's inertial sensor or, with `poses_from`,
+/// from another run; events and grey frames turned to a steady orientation. Writes orientation.txt,
+/// gyro_bias.txt (of the inertial sensor), stabilized/ (events.h5, places.h5, windows.csv, frames/,
+/// images.txt), run.yaml and timing.json. Without events or frames the rest is done. Throws
+/// InputError for bad input.
+RunSummary run_stabilization(const RunRequest& request);
+
+/// The resolved configuration, documented.
+[[nodiscard]] std::string print_stabilization_config(const config::Document& document);
+
+}  // namespace saccade
