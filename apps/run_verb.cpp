@@ -28,26 +28,15 @@ std::string module_list() {
   return list;
 }
 
-void show(const RunVerbOptions& options, const RunSummary& summary) {
+void show(const std::filesystem::path& output, const RunSummary& summary) {
+  const auto events = static_cast<double>(summary.events);
   const double wall_s = summary.wall_s;
-  if (find_module(options.module).takes_depth) {
-    fmt::print("{}: {} views from {:.3f} M events in {:.3f} s: {:.3f} M events/s\n",
-               options.request.output.string(), summary.views,
-               1e-6 * static_cast<double>(summary.events), wall_s,
-               wall_s > 0 ? 1e-6 * static_cast<double>(summary.events) / wall_s : 0);
-    return;
-  }
-  if (find_module(options.module).takes_poses) {
-    fmt::print("{}: {} points in {} views from {:.3f} M events in {:.3f} s: {:.3f} M events/s\n",
-               options.request.output.string(), summary.points, summary.views,
-               1e-6 * static_cast<double>(summary.events), wall_s,
-               wall_s > 0 ? 1e-6 * static_cast<double>(summary.events) / wall_s : 0);
-    return;
-  }
-  fmt::print("{}: {} poses ({} lost) from {:.3f} M events in {:.3f} s: {:.0f} poses/s\n",
-             options.request.output.string(), summary.poses, summary.lost_poses,
-             1e-6 * static_cast<double>(summary.events), wall_s,
-             wall_s > 0 ? static_cast<double>(summary.poses) / wall_s : 0);
+  std::string line = fmt::format("{}: {} from {:.3f} M events in {:.3f} s", output.string(),
+                                 summary.found, 1e-6 * events, wall_s);
+  if (wall_s > 0) line += fmt::format(": {:.3f} M events/s", 1e-6 * events / wall_s);
+  if (wall_s > 0 && summary.poses > 0)
+    line += fmt::format(", {:.0f} poses/s", static_cast<double>(summary.poses) / wall_s);
+  fmt::print("{}\n", line);
 }
 
 void run(RunVerbOptions options) {
@@ -64,7 +53,7 @@ void run(RunVerbOptions options) {
     throw InputError("-o", "name the run folder to write: -o RUN");
   options.request.threads = thread_count();
   const RunSummary summary = run_module(options.module, options.request);
-  if (!options.common.quiet) show(options, summary);
+  if (!options.common.quiet) show(options.request.output, summary);
 }
 
 }  // namespace

@@ -30,11 +30,9 @@ struct RunRequest {
 
 /// What there is to say on one line after a run.
 struct RunSummary {
+  std::string found;       ///< "812 poses (0 lost)"
   std::size_t events = 0;  ///< given to the estimator
-  std::size_t poses = 0;
-  std::size_t lost_poses = 0;
-  std::size_t views = 0;   ///< depth maps written
-  std::size_t points = 0;  ///< in all of them
+  std::size_t poses = 0;   ///< found, of modules that find poses
   double wall_s = 0;       ///< median over the repetitions, without reading and writing
 };
 

@@ -4,9 +4,13 @@
 
 #include "core/error.h"
 #include "core/io/atomic_file.h"
+#include "core/io/imu_file.h"
+#include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
+#include "eval/metrics/orientation_metrics.h"
 #include "eval/metrics/reprojection.h"
+#include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory_metrics.h"
 
 namespace saccade {
@@ -29,6 +33,23 @@ struct ScoredDepth {
       : views(load_depth_views(run.folder)), errors(compare_views(views, dataset)) {}
 };
 
+/// What `run` found of orientation, and events that it stabilized.
+void score_turning(const RunFolder& run, const Dataset& dataset, Metrics& metrics) {
+  const std::filesystem::path orientation = run.folder / "orientation.txt";
+  const std::filesystem::path biases = run.folder / "gyro_bias.txt";
+  if (std::filesystem::exists(orientation)) {
+    OrientationScoreInput input;
+    input.estimate = read_orientations(orientation);
+    input.truth = dataset.groundtruth();
+    if (std::filesystem::exists(biases)) input.biases = read_gyro_biases(biases);
+    if (std::filesystem::exists(dataset.folder() / "imu_groundtruth.txt"))
+      input.imu_truth = dataset.load_imu_truth();
+    merge(metrics, score_orientation(input), "");
+  }
+  if (std::filesystem::exists(run.folder / "stabilized" / "windows.csv"))
+    merge(metrics, score_stabilization(load_stabilized(run.folder / "stabilized"), dataset), "");
+}
+
 Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& depth,
               const std::optional<double>& mean_depth_m) {
   Metrics metrics;
@@ -37,6 +58,7 @@ Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& d
     merge(metrics, score_depth(depth.views, depth.errors, dataset.camera()), "");
   if (const auto images = load_image_views(run.folder); !images.empty())
     merge(metrics, score_images(images, dataset), "");
+  score_turning(run, dataset, metrics);
   if (!run.trajectory) return metrics;
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;

@@ -1,5 +1,7 @@
 #include "estimator/depth/depth_module.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "core/config/config.h"
@@ -42,10 +44,11 @@ RunSummary run_depth(const RunRequest& request) {
   writer.finish("depth", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
+  std::size_t points = 0;
+  for (const DepthResult& result : results) points += result.points.size();
   RunSummary summary;
+  summary.found = fmt::format("{} points in {} views", points, windows.size());
   summary.events = timing.events;
-  summary.views = windows.size();
-  for (const DepthResult& result : results) summary.points += result.points.size();
   summary.wall_s = median(timing.wall_s);
   return summary;
 }

@@ -1,5 +1,7 @@
 #include "estimator/imu/stabilize_module.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -156,6 +158,8 @@ RunSummary run_stabilization(const RunRequest& request) {
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
   RunSummary summary;
+  summary.found =
+      fmt::format("{} orientations, {} windows of events", poses.size(), result.stretches.size());
   summary.events = timing.events;
   summary.wall_s = median(timing.wall_s);
   return summary;

@@ -1,5 +1,7 @@
 #include "estimator/reconstruction/reconstruction_module.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -75,8 +77,8 @@ RunSummary run_reconstruction(const RunRequest& request) {
                 timing);
 
   RunSummary summary;
+  summary.found = fmt::format("{} views", windows.size());
   summary.events = timing.events;
-  summary.views = windows.size();
   summary.wall_s = median(timing.wall_s);
   return summary;
 }

@@ -247,9 +247,10 @@ RunSummary run_track(const RunRequest& request) {
   RunSummary summary;
   summary.events = input.events.size();
   summary.poses = output.poses.size();
-  summary.lost_poses = static_cast<std::size_t>(
+  const auto lost =
       std::count_if(output.poses.begin(), output.poses.end(),
-                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; }));
+                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; });
+  summary.found = fmt::format("{} poses ({} lost)", output.poses.size(), lost);
   summary.wall_s = median(output.timing.wall_s);
   return summary;
 }

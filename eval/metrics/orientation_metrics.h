@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/imu_sample.h"
+#include "core/trajectory.h"
+#include "eval/metrics/metrics.h"
+
+namespace saccade {
+
+/// What of a run and its dataset goes into the scores of orientation.
+struct OrientationScoreInput {
+  Trajectory estimate;                   ///< world_from_camera, z up, any heading
+  Trajectory truth;                      ///< empty: nothing is scored
+  std::vector<GyroBiasEstimate> biases;  ///< perhaps none
+  std::vector<ImuTruth> imu_truth;       ///< perhaps none
+};
+
+/// One estimated orientation against the truth.
+struct OrientationError {
+  double t_s = 0;
+  double tilt_rad = 0;     ///< between the up directions
+  double heading_rad = 0;  ///< about the vertical, continuous over time, 0 at the start
+};
+
+/// Of every estimate within the truth's time. With D = R_estimate R_truth^T: tilt is the angle
+/// between D z and z, heading 2 atan2(q_z, q_w) of D.
+[[nodiscard]] std::vector<OrientationError> orientation_errors(const Trajectory& estimate,
+                                                               const Trajectory& truth);
+
+/// orientation.roll_pitch_rmse_deg (RMS of the tilt's error, which is the error of roll and pitch
+/// together), orientation.yaw_drift_deg_per_min (slope of the heading's error by least squares, its
+/// size; from the end of the first rest on, where biases are given),
+/// orientation.bias_error_rad_s (RMS over the axes at the end of the first rest) and
+/// orientation.bias_sigma_rad_s (what the filter believed it to be).
+[[nodiscard]] Metrics score_orientation(const OrientationScoreInput& input);
+
+}  // namespace saccade

@@ -1,0 +1,111 @@
+#include "eval/metrics/sharpness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/camera.h"
+#include "core/io/event_file.h"
+#include "core/parallel.h"
+
+namespace saccade {
+namespace {
+
+void draw(ImageF& image, const Eigen::Vector2d& place) {
+  if (is_inside(image, place.x(), place.y())) splat(image, place.x(), place.y(), 1.0F);
+}
+
+/// First and one past the last event of a window.
+std::pair<std::size_t, std::size_t> range_of(const Events& events, const StabilizedWindow& window) {
+  const auto first_at = [&](double t_s) {
+    const TimeNs t_ns = ns_from_seconds(t_s);
+    const auto at = std::partition_point(events.begin(), events.end(),
+                                         [t_ns](const Event& e) { return e.t_ns < t_ns; });
+    return static_cast<std::size_t>(at - events.begin());
+  };
+  return {first_at(window.start_s), first_at(window.end_s)};
+}
+
+}  // namespace
+
+StabilizedRun load_stabilized(const std::filesystem::path& folder) {
+  StabilizedRun run;
+  run.events = read_events(folder / "events.h5", {});
+  run.places = read_stabilized_places(folder / "places.h5", run.events.size());
+  run.windows = read_stabilized_windows(folder / "windows.csv");
+  return run;
+}
+
+WindowImages images_of(const StabilizedRun& run, std::size_t index, const Dataset& dataset) {
+  const PinholeCamera camera = dataset.camera().undistorted();
+  const UndistortionTable undistorted(dataset.camera());
+  const StabilizedWindow& window = run.windows[index];
+  const Trajectory& truth = dataset.groundtruth();
+  const bool has_truth = !truth.empty();
+  WindowImages images;
+  images.raw = images.stabilized = ImageF(camera.width, camera.height);
+  if (has_truth) images.truth = images.raw;
+  Eigen::Quaterniond steady_from_world;
+  if (has_truth)
+    steady_from_world =
+        window.steady_from_camera * truth.at_clamped(window.at_s).rotation().conjugate();
+  const auto [begin, end] = range_of(run.events, window);
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Vector2d from =
+        undistorted(run.places.source_x[i], run.places.source_y[i]).cast<double>();
+    const Eigen::Vector2d to(run.places.x[i], run.places.y[i]);
+    draw(images.raw, from);
+    draw(images.stabilized, to);
+    ++images.events;
+    if (!has_truth) continue;
+    const Eigen::Quaterniond turn =
+        steady_from_world * truth.at_clamped(seconds_from_ns(run.events[i].t_ns)).rotation();
+    const Eigen::Vector2d expected = camera.project(turn * camera.ray(from));
+    draw(images.truth, expected);
+    if ((to - expected).norm() <= 1) ++images.within_1px;
+  }
+  return images;
+}
+
+double sharpness(const ImageF& image) {
+  double sum = 0, squares = 0;
+  for (const float value : image.pixels()) {
+    sum += static_cast<double>(value);
+    squares += static_cast<double>(value) * static_cast<double>(value);
+  }
+  const auto n = static_cast<double>(image.size());
+  return n > 0 ? squares / n - sum * sum / (n * n) : 0;
+}
+
+Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset) {
+  struct Window {
+    double raw = 0, stabilized = 0, truth = 0;
+    std::size_t events = 0, within = 0;
+  };
+  std::vector<Window> windows(run.windows.size());
+  parallel_for(windows.size(), [&](std::size_t i) {
+    const WindowImages images = images_of(run, i, dataset);
+    windows[i] = {sharpness(images.raw), sharpness(images.stabilized), sharpness(images.truth),
+                  images.events, images.within_1px};
+  });
+  Metrics metrics;
+  if (windows.empty()) return metrics;
+  Window sum;
+  for (const Window& window : windows) {
+    sum.raw += window.raw;
+    sum.stabilized += window.stabilized;
+    sum.truth += window.truth;
+    sum.events += window.events;
+    sum.within += window.within;
+  }
+  const auto count = static_cast<double>(windows.size());
+  metrics.set("sharpness.raw", sum.raw / count);
+  metrics.set("sharpness.stabilized", sum.stabilized / count);
+  if (dataset.groundtruth().empty()) return metrics;
+  metrics.set("sharpness.truth", sum.truth / count);
+  if (sum.events > 0)
+    metrics.set("stabilization.within_1px",
+                static_cast<double>(sum.within) / static_cast<double>(sum.events));
+  return metrics;
+}
+
+}  // namespace saccade
