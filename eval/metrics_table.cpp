@@ -94,6 +94,25 @@ void add_reconstruction(std::string& text, const Metrics& metrics) {
                       fixed(get("worst.pearson"), 4));
 }
 
+void add_orientation(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) { return metrics.get(std::string("orientation.") + key); };
+  text += fmt::format("  roll and pitch {} deg RMSE, heading drifts by {} deg/min\n",
+                      fixed(get("roll_pitch_rmse_deg"), 3), fixed(get("yaw_drift_deg_per_min"), 2));
+  if (get("bias_error_rad_s"))
+    text += fmt::format("  gyroscope's bias after the first rest: {} rad/s off, believed {}\n",
+                        fixed(get("bias_error_rad_s"), 6), fixed(get("bias_sigma_rad_s"), 6));
+}
+
+void add_sharpness(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) { return fixed(metrics.get(key), 1); };
+  text += fmt::format("  sharpness: raw {}, stabilized {}, by the true rotation {}\n",
+                      get("sharpness.raw"), get("sharpness.stabilized"), get("sharpness.truth"));
+  std::optional<double> within = metrics.get("stabilization.within_1px");
+  if (!within) return;
+  *within *= 100;
+  text += fmt::format("  {} % of the events within 1 px of their true place\n", fixed(within, 2));
+}
+
 void add_speed(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) {
     return speed_value(metrics, std::string("speed.") + key);
@@ -123,6 +142,8 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
   }
   if (metrics.values().contains("depth.points")) add_depth(text, metrics);
   if (metrics.values().contains("reconstruction.views")) add_reconstruction(text, metrics);
+  if (metrics.get("orientation.roll_pitch_rmse_deg")) add_orientation(text, metrics);
+  if (metrics.get("sharpness.stabilized")) add_sharpness(text, metrics);
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;
 }

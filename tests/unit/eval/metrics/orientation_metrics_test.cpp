@@ -1,0 +1,82 @@
+#include "eval/metrics/orientation_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace saccade {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Eigen::Quaterniond turning(double t_s) {
+  return so3_exp({0.5 * std::sin(t_s), 0.3 * std::cos(2 * t_s), 4 * t_s}) * so3_exp({1.4, 0.2, 0});
+}
+
+/// `error` is applied in the world, over 10 s.
+template <class Error>
+OrientationScoreInput input_with(const Error& error) {
+  std::vector<StampedPose> estimate, truth;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t_s = 0.01 * i;
+    const Eigen::Quaterniond q = turning(t_s);
+    truth.push_back({t_s, {q, {t_s, 0, 0}}});
+    estimate.push_back({t_s, {Eigen::Quaterniond(error(t_s)) * q, {0, 0, 0}}});
+  }
+  return {Trajectory(estimate), Trajectory(truth), {}, {}};
+}
+
+TEST(OrientationMetrics, AHeadingOfItsOwnIsNoError) {
+  const Metrics m = score_orientation(input_with([](double) { return so3_exp({0, 0, 2.5}); }));
+  EXPECT_NEAR(*m.get("orientation.roll_pitch_rmse_deg"), 0, 1e-9);
+  EXPECT_NEAR(*m.get("orientation.yaw_drift_deg_per_min"), 0, 1e-9);
+}
+
+TEST(OrientationMetrics, TellsTiltFromDrift) {
+  // 2 degrees of tilt and 3 degrees per minute, through several turns of the camera.
+  const auto m = score_orientation(input_with([](double t_s) {
+    return so3_exp({0, 0, 1 + 0.05 * kDegree * t_s}) * so3_exp({2 * kDegree, 0, 0});
+  }));
+  EXPECT_NEAR(*m.get("orientation.roll_pitch_rmse_deg"), 2, 1e-9);
+  EXPECT_NEAR(*m.get("orientation.yaw_drift_deg_per_min"), 3, 0.01);
+}
+
+TEST(OrientationMetrics, ADriftThroughHalfATurnIsContinuous) {
+  const auto errors = [] {
+    const auto input = input_with([](double t_s) { return so3_exp({0, 0, t_s}); });
+    return orientation_errors(input.estimate, input.truth);
+  }();
+  ASSERT_EQ(errors.size(), 1001U);
+  EXPECT_NEAR(errors.back().heading_rad, 10, 1e-9);
+}
+
+TEST(OrientationMetrics, TheBiasIsScoredAtTheEndOfTheFirstRest) {
+  auto input = input_with([](double t_s) {
+    // A heading that drifts in the first two seconds only, which do not count.
+    return so3_exp({0, 0, std::min(t_s, 2.0)});
+  });
+  for (int i = 0; i <= 1000; ++i) {
+    const bool at_rest = (i >= 10 && i <= 200) || i > 900;
+    const double error = i <= 200 ? 3e-4 : 1;
+    const TimeNs t_ns = TimeNs{i} * 10'000'000;
+    input.biases.push_back({t_ns, {0.1 + error, -0.1, 0.2}, 1e-4, at_rest});
+    ImuTruth truth;
+    truth.ideal.t_ns = t_ns;
+    truth.gyro_bias = {0.1, -0.1, 0.2};
+    input.imu_truth.push_back(truth);
+  }
+  const Metrics m = score_orientation(input);
+  EXPECT_NEAR(*m.get("orientation.bias_error_rad_s"), 3e-4 / std::sqrt(3), 1e-12);
+  EXPECT_EQ(m.get("orientation.bias_sigma_rad_s"), 1e-4);
+  EXPECT_NEAR(*m.get("orientation.yaw_drift_deg_per_min"), 0, 1e-6);
+}
+
+TEST(OrientationMetrics, WithoutTruthThereIsNone) {
+  auto input = input_with([](double) { return Eigen::Quaterniond::Identity(); });
+  input.truth = {};
+  EXPECT_TRUE(score_orientation(input).empty());
+}
+
+}  // namespace
+}  // namespace saccade
