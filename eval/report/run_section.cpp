@@ -9,6 +9,7 @@
 #include "eval/report/depth_section.h"
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
+#include "eval/report/stabilization_section.h"
 
 namespace saccade {
 namespace {
@@ -39,12 +40,20 @@ std::string key_numbers(const RunData& data) {
   depth("rel_mean", "mean error of depth");
   depth("completeness", "of the edge pixels found");
   add(m.get("depth.points"), grouped(m.get("depth.points")), "", "points");
+  const auto plain = [&](const char* key, const char* unit, const char* label) {
+    add(m.get(key), significant(m.get(key)), unit, label);
+  };
+  plain("orientation.roll_pitch_rmse_deg", "deg", "roll and pitch, RMSE");
+  plain("orientation.yaw_drift_deg_per_min", "deg/min", "drift of the heading");
+  plain("sharpness.raw", "", "sharpness of the events as fired");
+  plain("sharpness.stabilized", "", "stabilized");
+  plain("sharpness.truth", "", "by the true rotation");
   std::optional<double> coverage = m.get("trajectory.coverage");
   if (coverage) *coverage *= 100;
   add(coverage, fixed(coverage, 1), "%", "of the time covered");
   const std::optional<double> poses = m.get("trajectory.poses");
   add(poses, grouped(poses), "", "poses");
-  const bool has_poses = poses.has_value() || !m.get("depth.points");
+  const bool has_poses = poses.has_value() || !(m.get("depth.points") || m.get("sharpness.raw"));
   const char* unit = has_poses ? "poses" : "events";
   const std::optional<double> rate = speed_value(m, fmt::format("speed.{}_per_s", unit));
   add(rate, grouped(rate), "/s", unit);
@@ -235,7 +244,10 @@ std::string run_section(const RunData& data) {
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));
   html += key_numbers(data) + views(data);
-  if (data.data) html += map_pictures(data) + depth_section(data) + image_section(data);
+  if (data.data) {
+    html += map_pictures(data) + depth_section(data) + image_section(data);
+    html += stabilization_section(data);
+  }
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
 }
 
