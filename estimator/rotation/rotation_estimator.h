@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "estimator/rotation/rotation_contrast.h"
+
+namespace saccade {
+
+struct RotationOptions {
+  int events = 20000;          ///< per window
+  double max_window_s = 0.05;  ///< a slow window is cut here
+  int samples = 8000;          ///< at most so many of them are used
+  double blur_px = 1.5;        ///< of the image of events
+  int iterations = 12;         ///< of quasi-Newton steps, at most
+  double tolerance_px = 0.01;  ///< a step that moves events by less is the last
+  double min_gain = 1.05;      ///< least contrast in units of that without turning, when turning
+};
+
+/// What one window says.
+struct RotationEstimate {
+  double t_s = 0;                                  ///< middle of the window
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< in camera axes [rad/s]
+  double contrast = 0;                             ///< reached
+  int iterations = 0;
+  bool is_valid = false;
+};
+
+/// Angular velocity from events alone, window by window, by the contrast of the turned events
+/// (rotation_contrast.h), with BFGS from the rate of the window before. Deterministic.
+class RotationEstimator {
+ public:
+  RotationEstimator(const PinholeCamera& camera, const RotationOptions& options);
+
+  /// `events`: a window, in order of time, at least one. `guess`: where the search starts [rad/s].
+  [[nodiscard]] RotationEstimate estimate(std::span<const Event> events,
+                                          const Eigen::Vector3d& guess);
+
+ private:
+  RotationOptions options_;
+  RotationContrast contrast_;
+};
+
+/// The events of the next window: `options.events`, or fewer where they take too long.
+[[nodiscard]] std::size_t next_window(std::span<const Event> events,
+                                      const RotationOptions& options);
+
+}  // namespace saccade
