@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/check.h"
 #include "estimator/reconstruction/gradient_images.h"
 #include "estimator/reconstruction/level_system.h"
 #include "estimator/reconstruction/poisson.h"
@@ -16,6 +17,8 @@
 
 namespace saccade {
 namespace {
+
+constexpr std::size_t kBatch = 131072;  ///< events whose levels are found at a time
 
 /// The view with `scale` pixels in place of one, the first centred on the first.
 PinholeCamera finer(const PinholeCamera& camera, int scale) {
@@ -36,21 +39,92 @@ float value_at(const ImageF& image, const GridPoint& point) {
   return value;
 }
 
-/// Indices of the levels by track, in order of time.
-struct ByTrack {
-  std::vector<std::uint32_t> first;  ///< of every track, and the end
-  std::vector<PlaceLevel> levels;
+/// What distinguishes few sorts of levels: see PlaceLevel.
+struct LevelSort {
+  float deviation, slack, beyond;
+  bool operator==(const LevelSort&) const = default;
+};
 
-  ByTrack(const std::vector<PlaceLevel>& unordered, std::uint32_t tracks)
-      : first(tracks + 1), levels(unordered.size()) {
-    for (const PlaceLevel& level : unordered) ++first[level.track + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const PlaceLevel& level : unordered) levels[next[level.track]++] = level;
+/// A level in as little memory as will do, of which there are several per event.
+struct KeptLevel {
+  float x, y, level;
+  std::uint32_t track_and_sort;  ///< the sort in the lowest bits
+
+  [[nodiscard]] std::uint32_t track() const { return track_and_sort >> kSortBits; }
+  [[nodiscard]] std::uint32_t sort() const { return track_and_sort & ((1U << kSortBits) - 1); }
+  static constexpr std::uint32_t kSortBits = 3;
+};
+
+/// All levels in the order of their tracks and, within one, of time.
+class LevelsByTrack {
+ public:
+  void add(std::span<const PlaceLevel> levels) {
+    std::vector<KeptLevel>& part = parts_.emplace_back();
+    part.reserve(levels.size());
+    for (const PlaceLevel& l : levels)
+      part.push_back({l.x, l.y, l.level,
+                      l.track << KeptLevel::kSortBits | sort_of({l.deviation, l.slack, l.beyond})});
   }
-  [[nodiscard]] std::span<const PlaceLevel> track(std::size_t i) const {
-    return std::span(levels).subspan(first[i], first[i + 1] - first[i]);
+  /// After the last add().
+  void order(std::uint32_t tracks) {
+    first_.assign(tracks + 1, 0);
+    for (const auto& part : parts_)
+      for (const KeptLevel& level : part) ++first_[level.track() + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    levels_.resize(first_.back());
+    for (const auto& part : parts_)
+      for (const KeptLevel& level : part) levels_[next[level.track()]++] = level;
+    parts_.clear();
   }
+  /// Joins successive levels of one sort whose places lie within `px` of the first of them: what
+  /// they say of the image is nearly the same, and their mean says it.
+  void thin(float px) {
+    std::size_t end = 0;
+    for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+      const std::size_t begin = first_[t], last = first_[t + 1];
+      first_[t] = static_cast<std::uint32_t>(end);
+      for (std::size_t k = begin; k < last;) {
+        const KeptLevel head = levels_[k];
+        float x = 0, y = 0, level = 0;
+        std::size_t n = 0;
+        for (; k + n < last; ++n) {
+          const KeptLevel& next = levels_[k + n];
+          const float dx = next.x - head.x, dy = next.y - head.y;
+          if (next.sort() != head.sort() || dx * dx + dy * dy > px * px) break;
+          x += dx;
+          y += dy;
+          level += next.level - head.level;
+        }
+        const float share = 1 / static_cast<float>(n);
+        levels_[end++] = {head.x + x * share, head.y + y * share, head.level + level * share,
+                          head.track_and_sort};
+        k += n;
+      }
+    }
+    first_.back() = static_cast<std::uint32_t>(end);
+    levels_.resize(end);
+  }
+  [[nodiscard]] std::size_t size() const { return levels_.size(); }
+  [[nodiscard]] std::size_t tracks() const { return first_.size() - 1; }
+  [[nodiscard]] std::span<const KeptLevel> track(std::size_t i) const {
+    return std::span(levels_).subspan(first_[i], first_[i + 1] - first_[i]);
+  }
+  [[nodiscard]] const LevelSort& sort(const KeptLevel& level) const { return sorts_[level.sort()]; }
+
+ private:
+  std::uint32_t sort_of(const LevelSort& sort) {
+    const auto found = std::find(sorts_.begin(), sorts_.end(), sort);
+    const auto index = static_cast<std::uint32_t>(found - sorts_.begin());
+    if (found == sorts_.end()) sorts_.push_back(sort);
+    SACCADE_CHECK(index < 1U << KeptLevel::kSortBits);
+    return index;
+  }
+
+  std::vector<std::vector<KeptLevel>> parts_;
+  std::vector<KeptLevel> levels_;
+  std::vector<std::uint32_t> first_;  ///< of every track, and the end
+  std::vector<LevelSort> sorts_;
 };
 
 /// What a level is taken for in one round.
@@ -62,46 +136,51 @@ struct Target {
 /// its bounds where the image is beyond them, and hardly where it is within. Events that disagree
 /// with the image count less (Cauchy's weights). `seen`: the image's level, less the track's
 /// offset.
-Target target_of(const PlaceLevel& level, std::optional<float> seen,
+Target target_of(float level, const LevelSort& sort, std::optional<float> seen,
                  const EquationOptions& options) {
-  float weight = 1 / (level.deviation * level.deviation);
-  if (!seen) return {level.level + level.beyond, weight};
-  const float error = *seen - level.level;
-  if (level.slack > 0) {
+  const float weight = 1 / (sort.deviation * sort.deviation);
+  if (!seen) return {level + sort.beyond, weight};
+  const float error = *seen - level;
+  if (sort.slack > 0) {
     const auto sigma = static_cast<float>(options.bound_sigma);
-    return {level.level + std::clamp(error, -level.slack, level.slack), 1 / (sigma * sigma)};
+    return {level + std::clamp(error, -sort.slack, sort.slack), 1 / (sigma * sigma)};
   }
-  const float share = error / (static_cast<float>(options.outlier) * level.deviation);
-  return {level.level, weight / (1 + share * share)};
+  const float share = error / (static_cast<float>(options.outlier) * sort.deviation);
+  return {level, weight / (1 + share * share)};
 }
 
-/// The offset of a track that agrees best with the image.
-float offset_of(std::span<const PlaceLevel> levels, std::span<const GridPoint> places,
-                const ImageF& image) {
+/// The offset of a track that agrees best with what the image shows at its places.
+float offset_of(const LevelsByTrack& all, std::span<const KeptLevel> levels,
+                std::span<const float> seen) {
   float offset = 0, sum = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const float weight = 1 / (levels[k].deviation * levels[k].deviation);
-    offset += weight * (value_at(image, places[k]) - levels[k].level - levels[k].beyond);
+    const LevelSort& sort = all.sort(levels[k]);
+    const float weight = 1 / (sort.deviation * sort.deviation);
+    offset += weight * (seen[k] - levels[k].level - sort.beyond);
     sum += weight;
   }
   return offset / sum;
 }
 
 /// All levels; after the first round `image` is what it found.
-void add_levels(LevelSystem& system, const ReferenceGrid& grid, const ByTrack& tracks,
+void add_levels(LevelSystem& system, const ReferenceGrid& grid, const LevelsByTrack& all,
                 const ImageF& image, const EquationOptions& options) {
   std::vector<GridPoint> places;
-  for (std::size_t t = 0; t + 1 < tracks.first.size(); ++t) {
-    const auto levels = tracks.track(t);
+  std::vector<float> seen;
+  for (std::size_t t = 0; t < all.tracks(); ++t) {
+    const auto levels = all.track(t);
     if (levels.size() < 2) continue;
     places.clear();
-    for (const PlaceLevel& level : levels) places.push_back(grid.at(level.x, level.y));
-    const float offset = image.empty() ? 0 : offset_of(levels, places, image);
+    seen.clear();
+    for (const KeptLevel& level : levels) places.push_back(grid.at(level.x, level.y));
+    if (!image.empty())
+      for (const GridPoint& place : places) seen.push_back(value_at(image, place));
+    const float offset = image.empty() ? 0 : offset_of(all, levels, seen);
     system.begin_track();
     for (std::size_t k = 0; k < levels.size(); ++k) {
-      std::optional<float> seen;
-      if (!image.empty()) seen = value_at(image, places[k]) - offset;
-      const Target target = target_of(levels[k], seen, options);
+      std::optional<float> here;
+      if (!image.empty()) here = seen[k] - offset;
+      const Target target = target_of(levels[k].level, all.sort(levels[k]), here, options);
       system.add(places[k], target.level, target.weight);
     }
     system.end_track();
@@ -135,23 +214,26 @@ void add_smoothness(LevelSystem& system, const ReferenceGrid& grid, const Equati
 /// The gradient of `image` by central differences; its covariance from the directions in which
 /// tracks pass a pixel, (I / P0 + sum h h^T / R)^-1 as of the filter.
 std::vector<GradientState> gradient_states(const PinholeCamera& camera, const ImageF& image,
-                                           const ByTrack& tracks, double prior_sigma) {
+                                           const LevelsByTrack& all, double prior_sigma) {
   std::vector<GradientState> states(image.size());
   const auto prior = static_cast<float>(1 / (prior_sigma * prior_sigma));
   for (GradientState& s : states) s.pxx = s.pyy = prior;
-  for (std::size_t k = 1; k < tracks.levels.size(); ++k) {
-    const PlaceLevel& from = tracks.levels[k - 1];
-    const PlaceLevel& to = tracks.levels[k];
-    if (from.track != to.track) continue;
-    const float hx = to.x - from.x;
-    const float hy = to.y - from.y;
-    const float weight = 1 / (to.deviation * to.deviation * std::max(0.02F, std::hypot(hx, hy)));
-    const auto x = static_cast<int>(std::lround(to.x));
-    const auto y = static_cast<int>(std::lround(to.y));
-    GradientState& s = states[static_cast<std::size_t>(y * camera.width + x)];
-    s.pxx += weight * hx * hx;
-    s.pxy += weight * hx * hy;
-    s.pyy += weight * hy * hy;
+  for (std::size_t t = 0; t < all.tracks(); ++t) {
+    const auto levels = all.track(t);
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+      const KeptLevel& to = levels[k];
+      const float hx = to.x - levels[k - 1].x;
+      const float hy = to.y - levels[k - 1].y;
+      const float deviation = all.sort(to).deviation;
+      const float weight =
+          1 / (deviation * deviation * std::max(0.02F, std::sqrt(hx * hx + hy * hy)));
+      const auto x = static_cast<int>(to.x + 0.5F);
+      const auto y = static_cast<int>(to.y + 0.5F);
+      GradientState& s = states[static_cast<std::size_t>(y * camera.width + x)];
+      s.pxx += weight * hx * hx;
+      s.pxy += weight * hx * hy;
+      s.pyy += weight * hy * hy;
+    }
   }
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
@@ -180,26 +262,32 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
   double levels_s = 0, equations_s = 0, solve_s = 0;
   const Rigid3 reference_from_world = window.world_from_reference().inverse();
   ImageF reference(camera_.width, camera_.height);
-  std::vector<PlaceLevel> unordered;
-  std::uint32_t count = 0;
+  LevelsByTrack tracks;
   {
     const StageClock clock(levels_s);
     window.scene.draw(reference_from_world, camera_.undistorted(), reference);
     LevelFinder finder(camera_, window.scene, reference_from_world.inverse(), reference,
                        window.contrast_on, window.contrast_off, options_.levels);
-    finder.find(window.events, *window.trajectory, unordered);
-    count = finder.tracks();
+    std::vector<PlaceLevel> part;
+    for (std::size_t begin = 0; begin < window.events.size(); begin += kBatch) {
+      part.clear();
+      finder.find(window.events.subspan(begin, std::min(kBatch, window.events.size() - begin)),
+                  *window.trajectory, part);
+      tracks.add(part);
+    }
+    tracks.order(finder.tracks());
+    if (options_.thin_px > 0) tracks.thin(static_cast<float>(options_.thin_px));
   }
-  const ByTrack tracks(unordered, count);
   const PinholeCamera fine = finer(camera_, options_.scale);
   ImageF fine_reference(fine.width, fine.height);
   window.scene.draw(reference_from_world, fine, fine_reference);
   const ReferenceGrid grid(fine_reference, options_.scale, options_.levels.same_surface);
   ImageF image;
+  LevelSystem system(grid.width(), grid.height());
   for (int round = 0; round < options_.rounds; ++round) {
-    LevelSystem system(grid.width(), grid.height());
     {
       const StageClock clock(equations_s);
+      system.clear();
       add_levels(system, grid, tracks, image, options_);
       add_smoothness(system, grid, options_, image);
     }
@@ -212,7 +300,7 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
   set_gradient(result, camera_,
                gradient_states(camera_, result.log_image, tracks, options_.prior_sigma),
                options_.observed_sigma);
-  result.levels = tracks.levels.size();
+  result.levels = tracks.size();
   result.stages_s = {{"levels", levels_s}, {"equations", equations_s}, {"solve", solve_s}};
   return result;
 }

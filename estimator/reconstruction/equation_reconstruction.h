@@ -9,6 +9,7 @@ namespace saccade {
 struct EquationOptions {
   LevelOptions levels;
   int scale = 1;          ///< unknowns per pixel and direction
+  double thin_px = 0;     ///< levels of a pixel whose places are this near are joined; 0: never
   double smoothness = 2;  ///< deviation of the difference of neighbours that nothing is known of
   double knee = 0.02;     ///< difference from which on only its size counts, not its square
   double across = 20;     ///< the same across the edge of an occluder [log units]

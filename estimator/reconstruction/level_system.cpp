@@ -61,6 +61,14 @@ LevelSystem::LevelSystem(int width, int height)
   SACCADE_CHECK(width > 1 && height > 1);
 }
 
+void LevelSystem::clear() {
+  std::fill(rows_.begin(), rows_.end(), std::array<float, kNeighbours>{});
+  std::fill(diagonal_.begin(), diagonal_.end(), 0.0F);
+  std::fill(right_side_.begin(), right_side_.end(), 0.0);
+  entries_.clear();
+  tracks_.clear();
+}
+
 void LevelSystem::begin_track() {
   touched_.clear();
   track_weight_ = track_level_ = 0;

@@ -31,6 +31,9 @@ class LevelSystem {
  public:
   LevelSystem(int width, int height);
 
+  /// Forgets what was added, but keeps the memory.
+  void clear();
+
   /// Tracks come one after the other: begin_track(), then add() for its levels, end_track().
   void begin_track();
   void add(const GridPoint& place, float level, float weight);

@@ -28,11 +28,12 @@ struct Place {
 
 /// Finds the place in the reference view that a sensor pixel sees (6.3), pi(T pi^-1(u, d_u)), with
 /// the surfaces as they are seen from near the camera's pose: they are drawn anew whenever the
-/// image has moved by `redraw_px`.
+/// image has moved by `redraw_px`. Nothing is found within `step_margin_px` (in x and y) of a step
+/// of depth: where an occluder ends is known to a pixel only, and what such a pixel sees is either.
 class PlaceFinder {
  public:
   PlaceFinder(const PinholeCamera& camera, const DepthScene& scene,
-              const Rigid3& world_from_reference, double redraw_px);
+              const Rigid3& world_from_reference, double redraw_px, int step_margin_px = 0);
 
   /// Draws the surfaces anew where the camera has moved too far from where they were drawn.
   void prepare(const CameraPose& reference_from_camera);
@@ -44,8 +45,13 @@ class PlaceFinder {
   /// How often the surfaces were drawn.
   [[nodiscard]] int draws() const { return draws_; }
 
+  /// How far what the camera sees was from there at an earlier pose: the furthest of a few points
+  /// [px]; infinity where one was behind it. After prepare().
+  [[nodiscard]] double moved_px(const CameraPose& reference_from_camera,
+                                const CameraPose& earlier_from_reference) const;
+
  private:
-  [[nodiscard]] double moved_px(const CameraPose& reference_from_camera) const;
+  void mark_steps();
   /// 1 / z where the view sees something, bilinear on one surface, else of the nearest known pixel.
   [[nodiscard]] float look_up(float x, float y) const;
 
@@ -54,10 +60,14 @@ class PlaceFinder {
   const DepthScene& scene_;
   Rigid3 world_from_reference_;
   double redraw_px_;
+  int step_margin_px_;
   float fx_, fy_, cx_, cy_;
   ImageF inverse_depth_;  ///< of the view
+  ImageU8 is_near_step_;  ///< of the view
   CameraPose view_from_reference_;
   int draws_ = 0;
 };
+
+[[nodiscard]] CameraPose inverse_of(const CameraPose& pose);
 
 }  // namespace saccade

@@ -10,12 +10,15 @@ constexpr std::size_t kBatch = 512;  ///< events between two looks at how far th
 
 constexpr TimeNs kAtOnceNs = 2000;
 
+/// Of the square of the furthest motion: a silent pixel that has moved less has nothing to add.
+constexpr double kLeastShare = 0.25;
+
 }  // namespace
 
 LevelFinder::LevelFinder(const PinholeCamera& camera, const DepthScene& scene,
                          const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
                          double contrast_on, double contrast_off, const LevelOptions& options)
-    : places_(camera, scene, world_from_reference, options.redraw_px),
+    : places_(camera, scene, world_from_reference, options.redraw_px, options.step_margin_px),
       reference_(reference_inverse_depth),
       world_from_reference_(world_from_reference),
       contrast_on_(static_cast<float>(contrast_on)),
@@ -28,17 +31,17 @@ void LevelFinder::find(std::span<const Event> events, const Trajectory& world_fr
   if (events.empty()) return;
   const PoseTable poses(world_from_camera, world_from_reference_.inverse(), events.front().t_ns,
                         events.back().t_ns);
-  int draws = places_.draws();
   for (std::size_t i = 0; i < events.size(); ++i) {
     const CameraPose pose = poses.at(events[i].t_ns);
     if (i % kBatch == 0) {
       places_.prepare(pose);
-      if (options_.still && places_.draws() != draws) add_still(pose, levels);
-      draws = places_.draws();
+      if (options_.still &&
+          (asked_ == 0 || places_.moved_px(pose, asked_from_reference_) >= options_.still_px))
+        ask_still(pose, levels);
     }
     add_event(events[i], pose, levels);
   }
-  if (options_.still) add_still(poses.at(events.back().t_ns), levels);
+  if (options_.still) ask_still(poses.at(events.back().t_ns), levels);
 }
 
 void LevelFinder::add_event(const Event& event, const CameraPose& pose,
@@ -70,28 +73,36 @@ void LevelFinder::add_event(const Event& event, const CameraPose& pose,
            pixel.events + 1, static_cast<float>(event.polarity)};
 }
 
-void LevelFinder::add_still(const CameraPose& pose, std::vector<PlaceLevel>& levels) {
-  const auto far = static_cast<float>(options_.still_px);
+void LevelFinder::ask_still(const CameraPose& pose, std::vector<PlaceLevel>& levels) {
+  asked_from_reference_ = inverse_of(pose);
+  // Neighbours in both directions have different turns, so that no place is left out.
+  const int turns = options_.still_turns;
+  for (int y = 0; y < pixels_.height(); ++y)
+    for (int x = (asked_ + (turns / 2) * y) % turns; x < pixels_.width(); x += turns)
+      add_still(x, y, pose, levels);
+  ++asked_;
+}
+
+void LevelFinder::add_still(int x, int y, const CameraPose& pose, std::vector<PlaceLevel>& levels) {
   // What passed a pixel most often are edges: the level went on, past that of the last event, by up
   // to a threshold (C / 2 +- C / sqrt(12)). Without an event so far it may be on either side.
   const float contrast = (contrast_on_ + contrast_off_) / 2;
-  for (int y = 0; y < pixels_.height(); ++y)
-    for (int x = 0; x < pixels_.width(); ++x) {
-      Pixel& pixel = pixels_(x, y);
-      const auto place = places_.find(x, y, pose);
-      if (!place || !is_visible(*place)) continue;
-      if (pixel.events == 0) {
-        pixel.track = tracks_++;
-        pixel.events = 1;
-      } else if (std::hypot(place->x - pixel.still_x, place->y - pixel.still_y) < far) {
-        continue;
-      }
-      const float beyond = pixel.last * contrast * static_cast<float>(options_.beyond);
-      const float deviation = contrast / std::sqrt(pixel.last == 0 ? 3.0F : 12.0F);
-      levels.push_back({pixel.track, place->x, place->y, pixel.level, deviation, contrast, beyond});
-      pixel.still_x = place->x;
-      pixel.still_y = place->y;
-    }
+  Pixel& pixel = pixels_(x, y);
+  const auto place = places_.find(x, y, pose);
+  if (!place || !is_visible(*place)) return;
+  if (pixel.events == 0) {
+    pixel.track = tracks_++;
+    pixel.events = 1;
+  } else if (const float moved_x = place->x - pixel.still_x, moved_y = place->y - pixel.still_y;
+             static_cast<double>(moved_x * moved_x + moved_y * moved_y) <
+             kLeastShare * options_.still_px * options_.still_px) {
+    return;
+  }
+  const float beyond = pixel.last * contrast * static_cast<float>(options_.beyond);
+  const float deviation = contrast / std::sqrt(pixel.last == 0 ? 3.0F : 12.0F);
+  levels.push_back({pixel.track, place->x, place->y, pixel.level, deviation, contrast, beyond});
+  pixel.still_x = place->x;
+  pixel.still_y = place->y;
 }
 
 bool LevelFinder::is_visible(const Place& place) const {

@@ -28,11 +28,13 @@ struct LevelOptions {
   double event_sigma = 0.03;   ///< deviation of an event's step, beside what its place is off [log]
   bool still = true;           ///< pixels that moved and had no event say so
   int track_events = 1000000;  ///< after which a pixel's offset is taken to have drifted away
-  double still_px = 3;         ///< ... each time they have moved this far
+  double still_px = 3;         ///< ... they are asked each time the image has moved this far
+  int still_turns = 1;         ///< ... every n-th pixel at a time, each in its turn
   double beyond =
       0.5;  ///< ... and where they are likely: this share of a threshold beyond the last event
   double redraw_px = 2;        ///< image motion after which the surfaces are drawn anew
   double same_surface = 0.05;  ///< relative difference of depth up to which a place is visible
+  int step_margin_px = 0;      ///< pixels this near to a step of depth say nothing
 };
 
 /// Turns events into levels of the reference image. At the instant of an event the level is exact:
@@ -66,7 +68,8 @@ class LevelFinder {
 
   [[nodiscard]] bool is_visible(const Place& place) const;
   void add_event(const Event& event, const CameraPose& pose, std::vector<PlaceLevel>& levels);
-  void add_still(const CameraPose& pose, std::vector<PlaceLevel>& levels);
+  void ask_still(const CameraPose& pose, std::vector<PlaceLevel>& levels);
+  void add_still(int x, int y, const CameraPose& pose, std::vector<PlaceLevel>& levels);
 
   PlaceFinder places_;
   const ImageF& reference_;
@@ -74,6 +77,8 @@ class LevelFinder {
   float contrast_on_, contrast_off_;
   LevelOptions options_;
   Image<Pixel> pixels_;
+  CameraPose asked_from_reference_;  ///< the camera when silent pixels were asked last
+  int asked_ = 0;                    ///< how often they were
   std::uint32_t tracks_ = 0;
 };
 

@@ -29,7 +29,10 @@ void describe_levels(config::Fields& fields, LevelOptions& options) {
              "events after which a pixel's offset has drifted away")
       .range(1, 1e9);
   fields.value("still", options.still, "pixels that moved without an event are measurements too");
-  fields.value("still_px", options.still_px, "each time they have moved this far").range(0.1, 1000);
+  fields.value("still_px", options.still_px, "they are asked each time they have moved this far")
+      .range(0.1, 1000);
+  fields.value("still_turns", options.still_turns, "every n-th of them at a time, each in its turn")
+      .range(1, 64);
   fields
       .value("beyond", options.beyond,
              "a silent pixel's level goes on past its last event, by this share of a threshold")
@@ -40,6 +43,10 @@ void describe_levels(config::Fields& fields, LevelOptions& options) {
       .value("same_surface", options.same_surface,
              "relative difference of depth up to which a place is the one that is seen (z-test)")
       .range(1e-4, 10);
+  fields
+      .value("step_margin_px", options.step_margin_px,
+             "pixels this near to a step of depth say nothing")
+      .range(0, 20);
 }
 
 void describe_gradient(config::Fields& fields, GradientOptions& options) {
@@ -56,6 +63,10 @@ void describe_gradient(config::Fields& fields, GradientOptions& options) {
 
 void describe_equations(config::Fields& fields, EquationOptions& options) {
   fields.value("scale", options.scale, "unknowns per pixel and direction").range(1, 4);
+  fields
+      .value("thin_px", options.thin_px,
+             "levels of a pixel whose places are this near are joined; 0: none are")
+      .range(0, 10);
   fields
       .value("smoothness", options.smoothness,
              "deviation of the difference of neighbours, all else unknown [log units]")
@@ -97,8 +108,7 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
   fields.group(
       "depth", [&](config::Fields& f) { describe_depth(f, config.depth); },
       "how depth gets from where it is known to where events are");
-  fields.value("contrast_on", config.contrast_on, "C+ [log units]; ~ is the dataset's, else 0.2")
-      .above(0);
+  fields.value("contrast_on", config.contrast_on, "C+ [log units]; ~ is the dataset's").above(0);
   fields.value("contrast_off", config.contrast_off, "C-").above(0);
   LevelOptions& levels =
       config.method == Method::kGradient ? config.gradient.levels : config.equations.levels;

@@ -24,7 +24,7 @@ struct ReconstructionConfig {
   ViewWindowOptions window{
       .duration_s = 3600, .events = 1000000, .reference = ViewWindowOptions::Reference::kFrame};
   DepthSourceOptions depth;
-  std::optional<double> contrast_on;  ///< nullopt: the dataset's, else 0.2
+  std::optional<double> contrast_on;  ///< nullopt: the dataset's
   std::optional<double> contrast_off;
   GradientOptions gradient;
   EquationOptions equations;

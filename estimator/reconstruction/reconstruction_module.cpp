@@ -3,10 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "estimator/reconstruction/depth_source.h"
 #include "estimator/reconstruction/reconstruction_config.h"
@@ -18,14 +19,22 @@
 namespace saccade {
 namespace {
 
-constexpr double kContrast = 0.2;  ///< where neither the configuration nor the dataset states one
+/// The threshold of the configuration, else the dataset's.
+double contrast_of(const std::optional<double>& configured, const std::optional<double>& stated,
+                   const Dataset& dataset, const char* key) {
+  if (configured) return *configured;
+  if (!stated)
+    throw InputError(dataset.folder().string(),
+                     fmt::format("does not state its contrast thresholds; state {}", key));
+  return *stated;
+}
 
 std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dataset& dataset,
                                                const DepthSource& depth,
                                                const ReconstructionConfig& config) {
   const DatasetFacts& facts = dataset.facts();
-  const double on = config.contrast_on.value_or(facts.contrast_on.value_or(kContrast));
-  const double off = config.contrast_off.value_or(facts.contrast_off.value_or(kContrast));
+  const double on = contrast_of(config.contrast_on, facts.contrast_on, dataset, "contrast_on");
+  const double off = contrast_of(config.contrast_off, facts.contrast_off, dataset, "contrast_off");
   std::vector<ReconstructionWindow> windows;
   for (const ViewWindow& part :
        cut_windows(input.events(), input.trajectory, config.window, dataset.frames()))

@@ -5,6 +5,7 @@
 #include "core/depth_mesh.h"
 #include "estimator/reconstruction/depth_splat.h"
 #include "estimator/reconstruction/place_finder.h"
+#include "estimator/reconstruction/place_levels.h"
 #include "estimator/reconstruction/point_surface.h"
 #include "tests/support/planar_world.h"
 
@@ -76,6 +77,56 @@ TEST(PlaceFinder, FindsWhereAPixelLooks) {
   EXPECT_GT(good, 0.97 * found);
 }
 
+TEST(PlaceFinder, FindsNothingNextToAStepOfDepth) {
+  const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) {
+    for (int y = 0; y < inverse.height(); ++y)
+      for (int x = 0; x < inverse.width(); ++x) inverse(x, y) = x < 20 ? 1.0F : 0.5F;
+  };
+  const CameraPose at_reference{Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero()};
+  for (const int margin : {0, 1, 3}) {
+    PlaceFinder finder(camera, scene, Rigid3(), 2, margin);
+    finder.prepare(at_reference);
+    for (int x = 0; x < 40; ++x) {
+      const bool is_near = x >= 20 - margin && x < 20 + margin;
+      EXPECT_EQ(finder.find(x, 15, at_reference).has_value(), !is_near) << margin << " " << x;
+    }
+  }
+}
+
+TEST(LevelFinder, AsksEverySilentPixelInItsTurn) {
+  const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
+  const ImageF reference(24, 18, 1);
+  // 4 px of motion along x in 0.1 s, and one event at each end.
+  const Trajectory motion(
+      {{0, Rigid3()}, {0.1, Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.2, 0, 0))}});
+  Events events;
+  for (int i = 0; i <= 4096; ++i) events.push_back({i * 100'000'000LL / 4096, 0, 0, 1});
+  for (const int turns : {1, 3}) {
+    LevelOptions options;
+    options.still_px = 0.5;
+    options.redraw_px = 1;
+    options.still_turns = turns;
+    LevelFinder finder(camera, scene, Rigid3(), reference, 0.2, 0.2, options);
+    std::vector<PlaceLevel> levels;
+    finder.find(events, motion, levels);
+    std::vector<int> of_track(finder.tracks(), 0);
+    int silent = 0;
+    for (const PlaceLevel& level : levels) {
+      if (level.slack == 0) continue;
+      ++of_track[level.track];
+      ++silent;
+      EXPECT_FLOAT_EQ(level.slack, 0.2F);
+    }
+    // 8 looks at each of the 20 to 24 columns of 18 pixels that stay in the view, give or take one.
+    EXPECT_NEAR(silent * turns, 22 * 18 * 8, 22 * 18 * 8 / 5) << turns;
+    EXPECT_GE(finder.tracks(), 20U * 18U) << turns;
+  }
+}
+
 TEST(PointSurface, KeepsStepsAndIgnoresOutliers) {
   const PinholeCamera camera{48, 36, 40, 40, 23.5, 17.5, {}};
   std::vector<SurfacePoint> points;
@@ -86,7 +137,9 @@ TEST(PointSurface, KeepsStepsAndIgnoresOutliers) {
   const ImageF depth = surface_through(points, camera, 0.02);
   EXPECT_NEAR(depth(10, 18), 1, 0.03);
   EXPECT_NEAR(depth(40, 18), 2, 0.06);
-  EXPECT_GT(depth(27, 10) / depth(20, 10), 1.5F);
+  // The step from 1 to 2 lies between the columns of points at 21 and 25; on the columns beside
+  // them each side has its own depth, to a tenth, from which on a difference is a step.
+  EXPECT_GT(depth(29, 10) / depth(17, 10), 2 * 0.9F / 1.1F);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ using testing::read_file;
 using testing::TemporaryFolder;
 
 constexpr const char* kBest =
-    "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1}, "
-    "equations: {smoothness: 0.05, rounds: 3}}";
+    "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1, still_turns: 2, "
+    "step_margin_px: 1, track_events: 8}, equations: {smoothness: 0.05, rounds: 2, thin_px: 0.8}}";
 constexpr const char* kSparse =
     "{method: equations, depth: {smoothness: 0.02}, levels: {event_sigma: 0.1}, "
     "equations: {smoothness: 0.05, rounds: 3}}";
@@ -138,7 +138,7 @@ TEST_F(ReconstructionModule, BadInputIsAnErrorWithItsPlace) {
   fs::remove(bare / "depth.txt");
   RunRequest without = request("without", kBest);
   without.dataset = bare;
-  EXPECT_THAT(error_of([&] { return run_reconstruction(without).views; }),
+  EXPECT_THAT(error_of([&] { return run_reconstruction(without).events; }),
               HasSubstr("--depth-from"));
   EXPECT_FALSE(fs::exists(path("without")));
 }
