@@ -121,15 +121,15 @@ TEST_F(ReconstructionModule, TakesTheDepthOfARun) {
 TEST_F(ReconstructionModule, BadInputIsAnErrorWithItsPlace) {
   RunRequest none = request("none", kBest);
   none.depth_from = dataset();
-  EXPECT_THAT(error_of([&] { return run_reconstruction(none).views; }), HasSubstr("views.yaml"));
+  EXPECT_THAT(error_of([&] { return run_reconstruction(none).events; }), HasSubstr("views.yaml"));
   RunRequest track = request("track", "{}");
   track.depth_from = dataset();
-  EXPECT_THAT(error_of([&] { return run_module("track", track).views; }),
+  EXPECT_THAT(error_of([&] { return run_module("track", track).events; }),
               HasSubstr("--depth-from"));
   EXPECT_THAT(
       error_of([&] {
         return run_reconstruction(request("even", "depth: {propagation: splat, kernel_px: 4}"))
-            .views;
+            .events;
       }),
       HasSubstr("must be odd"));
   const fs::path bare = path("bare");
