@@ -28,8 +28,6 @@ struct DepthLimits {
   [[nodiscard]] double max_inverse() const { return 1 / near_m; }
 };
 
-using DepthWindow = ViewWindow;
-
 /// What a method found.
 struct DepthResult {
   std::vector<EdgeDepth> points;  ///< in the view at reference_s
@@ -46,7 +44,7 @@ class DepthEstimator {
  public:
   virtual ~DepthEstimator() = default;
   /// Thread-safe; the result depends on the window alone.
-  [[nodiscard]] virtual DepthResult estimate(const DepthWindow& window) const = 0;
+  [[nodiscard]] virtual DepthResult estimate(const ViewWindow& window) const = 0;
 };
 
 }  // namespace saccade

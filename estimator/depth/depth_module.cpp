@@ -36,7 +36,7 @@ RunSummary run_depth(const RunRequest& request) {
       make_depth_estimator(config, dataset.camera(), mean_depth_of(dataset, config.limits));
   const auto results = estimate_views<DepthResult>(
       "depth", windows, request.repeat, timing,
-      [&](const DepthWindow& window) { return estimator->estimate(window); });
+      [&](const ViewWindow& window) { return estimator->estimate(window); });
   {
     const StageClock clock(timing.io_s);
     write_depth(writer.path(), dataset.camera(), windows, results);

@@ -52,7 +52,7 @@ void draw_dot(ImageRgb8& picture, double x_px, double y_px, const Rgb8& colour) 
 
 /// The events around the view's time in grey, the candidates over them in red, those that became
 /// points in green.
-ImageRgb8 draw_keypoints(const PinholeCamera& camera, const DepthWindow& window,
+ImageRgb8 draw_keypoints(const PinholeCamera& camera, const ViewWindow& window,
                          const DepthResult& result) {
   ImageRgb8 picture(camera.width * kUpscale, camera.height * kUpscale, Rgb8{12, 15, 20});
   const auto count = static_cast<std::size_t>(camera.width * camera.height / 6);
@@ -73,7 +73,7 @@ ImageRgb8 draw_keypoints(const PinholeCamera& camera, const DepthWindow& window,
   return picture;
 }
 
-void append(PointCloud& cloud, const PinholeCamera& camera, const DepthWindow& window,
+void append(PointCloud& cloud, const PinholeCamera& camera, const ViewWindow& window,
             std::size_t view, const DepthResult& result) {
   const Rigid3 world_from_view = window.world_from_reference();
   for (const EdgeDepth& point : result.points) {
@@ -91,7 +91,7 @@ void append(PointCloud& cloud, const PinholeCamera& camera, const DepthWindow& w
 }  // namespace
 
 void write_depth(const std::filesystem::path& folder, const PinholeCamera& camera,
-                 std::span<const DepthWindow> windows, std::span<const DepthResult> results) {
+                 std::span<const ViewWindow> windows, std::span<const DepthResult> results) {
   const PinholeCamera undistorted = camera.undistorted();
   PointCloud cloud;
   cloud.scalars = {{"view", {}}, {"x_px", {}}, {"y_px", {}}, {"depth_m", {}}, {"sigma_m", {}}};
@@ -99,7 +99,7 @@ void write_depth(const std::filesystem::path& folder, const PinholeCamera& camer
   std::filesystem::create_directories(folder / "depth");
   std::filesystem::create_directories(folder / "keypoints");
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    const DepthWindow& window = windows[i];
+    const ViewWindow& window = windows[i];
     RunView view;
     view.t_s = window.reference_s;
     view.world_from_camera = window.world_from_reference();

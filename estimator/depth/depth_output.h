@@ -13,6 +13,6 @@ namespace saccade {
 /// keypoints/keypoints_%08d.png, views.yaml, and cloud.ply in the world with each point's view,
 /// pixel, depth and the depth's deviation. `results`: one per window.
 void write_depth(const std::filesystem::path& folder, const PinholeCamera& camera,
-                 std::span<const DepthWindow> windows, std::span<const DepthResult> results);
+                 std::span<const ViewWindow> windows, std::span<const DepthResult> results);
 
 }  // namespace saccade

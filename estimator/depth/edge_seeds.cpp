@@ -40,10 +40,40 @@ void blur(Image<Eigen::Vector2f>& votes, double sigma) {
   cv::GaussianBlur(view, view, {side, side}, sigma, sigma, cv::BORDER_CONSTANT);
 }
 
+/// How far the rays of a place spread, over the whole window, as its depth changes: what there is
+/// to tell the depth from.
+class ParallaxSpread {
+ public:
+  ParallaxSpread(const EventRays& rays, const PinholeCamera& camera)
+      : focal_(static_cast<float>(camera.fx), static_cast<float>(camera.fy)),
+        principal_(static_cast<float>(camera.cx), static_cast<float>(camera.cy)) {
+    const auto slabs = rays.slabs();
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    for (const EventRays::Slab& slab : slabs) mean += slab.centre;
+    mean /= static_cast<float>(slabs.size());
+    for (const EventRays::Slab& slab : slabs)
+      covariance_ += (slab.centre - mean) * (slab.centre - mean).transpose();
+    covariance_ /= static_cast<float>(slabs.size());
+  }
+  /// Deviation of n . b [px m] over the slabs.
+  [[nodiscard]] float across(const Eigen::Vector2f& pixel, const Eigen::Vector2f& normal) const {
+    const Eigen::Vector3f w(normal.x() * focal_.x(), normal.y() * focal_.y(),
+                            -normal.dot(pixel - principal_));
+    return std::sqrt(w.dot(covariance_ * w));
+  }
+
+ private:
+  Eigen::Vector2f focal_, principal_;
+  Eigen::Matrix3f covariance_ = Eigen::Matrix3f::Zero();  ///< of the camera's centre
+};
+
 class SeedFinder {
  public:
   SeedFinder(const EventRays& rays, const PinholeCamera& camera, const SeedOptions& options)
-      : rays_(rays), options_(options), best_(camera.width, camera.height) {
+      : rays_(rays),
+        options_(options),
+        parallax_(rays, camera),
+        best_(camera.width, camera.height) {
     for (Plane& plane : planes_) {
       plane.votes = Image<Eigen::Vector2f>(camera.width, camera.height);
       plane.strength = ImageF(camera.width, camera.height);
@@ -58,9 +88,10 @@ class SeedFinder {
       std::swap(planes_[1], planes_[2]);
     }
     std::vector<EdgeSeed> kept;
-    for (const EdgeSeed& seed : seeds_)
-      if (seed.score >= static_cast<float>(options_.min_share) * best_near(seed.pixel))
-        kept.push_back(seed);
+    for (EdgeSeed& seed : seeds_) {
+      seed.share = seed.score / best_near(seed.pixel);
+      if (seed.share >= static_cast<float>(options_.min_share)) kept.push_back(seed);
+    }
     return kept;
   }
 
@@ -92,13 +123,13 @@ class SeedFinder {
       for (int x = 1; x + 1 < strength.width(); ++x) {
         const float s = strength(x, y);
         if (s < least || s < planes_[0].strength(x, y) || s < planes_[2].strength(x, y)) continue;
-        add_ridge(x, y);
+        add_ridge(x, y, least);
       }
   }
 
   /// Steger's ridge: the largest eigenvector of the Hessian crosses it, the parabola along it has
   /// its top within the pixel.
-  void add_ridge(int x, int y) {
+  void add_ridge(int x, int y, float least) {
     const ImageF& s = planes_[1].strength;
     const Eigen::Vector2f gradient((s(x + 1, y) - s(x - 1, y)) / 2,
                                    (s(x, y + 1) - s(x, y - 1)) / 2);
@@ -106,10 +137,13 @@ class SeedFinder {
     const float yy = s(x, y + 1) - 2 * s(x, y) + s(x, y - 1);
     const float xy = (s(x + 1, y + 1) - s(x + 1, y - 1) - s(x - 1, y + 1) + s(x - 1, y - 1)) / 4;
     const float half = (xx - yy) / 2;
-    const float lowest = (xx + yy) / 2 - std::hypot(half, xy);
+    const float root = std::sqrt(half * half + xy * xy);
+    const float lowest = (xx + yy) / 2 - root;
     if (!(lowest < 0)) return;
-    const float angle = 0.5F * std::atan2(2 * xy, xx - yy) + static_cast<float>(M_PI_2);
-    Eigen::Vector2f normal(std::cos(angle), std::sin(angle));
+    // (H - lowest) n = 0, from the row that is farther from 0.
+    Eigen::Vector2f normal =
+        half < 0 ? Eigen::Vector2f(root - half, -xy) : Eigen::Vector2f(-xy, root + half);
+    normal = normal.squaredNorm() > 0 ? normal.normalized() : Eigen::Vector2f(1, 0);
     const float offset = -gradient.dot(normal) / lowest;
     if (std::abs(offset * normal.x()) > kMaxOffset_px ||
         std::abs(offset * normal.y()) > kMaxOffset_px)
@@ -121,7 +155,10 @@ class SeedFinder {
     const Eigen::Vector2f pixel =
         Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
         std::abs(offset) * (gradient.dot(normal) > 0 ? normal : Eigen::Vector2f(-normal));
-    seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), planes_[1].at});
+    const float parallax_px = parallax_.across(pixel, normal) * planes_[1].at.inverse_depth;
+    if (parallax_px < static_cast<float>(options_.min_parallax_px)) return;
+    seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
+                      parallax_px, planes_[1].at});
   }
 
   [[nodiscard]] float best_near(const Eigen::Vector2f& pixel) const {
@@ -132,6 +169,7 @@ class SeedFinder {
 
   const EventRays& rays_;
   const SeedOptions& options_;
+  ParallaxSpread parallax_;
   std::array<Plane, 3> planes_;  ///< the last three
   ImageF best_;                  ///< over all planes
   std::vector<EdgeSeed> seeds_;
@@ -145,11 +183,7 @@ std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera&
   if (slabs.empty()) return {};
   std::vector<double> parallax;
   for (const EventRays::Slab& slab : slabs) parallax.push_back(largest_parallax(slab, camera));
-  const auto at_reference = std::min_element(
-      slabs.begin(), slabs.end(), [](const EventRays::Slab& a, const EventRays::Slab& b) {
-        return std::abs(a.middle_s) < std::abs(b.middle_s);
-      });
-  const int middle = static_cast<int>(at_reference - slabs.begin());
+  const int middle = rays.reference_slab();
   std::vector<SweepPlane> planes;
   for (double rho = limits.min_inverse(); rho < limits.max_inverse();) {
     const double allowed = options.motion_px / (2 * rho);

@@ -23,22 +23,26 @@ struct EdgeSeed {
   Eigen::Vector2f pixel;   ///< on the edge
   Eigen::Vector2f normal;  ///< unit, towards the brighter side
   float inverse_depth = 0;
-  float score = 0;   ///< votes per pixel of the ridge
-  SweepPlane plane;  ///< where it was found
+  float score = 0;        ///< votes per pixel of the ridge
+  float strength = 1;     ///< of the ridge, over the least that makes a seed
+  float share = 1;        ///< of the votes of the best plane at its pixel
+  float parallax_px = 0;  ///< deviation over the window, across the edge
+  SweepPlane plane;       ///< where it was found
 };
 
 struct SeedOptions {
   enum class Votes { kVector, kCount };
 
-  double motion_px = 30;    ///< of a point over the part of the window that votes on its depth
-  double spacing_px = 2.5;  ///< parallax between neighbouring planes over that part
-  double blur_px = 1;       ///< of the votes, sigma of the Gaussian
-  double min_votes = 2;     ///< of a ridge, per pixel after the blur
+  double motion_px = 30;   ///< of a point over the part of the window that votes on its depth
+  double spacing_px = 5;   ///< parallax between neighbouring planes over that part
+  double blur_px = 0.8;    ///< of the votes, sigma of the Gaussian
+  double min_votes = 1.5;  ///< of a ridge, per pixel after the blur
   double min_density =
-      0.08;                ///< the same, per pixel of motion: a blob that did not move is no line
-  double min_share = 0.9;  ///< a plane's ridge needs this share of the best plane's votes there
+      0.05;                ///< the same, per pixel of motion: a blob that did not move is no line
+  double min_share = 0.8;  ///< a plane's ridge needs this share of the best plane's votes there
   double min_alignment =
-      0.2;  ///< |cos| between an edge's normal and the motion of the rays over it
+      0.1;  ///< |cos| between an edge's normal and the motion of the rays over it
+  double min_parallax_px = 0.3;  ///< deviation over the window, across the edge
   Votes votes = Votes::kVector;
 };
 

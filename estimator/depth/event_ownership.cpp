@@ -40,7 +40,9 @@ std::vector<FittedEdge> with_own_events(const std::vector<FittedEdge>& edges,
                                                            static_cast<float>(options.same_depth))))
         own += events.weight[i];
     }
-    if (own >= static_cast<float>(options.min_share) * all) kept.push_back(edges[k]);
+    if (!(own >= static_cast<float>(options.min_share) * all)) continue;
+    kept.push_back(edges[k]);
+    kept.back().own = own / all;
   }
   return kept;
 }

@@ -15,12 +15,8 @@ struct FittedEdge {
   float residual_px = 0;              ///< deviation of its events from it
   float support = 0;                  ///< sum of the weights of its events
   std::uint32_t first = 0, last = 0;  ///< its range in EdgeEvents
-};
-
-/// Which events each edge explains, and how well: the weights of the regression.
-struct EdgeEvents {
-  std::vector<std::uint32_t> event;
-  std::vector<float> weight;
+  float own = 1;                      ///< share of its events that no other edge explains better
+  float unseen_px = 0;                ///< that it moved around the reference time without an event
 };
 
 struct OwnershipOptions {

@@ -11,8 +11,6 @@ namespace {
 /// Within a piece homography and centre are linear in time: at 10 rad/s the error stays below
 /// 0.003 px for f = 250 px.
 constexpr TimeNs kPieceNs = 1'000'000;
-/// Cells around the sensor, for what the lens puts outside it.
-constexpr int kMarginCells = 4;
 
 Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
   Eigen::Matrix3d k;
@@ -28,7 +26,7 @@ struct View {
 
 class Views {
  public:
-  Views(const DepthWindow& window, const PinholeCamera& camera)
+  Views(const ViewWindow& window, const PinholeCamera& camera)
       : trajectory_(*window.trajectory),
         reference_from_world_(window.world_from_reference().inverse()),
         k_(intrinsics(camera)),
@@ -53,12 +51,12 @@ class Views {
 };
 
 int cell_of(float pixel, int cells) {
-  const int cell = static_cast<int>(std::floor((pixel + 0.5F) / EventRays::kCell_px));
-  return std::clamp(cell + kMarginCells, 0, cells - 1);
+  const float cell = (pixel + EventRays::kCellOrigin_px) / EventRays::kCell_px;
+  return static_cast<int>(std::clamp(cell, 0.F, static_cast<float>(cells - 1)));
 }
 
 int cells_across(int pixels) {
-  return (pixels + EventRays::kCell_px - 1) / EventRays::kCell_px + 2 * kMarginCells;
+  return (pixels + EventRays::kCell_px - 1) / EventRays::kCell_px + 2 * EventRays::kMarginCells;
 }
 
 }  // namespace
@@ -66,13 +64,14 @@ int cells_across(int pixels) {
 int EventRays::column_of(float x_px) const { return cell_of(x_px, columns_); }
 int EventRays::row_of(float y_px) const { return cell_of(y_px, rows_); }
 
-bool EventRays::on_grid(float x_px, float y_px) const {
-  const auto left = static_cast<float>(-kMarginCells * kCell_px);
-  return x_px >= left && y_px >= left && x_px < left + static_cast<float>(columns_ * kCell_px) &&
-         y_px < left + static_cast<float>(rows_ * kCell_px);
+int EventRays::reference_slab() const {
+  const auto nearest = std::min_element(
+      slabs_.begin(), slabs_.end(),
+      [](const Slab& a, const Slab& b) { return std::abs(a.middle_s) < std::abs(b.middle_s); });
+  return static_cast<int>(nearest - slabs_.begin());
 }
 
-EventRays::EventRays(const DepthWindow& window, const PinholeCamera& camera,
+EventRays::EventRays(const ViewWindow& window, const PinholeCamera& camera,
                      const UndistortionTable& undistortion, int slabs)
     : columns_(cells_across(camera.width)), rows_(cells_across(camera.height)) {
   SACCADE_CHECK(slabs >= 1);
@@ -120,7 +119,7 @@ EventRays::EventRays(const DepthWindow& window, const PinholeCamera& camera,
   }
 }
 
-void EventRays::make_slabs(const DepthWindow& window, const PinholeCamera& camera, int count) {
+void EventRays::make_slabs(const ViewWindow& window, const PinholeCamera& camera, int count) {
   start_ns_ = window.events.front().t_ns;
   slab_ns_ = (window.events.back().t_ns - start_ns_) / count + 1;
   const Views views(window, camera);

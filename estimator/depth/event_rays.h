@@ -38,9 +38,13 @@ struct RayRise {
 class EventRays {
  public:
   static constexpr int kCell_px = 4;
+  /// Cells around the sensor, for what the lens puts outside it.
+  static constexpr int kMarginCells = 4;
+  /// Cell = (pixel + origin) / kCell_px, rounded down.
+  static constexpr float kCellOrigin_px = 0.5F + kMarginCells * kCell_px;
 
   /// `camera` undistorted. `slabs` >= 1 equal parts of the window's time.
-  EventRays(const DepthWindow& window, const PinholeCamera& camera,
+  EventRays(const ViewWindow& window, const PinholeCamera& camera,
             const UndistortionTable& undistortion, int slabs);
 
   /// A part of the window's time with its pose at half time.
@@ -65,6 +69,11 @@ class EventRays {
   [[nodiscard]] std::size_t size() const { return line.size(); }
   [[nodiscard]] std::span<const Slab> slabs() const { return slabs_; }
   [[nodiscard]] int slab_count() const { return static_cast<int>(slabs_.size()); }
+  [[nodiscard]] float slab_length_s() const {
+    return static_cast<float>(seconds_from_ns(slab_ns_));
+  }
+  /// The slab nearest to the reference time.
+  [[nodiscard]] int reference_slab() const;
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
@@ -75,7 +84,6 @@ class EventRays {
   /// The cell of an undistorted sensor pixel; what lies outside the grid belongs to its border.
   [[nodiscard]] int column_of(float x_px) const;
   [[nodiscard]] int row_of(float y_px) const;
-  [[nodiscard]] bool on_grid(float x_px, float y_px) const;
   /// Index of the first event of a slab; of slab_count(), the number of events.
   [[nodiscard]] std::size_t slab_begin(int slab) const {
     return offsets_[index_of(slab, false, 0, 0)];
@@ -91,7 +99,7 @@ class EventRays {
                static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
-  void make_slabs(const DepthWindow& window, const PinholeCamera& camera, int count);
+  void make_slabs(const ViewWindow& window, const PinholeCamera& camera, int count);
   /// Where each event goes.
   [[nodiscard]] std::vector<std::uint32_t> sort_events(std::span<const Event> events,
                                                        const UndistortionTable& undistortion);

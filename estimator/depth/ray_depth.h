@@ -4,22 +4,37 @@
 
 #include "core/camera.h"
 #include "estimator/depth/depth_estimator.h"
+#include "estimator/depth/edge_refiner.h"
 #include "estimator/depth/edge_seeds.h"
 #include "estimator/depth/event_ownership.h"
 #include "estimator/depth/event_rays.h"
 #include "estimator/depth/planar_fusion.h"
-#include "estimator/depth/ray_regression.h"
 
 namespace saccade {
 
+struct PropagationOptions {
+  int rounds = 1;
+  PlaneOptions plane{.radius_px = 10};
+  double spacing_px = 1;   ///< between edges at the same depth
+  int min_neighbours = 4;  ///< least sum of weights of a plane
+  double min_gap = 4;  ///< to the nearest other surface, in deviations from the edge's own events
+  double max_residual_px = 0.4;
+  double tolerance = 0.15;       ///< between a seed's depth and the plane's, relative
+  double own_strength = 1.6;     ///< seeds weaker than that, over the least, and
+  double own_share = 1;          ///< seeds with less of the best plane's votes have only this way
+  double own_parallax_px = 1.2;  ///< and those with less parallax across them
+  double max_sigma = 0.05;
+};
+
 struct RayDepthOptions {
-  int slabs = 32;  ///< parts of the window's time in which events are looked up by place
+  int slabs = 24;  ///< parts of the window's time in which events are looked up by place
   SeedOptions seeds;
-  double spacing_px = 0.8;  ///< between edges at the same depth, at least
-  RegressionOptions regression;
-  double max_residual_px = 0.8;  ///< deviation of an edge's events from it
-  double max_sigma = 0.015;      ///< of the inverse depth, relative; edges with more are dropped
+  RefinerOptions refiner;
   OwnershipOptions ownership;
+  /// That an edge may move without an event around the time of the view: one that moves farther was
+  /// hidden then. It still owns its events.
+  double max_unseen_px = 2;
+  PropagationOptions propagation;
   FusionOptions fusion;
 };
 
@@ -30,12 +45,15 @@ class RayDepth : public DepthEstimator {
  public:
   RayDepth(const RayDepthOptions& options, const DepthLimits& limits, const PinholeCamera& camera);
 
-  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const override;
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
  private:
-  [[nodiscard]] std::vector<FittedEdge> fit(const EventRays& rays,
+  [[nodiscard]] std::vector<FittedEdge> fit(EdgeRefiner& refiner,
                                             const std::vector<EdgeSeed>& seeds,
                                             EdgeEvents& events) const;
+  void propagate(EdgeRefiner& refiner, const std::vector<EdgeSeed>& seeds,
+                 std::vector<FittedEdge>& edges, EdgeEvents& events) const;
+  [[nodiscard]] std::vector<EdgeDepth> points_of(const std::vector<FittedEdge>& edges) const;
 
   RayDepthOptions options_;
   DepthLimits limits_;

@@ -1,49 +1,18 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "estimator/depth/event_rays.h"
+#include "estimator/depth/ray_gather.h"
 
 namespace saccade {
 
-/// A short straight edge in the reference view with its depth.
-struct RayEdge {
-  Eigen::Vector2f pixel;    ///< on the edge
-  Eigen::Vector2f normal;   ///< unit, towards the brighter side
-  float inverse_depth = 0;  ///< [1/m]
-
-  [[nodiscard]] Eigen::Vector2f tangent() const { return {-normal.y(), normal.x()}; }
-};
-
-/// Events that pass near an edge, in its coordinates at its inverse depth. Structure of arrays, of
-/// size `padded()`; behind `count` the arrays hold zeros.
-struct RayNeighbourhood {
-  static constexpr std::size_t kLanes = 8;
-
-  std::size_t count = 0;
-  std::vector<std::uint32_t> event;  ///< index into the rays
-  std::vector<float> across;         ///< n . (x(rho) - e) [px]
-  std::vector<float> along;          ///< t . (x(rho) - e) [px]
-  std::vector<float> parallax;       ///< n . b [px m]
-  std::vector<float> polarity;       ///< +1, -1; 0 behind `count`
-
-  /// Room for `more` events behind `count`, as garbage.
-  void reserve(std::size_t more);
-  /// Zeros up to padded().
-  void pad();
-
-  [[nodiscard]] std::size_t padded() const { return (count + kLanes - 1) / kLanes * kLanes; }
-};
-
 struct RegressionOptions {
-  double radius_px = 2;              ///< across the edge, of the events that count
-  double half_length_px = 1.5;       ///< along it
-  int iterations = 4;                ///< of reweighting, per stage
+  GatherReach reach;                 ///< of the events that count
+  int iterations = 5;                ///< of reweighting, per stage
   double tilt_prior = 0.3;           ///< deviation of the tilt m from 0; 0: no tilt
   double hysteresis_prior_px = 0.5;  ///< of h from 0; 0: no hysteresis
   double offset_prior_px = 10;       ///< of c from 0; 0: no offset
@@ -62,29 +31,25 @@ struct RegressionResult {
   float cut_px = 0;         ///< residuals beyond it have no weight
 };
 
-/// Every `stride`-th slab of [first, last).
-struct SlabSteps {
-  int first = 0;
-  int last = 0;
-  int stride = 1;
+/// Which events each edge explains, and how well: the weights of the regression.
+struct EdgeEvents {
+  std::vector<std::uint32_t> event;
+  std::vector<float> weight;
 };
-
-/// Collects the events of the slabs that pass within `radius_px` across and
-/// `half_length_px` along `edge` and whose polarity fits its normal, p x'(rho) . n > 0.
-void gather_rays(const EventRays& rays, const SlabSteps& slabs, const RayEdge& edge,
-                 const RegressionOptions& options, RayNeighbourhood& near);
 
 /// The inverse depth at which the rays pass through one straight line (Tukey's biweight, weights
 /// from the median of the residuals):
 ///   n . (a + b rho - e) = c + m s + h p
 /// with s the coordinate along the edge. c absorbs the error of the seed's place, m that of its
 /// direction, h that ON and OFF events of one edge fire on different sides of it.
+/// `prior`: deviation of the change of rho from 0, [1/m].
 [[nodiscard]] RegressionResult regress(const RayNeighbourhood& near,
-                                       const RegressionOptions& options);
+                                       const RegressionOptions& options,
+                                       double prior = std::numeric_limits<double>::infinity());
 
-/// Weight of each event in the end.
-[[nodiscard]] std::vector<float> weights_of(const RayNeighbourhood& near,
-                                            const RegressionResult& result);
+/// Appends the events that have weight in the end.
+void append_events(const RayNeighbourhood& near, const RegressionResult& result,
+                   EdgeEvents& events);
 
 /// The edge after the change.
 [[nodiscard]] RayEdge moved(const RayEdge& edge, const RegressionResult& result);

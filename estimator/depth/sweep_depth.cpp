@@ -50,7 +50,7 @@ double SweepDepth::step() const {
   return (limits_.max_inverse() - limits_.min_inverse()) / (options_.planes - 1);
 }
 
-DepthResult SweepDepth::estimate(const DepthWindow& window) const {
+DepthResult SweepDepth::estimate(const ViewWindow& window) const {
   double vote_s = 0, select_s = 0;
   DepthResult result;
   Peaks peaks;

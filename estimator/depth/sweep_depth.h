@@ -26,7 +26,7 @@ class SweepDepth : public DepthEstimator {
   SweepDepth(const SweepDepthOptions& options, const DepthLimits& limits,
              const PinholeCamera& camera);
 
-  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const override;
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
  private:
   /// The most votes of each pixel, and the inverse depth where.

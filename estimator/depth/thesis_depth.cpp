@@ -65,7 +65,7 @@ ThesisDepth::ThesisDepth(const ThesisDepthOptions& options, const DepthLimits& l
       undistortion_(camera),
       initial_depth_m_(options.initial_depth_m.value_or(mean_depth_m)) {}
 
-DepthResult ThesisDepth::estimate(const DepthWindow& window) const {
+DepthResult ThesisDepth::estimate(const ViewWindow& window) const {
   double frame_s = 0, search_s = 0, removal_s = 0;
   DepthResult result;
   const Rigid3 reference_from_world = window.world_from_reference().inverse();

@@ -40,7 +40,7 @@ class ThesisDepth : public DepthEstimator {
   ThesisDepth(const ThesisDepthOptions& options, const DepthLimits& limits,
               const PinholeCamera& camera, double mean_depth_m);
 
-  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const override;
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
  private:
   struct Keypoint;

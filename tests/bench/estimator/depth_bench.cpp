@@ -7,9 +7,13 @@
 #include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/derotated_frame.h"
+#include "estimator/depth/edge_refiner.h"
+#include "estimator/depth/edge_seeds.h"
 #include "estimator/depth/epipolar.h"
 #include "estimator/depth/epipolar_search.h"
 #include "estimator/depth/event_rays.h"
+#include "estimator/depth/local_planes.h"
+#include "estimator/depth/ray_gather.h"
 #include "estimator/depth/ray_regression.h"
 #include "estimator/depth/ray_votes.h"
 #include "estimator/view_windows.h"
@@ -112,14 +116,53 @@ BENCHMARK(votes)->Unit(benchmark::kMicrosecond);
 void regression(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
+  RayGatherer gatherer(rays, {});
   RayNeighbourhood near;
   for (auto _ : state) {
-    gather_rays(rays, {0, 32, 1}, {{120, 90}, {1, 0}, 0.4F}, {}, near);
+    gatherer.gather({0, 32, 1}, {{120, 90}, {1, 0}, 0.4F}, near);
     benchmark::DoNotOptimize(regress(near, {}).change);
   }
   items_per_second(state, std::max<std::size_t>(near.count, 1));
 }
 BENCHMARK(regression)->Unit(benchmark::kMicrosecond);
+
+/// All seeds of the whole recording, without and with their refinement.
+void seeds(benchmark::State& state) {
+  const Recording& r = recording();
+  const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
+  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}, {}).size());
+  items_per_second(state, rays.size());
+}
+BENCHMARK(seeds)->Unit(benchmark::kMillisecond);
+
+void refinement(benchmark::State& state) {
+  const Recording& r = recording();
+  const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
+  const auto found = find_seeds(rays, r.world.camera(), {}, {});
+  const RefinerOptions options;
+  for (auto _ : state) {
+    EdgeRefiner refiner(rays, options, {}, r.world.camera());
+    EdgeEvents events;
+    std::size_t edges = 0;
+    for (const EdgeSeed& seed : found) edges += refiner.refine(seed, events) ? 1 : 0;
+    benchmark::DoNotOptimize(edges);
+  }
+  items_per_second(state, found.size());
+}
+BENCHMARK(refinement)->Unit(benchmark::kMillisecond);
+
+/// One plane through some forty points.
+void local_plane(benchmark::State& state) {
+  std::vector<EdgeDepth> points;
+  for (int y = 0; y < 60; y += 2)
+    for (int x = 0; x < 60; x += 2)
+      points.push_back({static_cast<float>(x), static_cast<float>(y), 0.5F, 0.001F});
+  LocalPlanes planes(points, {});
+  for (auto _ : state)
+    benchmark::DoNotOptimize(planes.fit({30.5F, 30.5F, 0.5F, 0.001F}).inverse_depth);
+  items_per_second(state, 1);
+}
+BENCHMARK(local_plane)->Unit(benchmark::kNanosecond);
 
 /// The whole recording in four windows. Arguments: method, threads.
 void depth(benchmark::State& state) {

@@ -33,7 +33,7 @@ struct Recording {
   Trajectory trajectory = trajectory_of(glide);
   Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
 
-  [[nodiscard]] DepthWindow window(double reference_s) const {
+  [[nodiscard]] ViewWindow window(double reference_s) const {
     return {events, &trajectory, reference_s};
   }
 };
@@ -49,7 +49,7 @@ constexpr double kMeanDepth_m = 2.5;
 class EveryDepthMethod : public ::testing::TestWithParam<DepthConfig::Method> {
  protected:
   EveryDepthMethod() { config_.method = GetParam(); }
-  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const {
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const {
     return make_depth_estimator(config_, recording().world.camera(), kMeanDepth_m)
         ->estimate(window);
   }
@@ -121,7 +121,7 @@ TEST_P(EveryDepthMethod, DependsOnTheWindowAlone) {
 }
 
 TEST_P(EveryDepthMethod, TooFewEventsGiveNoPoints) {
-  DepthWindow window = recording().window(0);
+  ViewWindow window = recording().window(0);
   window.events = {};
   EXPECT_TRUE(estimate(window).points.empty());
   window.events = std::span(recording().events).first(5);
@@ -132,14 +132,14 @@ TEST_P(EveryDepthMethod, PureRotationGivesNoPoints) {
   // The same events, but the poses claim that the camera only turned.
   const Trajectory turning = trajectory_of(
       [](double t_s) { return Rigid3(glide(t_s).rotation(), Eigen::Vector3d::Zero()); });
-  DepthWindow window = recording().window(0);
+  ViewWindow window = recording().window(0);
   window.trajectory = &turning;
   EXPECT_TRUE(estimate(window).points.empty());
 }
 
 TEST_P(EveryDepthMethod, StatesTheSameStagesForEveryWindow) {
   const DepthResult full = estimate(recording().window(0));
-  DepthWindow window = recording().window(0);
+  ViewWindow window = recording().window(0);
   window.events = {};
   const DepthResult none = estimate(window);
   ASSERT_EQ(full.stages_s.size(), none.stages_s.size());

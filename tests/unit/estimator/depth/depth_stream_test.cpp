@@ -11,7 +11,7 @@ namespace {
 /// Returns one point that tells how many events the window held.
 class Counter : public DepthEstimator {
  public:
-  [[nodiscard]] DepthResult estimate(const DepthWindow& window) const override {
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override {
     DepthResult result;
     result.points.push_back({static_cast<float>(window.events.size()), 0, 1, 1});
     return result;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/random.h"
 
@@ -52,9 +54,31 @@ TEST(PlanarFusion, DropsWhatStandsAlone) {
   for (const EdgeDepth& p : fused(points, FusionOptions{})) EXPECT_NEAR(error_of(p), 0, 0.01F);
 }
 
+TEST(PlanarFusion, FewNeighboursMeanALargerSigma) {
+  const std::vector<EdgeDepth> all = grid_of_points(0.002);
+  std::vector<EdgeDepth> some;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i / 20 % 3 == 0) some.push_back(all[i]);
+  const auto dense = fused(all, FusionOptions{}), sparse = fused(some, FusionOptions{});
+  ASSERT_FALSE(sparse.empty());
+  const auto median = [](std::vector<EdgeDepth> points) {
+    std::nth_element(points.begin(),
+                     points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2), points.end(),
+                     [](const EdgeDepth& a, const EdgeDepth& b) { return a.sigma < b.sigma; });
+    return points[points.size() / 2].sigma;
+  };
+  EXPECT_GT(median(sparse), 1.5F * median(dense));
+}
+
+TEST(PlanarFusion, WhatIsTooUncertainIsDropped) {
+  FusionOptions options;
+  options.max_sigma = 1e-5;
+  EXPECT_TRUE(fused(grid_of_points(0.004), options).empty());
+}
+
 TEST(PlanarFusion, WithoutRadiusNothingChanges) {
   FusionOptions options;
-  options.radius_px = 0;
+  options.plane.radius_px = 0;
   EXPECT_EQ(fused(grid_of_points(0.004), options).size(), 400U);
 }
 

@@ -98,6 +98,42 @@ TEST(RayRegression, SigmaIsTheDeviationOfTheResult) {
   EXPECT_LT(within, 0.78 * kTrials);
 }
 
+TEST(RayRegression, APriorHoldsTheDepthWhereTheRaysSayNothing) {
+  constexpr double kPrior = 0.01;
+  const Truth truth;
+  // Little parallax: by themselves the rays find a depth far off, or none.
+  RayNeighbourhood near = rays_through(truth, 100, 0.3, 9);
+  for (std::size_t i = 0; i < near.count; ++i) {
+    near.across[i] += truth.change * near.parallax[i] * 0.999F;
+    near.parallax[i] *= 0.001F;
+  }
+  const RegressionResult free = regress(near, exact_options());
+  const RegressionResult held = regress(near, exact_options(), kPrior);
+  ASSERT_TRUE(held.ok);
+  EXPECT_NEAR(held.sigma, kPrior, 0.1 * kPrior);
+  EXPECT_LT(std::abs(held.change), kPrior);
+  EXPECT_TRUE(!free.ok || free.sigma > 10 * kPrior);
+  // With enough parallax it does not matter.
+  EXPECT_NEAR(regress(rays_through(truth, 200, 0.1, 10), exact_options(), 1).change, truth.change,
+              0.003);
+}
+
+TEST(RayRegression, OnlyEventsOfTheEdgeAreAppended) {
+  const Truth truth;
+  RayNeighbourhood near = rays_through(truth, 200, 0.05, 11);
+  for (std::size_t i = 0; i < near.count; i += 5) near.across[i] += 1.5F;
+  const RegressionResult result = regress(near, exact_options());
+  EdgeEvents events;
+  append_events(near, result, events);
+  ASSERT_EQ(events.event.size(), events.weight.size());
+  EXPECT_GT(events.event.size(), 140U);
+  for (std::size_t i = 0; i < events.event.size(); ++i) {
+    EXPECT_NE(events.event[i] % 5, 0U);
+    EXPECT_GT(events.weight[i], 0);
+    EXPECT_LE(events.weight[i], 1);
+  }
+}
+
 TEST(RayRegression, NoParallaxOrTooFewEventsIsAStatus) {
   RayNeighbourhood near = rays_through({}, 100, 0.1, 5);
   for (std::size_t i = 0; i < near.count; ++i) near.parallax[i] = 0;

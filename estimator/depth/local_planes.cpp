@@ -1,0 +1,174 @@
+#include "estimator/depth/local_planes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <Eigen/LU>
+
+#include "estimator/tracking/lanes.h"
+
+namespace saccade {
+namespace {
+
+constexpr float kTukey = 4.685F;
+constexpr float kMaxSlope = 0.02F;     ///< relative change of inverse depth per pixel at the start
+constexpr float kSameSurface = 0.02F;  ///< relative distance
+constexpr float kSlopePrior = 0.01F;
+/// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
+constexpr float kWeightedVariance = 1.29F;
+
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
+Lanes load(const std::vector<float>& array, std::size_t at) {
+  Lanes lanes;
+  std::memcpy(&lanes, array.data() + at, sizeof(lanes));
+  return lanes;
+}
+
+double sum_of(const Lanes& lanes) {
+  LaneSums sums;
+  std::memcpy(sums.data(), &lanes, sizeof(lanes));
+  return total(sums);
+}
+
+}  // namespace
+
+LocalPlanes::LocalPlanes(const std::vector<EdgeDepth>& points, const PlaneOptions& options)
+    : options_(options) {
+  const auto cell_px = static_cast<float>(options.radius_px);
+  for (const EdgeDepth& point : points) {
+    columns_ = std::max(columns_, static_cast<int>(point.x_px / cell_px) + 1);
+    rows_ = std::max(rows_, static_cast<int>(point.y_px / cell_px) + 1);
+  }
+  const auto index = [&](const EdgeDepth& point) {
+    return static_cast<std::size_t>(cell_of(point.y_px, rows_)) *
+               static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(cell_of(point.x_px, columns_));
+  };
+  begin_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
+  for (const EdgeDepth& point : points) ++begin_[index(point) + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  points_.resize(points.size());
+  for (const EdgeDepth& point : points) points_[next[index(point)]++] = point;
+}
+
+int LocalPlanes::cell_of(float px, int cells) const {
+  const int cell = static_cast<int>(std::floor(px / static_cast<float>(options_.radius_px)));
+  return std::clamp(cell, 0, std::max(cells - 1, 0));
+}
+
+template <class Visit>
+void LocalPlanes::for_near(float x_px, float y_px, const Visit& visit) const {
+  if (points_.empty()) return;
+  const auto radius = static_cast<float>(options_.radius_px);
+  const auto left = static_cast<std::size_t>(cell_of(x_px - radius, columns_));
+  const auto right = static_cast<std::size_t>(cell_of(x_px + radius, columns_));
+  const auto bottom = static_cast<std::size_t>(cell_of(y_px + radius, rows_));
+  for (auto row = static_cast<std::size_t>(cell_of(y_px - radius, rows_)); row <= bottom; ++row) {
+    const std::size_t cells = row * static_cast<std::size_t>(columns_);
+    for (std::size_t i = begin_[cells + left]; i < begin_[cells + right + 1]; ++i) {
+      const float dx = points_[i].x_px - x_px, dy = points_[i].y_px - y_px;
+      const float squared = dx * dx + dy * dy;
+      if (squared <= radius * radius) visit(points_[i], dx, dy, squared);
+    }
+  }
+}
+
+const EdgeDepth* LocalPlanes::nearest(float x_px, float y_px) const {
+  const EdgeDepth* best = nullptr;
+  float least = 0;
+  for_near(x_px, y_px, [&](const EdgeDepth& point, float, float, float squared) {
+    if (best != nullptr && squared >= least) return;
+    best = &point;
+    least = squared;
+  });
+  return best;
+}
+
+void LocalPlanes::gather(const EdgeDepth& start) {
+  const float model = static_cast<float>(options_.model_error) * start.inverse_depth;
+  dx_.clear(), dy_.clear(), difference_.clear(), per_sigma_.clear();
+  for_near(start.x_px, start.y_px, [&](const EdgeDepth& other, float dx, float dy, float squared) {
+    const float difference = other.inverse_depth - start.inverse_depth;
+    const float allowed = kMaxSlope * std::sqrt(squared) * start.inverse_depth +
+                          3 * std::sqrt(start.sigma * start.sigma + other.sigma * other.sigma);
+    if (std::abs(difference) > allowed) return;
+    dx_.push_back(dx);
+    dy_.push_back(dy);
+    difference_.push_back(difference);
+    per_sigma_.push_back(1 / std::sqrt(other.sigma * other.sigma + model * model));
+  });
+  count_ = dx_.size();
+  for (auto* array : {&dx_, &dy_, &difference_, &per_sigma_})
+    array->resize(padded_to_lanes(count_), 0.F);
+}
+
+LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
+  gather(start);
+  LocalPlane result;
+  result.inverse_depth = start.inverse_depth;
+  result.sigma = start.sigma;
+  if (count_ == 0) return result;
+  scratch_.resize(count_);
+  for (std::size_t i = 0; i < count_; ++i) scratch_[i] = std::abs(difference_[i]) * per_sigma_[i];
+  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
+  std::nth_element(scratch_.begin(), middle, scratch_.end());
+  result.spread = std::max(1.F, 1.4826F * *middle);
+  const double slope_information =
+      1 / std::pow(static_cast<double>(kSlopePrior * start.inverse_depth), 2);
+  Eigen::Vector3f plane = Eigen::Vector3f::Zero();
+  double squares = 0;
+  for (int i = 0; i < options_.iterations; ++i) {
+    if (i > 0)
+      result.spread = std::max(
+          1.F, std::sqrt(kWeightedVariance * static_cast<float>(squares) / result.weights));
+    const float per_cut = 1 / (kTukey * result.spread);
+    Lanes w_{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
+    for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
+      const Lanes px = load(dx_, k), py = load(dy_, k), delta = load(difference_, k);
+      const Lanes per_sigma = load(per_sigma_, k);
+      const Lanes r = (delta - plane.x() - plane.y() * px - plane.z() * py) * per_sigma;
+      const Lanes u = r * per_cut;
+      Lanes v = 1 - u * u;
+      v = v > 0 ? v : Lanes{};
+      const Lanes used = per_sigma > 0 ? Lanes{} + 1 : Lanes{};
+      const Lanes w = v * v * used;
+      const Lanes information = w * per_sigma * per_sigma;
+      const Lanes ix = information * px, iy = information * py;
+      w_ += w, rr += w * r * r;
+      one += information, x += ix, y += iy, xx += ix * px, xy += ix * py, yy += iy * py;
+      d += information * delta, dx += ix * delta, dy += iy * delta;
+    }
+    result.weights = static_cast<float>(sum_of(w_));
+    squares = sum_of(rr);
+    if (!(result.weights > 0)) return result;
+    Eigen::Matrix3d a;
+    a << sum_of(one), sum_of(x), sum_of(y),                     //
+        sum_of(x), sum_of(xx) + slope_information, sum_of(xy),  //
+        sum_of(y), sum_of(xy), sum_of(yy) + slope_information;
+    const Eigen::Matrix3d inverse = a.inverse();
+    plane = (inverse * Eigen::Vector3d(sum_of(d), sum_of(dx), sum_of(dy))).cast<float>();
+    result.sigma = static_cast<float>(std::sqrt(inverse(0, 0)));
+  }
+  result.inverse_depth = start.inverse_depth + plane.x();
+  result.slope = plane.tail<2>();
+  return result;
+}
+
+float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) const {
+  float nearest = std::numeric_limits<float>::infinity(), second = nearest;
+  const float always = kSameSurface * plane.inverse_depth;
+  for_near(x_px, y_px, [&](const EdgeDepth& other, float dx, float dy, float) {
+    const float gap = std::abs(other.inverse_depth - plane.inverse_depth - plane.slope.x() * dx -
+                               plane.slope.y() * dy);
+    if (gap < always + kTukey * plane.spread * other.sigma || gap >= second) return;
+    second = gap >= nearest ? gap : nearest;
+    nearest = std::min(nearest, gap);
+  });
+  return second;
+}
+
+}  // namespace saccade

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/depth/depth_estimator.h"
+
+namespace saccade {
+
+struct PlaneOptions {
+  double radius_px = 7;
+  int iterations = 4;
+  double model_error = 0.001;  ///< of a surface from its tangent plane, relative, added to sigma
+};
+
+/// The plane around a pixel.
+struct LocalPlane {
+  float inverse_depth = 0;  ///< at the pixel [1/m]
+  float sigma = 0;          ///< of it, from those of the points [1/m]
+  float weights = 0;        ///< of the points that it rests on
+  float spread = 1;  ///< >= 1: robust scale of the points' distances from it, in their sigmas
+  Eigen::Vector2f slope = Eigen::Vector2f::Zero();  ///< of inverse depth [1/m per px]
+};
+
+/// Planes through the points around a pixel. The inverse depth of a plane is linear in the image,
+///   rho(x) = rho_0 + g . (x - x_0),
+/// fitted by weighted least squares with Tukey's biweight from a given value on, so that what lies
+/// beyond a depth step has no say.
+class LocalPlanes {
+ public:
+  LocalPlanes(const std::vector<EdgeDepth>& points, const PlaneOptions& options);
+
+  /// From the inverse depth of `start` on, whose sigma says which points may belong to it. Points
+  /// within the radius count, one at `start` itself included. Not thread-safe.
+  [[nodiscard]] LocalPlane fit(const EdgeDepth& start);
+
+  /// Distance in inverse depth of the nearest other surface: of the points around that are not on
+  /// the plane, the second nearest to it, since one alone may be wrong. Infinity where there is
+  /// none.
+  [[nodiscard]] float gap_around(float x_px, float y_px, const LocalPlane& plane) const;
+
+  /// The point nearest to a pixel; nullptr where none is within the radius.
+  [[nodiscard]] const EdgeDepth* nearest(float x_px, float y_px) const;
+
+ private:
+  template <class Visit>
+  void for_near(float x_px, float y_px, const Visit& visit) const;
+  void gather(const EdgeDepth& start);
+  [[nodiscard]] int cell_of(float px, int cells) const;
+
+  PlaneOptions options_;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::size_t> begin_;  ///< of each cell in points_
+  std::vector<EdgeDepth> points_;   ///< by cells as wide as the radius
+
+  // Neighbours of the pixel at hand, padded to lanes.
+  std::size_t count_ = 0;
+  std::vector<float> dx_, dy_;
+  std::vector<float> difference_;  ///< of inverse depth from the start
+  std::vector<float> per_sigma_;   ///< 0 behind `count_`
+  std::vector<float> scratch_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,144 @@
+#include "estimator/depth/edge_refiner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_world;
+using testing::PlanarWorld;
+
+constexpr double kEnd_s = 0.3;
+constexpr double kReference_s = kEnd_s / 2;
+
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
+}
+
+Trajectory trajectory() {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, glide(i * 1e-3)});
+  return Trajectory(poses);
+}
+
+struct Recording {
+  PlanarWorld world = corner_world(160, 120);
+  Trajectory poses = trajectory();
+  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+  ImageF depth = world.depth(glide(kReference_s));
+  UndistortionTable undistortion{world.camera()};
+
+  /// The smallest relative error within the 3 x 3 pixels.
+  [[nodiscard]] double error_of(const RayEdge& edge) const {
+    const auto x = static_cast<int>(std::lround(edge.pixel.x()));
+    const auto y = static_cast<int>(std::lround(edge.pixel.y()));
+    double best = 1e9;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth.height() - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth.width() - 1); ++u)
+        if (depth(u, v) > 0)
+          best = std::min(best, std::abs(1 / static_cast<double>(edge.inverse_depth) /
+                                             static_cast<double>(depth(u, v)) -
+                                         1));
+    return best;
+  }
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+/// All edges that seeds lead to.
+struct Refined {
+  EventRays rays;
+  EdgeRefiner refiner;
+  std::vector<EdgeSeed> seeds;
+  std::vector<FittedEdge> edges;
+  EdgeEvents events;
+
+  explicit Refined(std::span<const Event> of, const RefinerOptions& options = kOptions)
+      : rays({of, &recording().poses, kReference_s}, recording().world.camera(),
+             recording().undistortion, 32),
+        refiner(rays, options, {}, recording().world.camera()),
+        seeds(find_seeds(rays, recording().world.camera(), {}, {})) {
+    for (const EdgeSeed& seed : seeds)
+      if (const auto edge = refiner.refine(seed, events)) edges.push_back(*edge);
+  }
+  static inline const RefinerOptions kOptions{};
+};
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+TEST(EdgeRefiner, SeedsLeadToTheTrueDepth) {
+  const Refined refined(recording().events);
+  ASSERT_GT(refined.edges.size(), 300U);
+  std::vector<double> seeds, edges;
+  for (const EdgeSeed& seed : refined.seeds)
+    seeds.push_back(recording().error_of({seed.pixel, seed.normal, seed.inverse_depth}));
+  for (const FittedEdge& fitted : refined.edges) edges.push_back(recording().error_of(fitted.edge));
+  EXPECT_LT(median(edges), 0.005);
+  EXPECT_LT(median(edges), median(seeds) / 5);
+}
+
+TEST(EdgeRefiner, EdgesKeepTheirDistance) {
+  RefinerOptions options;
+  options.spacing_px = 3;
+  const Refined refined(recording().events, options);
+  ASSERT_GT(refined.edges.size(), 100U);
+  for (std::size_t i = 0; i < refined.edges.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const RayEdge &a = refined.edges[i].edge, &b = refined.edges[j].edge;
+      const bool is_same = a.normal.dot(b.normal) > 0.5F &&
+                           std::abs(a.inverse_depth - b.inverse_depth) < 0.005F * a.inverse_depth;
+      EXPECT_FALSE(is_same && (a.pixel - b.pixel).norm() < 3);
+    }
+}
+
+TEST(EdgeRefiner, WhatGaveNoEventsAroundTheViewWasNotSeen) {
+  std::vector<Event> without;
+  for (const Event& event : recording().events)
+    if (std::abs(seconds_from_ns(event.t_ns) - kReference_s) > 0.075) without.push_back(event);
+  const auto unseen = [](const Refined& refined) {
+    std::vector<double> px;
+    for (const FittedEdge& edge : refined.edges) px.push_back(static_cast<double>(edge.unseen_px));
+    return median(px);
+  };
+  EXPECT_LT(unseen(Refined(recording().events)), 1.5);
+  EXPECT_GT(unseen(Refined(without)), 2.5);
+}
+
+TEST(EdgeRefiner, ConfirmsAnExpectedDepthButNoOther) {
+  Refined refined(recording().events);
+  const std::vector<FittedEdge> edges = refined.edges;
+  const auto confirmed = [&](float factor, float gap_share) {
+    refined.refiner.restart({}, 0);
+    std::size_t count = 0;
+    for (const FittedEdge& fitted : edges) {
+      RayEdge edge = fitted.edge;
+      edge.inverse_depth *= factor;
+      const Expectation expected{0.005F * edge.inverse_depth, gap_share * edge.inverse_depth, 4,
+                                 0.4F, 0.05F * edge.inverse_depth};
+      if (refined.refiner.confirm(edge, expected, refined.events)) ++count;
+    }
+    return static_cast<double>(count) / static_cast<double>(edges.size());
+  };
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  EXPECT_GT(confirmed(1, kNone), 0.45);  // others are too blurred for the residual allowed here
+  EXPECT_LT(confirmed(1.3F, kNone), 0.1);
+  // Another surface so near that the edge's own events cannot tell.
+  EXPECT_LT(confirmed(1, 1e-5F), 0.05);
+}
+
+}  // namespace
+}  // namespace saccade
