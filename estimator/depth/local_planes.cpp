@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "estimator/tracking/lanes.h"
+#include "estimator/lanes.h"
 
 namespace saccade {
 namespace {
@@ -18,20 +18,6 @@ constexpr float kSameSurface = 0.02F;  ///< relative distance
 constexpr float kSlopePrior = 0.01F;
 /// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
 constexpr float kWeightedVariance = 1.29F;
-
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
-
-Lanes load(const std::vector<float>& array, std::size_t at) {
-  Lanes lanes;
-  std::memcpy(&lanes, array.data() + at, sizeof(lanes));
-  return lanes;
-}
-
-double sum_of(const Lanes& lanes) {
-  LaneSums sums;
-  std::memcpy(sums.data(), &lanes, sizeof(lanes));
-  return total(sums);
-}
 
 }  // namespace
 
@@ -128,8 +114,9 @@ LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
     const float per_cut = 1 / (kTukey * result.spread);
     Lanes w_{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
     for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
-      const Lanes px = load(dx_, k), py = load(dy_, k), delta = load(difference_, k);
-      const Lanes per_sigma = load(per_sigma_, k);
+      const Lanes px = load_lanes(&dx_[k]), py = load_lanes(&dy_[k]),
+                  delta = load_lanes(&difference_[k]);
+      const Lanes per_sigma = load_lanes(&per_sigma_[k]);
       const Lanes r = (delta - plane.x() - plane.y() * px - plane.z() * py) * per_sigma;
       const Lanes u = r * per_cut;
       Lanes v = 1 - u * u;
@@ -142,15 +129,15 @@ LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
       one += information, x += ix, y += iy, xx += ix * px, xy += ix * py, yy += iy * py;
       d += information * delta, dx += ix * delta, dy += iy * delta;
     }
-    result.weights = static_cast<float>(sum_of(w_));
-    squares = sum_of(rr);
+    result.weights = static_cast<float>(total(w_));
+    squares = total(rr);
     if (!(result.weights > 0)) return result;
     Eigen::Matrix3d a;
-    a << sum_of(one), sum_of(x), sum_of(y),                     //
-        sum_of(x), sum_of(xx) + slope_information, sum_of(xy),  //
-        sum_of(y), sum_of(xy), sum_of(yy) + slope_information;
+    a << total(one), total(x), total(y),                     //
+        total(x), total(xx) + slope_information, total(xy),  //
+        total(y), total(xy), total(yy) + slope_information;
     const Eigen::Matrix3d inverse = a.inverse();
-    plane = (inverse * Eigen::Vector3d(sum_of(d), sum_of(dx), sum_of(dy))).cast<float>();
+    plane = (inverse * Eigen::Vector3d(total(d), total(dx), total(dy))).cast<float>();
     result.sigma = static_cast<float>(std::sqrt(inverse(0, 0)));
   }
   result.inverse_depth = start.inverse_depth + plane.x();

@@ -12,7 +12,6 @@ constexpr std::size_t kCoefficients = 24;
 /// On top of the motion within a slab, which is taken for even.
 constexpr float kSlack_px = 0.25F;
 
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(float))));
 
 Lanes magnitude(const Lanes& v) { return v < 0 ? -v : v; }

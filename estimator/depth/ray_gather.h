@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "estimator/depth/event_rays.h"
-#include "estimator/tracking/lanes.h"
+#include "estimator/lanes.h"
 
 namespace saccade {
 

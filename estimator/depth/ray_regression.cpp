@@ -18,14 +18,7 @@ constexpr double kWeightedVariance = 1.29;
 
 constexpr double kSettled = 0.01;  ///< change of the residuals' sum, in variances, that ends it
 
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 using HalfLanes = float __attribute__((vector_size(kLanes / 2 * sizeof(float))));
-
-Lanes load(const std::vector<float>& array, std::size_t at) {
-  Lanes lanes;
-  std::memcpy(&lanes, array.data() + at, sizeof(lanes));
-  return lanes;
-}
 
 double sum_of(const Lanes& lanes) {
   std::array<HalfLanes, 2> halves;
@@ -53,8 +46,10 @@ Normal accumulate(const RayNeighbourhood& n, const Parameters& p, float cut) {
       wbr{}, wrr{};
   const float per_cut = 1 / cut;
   for (std::size_t i = 0; i < n.padded(); i += kLanes) {
-    const Lanes b = load(n.parallax, i), s = load(n.along, i), q = load(n.polarity, i);
-    const Lanes r = load(n.across, i) + b * p.change - p.offset - p.tilt * s - p.hysteresis * q;
+    const Lanes b = load_lanes(&n.parallax[i]), s = load_lanes(&n.along[i]),
+                q = load_lanes(&n.polarity[i]);
+    const Lanes r =
+        load_lanes(&n.across[i]) + b * p.change - p.offset - p.tilt * s - p.hysteresis * q;
     const Lanes u = r * per_cut;
     Lanes v = 1 - u * u;
     v = v > 0 ? v : Lanes{};

@@ -9,7 +9,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
-#include "estimator/tracking/lanes.h"
+#include "estimator/lanes.h"
 #include "estimator/tracking/map_view.h"
 #include "estimator/tracking/posterior_pose.h"
 

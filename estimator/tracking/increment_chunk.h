@@ -9,8 +9,8 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
+#include "estimator/lanes.h"
 #include "estimator/tracking/increment_template.h"
-#include "estimator/tracking/lanes.h"
 #include "estimator/tracking/posterior_pose.h"
 
 namespace saccade {

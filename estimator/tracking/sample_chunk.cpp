@@ -28,18 +28,6 @@ Quad even_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{0, 2
 Quad odd_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{1, 3, 5, 7}); }
 void store(Quad quad, float* target) { std::memcpy(target, &quad, sizeof quad); }
 
-// Lanes go by reference: by value their ABI depends on the instruction set, which GCC warns of.
-
-void read(const SampleChunk::Floats& floats, std::size_t i, SampleChunk::Lanes& lanes) {
-  std::memcpy(&lanes, &floats[i], sizeof lanes);
-}
-
-double total(const SampleChunk::Lanes& lanes) {
-  LaneSums sums;
-  std::memcpy(sums.data(), &lanes, sizeof sums);
-  return saccade::total(sums);
-}
-
 }  // namespace
 
 void SampleChunk::load(std::span<const TemplatePoint> points, int first, int count, int total,
@@ -206,21 +194,17 @@ void SampleChunk::weigh(RobustWeight kind, float sigma) {
   if (kind == RobustWeight::kTukey) apply(RobustWeight::kTukey);
 }
 
-[[gnu::always_inline]] inline std::array<SampleChunk::Lanes, SampleChunk::kColumns>
-SampleChunk::columns_at(std::size_t i) const {
-  Lanes visible, a, b, x, y, inverse_depth, value;
-  read(visible_, i, visible);
-  read(slope_x_, i, a);
-  read(slope_y_, i, b);
-  read(ray_x_, i, x);
-  read(ray_y_, i, y);
-  read(inverse_depth_, i, inverse_depth);
-  read(value_, i, value);
-  a *= visible;
-  b *= visible;
+[[gnu::always_inline]] inline std::array<Lanes, SampleChunk::kColumns> SampleChunk::columns_at(
+    std::size_t i) const {
+  const Lanes visible = load_lanes(&visible_[i]);
+  const Lanes a = load_lanes(&slope_x_[i]) * visible;
+  const Lanes b = load_lanes(&slope_y_[i]) * visible;
+  const Lanes x = load_lanes(&ray_x_[i]);
+  const Lanes y = load_lanes(&ray_y_[i]);
+  const Lanes inverse_depth = load_lanes(&inverse_depth_[i]);
   const Lanes radial = a * x + b * y;
-  return {a * inverse_depth, b * inverse_depth, -radial * inverse_depth, -y * radial - b,
-          x * radial + a,    b * x - a * y,     value * visible,         visible};
+  return {a * inverse_depth, b * inverse_depth, -radial * inverse_depth,          -y * radial - b,
+          x * radial + a,    b * x - a * y,     load_lanes(&value_[i]) * visible, visible};
 }
 
 void SampleChunk::differentiate() {
@@ -236,8 +220,7 @@ std::array<double, SampleChunk::kColumns> SampleChunk::columns_dot_residual() co
   std::array<Lanes, kColumns> sums{};
   for (std::size_t i = 0; i < padded(); i += kLanes) {
     const auto columns = columns_at(i);
-    Lanes residual;
-    read(residual_, i, residual);
+    const Lanes residual = load_lanes(&residual_[i]);
     for (std::size_t k = 0; k < kColumns; ++k) sums[k] += columns[k] * residual;
   }
   std::array<double, kColumns> totals{};

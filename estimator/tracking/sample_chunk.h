@@ -6,9 +6,9 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
+#include "estimator/lanes.h"
 #include "estimator/tracking/edge_template.h"
 #include "estimator/tracking/event_frame.h"
-#include "estimator/tracking/lanes.h"
 #include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
@@ -20,8 +20,6 @@ class SampleChunk {
   static constexpr int kCapacity = 256;
   static constexpr int kColumns = 8;  ///< J (6), T, 1
   using Floats = std::array<float, kCapacity>;
-  /// Samples that are worked on together; the compiler splits it where registers are shorter.
-  using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
   /// Loads the samples first .. first + count - 1 of `total`. Sample k is uniform in the k-th of
   /// `total` equal runs of the points, so that a draw covers the image evenly, and with as many

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 namespace saccade {
 
@@ -20,6 +21,22 @@ using LaneSums = std::array<float, kLanes>;
   for (std::size_t width = sums.size() / 2; width > 0; width /= 2)
     for (std::size_t lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
   return static_cast<double>(sums[0]);
+}
+
+/// Samples in registers; the compiler splits them where registers are shorter.
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
+/// `floats` has whole lanes from there on.
+[[nodiscard]] inline Lanes load_lanes(const float* floats) {
+  Lanes lanes;
+  std::memcpy(&lanes, floats, sizeof lanes);
+  return lanes;
+}
+
+[[nodiscard]] inline double total(const Lanes& lanes) {
+  LaneSums sums;
+  std::memcpy(sums.data(), &lanes, sizeof sums);
+  return total(sums);
 }
 
 /// Dot product of whole lanes: `count` is a multiple of kLanes.
