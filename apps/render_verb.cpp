@@ -69,7 +69,8 @@ void add_render_verb(CLI::App& command) {
   const auto options = std::make_shared<RenderVerbOptions>();
   RenderOptions& render = options->render;
   CLI::App* verb = command.add_subcommand(
-      "render", "Draw a dataset (events, frames, depth) or a run (the map over its events)");
+      "render",
+      "Draw a dataset (events, frames, depth) or a run (the map over its events, or its views)");
   verb->add_option("PATH", options->path, "Dataset or run folder")->required();
   verb->add_option("-o,--output", options->output, "Picture (.png) or video (.mp4, by ffmpeg)")
       ->required()
@@ -87,9 +88,9 @@ void add_render_verb(CLI::App& command) {
   verb->add_option("--upscale", render.upscale, "Screen pixels per sensor pixel")
       ->check(whole_number(1, 8))
       ->capture_default_str();
-  verb->add_option("--fps", render.fps, "Frame rate of a video")
-      ->check(number_between(1, 240))
-      ->capture_default_str();
+  verb->add_option("--fps", render.fps,
+                   "Frame rate of a video (default: 30; of views and growth 3)")
+      ->check(number_between(1, 240));
   verb->add_option("--slow-motion", render.slow_motion, "Seconds of video per second recorded")
       ->check(positive_number())
       ->capture_default_str();
@@ -100,6 +101,8 @@ void add_render_verb(CLI::App& command) {
       "Examples:\n"
       "  saccade render data/walls -o walls.png\n"
       "  saccade render runs/walls -o walls.mp4 --slow-motion 5\n"
+      "  saccade render runs/walls_depth -o walls_depth.png\n"
+      "  saccade render runs/walls_image -o growth.mp4 --fps 10\n"
       "  saccade render runs/leaves -o leaves.mp4 --overlay docs/images/logo.png --overlay-truth");
   verb->callback([options] { render_path(*options); });
 }

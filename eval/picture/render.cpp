@@ -14,17 +14,20 @@
 #include "eval/picture/sheet.h"
 #include "eval/picture/trajectory_picture.h"
 #include "eval/picture/video.h"
+#include "eval/picture/view_render.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
 namespace {
+
+constexpr double kFps = 30;
 
 void check_options(const RenderOptions& options) {
   const auto check = [](bool holds, const char* name, const char* problem) {
     if (!holds) throw InputError(name, problem);
   };
   check(options.upscale >= 1 && options.upscale <= 8, "upscale", "must be 1..8");
-  check(options.fps >= 1 && options.fps <= 240, "fps", "must be 1..240");
+  check(!options.fps || (*options.fps >= 1 && *options.fps <= 240), "fps", "must be 1..240");
   check(options.slow_motion > 0 && std::isfinite(options.slow_motion), "slow motion",
         "must be above 0");
   check(!options.events || *options.events > 0, "events", "must be above 0");
@@ -160,10 +163,11 @@ ImageRgb8 moment(const Scene& scene, double t_s) {
 
 void write_video(const Scene& scene, const TimeSpan& span, const std::filesystem::path& output,
                  const RenderOptions& options) {
-  const double step_s = 1 / (options.fps * options.slow_motion);
+  const double fps = options.fps.value_or(kFps);
+  const double step_s = 1 / (fps * options.slow_motion);
   const auto frames = static_cast<std::uint64_t>((span.end_s - span.start_s) / step_s) + 1;
   const ImageRgb8 first = moment(scene, span.start_s);
-  VideoWriter video(output, first.width(), first.height(), options.fps);
+  VideoWriter video(output, first.width(), first.height(), fps);
   Progress progress("rendering", frames, "frames");
   for (std::uint64_t i = 0; i < frames; ++i) {
     video.add(moment(scene, span.start_s + static_cast<double>(i) * step_s));
@@ -182,6 +186,12 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
     throw InputError(output.string(), "must end in .png or .mp4");
   const Subject subject = open_subject(path, options);
   const TimeSpan span = span_of(subject, options);
+  if (subject.run && !options.overlay) {
+    const ViewPictures views(subject.run->folder, subject.dataset);
+    if (!views.times().empty())
+      return render_views(*subject.run, subject.dataset, views, title_of(subject), span, output,
+                          options);
+  }
   const bool single = ending == ".png" && options.time_s.has_value();
   const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
   // Before the events are loaded, which takes longer than to say what is wrong with the overlay.

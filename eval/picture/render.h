@@ -18,8 +18,9 @@ struct RenderOptions {
   std::optional<std::filesystem::path> dataset = std::nullopt;
   /// Events drawn per picture, those nearest in time; nullopt: 15 % of the number of pixels.
   std::optional<std::size_t> events = std::nullopt;
-  int upscale = 3;          ///< screen pixels per sensor pixel, 1..8
-  double fps = 30;          ///< of a video, 1..240
+  int upscale = 3;  ///< screen pixels per sensor pixel, 1..8
+  /// Frame rate of a video, 1..240; nullopt: 30, of views and growth 3.
+  std::optional<double> fps = std::nullopt;
   double slow_motion = 10;  ///< seconds of video per second of recording, > 0
   bool dark = true;         ///< on a dark or a light background
   /// A picture that hangs in the world, over events and frames without lens distortion; each frame
@@ -29,9 +30,12 @@ struct RenderOptions {
 
 /// Draws a dataset or a run (a folder with run.yaml) into `output`:
 ///   .png   contact sheet over the whole time, or the moment `time_s`: grey frame, events and depth
-///   of
-///          a dataset; events, map tracked over events and trajectory of a run
+///          of a dataset; events, map tracked over events and trajectory of a run
 ///   .mp4   events beside the frame, or events under the tracked map; encoded by the program ffmpeg
+/// Of a run with views (depth, reconstruct):
+///   .png   a row per view, at most six or the one nearest to `time_s`: events, depth or image,
+///          truth, error
+///   .mp4   the image growing with the events where the run kept growth/, else view after view
 /// Events are drawn undistorted wherever something is drawn over them.
 /// With an overlay: events and frame, with the picture in them.
 /// Throws InputError for another ending, an option out of range, a moment without events or truth,

@@ -6,18 +6,24 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "eval/depth_views.h"
-#include "eval/metrics/depth_truth.h"
 #include "eval/number_text.h"
+#include "eval/picture/canvas.h"
 #include "eval/picture/depth_picture.h"
+#include "eval/picture/derotation_picture.h"
+#include "eval/picture/event_picture.h"
+#include "eval/picture/log_picture.h"
+#include "eval/picture/view_pictures.h"
 #include "eval/report/html.h"
 
 namespace saccade {
 namespace {
 
 constexpr int kUpscale = 2;
+constexpr double kDerotationReachS = 0.2;
 
 std::string percent(const Metrics& metrics, const char* key, int decimals = 2) {
   std::optional<double> value = metrics.get(key);
@@ -56,34 +62,40 @@ std::vector<std::size_t> from_best_to_worst(const std::vector<DepthErrors>& view
   return order;
 }
 
-/// The scale of thesis figs. 8.9 and 8.10.
-double largest_error(const std::string& dataset) { return dataset == "dunes" ? 0.045 : 0.07; }
-
-/// What the colours of a view span: its true depths or, where they are unknown, the estimated ones.
-DepthRange range_of(const EstimatedView& view, const std::optional<DepthTruth>& truth) {
-  if (truth) return depth_range(truth->depth);
-  ImageF depths(static_cast<int>(view.points.size()), 1);
-  for (std::size_t i = 0; i < view.points.size(); ++i)
-    depths.pixels()[i] = static_cast<float>(view.points[i].depth_m);
-  return depth_range(depths);
+std::string view_pictures(const RunData& data, const EstimatedView& view, const char* which) {
+  std::string html = "<div class=\"grid three\">";
+  for (const CaptionedPicture& picture : depth_pictures(view, *data.data, kUpscale, kDarkTheme))
+    html += figure(picture.image,
+                   fmt::format("{} view, {:.3f} s: {}", which, view.t_s, picture.caption),
+                   picture.caption);
+  return html + "</div>\n";
 }
 
-std::string view_pictures(const RunData& data, const EstimatedView& view, const DepthErrors& errors,
-                          const char* which) {
-  const auto truth = depth_truth_at(*data.data, view.t_s);
-  const PinholeCamera camera = data.data->camera().undistorted();
-  const DepthRange range = range_of(view, truth);
-  const std::string at = fmt::format("{} view, {:.3f} s: ", which, view.t_s);
-  std::string html = "<div class=\"grid three\">" +
-                     figure(draw_depth_points(view.points, camera, range, kUpscale, kDarkTheme),
-                            at + "estimated depth", "estimated depth");
-  if (truth)
-    html +=
-        figure(draw_depth_map(truth->depth, range, kUpscale, kDarkTheme), at + "ground truth",
-               "true depth") +
-        figure(draw_depth_errors(errors, camera, largest_error(data.dataset), kUpscale, kDarkTheme),
-               at + "relative error", "relative error of the depth");
-  return html + "</div>\n";
+/// Events around the view as they came and turned into its orientation (thesis fig. 5.2).
+std::string derotation_pictures(const RunData& data, const EstimatedView& view) {
+  const Trajectory& truth = data.data->groundtruth();
+  if (truth.empty() || data.data->events_file().empty()) return "";
+  const PinholeCamera& camera = data.data->camera();
+  // One per pixel: some 50 ms, over which turning blurs and moving hardly does.
+  const auto most =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const Events around =
+      data.data->load_events(view.t_s - kDerotationReachS, view.t_s + kDerotationReachS);
+  const std::span<const Event> events = events_around(around, view.t_s, most, kDerotationReachS);
+  if (events.empty()) return "";
+  const ImageF plain = count_events(events, camera);
+  const ImageF turned = count_derotated_events(events, camera, truth, view.t_s);
+  const float top = quantile(turned, {}, 0.99);
+  const std::string what = fmt::format(
+      "{} events of {:.0f} ms around {:.3f} s", grouped(static_cast<double>(events.size())),
+      1e3 * seconds_from_ns(events.back().t_ns - events.front().t_ns), view.t_s);
+  return "<div class=\"grid three\">" +
+         figure(upscale(draw_amount(plain, {}, top), kUpscale), what + ", as they came",
+                "events as they came") +
+         figure(upscale(draw_amount(turned, {}, top), kUpscale),
+                what + ", turned into the view's orientation by the true poses",
+                "derotated events") +
+         "</div>\n";
 }
 
 std::string planes_table(const std::vector<FittedPlane>& planes, std::size_t points) {
@@ -124,10 +136,9 @@ std::string depth_section(const RunData& data) {
                      "a point; strict: at its exact position.</p>";
   const std::vector<std::size_t> order = from_best_to_worst(errors);
   const std::size_t middle = order[(order.size() - 1) / 2];
-  html += view_pictures(data, views[middle], errors[middle], "Median");
-  if (order.size() > 1)
-    html += view_pictures(data, views[order.back()], errors[order.back()], "Worst");
-  return html + cloud(data, views);
+  html += view_pictures(data, views[middle], "Median");
+  if (order.size() > 1) html += view_pictures(data, views[order.back()], "Worst");
+  return html + derotation_pictures(data, views[middle]) + cloud(data, views);
 }
 
 }  // namespace saccade

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "eval/number_text.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/log_picture.h"
+#include "eval/picture/view_pictures.h"
 #include "eval/report/html.h"
 
 namespace saccade {
@@ -45,20 +45,11 @@ ImageF gradient_sigma(const ImageView& view) {
   return sigma;
 }
 
-std::string view_pictures(const ImageView& view, const ImageComparison& c, const ImageScores& s) {
-  const float low = quantile(c.truth, c.mask, 0.005);
-  const float high = quantile(c.truth, c.mask, 0.995);
-  ImageF error = s.fitted;
-  for (std::size_t i = 0; i < error.size(); ++i)
-    error.pixels()[i] = std::abs(error.pixels()[i] - c.truth.pixels()[i]);
+std::string view_pictures(const ImageView& view, const Dataset& dataset, const ImageComparison& c) {
   const std::string at = fmt::format("{:.3f} s: ", view.t_s);
-  std::string html = "<div class=\"grid three\">" +
-                     picture(draw_log_image(c.truth, {}, low, high), at + "log intensity, truth",
-                             "true log intensity") +
-                     picture(draw_log_image(s.fitted, view.observed, low, high),
-                             at + "reconstruction; unobserved in blue", "reconstruction") +
-                     picture(draw_amount(error, c.mask, 0.5F), at + "error, 0 to 0.5 log units",
-                             "error of the reconstruction");
+  std::string html = "<div class=\"grid three\">";
+  for (const CaptionedPicture& drawn : image_pictures(view, dataset, kUpscale))
+    html += figure(drawn.image, at + drawn.caption, drawn.caption);
   if (!view.gradient_x.empty()) {
     ImageF magnitude = view.gradient_x;
     for (std::size_t i = 0; i < magnitude.size(); ++i)
@@ -84,20 +75,13 @@ std::string view_pictures(const ImageView& view, const ImageComparison& c, const
 }
 
 std::string growth_pictures(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) return "";
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".png") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const std::vector<GrowthStep> steps = growth_steps(folder);
   // A film's worth of pictures is for `saccade render`.
   constexpr std::size_t kMost = 8;
-  if (files.empty() || files.size() > kMost) return "";
+  if (steps.empty() || steps.size() > kMost) return "";
   std::string html = "<h4>Growing with the events</h4><div class=\"grid three\">";
-  for (const auto& file : files) {
-    const std::string stem = file.stem().string();
-    const double events = std::stod(stem.substr(stem.find_last_of('_') + 1));
-    html += picture(read_image_rgb(file), grouped(events) + " events", "reconstruction");
-  }
+  for (const GrowthStep& step : steps)
+    html += picture(read_image_rgb(step.file), grouped(step.events) + " events", "reconstruction");
   return html + "</div>\n";
 }
 
@@ -122,8 +106,8 @@ std::string image_section(const RunData& data) {
     if (scores[i] && (!worst || scores[i]->ssim < scores[*worst]->ssim)) worst = i;
   }
   html += "</tbody></table></div>\n";
-  if (worst) html += view_pictures(views[*worst], *comparisons[*worst], *scores[*worst]);
-  return html + growth_pictures(data.run.folder / "growth");
+  if (worst) html += view_pictures(views[*worst], *data.data, *comparisons[*worst]);
+  return html + growth_pictures(data.run.folder);
 }
 
 }  // namespace saccade

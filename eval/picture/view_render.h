@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "eval/picture/render.h"
+#include "eval/picture/sensor_view.h"
+#include "eval/picture/view_pictures.h"
+#include "eval/run_folder.h"
+
+namespace saccade {
+
+/// Draws a run that wrote views, see render(). `span`: whose views are shown; with
+/// `options.time_s` the one nearest to it. Throws InputError where no view is in the span.
+void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictures& views,
+                  const std::string& title, const TimeSpan& span,
+                  const std::filesystem::path& output, const RenderOptions& options);
+
+}  // namespace saccade
