@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -18,7 +19,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBatch = 131072;  ///< events whose levels are found at a time
+constexpr std::size_t kBatch = 16384;  ///< events whose levels are found at a time
 
 /// The view with `scale` pixels in place of one, the first centred on the first.
 PinholeCamera finer(const PinholeCamera& camera, int scale) {
@@ -55,7 +56,8 @@ struct KeptLevel {
   static constexpr std::uint32_t kSortBits = 3;
 };
 
-/// All levels in the order of their tracks and, within one, of time.
+/// All levels by track and, within one, in order of time. Tracks that begin near each other follow
+/// each other, so that what they touch is at hand.
 class LevelsByTrack {
  public:
   void add(std::span<const PlaceLevel> levels) {
@@ -67,14 +69,15 @@ class LevelsByTrack {
   }
   /// After the last add().
   void order(std::uint32_t tracks) {
+    const std::vector<std::uint32_t> rank = ranks(tracks);
     first_.assign(tracks + 1, 0);
     for (const auto& part : parts_)
-      for (const KeptLevel& level : part) ++first_[level.track() + 1];
+      for (const KeptLevel& level : part) ++first_[rank[level.track()] + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     levels_.resize(first_.back());
     for (const auto& part : parts_)
-      for (const KeptLevel& level : part) levels_[next[level.track()]++] = level;
+      for (const KeptLevel& level : part) levels_[next[rank[level.track()]]++] = level;
     parts_.clear();
   }
   /// Joins successive levels of one sort whose places lie within `px` of the first of them: what
@@ -113,6 +116,24 @@ class LevelsByTrack {
   [[nodiscard]] const LevelSort& sort(const KeptLevel& level) const { return sorts_[level.sort()]; }
 
  private:
+  /// The place of every track in the order of where they begin.
+  [[nodiscard]] std::vector<std::uint32_t> ranks(std::uint32_t tracks) const {
+    constexpr int kTile = 16, kTilesPerRow = 4096;
+    std::vector<std::uint32_t> tile(tracks, std::numeric_limits<std::uint32_t>::max());
+    for (const auto& part : parts_)
+      for (const KeptLevel& level : part)
+        if (std::uint32_t& t = tile[level.track()]; t == std::numeric_limits<std::uint32_t>::max())
+          t = static_cast<std::uint32_t>(static_cast<int>(level.y) / kTile * kTilesPerRow +
+                                         static_cast<int>(level.x) / kTile);
+    std::vector<std::uint32_t> order(tracks);
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return tile[a] < tile[b]; });
+    std::vector<std::uint32_t> rank(tracks);
+    for (std::uint32_t i = 0; i < tracks; ++i) rank[order[i]] = i;
+    return rank;
+  }
+
   std::uint32_t sort_of(const LevelSort& sort) {
     const auto found = std::find(sorts_.begin(), sorts_.end(), sort);
     const auto index = static_cast<std::uint32_t>(found - sorts_.begin());
@@ -281,7 +302,7 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
   const PinholeCamera fine = finer(camera_, options_.scale);
   ImageF fine_reference(fine.width, fine.height);
   window.scene.draw(reference_from_world, fine, fine_reference);
-  const ReferenceGrid grid(fine_reference, options_.scale, options_.levels.same_surface);
+  const ReferenceGrid grid(fine_reference, options_.scale, options_.levels.places.same_surface);
   ImageF image;
   LevelSystem system(grid.width(), grid.height());
   for (int round = 0; round < options_.rounds; ++round) {

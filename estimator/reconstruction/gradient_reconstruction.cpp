@@ -29,7 +29,7 @@ Reconstruction GradientReconstruction::reconstruct(const ReconstructionWindow& w
   const Rigid3 world_from_reference = window.world_from_reference();
   ImageF reference(camera_.width, camera_.height);
   window.scene.draw(world_from_reference.inverse(), camera_.undistorted(), reference);
-  const ReferenceGrid grid(reference, 1, options_.levels.same_surface);
+  const ReferenceGrid grid(reference, 1, options_.levels.places.same_surface);
   LevelFinder finder(camera_, window.scene, world_from_reference, reference, window.contrast_on,
                      window.contrast_off, options_.levels);
   GradientFilter filter(grid, options_.prior_sigma * options_.prior_sigma);

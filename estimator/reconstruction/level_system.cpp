@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <numeric>
 
+#include <Eigen/Core>
+
 #include "core/check.h"
 #include "estimator/reconstruction/poisson.h"
 
@@ -133,7 +135,9 @@ void LevelSystem::add_value(int i, float value, float weight) {
 
 double LevelSystem::track_variance() const {
   double sum = 0, weight = 0;
-  for (const Track& track : tracks_) {
+  constexpr std::size_t kEvery = 8;  // they are many and alike
+  for (std::size_t t = 0; t < tracks_.size(); t += kEvery) {
+    const Track& track = tracks_[t];
     double x = 0, y = 0, square = 0;
     for (std::size_t k = track.begin; k < track.end; ++k) {
       const double u = entries_[k].index % width_, v = entries_[k].index / width_;
@@ -148,28 +152,47 @@ double LevelSystem::track_variance() const {
   return weight > 0 ? std::max(sum / weight, 0.25) : 0.25;
 }
 
-void LevelSystem::multiply(const std::vector<float>& x, std::vector<float>& y) const {
-  std::fill(y.begin(), y.end(), 0.0F);
+LevelSystem::Stencil LevelSystem::stencil() const {
+  Stencil stencil;
+  for (std::size_t k = 0; k < kNeighbours; ++k) {
+    stencil[k].resize(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) stencil[k][i] = rows_[i][k];
+  }
+  return stencil;
+}
+
+void LevelSystem::multiply(const Stencil& stencil, const std::vector<float>& x,
+                           std::vector<float>& y) const {
   const auto width = static_cast<std::size_t>(width_);
   const std::size_t offsets[kNeighbours] = {0, 1, width - 1, width, width + 1};
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const auto& row = rows_[i];
-    float sum = row[0] * x[i];
-    for (std::size_t k = 1; k < kNeighbours; ++k) {
-      const std::size_t j = i + offsets[k];
-      if (j >= rows_.size()) break;  // its factor is 0
-      sum += row[k] * x[j];
-      y[j] += row[k] * x[i];
-    }
-    y[i] += sum;
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = stencil[0][i] * x[i];
+  for (std::size_t k = 1; k < kNeighbours; ++k) {
+    // What would lie beyond the last row has the factor 0.
+    const std::size_t count = x.size() - offsets[k];
+    const float* factor = stencil[k].data();
+    const float* other = x.data() + offsets[k];
+    for (std::size_t i = 0; i < count; ++i) y[i] += factor[i] * other[i];
+    float* target = y.data() + offsets[k];
+    for (std::size_t i = 0; i < count; ++i) target[i] += factor[i] * x[i];
   }
+  const float* from = x.data();
+  float* to = y.data();
   for (const Track& track : tracks_) {
-    float mean = 0;
-    for (std::size_t k = track.begin; k < track.end; ++k)
-      mean += entries_[k].factor * x[static_cast<std::size_t>(entries_[k].index)];
+    const Entry* entries = entries_.data() + track.begin;
+    const std::size_t count = track.end - track.begin;
+    // Four sums, so that none waits for the one before it.
+    Eigen::Array4f sums = Eigen::Array4f::Zero();
+    std::size_t k = 0;
+    for (; k + 4 <= count; k += 4) {
+      const Entry* e = entries + k;
+      sums +=
+          Eigen::Array4f(e[0].factor, e[1].factor, e[2].factor, e[3].factor) *
+          Eigen::Array4f(from[e[0].index], from[e[1].index], from[e[2].index], from[e[3].index]);
+    }
+    float mean = sums.sum();
+    for (; k < count; ++k) mean += entries[k].factor * from[entries[k].index];
     mean *= track.weight;
-    for (std::size_t k = track.begin; k < track.end; ++k)
-      y[static_cast<std::size_t>(entries_[k].index)] -= entries_[k].factor * mean;
+    for (k = 0; k < count; ++k) to[entries[k].index] -= entries[k].factor * mean;
   }
 }
 
@@ -177,6 +200,7 @@ GridSolution LevelSystem::solve(int iterations, double tolerance, const ImageF& 
   const std::size_t n = rows_.size();
   std::vector<float> diagonal(n);
   for (std::size_t i = 0; i < n; ++i) diagonal[i] = rows_[i][0];
+  const Stencil stencil = this->stencil();
   CosinePreconditioner preconditioner(width_, height_, diagonal, track_variance());
   GridSolution solution{ImageF(width_, height_), 0, 0};
   std::vector<float> x(n, 0), r(right_side_.begin(), right_side_.end()), z(n), p, q(n);
@@ -184,14 +208,14 @@ GridSolution LevelSystem::solve(int iterations, double tolerance, const ImageF& 
   const double full = std::max(dot(r, z), 1e-30);
   if (!start.empty()) {
     x.assign(start.pixels().begin(), start.pixels().end());
-    multiply(x, q);
+    multiply(stencil, x, q);
     for (std::size_t i = 0; i < n; ++i) r[i] -= q[i];
     preconditioner.apply(r, z);
   }
   p = z;
   double rz = dot(r, z);
   while (solution.iterations < iterations && rz > tolerance * tolerance * full) {
-    multiply(p, q);
+    multiply(stencil, p, q);
     const auto step = static_cast<float>(rz / dot(p, q));
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += step * p[i];

@@ -60,7 +60,11 @@ class LevelSystem {
     float weight;
   };
 
-  void multiply(const std::vector<float>& x, std::vector<float>& y) const;
+  /// rows_, one neighbour after the other.
+  using Stencil = std::array<std::vector<float>, kNeighbours>;
+
+  [[nodiscard]] Stencil stencil() const;
+  void multiply(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y) const;
   [[nodiscard]] double track_variance() const;
 
   int width_, height_;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -22,25 +24,38 @@ struct DepthScene {
 
 /// Where a pixel looks, in the reference view.
 struct Place {
-  float x = 0, y = 0;       ///< [px of the reference view], undistorted, also outside of it
+  float x = 0, y = 0;       ///< [px of the reference view], undistorted, within it
   float inverse_depth = 0;  ///< 1 / z in the reference view [1/m]
 };
 
-/// Finds the place in the reference view that a sensor pixel sees (6.3), pi(T pi^-1(u, d_u)), with
-/// the surfaces as they are seen from near the camera's pose: they are drawn anew whenever the
-/// image has moved by `redraw_px`. Nothing is found within `step_margin_px` (in x and y) of a step
-/// of depth: where an occluder ends is known to a pixel only, and what such a pixel sees is either.
+struct PlaceOptions {
+  double redraw_px = 8;  ///< image motion after which the surfaces are drawn anew
+  double parallax_px =
+      1;  ///< ... or after which two of them have shifted so far at a step of depth
+  double same_surface = 0.05;  ///< relative difference of depth up to which a place is visible
+  int step_margin_px = 0;      ///< nothing is found this near to a step of depth, in x and y
+};
+
+/// Finds the place in the reference view that a sensor pixel sees (6.3), pi(T pi^-1(u, d_u)): the
+/// pixel's ray meets the plane of the surface around the place, n . p = 1, exactly. Which place it
+/// is, and whether something hides it, is read from the surfaces as they are seen from near the
+/// camera's pose; they are drawn seldom. Nothing is found near a step of depth: where an occluder
+/// ends is known to a pixel only, and what such a pixel sees is either.
 class PlaceFinder {
  public:
+  /// `reference_inverse_depth`: what the reference view sees [1/m], 0 = unknown.
   PlaceFinder(const PinholeCamera& camera, const DepthScene& scene,
-              const Rigid3& world_from_reference, double redraw_px, int step_margin_px = 0);
+              const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
+              const PlaceOptions& options);
 
   /// Draws the surfaces anew where the camera has moved too far from where they were drawn.
   void prepare(const CameraPose& reference_from_camera);
 
-  /// nullopt where no depth is known. After prepare() for a pose nearby.
-  [[nodiscard]] std::optional<Place> find(int x, int y,
-                                          const CameraPose& reference_from_camera) const;
+  /// nullopt where no depth is known or the place is not seen by both. After prepare() for a pose
+  /// nearby. `earlier`: where the pixel looked a little earlier, within the reference view: a first
+  /// guess that costs nothing.
+  [[nodiscard]] std::optional<Place> find(int x, int y, const CameraPose& reference_from_camera,
+                                          const Eigen::Vector2f* earlier = nullptr) const;
 
   /// How often the surfaces were drawn.
   [[nodiscard]] int draws() const { return draws_; }
@@ -51,19 +66,68 @@ class PlaceFinder {
                                 const CameraPose& earlier_from_reference) const;
 
  private:
-  void mark_steps();
-  /// 1 / z where the view sees something, bilinear on one surface, else of the nearest known pixel.
-  [[nodiscard]] float look_up(float x, float y) const;
+  /// The plane n . p = 1 of the surface at a pixel of the reference view.
+  struct Plane {
+    Eigen::Vector3f normal;
+    float inverse_depth;  ///< at the pixel; 0: unknown
+  };
+  /// A pixel of the drawn view where two surfaces meet.
+  struct Step {
+    Eigen::Vector3f ray;
+    float near, far;  ///< their depths [m]
+  };
 
-  PinholeCamera camera_;  ///< without the lens
-  UndistortionTable undistorted_;
+  void set_planes(const ImageF& inverse_depth);
+  void mark_steps();
+  /// How far surfaces have shifted against each other since the view was drawn [px].
+  [[nodiscard]] double parallax_px(const CameraPose& reference_from_camera) const;
+  /// The place of the drawn view's depth along a ray, from + z direction.
+  [[nodiscard]] bool guess(const Eigen::Vector3f& ray, const Eigen::Vector3f& direction,
+                           const Eigen::Vector3f& from, Place& place) const;
+  /// Where the ray meets the surface near a first guess; false if it does not.
+  [[nodiscard]] bool meet_surface(const Eigen::Vector3f& direction, const Eigen::Vector3f& from,
+                                  Place& place, Eigen::Vector3f& point) const;
+  /// Whether nothing hides a point of the reference view, far from steps of depth.
+  [[nodiscard]] bool is_seen(const Eigen::Vector3f& point) const;
+
+  /// Index of the drawn view's pixel nearest to where it sees a point; -1: outside.
+  [[nodiscard]] int view_index(const Eigen::Vector3f& in_view) const {
+    if (!(in_view.z() > 0)) return -1;
+    const float scale = 1 / in_view.z();
+    const float x = fx_ * in_view.x() * scale + cx_ + margin_ + 0.5F;
+    const float y = fy_ * in_view.y() * scale + cy_ + margin_ + 0.5F;
+    if (!(x >= 0 && y >= 0 && x < static_cast<float>(view_camera_.width) &&
+          y < static_cast<float>(view_camera_.height)))
+      return -1;
+    return static_cast<int>(y) * view_camera_.width + static_cast<int>(x);
+  }
+  /// Whether a point in front of the reference view lies within it, and where.
+  [[nodiscard]] bool project(const Eigen::Vector3f& point, Place& place) const {
+    place.inverse_depth = 1 / point.z();
+    place.x = fx_ * point.x() * place.inverse_depth + cx_;
+    place.y = fy_ * point.y() * place.inverse_depth + cy_;
+    return is_inside(planes_, place.x, place.y);
+  }
+  [[nodiscard]] const Plane& plane_at(const Place& place) const {
+    return planes_(static_cast<int>(place.x + 0.5F), static_cast<int>(place.y + 0.5F));
+  }
+  [[nodiscard]] bool is_same(float seen, float expected) const {
+    return std::abs(seen - expected) <= same_surface_ * expected;
+  }
+
+  PinholeCamera camera_;       ///< without the lens
+  PinholeCamera view_camera_;  ///< ... and larger on all sides by what it may move
   const DepthScene& scene_;
   Rigid3 world_from_reference_;
-  double redraw_px_;
-  int step_margin_px_;
+  PlaceOptions options_;
   float fx_, fy_, cx_, cy_;
-  ImageF inverse_depth_;  ///< of the view
-  ImageU8 is_near_step_;  ///< of the view
+  float same_surface_;
+  float margin_;                 ///< of the drawn view around the camera's [px]
+  Image<Eigen::Vector3f> rays_;  ///< of the sensor's pixels, z = 1
+  Image<Plane> planes_;          ///< of the reference view
+  ImageF inverse_depth_;         ///< of the drawn view
+  ImageU8 is_near_step_;         ///< of the drawn view
+  std::vector<Step> steps_;      ///< some of them
   CameraPose view_from_reference_;
   int draws_ = 0;
 };

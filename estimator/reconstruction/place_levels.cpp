@@ -18,8 +18,7 @@ constexpr double kLeastShare = 0.25;
 LevelFinder::LevelFinder(const PinholeCamera& camera, const DepthScene& scene,
                          const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
                          double contrast_on, double contrast_off, const LevelOptions& options)
-    : places_(camera, scene, world_from_reference, options.redraw_px, options.step_margin_px),
-      reference_(reference_inverse_depth),
+    : places_(camera, scene, world_from_reference, reference_inverse_depth, options.places),
       world_from_reference_(world_from_reference),
       contrast_on_(static_cast<float>(contrast_on)),
       contrast_off_(static_cast<float>(contrast_off)),
@@ -49,11 +48,11 @@ void LevelFinder::add_event(const Event& event, const CameraPose& pose,
   Pixel& pixel = pixels_(event.x, event.y);
   const float step = event.polarity > 0 ? contrast_on_ : -contrast_off_;
   pixel.level += step;
-  const auto place = places_.find(event.x, event.y, pose);
-  if (!place || !is_visible(*place)) return;
+  const auto place = find_place(event.x, event.y, pose);
+  if (!place) return;
   // At the edge of an occluder the level jumps past the threshold, by up to one more of them; so do
   // several events at once.
-  const auto tolerance = static_cast<float>(options_.same_surface);
+  const auto tolerance = static_cast<float>(options_.places.same_surface);
   const bool is_jump = pixel.events > 0 && (std::abs(place->inverse_depth - pixel.inverse_depth) >
                                                 tolerance * pixel.inverse_depth ||
                                             event.t_ns - pixel.t_ns < kAtOnceNs);
@@ -88,8 +87,8 @@ void LevelFinder::add_still(int x, int y, const CameraPose& pose, std::vector<Pl
   // to a threshold (C / 2 +- C / sqrt(12)). Without an event so far it may be on either side.
   const float contrast = (contrast_on_ + contrast_off_) / 2;
   Pixel& pixel = pixels_(x, y);
-  const auto place = places_.find(x, y, pose);
-  if (!place || !is_visible(*place)) return;
+  const auto place = find_place(x, y, pose);
+  if (!place) return;
   if (pixel.events == 0) {
     pixel.track = tracks_++;
     pixel.events = 1;
@@ -105,14 +104,11 @@ void LevelFinder::add_still(int x, int y, const CameraPose& pose, std::vector<Pl
   pixel.still_y = place->y;
 }
 
-bool LevelFinder::is_visible(const Place& place) const {
-  if (!is_inside(reference_, place.x, place.y)) return false;
-  const BilinearCell<float> c(place.x, place.y, reference_.width(), reference_.height());
-  const auto tolerance = static_cast<float>(options_.same_surface);
-  const auto is_same = [&](float seen) {
-    return std::abs(seen - place.inverse_depth) <= tolerance * place.inverse_depth;
-  };
-  return is_same(reference_(c.x0 + (c.fx > 0.5F ? 1 : 0), c.y0 + (c.fy > 0.5F ? 1 : 0)));
+std::optional<Place> LevelFinder::find_place(int x, int y, const CameraPose& pose) const {
+  const Pixel& pixel = pixels_(x, y);
+  if (pixel.events == 0) return places_.find(x, y, pose);
+  const Eigen::Vector2f earlier(pixel.still_x, pixel.still_y);
+  return places_.find(x, y, pose, &earlier);
 }
 
 }  // namespace saccade

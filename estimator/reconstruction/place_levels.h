@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,9 +33,7 @@ struct LevelOptions {
   int still_turns = 1;         ///< ... every n-th pixel at a time, each in its turn
   double beyond =
       0.5;  ///< ... and where they are likely: this share of a threshold beyond the last event
-  double redraw_px = 2;        ///< image motion after which the surfaces are drawn anew
-  double same_surface = 0.05;  ///< relative difference of depth up to which a place is visible
-  int step_margin_px = 0;      ///< pixels this near to a step of depth say nothing
+  PlaceOptions places;
 };
 
 /// Turns events into levels of the reference image. At the instant of an event the level is exact:
@@ -66,13 +65,12 @@ class LevelFinder {
     float last = 0;  ///< polarity of the last event, 0: none so far
   };
 
-  [[nodiscard]] bool is_visible(const Place& place) const;
+  [[nodiscard]] std::optional<Place> find_place(int x, int y, const CameraPose& pose) const;
   void add_event(const Event& event, const CameraPose& pose, std::vector<PlaceLevel>& levels);
   void ask_still(const CameraPose& pose, std::vector<PlaceLevel>& levels);
   void add_still(int x, int y, const CameraPose& pose, std::vector<PlaceLevel>& levels);
 
   PlaceFinder places_;
-  const ImageF& reference_;
   Rigid3 world_from_reference_;
   float contrast_on_, contrast_off_;
   LevelOptions options_;

@@ -37,14 +37,18 @@ void describe_levels(config::Fields& fields, LevelOptions& options) {
       .value("beyond", options.beyond,
              "a silent pixel's level goes on past its last event, by this share of a threshold")
       .range(0, 1);
-  fields.value("redraw_px", options.redraw_px, "motion after which the depth is drawn anew")
+  fields.value("redraw_px", options.places.redraw_px, "motion after which the depth is drawn anew")
       .range(0.1, 100);
   fields
-      .value("same_surface", options.same_surface,
+      .value("parallax_px", options.places.parallax_px,
+             "... or after which surfaces have shifted so far against each other")
+      .range(0.01, 100);
+  fields
+      .value("same_surface", options.places.same_surface,
              "relative difference of depth up to which a place is the one that is seen (z-test)")
       .range(1e-4, 10);
   fields
-      .value("step_margin_px", options.step_margin_px,
+      .value("step_margin_px", options.places.step_margin_px,
              "pixels this near to a step of depth say nothing")
       .range(0, 20);
 }

@@ -1,5 +1,6 @@
 #include "estimator/reconstruction/reference_grid.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -13,6 +14,16 @@ ReferenceGrid::ReferenceGrid(ImageF inverse_depth, int scale, double same_surfac
       scale_(scale),
       same_surface_(static_cast<float>(same_surface)) {
   SACCADE_CHECK(scale >= 1 && width() > 1 && height() > 1);
+  is_one_surface_ = ImageU8(width(), height());
+  for (int y = 0; y + 1 < height(); ++y)
+    for (int x = 0; x + 1 < width(); ++x) {
+      const int i = y * width() + x;
+      const std::array<int, 4> corner = {i, i + 1, i + width(), i + width() + 1};
+      bool joined = true;
+      for (const int a : corner)
+        for (const int b : corner) joined = joined && is_joined(a, b);
+      is_one_surface_(x, y) = joined ? 1 : 0;
+    }
 }
 
 GridPoint ReferenceGrid::at(float x, float y) const {
@@ -21,6 +32,7 @@ GridPoint ReferenceGrid::at(float x, float y) const {
   const int first = c.y0 * width() + c.x0;
   GridPoint point{{first, first + 1, first + width(), first + width() + 1},
                   {(1 - c.fx) * (1 - c.fy), c.fx * (1 - c.fy), (1 - c.fx) * c.fy, c.fx * c.fy}};
+  if (is_one_surface_(c.x0, c.y0) != 0) return point;
   const int nearest = point.index[(c.fy > 0.5F ? 2U : 0U) + (c.fx > 0.5F ? 1U : 0U)];
   float sum = 0;
   for (std::size_t k = 0; k < 4; ++k) {

@@ -25,6 +25,7 @@ class ReferenceGrid {
 
  private:
   ImageF inverse_depth_;
+  ImageU8 is_one_surface_;  ///< all four of a pixel, the next ones right, below and right below
   int scale_;
   float same_surface_;
 };

@@ -51,13 +51,15 @@ TEST(PlaceFinder, FindsWhereAPixelLooks) {
   scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
     mesh.draw(camera_from_world * corner_motion(0), target, inverse);
   };
-  PlaceFinder finder(camera, scene, corner_motion(0), 2);
+  ImageF reference(120, 90);
+  scene.draw(corner_motion(0).inverse(), camera, reference);
+  PlaceFinder finder(camera, scene, corner_motion(0), reference, {});
   const auto pose_at = [&](double t_s) {
     const Rigid3 pose = corner_motion(0).inverse() * corner_motion(t_s);
     return CameraPose{pose.rotation_matrix().cast<float>(), pose.translation().cast<float>()};
   };
   // The surfaces are drawn for one moment and read at another, within the motion that is allowed.
-  finder.prepare(pose_at(0.1));
+  finder.prepare(pose_at(0.09));
   finder.prepare(pose_at(0.102));
   EXPECT_EQ(finder.draws(), 1);
   const ImageF depth = world.depth(corner_motion(0.102));
@@ -77,16 +79,73 @@ TEST(PlaceFinder, FindsWhereAPixelLooks) {
   EXPECT_GT(good, 0.97 * found);
 }
 
+TEST(PlaceFinder, AnEarlierPlaceIsAFirstGuessOnly) {
+  const auto world = corner_world(120, 90);
+  const PinholeCamera& camera = world.camera();
+  const DepthMesh mesh(world.depth(corner_motion(0)), camera);
+  DepthScene scene;
+  scene.typical_depth_m = mesh.typical_depth_m();
+  scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
+    mesh.draw(camera_from_world * corner_motion(0), target, inverse);
+  };
+  ImageF reference(120, 90);
+  scene.draw(corner_motion(0).inverse(), camera, reference);
+  PlaceFinder finder(camera, scene, corner_motion(0), reference, {});
+  const Rigid3 motion = corner_motion(0).inverse() * corner_motion(0.05);
+  const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
+  finder.prepare(pose);
+  int found = 0, good = 0;
+  for (int y = 5; y < 85; ++y)
+    for (int x = 5; x < 115; ++x) {
+      const auto place = finder.find(x, y, pose);
+      if (!place) continue;
+      const Eigen::Vector2f off(std::min(place->x + 4, 119.0F), std::max(place->y - 3, 0.0F));
+      const auto again = finder.find(x, y, pose, &off);
+      ASSERT_TRUE(again.has_value()) << x << " " << y;
+      ++found;
+      good += std::hypot(place->x - again->x, place->y - again->y) < 0.02F ? 1 : 0;
+    }
+  EXPECT_GT(found, 7000);
+  EXPECT_GT(good, 0.97 * found);
+}
+
+TEST(PlaceFinder, DrawsAnewWhereSurfacesShiftAgainstEachOther) {
+  const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
+  const auto draws_after = [&](double far, const CameraPose& pose) {
+    DepthScene scene;
+    scene.draw = [far](const Rigid3&, const PinholeCamera& target, ImageF& inverse) {
+      for (int y = 0; y < inverse.height(); ++y)
+        for (int x = 0; x < inverse.width(); ++x)
+          inverse(x, y) = x < target.cx ? 1.0F : static_cast<float>(1 / far);
+    };
+    ImageF reference(40, 30);
+    scene.draw(Rigid3(), camera, reference);
+    PlaceFinder finder(camera, scene, Rigid3(), reference, {.redraw_px = 8, .parallax_px = 1});
+    finder.prepare({Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero()});
+    finder.prepare(pose);
+    return finder.draws();
+  };
+  // 4 px at 1 m; a surface at 2 m stays 2 px behind, one at 1.2 m by 0.7 px.
+  const CameraPose aside{Eigen::Matrix3f::Identity(), {0.1F, 0, 0}};
+  EXPECT_EQ(draws_after(2, aside), 2);
+  EXPECT_EQ(draws_after(1.2, aside), 1);
+  const CameraPose turned{Eigen::AngleAxisf(0.1F, Eigen::Vector3f::UnitY()).matrix(),
+                          Eigen::Vector3f::Zero()};
+  EXPECT_EQ(draws_after(2, turned), 1);
+}
+
 TEST(PlaceFinder, FindsNothingNextToAStepOfDepth) {
   const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
   DepthScene scene;
-  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) {
+  scene.draw = [](const Rigid3&, const PinholeCamera& target, ImageF& inverse) {
     for (int y = 0; y < inverse.height(); ++y)
-      for (int x = 0; x < inverse.width(); ++x) inverse(x, y) = x < 20 ? 1.0F : 0.5F;
+      for (int x = 0; x < inverse.width(); ++x) inverse(x, y) = x < target.cx ? 1.0F : 0.5F;
   };
+  ImageF reference(40, 30);
+  scene.draw(Rigid3(), camera, reference);
   const CameraPose at_reference{Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero()};
   for (const int margin : {0, 1, 3}) {
-    PlaceFinder finder(camera, scene, Rigid3(), 2, margin);
+    PlaceFinder finder(camera, scene, Rigid3(), reference, {.step_margin_px = margin});
     finder.prepare(at_reference);
     for (int x = 0; x < 40; ++x) {
       const bool is_near = x >= 20 - margin && x < 20 + margin;
@@ -108,7 +167,7 @@ TEST(LevelFinder, AsksEverySilentPixelInItsTurn) {
   for (const int turns : {1, 3}) {
     LevelOptions options;
     options.still_px = 0.5;
-    options.redraw_px = 1;
+    options.places.redraw_px = 1;
     options.still_turns = turns;
     LevelFinder finder(camera, scene, Rigid3(), reference, 0.2, 0.2, options);
     std::vector<PlaceLevel> levels;
