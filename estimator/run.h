@@ -33,7 +33,8 @@ struct RunSummary {
   std::string found;       ///< "812 poses (0 lost)"
   std::size_t events = 0;  ///< given to the estimator
   std::size_t poses = 0;   ///< found, of modules that find poses
-  double wall_s = 0;       ///< median over the repetitions, without reading and writing
+  std::size_t lost_poses = 0;
+  double wall_s = 0;  ///< median over the repetitions, without reading and writing
 };
 
 }  // namespace saccade

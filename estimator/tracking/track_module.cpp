@@ -247,10 +247,10 @@ RunSummary run_track(const RunRequest& request) {
   RunSummary summary;
   summary.events = input.events.size();
   summary.poses = output.poses.size();
-  const auto lost =
+  summary.lost_poses = static_cast<std::size_t>(
       std::count_if(output.poses.begin(), output.poses.end(),
-                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; });
-  summary.found = fmt::format("{} poses ({} lost)", output.poses.size(), lost);
+                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; }));
+  summary.found = fmt::format("{} poses ({} lost)", summary.poses, summary.lost_poses);
   summary.wall_s = median(output.timing.wall_s);
   return summary;
 }
