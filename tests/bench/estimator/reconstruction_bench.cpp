@@ -62,12 +62,11 @@ EquationOptions best() {
   EquationOptions options;
   options.levels = {.event_sigma = 0.075,
                     .track_events = 12,
-                    .still_px = 0.7,
-                    .still_turns = 3,
+                    .still_px = 0.8,
+                    .still_turns = 4,
                     .beyond = 0.4,
-                    .redraw_px = 1.2,
-                    .step_margin_px = 1};
-  options.thin_px = 0.8;
+                    .places = {.redraw_px = 8, .parallax_px = 1.2, .step_margin_px = 1}};
+  options.thin_px = 1.1;
   options.smoothness = 0.05;
   options.bound_sigma = 0.2;
   options.tolerance = 0.005;
@@ -90,7 +89,8 @@ std::vector<PlaceLevel> levels_of_recording() {
 /// Places of all pixels at one pose, on surfaces that are drawn already.
 void places(benchmark::State& state) {
   const Recording& r = recording();
-  PlaceFinder finder(r.world.camera(), r.scene, r.world_from_reference, 1.2, 1);
+  PlaceFinder finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
+                     best().levels.places);
   const Rigid3 motion = r.world_from_reference.inverse() * corner_motion(0.25);
   const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
   finder.prepare(pose);
