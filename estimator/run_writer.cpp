@@ -66,8 +66,10 @@ std::string to_json(const RunTiming& timing) {
                       median(timing.wall_s), *low, *high);
   json += fmt::format("  \"events\": {},\n", timing.events);
   json += rate("events_per_s", static_cast<double>(timing.events), timing.wall_s);
-  json += fmt::format("  \"poses\": {},\n", timing.poses);
-  json += rate("poses_per_s", static_cast<double>(timing.poses), timing.wall_s);
+  if (timing.poses) {
+    json += fmt::format("  \"poses\": {},\n", *timing.poses);
+    json += rate("poses_per_s", static_cast<double>(*timing.poses), timing.wall_s);
+  }
   json += rate("realtime_factor", timing.sequence_s, timing.wall_s);
   json += fmt::format("  \"repetitions\": {},\n", timing.wall_s.size());
   json += "  \"stages_s\": {";

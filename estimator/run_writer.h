@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,10 +16,10 @@ namespace saccade {
 
 /// What timing.json states. All times without reading and writing files but `io_s`.
 struct RunTiming {
-  std::vector<double> wall_s;  ///< of every repetition
-  std::size_t events = 0;      ///< processed in one repetition
-  std::size_t poses = 0;       ///< found in one repetition
-  double sequence_s = 0;       ///< length of the recording
+  std::vector<double> wall_s;        ///< of every repetition
+  std::size_t events = 0;            ///< processed in one repetition
+  std::optional<std::size_t> poses;  ///< found in one repetition, by modules that find poses
+  double sequence_s = 0;             ///< length of the recording
   double io_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< of the last repetition
 };

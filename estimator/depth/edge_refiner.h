@@ -35,7 +35,7 @@ struct Expectation {
 /// other: where an edge was found, later seeds of the same edge are skipped.
 class EdgeRefiner {
  public:
-  /// `rays` must outlive it.
+  /// `rays` and `options` outlive it.
   EdgeRefiner(const EventRays& rays, const RefinerOptions& options, const DepthLimits& limits,
               const PinholeCamera& camera);
 

@@ -24,7 +24,8 @@ struct StabilizedEvent {
 /// with the lens taken out. Exact for what is far away, or where the camera only turns.
 class Stabilizer {
  public:
-  /// `camera` with its lens; `world_from_camera` is not empty, positions do not matter.
+  /// `camera` with its lens; `world_from_camera` is not empty and outlives this, positions do not
+  /// matter.
   Stabilizer(const PinholeCamera& camera, const Trajectory& world_from_camera);
 
   /// Every event with the orientation at its own time (thesis 3.3), held beyond the trajectory's

@@ -11,13 +11,12 @@
 namespace saccade {
 
 struct RotationOptions {
-  int events = 20000;          ///< per window
+  int events = 40000;          ///< per window
   double max_window_s = 0.05;  ///< a slow window is cut here
-  int samples = 8000;          ///< at most so many of them are used
-  double blur_px = 1.5;        ///< of the image of events
+  int samples = 20000;         ///< at most so many of them are used
+  double blur_px = 1;          ///< of the image of events
   int iterations = 12;         ///< of quasi-Newton steps, at most
   double tolerance_px = 0.01;  ///< a step that moves events by less is the last
-  double min_gain = 1.05;      ///< least contrast in units of that without turning, when turning
 };
 
 /// What one window says.

@@ -14,6 +14,7 @@ namespace {
 
 using testing::corner_motion;
 using testing::corner_world;
+using testing::PlanarWorld;
 
 TEST(DepthSplat, NearPointsHideFarOnes) {
   const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
@@ -42,18 +43,29 @@ TEST(DepthSplat, LargerKernelsReachFarther) {
   }
 }
 
-TEST(PlaceFinder, FindsWhereAPixelLooks) {
-  const auto world = corner_world(120, 90);
-  const PinholeCamera& camera = world.camera();
-  const DepthMesh mesh(world.depth(corner_motion(0)), camera);
+/// What a view of the corner knows of it.
+struct Corner {
+  PlanarWorld world = corner_world(120, 90);
+  DepthMesh mesh{world.depth(corner_motion(0)), world.camera()};
   DepthScene scene;
-  scene.typical_depth_m = mesh.typical_depth_m();
-  scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
-    mesh.draw(camera_from_world * corner_motion(0), target, inverse);
-  };
-  ImageF reference(120, 90);
-  scene.draw(corner_motion(0).inverse(), camera, reference);
-  PlaceFinder finder(camera, scene, corner_motion(0), reference, {});
+  ImageF reference{120, 90};  ///< inverse depth [1/m]
+
+  Corner() {
+    scene.typical_depth_m = mesh.typical_depth_m();
+    scene.draw = [this](const Rigid3& camera_from_world, const PinholeCamera& target,
+                        ImageF& inverse) {
+      mesh.draw(camera_from_world * corner_motion(0), target, inverse);
+    };
+    scene.draw(corner_motion(0).inverse(), world.camera(), reference);
+  }
+  Corner(const Corner&) = delete;
+  Corner& operator=(const Corner&) = delete;
+};
+
+TEST(PlaceFinder, FindsWhereAPixelLooks) {
+  const Corner corner;
+  const PinholeCamera& camera = corner.world.camera();
+  PlaceFinder finder(camera, corner.scene, corner_motion(0), corner.reference, {});
   const auto pose_at = [&](double t_s) {
     const Rigid3 pose = corner_motion(0).inverse() * corner_motion(t_s);
     return CameraPose{pose.rotation_matrix().cast<float>(), pose.translation().cast<float>()};
@@ -62,7 +74,7 @@ TEST(PlaceFinder, FindsWhereAPixelLooks) {
   finder.prepare(pose_at(0.09));
   finder.prepare(pose_at(0.102));
   EXPECT_EQ(finder.draws(), 1);
-  const ImageF depth = world.depth(corner_motion(0.102));
+  const ImageF depth = corner.world.depth(corner_motion(0.102));
   int found = 0, good = 0;
   for (int y = 5; y < 85; ++y)
     for (int x = 5; x < 115; ++x) {
@@ -80,17 +92,9 @@ TEST(PlaceFinder, FindsWhereAPixelLooks) {
 }
 
 TEST(PlaceFinder, AnEarlierPlaceIsAFirstGuessOnly) {
-  const auto world = corner_world(120, 90);
-  const PinholeCamera& camera = world.camera();
-  const DepthMesh mesh(world.depth(corner_motion(0)), camera);
-  DepthScene scene;
-  scene.typical_depth_m = mesh.typical_depth_m();
-  scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
-    mesh.draw(camera_from_world * corner_motion(0), target, inverse);
-  };
-  ImageF reference(120, 90);
-  scene.draw(corner_motion(0).inverse(), camera, reference);
-  PlaceFinder finder(camera, scene, corner_motion(0), reference, {});
+  const Corner corner;
+  const PinholeCamera& camera = corner.world.camera();
+  PlaceFinder finder(camera, corner.scene, corner_motion(0), corner.reference, {});
   const Rigid3 motion = corner_motion(0).inverse() * corner_motion(0.05);
   const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
   finder.prepare(pose);
