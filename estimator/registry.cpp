@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "estimator/depth/depth_module.h"
 #include "estimator/imu/stabilize_module.h"
+#include "estimator/odometry/odometry_module.h"
 #include "estimator/reconstruction/reconstruction_module.h"
 #include "estimator/tracking/track_module.h"
 
@@ -16,6 +17,8 @@ constexpr Module kModules[] = {
      print_depth_config},
     {"reconstruct", "image of a view from events, poses and depth (thesis chapter 6)", true, true,
      run_reconstruction, print_reconstruction_config},
+    {"odometry", "poses and map from events and the poses of a short start (thesis chapter 7)",
+     false, false, run_odometry, print_odometry_config},
     {"stabilize", "events and frames as of a camera that does not turn (thesis chapter 3)", true,
      false, run_stabilization, print_stabilization_config},
 };

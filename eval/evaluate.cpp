@@ -5,9 +5,11 @@
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/io/imu_file.h"
+#include "core/io/keyframe_list.h"
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
+#include "eval/metrics/keyframe_metrics.h"
 #include "eval/metrics/orientation_metrics.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
@@ -63,6 +65,8 @@ Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& d
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;
   merge(metrics, score_trajectory(input), "");
+  if (const auto keyframes = run.folder / "keyframes.yaml"; std::filesystem::exists(keyframes))
+    merge(metrics, score_keyframes(read_keyframe_list(keyframes), input), "");
   set_reprojection(metrics, reproject(run.load_map().positions, scored_samples(input),
                                       dataset.camera().undistorted()));
   return metrics;

@@ -99,15 +99,12 @@ void describe_sweep(config::Fields& fields, SweepDepthOptions& options) {
 
 }  // namespace
 
-void describe(config::Fields& fields, DepthConfig& config) {
+void describe_depth_method(config::Fields& fields, DepthConfig& config) {
   fields.choice("method", config.method,
                 {{"thesis", DepthConfig::Method::kThesis},
                  {"rays", DepthConfig::Method::kRays},
                  {"sweep", DepthConfig::Method::kSweep}},
                 "how depth is found");
-  fields.group(
-      "window", [&](config::Fields& f) { describe(f, config.window); },
-      "part of the events that makes one view");
   fields.group(
       "range_m", [&](config::Fields& f) { describe_limits(f, config.limits); },
       "depths that may occur");
@@ -123,6 +120,13 @@ void describe(config::Fields& fields, DepthConfig& config) {
     fields.group(
         "sweep", [&](config::Fields& f) { describe_sweep(f, config.sweep); },
         "votes on planes of inverse depth");
+}
+
+void describe(config::Fields& fields, DepthConfig& config) {
+  describe_depth_method(fields, config);
+  fields.group(
+      "window", [&](config::Fields& f) { describe(f, config.window); },
+      "part of the events that makes one view");
   fields.value("seed", config.seed, "of random numbers; no method draws any yet");
 }
 

@@ -28,6 +28,9 @@ struct DepthConfig {
 
 void describe(config::Fields& fields, DepthConfig& config);
 
+/// The part of it that is the method, for other modules that find depth: all but window and seed.
+void describe_depth_method(config::Fields& fields, DepthConfig& config);
+
 /// The method that the configuration names. `camera` with its lens; `mean_depth_m` of the scene, >
 /// 0.
 [[nodiscard]] std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,

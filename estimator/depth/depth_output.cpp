@@ -90,6 +90,13 @@ void append(PointCloud& cloud, const PinholeCamera& camera, const ViewWindow& wi
 
 }  // namespace
 
+void write_depth_map(const std::filesystem::path& file, const PinholeCamera& camera,
+                     const DepthResult& result) {
+  const DepthImages images = draw_depth(camera, result);
+  const ExrChannel channels[] = {{"Z", images.depth}, {"variance", images.variance}};
+  write_exr(file, channels);
+}
+
 void write_depth(const std::filesystem::path& folder, const PinholeCamera& camera,
                  std::span<const ViewWindow> windows, std::span<const DepthResult> results) {
   const PinholeCamera undistorted = camera.undistorted();
@@ -107,9 +114,7 @@ void write_depth(const std::filesystem::path& folder, const PinholeCamera& camer
     view.end_s = seconds_from_ns(window.events.back().t_ns);
     view.depth = folder / "depth" / fmt::format("depth_{:08}.exr", i);
     view.keypoints = folder / "keypoints" / fmt::format("keypoints_{:08}.png", i);
-    const DepthImages images = draw_depth(undistorted, results[i]);
-    const ExrChannel channels[] = {{"Z", images.depth}, {"variance", images.variance}};
-    write_exr(view.depth, channels);
+    write_depth_map(view.depth, undistorted, results[i]);
     write_png(view.keypoints, draw_keypoints(camera, window, results[i]));
     append(cloud, undistorted, window, i, results[i]);
     views.push_back(view);

@@ -15,4 +15,8 @@ namespace saccade {
 void write_depth(const std::filesystem::path& folder, const PinholeCamera& camera,
                  std::span<const ViewWindow> windows, std::span<const DepthResult> results);
 
+/// One depth map of write_depth(). `camera`: undistorted.
+void write_depth_map(const std::filesystem::path& file, const PinholeCamera& camera,
+                     const DepthResult& result);
+
 }  // namespace saccade

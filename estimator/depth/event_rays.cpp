@@ -79,6 +79,8 @@ EventRays::EventRays(const ViewWindow& window, const PinholeCamera& camera,
   if (events.empty()) return;
   make_slabs(window, camera, slabs);
   const std::vector<std::uint32_t> places = sort_events(events, undistortion);
+  source.resize(events.size());
+  for (std::uint32_t i = 0; i < places.size(); ++i) source[places[i]] = i;
   line.resize(events.size());
   rise.resize(events.size());
 

@@ -89,6 +89,7 @@ class EventRays {
     return offsets_[index_of(slab, false, 0, 0)];
   }
 
+  std::vector<std::uint32_t> source;  ///< index into the window's events
   std::vector<RayLine> line;
   std::vector<RayRise> rise;
 

@@ -33,41 +33,53 @@ RayDepth::RayDepth(const RayDepthOptions& options, const DepthLimits& limits,
                    const PinholeCamera& camera)
     : options_(options), limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
 
-DepthResult RayDepth::estimate(const ViewWindow& window) const {
-  double rays_s = 0, seeds_s = 0, regression_s = 0, ownership_s = 0, propagation_s = 0,
-         fusion_s = 0;
+DepthResult RayDepth::estimate(const ViewWindow& window) const { return fuse(find_edges(window)); }
+
+RayEdges RayDepth::find_edges(const ViewWindow& window) const {
+  double rays_s = 0, seeds_s = 0, regression_s = 0, ownership_s = 0, propagation_s = 0;
   const auto timed = [](double& seconds, const auto& step) {
     const StageClock clock(seconds);
     return step();
   };
-  DepthResult result;
+  RayEdges found;
   const EventRays rays =
       timed(rays_s, [&] { return EventRays(window, camera_, undistortion_, options_.slabs); });
   const auto seeds =
       timed(seeds_s, [&] { return in_order(find_seeds(rays, camera_, limits_, options_.seeds)); });
-  EdgeEvents events;
   EdgeRefiner refiner(rays, options_.refiner, limits_, camera_);
-  auto edges = timed(regression_s, [&] { return fit(refiner, seeds, events); });
+  found.edges = timed(regression_s, [&] { return fit(refiner, seeds, found.events); });
   const auto own = [&] {
-    edges = with_own_events(edges, events, rays.size(), options_.ownership);
+    found.edges = with_own_events(found.edges, found.events, rays.size(), options_.ownership);
     return 0;
   };
   timed(ownership_s, own);
   for (int i = 0; i < options_.propagation.rounds; ++i) {
     timed(propagation_s, [&] {
-      propagate(refiner, seeds, edges, events);
+      propagate(refiner, seeds, found.edges, found.events);
       return 0;
     });
     timed(ownership_s, own);
   }
-  result.points = timed(fusion_s, [&] { return fused(points_of(edges), options_.fusion); });
-  for (const EdgeSeed& seed : seeds) result.candidates.push_back(seed.pixel);
-  result.stages_s = {{"rays", rays_s},
-                     {"seeds", seeds_s},
-                     {"regression", regression_s},
-                     {"ownership", ownership_s},
-                     {"propagation", propagation_s},
-                     {"fusion", fusion_s}};
+  for (std::uint32_t& event : found.events.event) event = rays.source[event];
+  for (const EdgeSeed& seed : seeds) found.seeds.push_back(seed.pixel);
+  found.stages_s = {{"rays", rays_s},
+                    {"seeds", seeds_s},
+                    {"regression", regression_s},
+                    {"ownership", ownership_s},
+                    {"propagation", propagation_s}};
+  return found;
+}
+
+DepthResult RayDepth::fuse(const RayEdges& found) const {
+  double fusion_s = 0;
+  DepthResult result;
+  {
+    const StageClock clock(fusion_s);
+    result.points = fused(points_of(found.edges), options_.fusion);
+  }
+  result.candidates = found.seeds;
+  result.stages_s = found.stages_s;
+  result.stages_s.emplace_back("fusion", fusion_s);
   return result;
 }
 

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/camera.h"
 #include "estimator/depth/depth_estimator.h"
@@ -38,6 +42,14 @@ struct RayDepthOptions {
   FusionOptions fusion;
 };
 
+/// The edges that a window shows, before their depths are fused.
+struct RayEdges {
+  std::vector<FittedEdge> edges;  ///< `first` and `last` count in `events`
+  EdgeEvents events;              ///< indices into the window's events
+  std::vector<Eigen::Vector2f> seeds;
+  std::vector<std::pair<std::string, double>> stages_s;
+};
+
 /// Depth of edges from the rays of all events at once. No reference image: seeds come from a space
 /// sweep, and each seed's inverse depth from a regression over the rays that pass near it, first
 /// those near the reference time, then, as the depth gets better, over the whole window.
@@ -46,6 +58,10 @@ class RayDepth : public DepthEstimator {
   RayDepth(const RayDepthOptions& options, const DepthLimits& limits, const PinholeCamera& camera);
 
   [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
+
+  /// The two halves of estimate(), for those that change the edges in between.
+  [[nodiscard]] RayEdges find_edges(const ViewWindow& window) const;
+  [[nodiscard]] DepthResult fuse(const RayEdges& edges) const;
 
  private:
   [[nodiscard]] std::vector<FittedEdge> fit(EdgeRefiner& refiner,

@@ -48,6 +48,26 @@ void append_points(const RunView& view, const PinholeCamera& camera,
 
 }  // namespace
 
+DepthScene scene_of(const ImageF& depth, const PinholeCamera& camera,
+                    const Rigid3& world_from_depth, const DepthSourceOptions& options) {
+  const auto mesh = std::make_shared<DepthMesh>(depth, camera);
+  DepthScene scene;
+  scene.typical_depth_m = mesh->typical_depth_m();
+  if (options.propagation == DepthSourceOptions::Propagation::kSurface) {
+    scene.draw = [mesh, world_from_depth](const Rigid3& camera_from_world,
+                                          const PinholeCamera& target, ImageF& inverse_depth) {
+      mesh->draw(camera_from_world * world_from_depth, target, inverse_depth);
+    };
+    return scene;
+  }
+  const auto splat = std::make_shared<DepthSplat>(points_of(depth, camera), options.kernel_px);
+  scene.draw = [splat, world_from_depth](const Rigid3& camera_from_world,
+                                         const PinholeCamera& target, ImageF& inverse_depth) {
+    splat->draw(camera_from_world * world_from_depth, target, inverse_depth);
+  };
+  return scene;
+}
+
 DepthSource::DepthSource(const Dataset& dataset,
                          const std::optional<std::filesystem::path>& depth_from,
                          const Trajectory& trajectory, const DepthSourceOptions& options)
@@ -65,31 +85,11 @@ DepthScene DepthSource::scene_at(double reference_s) const {
   if (!views_.empty()) {
     const Rigid3 world_from_reference = trajectory_.at_clamped(reference_s);
     return scene_of(joined_points(world_from_reference), dataset_.camera().undistorted(),
-                    world_from_reference);
+                    world_from_reference, options_);
   }
   const std::size_t nearest = nearest_in_time(dataset_.depth_maps(), reference_s);
   return scene_of(dataset_.load_depth(nearest), dataset_.camera(),
-                  trajectory_.at_clamped(dataset_.depth_maps()[nearest].t_s));
-}
-
-DepthScene DepthSource::scene_of(const ImageF& depth, const PinholeCamera& camera,
-                                 const Rigid3& world_from_depth) const {
-  const auto mesh = std::make_shared<DepthMesh>(depth, camera);
-  DepthScene scene;
-  scene.typical_depth_m = mesh->typical_depth_m();
-  if (options_.propagation == DepthSourceOptions::Propagation::kSurface) {
-    scene.draw = [mesh, world_from_depth](const Rigid3& camera_from_world,
-                                          const PinholeCamera& target, ImageF& inverse_depth) {
-      mesh->draw(camera_from_world * world_from_depth, target, inverse_depth);
-    };
-    return scene;
-  }
-  const auto splat = std::make_shared<DepthSplat>(points_of(depth, camera), options_.kernel_px);
-  scene.draw = [splat, world_from_depth](const Rigid3& camera_from_world,
-                                         const PinholeCamera& target, ImageF& inverse_depth) {
-    splat->draw(camera_from_world * world_from_depth, target, inverse_depth);
-  };
-  return scene;
+                  trajectory_.at_clamped(dataset_.depth_maps()[nearest].t_s), options_);
 }
 
 ImageF DepthSource::joined_points(const Rigid3& world_from_reference) const {

@@ -22,6 +22,11 @@ struct DepthSourceOptions {
   double smoothness = 0.001;  ///< of a map through points: relative difference that counts linearly
 };
 
+/// The scene as one depth map [m], 0 = unknown, of `camera` with its lens knows it.
+[[nodiscard]] DepthScene scene_of(const ImageF& depth, const PinholeCamera& camera,
+                                  const Rigid3& world_from_depth,
+                                  const DepthSourceOptions& options);
+
 /// Where the depth of the scene comes from: the depth maps of a dataset or the views of a depth
 /// run.
 class DepthSource {
@@ -36,8 +41,6 @@ class DepthSource {
   [[nodiscard]] DepthScene scene_at(double reference_s) const;
 
  private:
-  [[nodiscard]] DepthScene scene_of(const ImageF& depth, const PinholeCamera& camera,
-                                    const Rigid3& world_from_depth) const;
   [[nodiscard]] ImageF joined_points(const Rigid3& world_from_reference) const;
 
   const Dataset& dataset_;

@@ -101,14 +101,11 @@ void describe_equations(config::Fields& fields, EquationOptions& options) {
 
 }  // namespace
 
-void describe(config::Fields& fields, ReconstructionConfig& config) {
+void describe_image_method(config::Fields& fields, ReconstructionConfig& config) {
   using Method = ReconstructionConfig::Method;
   fields.choice("method", config.method,
                 {{"gradient", Method::kGradient}, {"equations", Method::kEquations}},
                 "how the image is found");
-  fields.group(
-      "window", [&](config::Fields& f) { describe(f, config.window); },
-      "part of the events that makes one view");
   fields.group(
       "depth", [&](config::Fields& f) { describe_depth(f, config.depth); },
       "how depth gets from where it is known to where events are");
@@ -127,6 +124,13 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
     fields.group(
         "equations", [&](config::Fields& f) { describe_equations(f, config.equations); },
         "one linear equation per event, least squares");
+}
+
+void describe(config::Fields& fields, ReconstructionConfig& config) {
+  describe_image_method(fields, config);
+  fields.group(
+      "window", [&](config::Fields& f) { describe(f, config.window); },
+      "part of the events that makes one view");
   fields.value("growth", config.growth,
                "numbers of events of the first window after which a picture is kept");
   fields.value("seed", config.seed, "of random numbers; none are drawn");

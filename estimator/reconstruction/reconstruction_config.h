@@ -34,6 +34,10 @@ struct ReconstructionConfig {
 
 void describe(config::Fields& fields, ReconstructionConfig& config);
 
+/// The part of it that is the method, for other modules that reconstruct: all but window, growth
+/// and seed.
+void describe_image_method(config::Fields& fields, ReconstructionConfig& config);
+
 /// The method that the configuration names. `camera` with its lens.
 [[nodiscard]] std::unique_ptr<ImageEstimator> make_image_estimator(
     const ReconstructionConfig& config, const PinholeCamera& camera);

@@ -40,7 +40,9 @@ ImageF as_float(const ImageU8& mask) {
   return image;
 }
 
-void write_view(const Reconstruction& result, const RunView& view) {
+}  // namespace
+
+void write_image_view(const Reconstruction& result, const RunView& view) {
   const ExrChannel gradient[] = {{"gx", result.gradient_x},
                                  {"gy", result.gradient_y},
                                  {"Pxx", result.covariance_xx},
@@ -52,8 +54,6 @@ void write_view(const Reconstruction& result, const RunView& view) {
   write_png(std::filesystem::path(view.image).replace_extension(".png"),
             grey_picture(result.log_image, result.observed));
 }
-
-}  // namespace
 
 void write_reconstruction(const std::filesystem::path& folder,
                           std::span<const ReconstructionWindow> windows,
@@ -70,7 +70,7 @@ void write_reconstruction(const std::filesystem::path& folder,
     view.end_s = seconds_from_ns(windows[i].events.back().t_ns);
     view.gradient = folder / "gradient" / fmt::format("gradient_{:08}.exr", i);
     view.image = folder / "image" / fmt::format("image_{:08}.exr", i);
-    write_view(results[i], view);
+    write_image_view(results[i], view);
     views.push_back(view);
   }
   write_view_list(folder / "views.yaml", views);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/io/view_list.h"
 #include "estimator/reconstruction/image_estimator.h"
 
 namespace saccade {
@@ -21,5 +22,8 @@ void write_reconstruction(const std::filesystem::path& folder,
                           std::span<const ReconstructionWindow> windows,
                           std::span<const Reconstruction> results,
                           std::span<const GrowthPicture> growth);
+
+/// The gradient and the image of one view, to the files that `view` names, whose folders exist.
+void write_image_view(const Reconstruction& result, const RunView& view);
 
 }  // namespace saccade

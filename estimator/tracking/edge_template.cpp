@@ -132,6 +132,10 @@ std::size_t list_set(const std::vector<std::uint8_t>& flags, std::vector<std::ui
 TemplateDrawer::TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options,
                                const MapPoints& map)
     : TemplateDrawer(camera, options) {
+  set_map(map);
+}
+
+void TemplateDrawer::set_map(const MapPoints& map) {
   map_ = &map;
   u_.resize(map.size());
   v_.resize(map.size());

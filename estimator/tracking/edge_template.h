@@ -41,6 +41,8 @@ class TemplateDrawer {
  public:
   /// `camera` is undistorted; `options` are checked by describe().
   TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options, const MapPoints& map);
+  /// Draws other points from now on; `map` outlives the drawer.
+  void set_map(const MapPoints& map);
   /// Without a map, for draw_halved().
   TemplateDrawer(const PinholeCamera& camera, const TemplateOptions& options);
 

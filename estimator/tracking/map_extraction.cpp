@@ -51,7 +51,34 @@ float gradient_threshold(const ImageF& magnitude, float largest, const MapOption
   return std::max(threshold, *last);
 }
 
+/// All steep pixels of known depth; with `image` only the ridges of its gradient.
+MapPoints lift(const ImageF& magnitude, const ImageF* image, const ImageF& depth,
+               const PinholeCamera& camera, const MapOptions& options) {
+  float largest = 0;
+  for (const float g : magnitude.pixels()) largest = std::max(largest, g);
+  const float threshold = gradient_threshold(magnitude, largest, options);
+  MapPoints map;
+  for (int y = 1; y + 1 < depth.height(); ++y)
+    for (int x = 1; x + 1 < depth.width(); ++x) {
+      if (!(magnitude(x, y) > threshold)) continue;
+      if (image != nullptr && !is_ridge(magnitude, *image, x, y)) continue;
+      const float z = options.foreground_depth ? foreground_depth(depth, x, y) : depth(x, y);
+      if (!(z > 0)) continue;
+      const Eigen::Vector3d ray = camera.ray({x, y});
+      map.x.push_back(static_cast<float>(ray.x()) * z);
+      map.y.push_back(static_cast<float>(ray.y()) * z);
+      map.z.push_back(z);
+    }
+  return map;
+}
+
 }  // namespace
+
+void append(MapPoints& all, const MapPoints& more) {
+  all.x.insert(all.x.end(), more.x.begin(), more.x.end());
+  all.y.insert(all.y.end(), more.y.begin(), more.y.end());
+  all.z.insert(all.z.end(), more.z.begin(), more.z.end());
+}
 
 ImageF gradient_magnitude(const ImageF& image) {
   ImageF magnitude(image.width(), image.height());
@@ -68,24 +95,14 @@ ImageF gradient_magnitude(const ImageF& image) {
 MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const PinholeCamera& camera,
                       const MapOptions& options) {
   SACCADE_CHECK(log_intensity.width() == depth.width() && log_intensity.height() == depth.height());
-  const ImageF magnitude = gradient_magnitude(log_intensity);
-  float largest = 0;
-  for (const float g : magnitude.pixels()) largest = std::max(largest, g);
-  const float threshold = gradient_threshold(magnitude, largest, options);
-  MapPoints map;
-  for (int y = 1; y + 1 < depth.height(); ++y)
-    for (int x = 1; x + 1 < depth.width(); ++x) {
-      const float g = magnitude(x, y);
-      if (!(g > threshold)) continue;
-      if (options.thin && !is_ridge(magnitude, log_intensity, x, y)) continue;
-      const float z = options.foreground_depth ? foreground_depth(depth, x, y) : depth(x, y);
-      if (!(z > 0)) continue;
-      const Eigen::Vector3d ray = camera.ray({x, y});
-      map.x.push_back(static_cast<float>(ray.x()) * z);
-      map.y.push_back(static_cast<float>(ray.y()) * z);
-      map.z.push_back(z);
-    }
-  return map;
+  return lift(gradient_magnitude(log_intensity), options.thin ? &log_intensity : nullptr, depth,
+              camera, options);
+}
+
+MapPoints lift_edges(const ImageF& magnitude, const ImageF& depth, const PinholeCamera& camera,
+                     const MapOptions& options) {
+  SACCADE_CHECK(magnitude.width() == depth.width() && magnitude.height() == depth.height());
+  return lift(magnitude, nullptr, depth, camera, options);
 }
 
 }  // namespace saccade

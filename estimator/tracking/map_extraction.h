@@ -25,6 +25,9 @@ struct MapPoints {
   [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
+/// Puts the points of `more` behind those of `all`.
+void append(MapPoints& all, const MapPoints& more);
+
 /// Gradient magnitude by central differences [1/px]; 0 on the border and beside NaN pixels.
 [[nodiscard]] ImageF gradient_magnitude(const ImageF& image);
 
@@ -34,5 +37,9 @@ struct MapPoints {
 /// empty.
 [[nodiscard]] MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth,
                                     const PinholeCamera& camera, const MapOptions& options);
+
+/// The same from a gradient magnitude that is already known; `thin` is not for it.
+[[nodiscard]] MapPoints lift_edges(const ImageF& magnitude, const ImageF& depth,
+                                   const PinholeCamera& camera, const MapOptions& options);
 
 }  // namespace saccade

@@ -53,6 +53,11 @@ class MotionModel {
   /// (inverse covariance, camera frame).
   void update(const Rigid3& map_from_camera, const Matrix6& information);
 
+  /// Moves the pose within the map; the motion, which is the camera's own, goes on.
+  void correct(const Rigid3& map_from_before) {
+    map_from_camera_ = map_from_before * map_from_camera_;
+  }
+
   /// Keeps the pose, forgets the velocity: after a frame that told nothing.
   void stop();
 

@@ -26,19 +26,6 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
       .range(-1, 1);
 }
 
-void describe_map(config::Fields& fields, MapOptions& options) {
-  fields
-      .value("min_gradient", options.min_gradient,
-             "g_min: gradient magnitude of a map point, share of the largest")
-      .range(0, 1);
-  fields.value("max_share", options.max_share, "largest share of the pixels: the steepest of them")
-      .above(0)
-      .at_most(1);
-  fields.value("thin", options.thin, "keep only the maxima across an edge");
-  fields.value("foreground_depth", options.foreground_depth,
-               "an edge between two depths belongs to the nearer one");
-}
-
 void describe_template(config::Fields& fields, TemplateOptions& options) {
   fields.choice("splat", options.splat,
                 {{"nearest", TemplateOptions::Splat::kNearest},
@@ -302,6 +289,20 @@ void describe_gyroscope(config::Fields& fields, PredictionOptions& options) {
   fields.value("gyro_bias", options.gyro_bias, "taken from every reading [rad/s, sensor frame]");
 }
 
+/// How the pose is found from the edges.
+void describe_edges(config::Fields& fields, TrackerOptions& options) {
+  using config::Fields;
+  fields.group(
+      "template", [&](Fields& f) { describe_template(f, options.templates); },
+      "how the map is drawn into the current view (4.5)");
+  fields.group(
+      "event_frame", [&](Fields& f) { describe_event_frame(f, options.event_frame); },
+      "how events become an image (4.6)");
+  fields.group(
+      "align", [&](Fields& f) { describe_align(f, options.align); },
+      "Lucas-Kanade between the two (4.1-4.3)");
+}
+
 void describe_lost(config::Fields& fields, LostOptions& options) {
   fields
       .value("min_inlier_ratio", options.min_inlier_ratio,
@@ -311,7 +312,42 @@ void describe_lost(config::Fields& fields, LostOptions& options) {
       .range(1, 1e6);
 }
 
+/// What is expected of it, and when it is given up.
+void describe_expectation(config::Fields& fields, TrackerOptions& tracker) {
+  using config::Fields;
+  fields.group(
+      "motion",
+      [&](Fields& f) {
+        describe_motion(f, tracker.motion);
+        describe_gyroscope(f, tracker.motion);
+      },
+      "expectation of the next pose");
+  fields.expect(!tracker.event_frame.motion_compensation ||
+                    tracker.motion.prediction != PredictionOptions::Prediction::kNone,
+                "event_frame", "motion_compensation needs a motion.prediction");
+  fields.group(
+      "lost", [&](Fields& f) { describe_lost(f, tracker.lost); }, "when a pose is called lost");
+}
+
 }  // namespace
+
+void describe(config::Fields& fields, MapOptions& options) {
+  fields
+      .value("min_gradient", options.min_gradient,
+             "g_min: gradient magnitude of a map point, share of the largest")
+      .range(0, 1);
+  fields.value("max_share", options.max_share, "largest share of the pixels: the steepest of them")
+      .above(0)
+      .at_most(1);
+  fields.value("thin", options.thin, "keep only the maxima across an edge");
+  fields.value("foreground_depth", options.foreground_depth,
+               "an edge between two depths belongs to the nearer one");
+}
+
+void describe(config::Fields& fields, TrackerOptions& options) {
+  describe_edges(fields, options);
+  describe_expectation(fields, options);
+}
 
 void describe(config::Fields& fields, TrackConfig& config) {
   using config::Fields;
@@ -328,17 +364,9 @@ void describe(config::Fields& fields, TrackConfig& config) {
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "where the map comes from");
   fields.group(
-      "map", [&](Fields& f) { describe_map(f, config.map); },
+      "map", [&](Fields& f) { describe(f, config.map); },
       "which pixels of the reference frame become map points (4.4)");
-  fields.group(
-      "template", [&](Fields& f) { describe_template(f, tracker.templates); },
-      "how the map is drawn into the current view (4.5)");
-  fields.group(
-      "event_frame", [&](Fields& f) { describe_event_frame(f, tracker.event_frame); },
-      "how events become an image (4.6)");
-  fields.group(
-      "align", [&](Fields& f) { describe_align(f, tracker.align); },
-      "Lucas-Kanade between the two (4.1-4.3)");
+  describe_edges(fields, tracker);
   if (config.method == TrackConfig::Method::kIntensity)
     fields.group(
         "intensity", [&](Fields& f) { describe_intensity(f, config); },
@@ -351,21 +379,10 @@ void describe(config::Fields& fields, TrackConfig& config) {
     fields.group(
         "frames", [&](Fields& f) { describe_frames(f, config); },
         "how a pose is found from a grey frame");
-  fields.group(
-      "motion",
-      [&](Fields& f) {
-        describe_motion(f, tracker.motion);
-        describe_gyroscope(f, tracker.motion);
-      },
-      "expectation of the next pose");
-  fields.expect(!tracker.event_frame.motion_compensation ||
-                    tracker.motion.prediction != PredictionOptions::Prediction::kNone,
-                "event_frame", "motion_compensation needs a motion.prediction");
+  describe_expectation(fields, tracker);
   fields.expect(config.method != TrackConfig::Method::kPolarity ||
                     tracker.motion.prediction != PredictionOptions::Prediction::kNone,
                 "method", "polarity needs a motion.prediction");
-  fields.group(
-      "lost", [&](Fields& f) { describe_lost(f, tracker.lost); }, "when a pose is called lost");
   fields.value("initial_pose", config.initial_pose,
                "tx ty tz qx qy qz qw at the start; ~ is the ground truth");
   fields.value("seed", config.seed, "of the samples");

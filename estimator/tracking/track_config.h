@@ -33,4 +33,9 @@ struct TrackConfig {
 
 void describe(config::Fields& fields, TrackConfig& config);
 
+/// Parts of it, of other modules that track: which pixels become map points, and how edges are
+/// tracked.
+void describe(config::Fields& fields, MapOptions& options);
+void describe(config::Fields& fields, TrackerOptions& options);
+
 }  // namespace saccade

@@ -6,14 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/csv_file.h"
-#include "core/io/ply_file.h"
-#include "core/io/trajectory_file.h"
 #include "core/progress.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/run_input.h"
@@ -22,6 +18,7 @@
 #include "estimator/tracking/grey_frames.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/intensity_tracker.h"
+#include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
 
@@ -189,38 +186,6 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
   return output;
 }
 
-/// Poses of one trajectory have increasing times; two frames of a burst may share theirs.
-std::vector<StampedPose> stamped_poses(const std::vector<TrackedPose>& poses) {
-  std::vector<StampedPose> stamped;
-  for (const TrackedPose& pose : poses) {
-    const double t_s = seconds_from_ns(pose.t_ns);
-    if (stamped.empty() || t_s > stamped.back().t_s)
-      stamped.push_back({t_s, pose.world_from_camera});
-  }
-  return stamped;
-}
-
-void write_poses_csv(const std::filesystem::path& file, const std::vector<TrackedPose>& poses) {
-  CsvTable table({"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations",
-                  "residual", "position_sigma_m", "rotation_sigma_deg"});
-  for (const TrackedPose& p : poses)
-    table.add({seconds_from_ns(p.t_ns), seconds_from_ns(p.first_ns), seconds_from_ns(p.last_ns),
-               std::string(p.status == TrackStatus::kOk ? "ok" : "lost"), p.inlier_ratio,
-               static_cast<long long>(p.iterations), p.residual, p.position_sigma_m,
-               p.rotation_sigma_rad * 180 / std::numbers::pi});
-  table.save(file);
-}
-
-void write_map(const std::filesystem::path& file, const MapPoints& map,
-               const Rigid3& world_from_map) {
-  PointCloud cloud;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const Eigen::Vector3d point(map.x[i], map.y[i], map.z[i]);
-    cloud.positions.emplace_back((world_from_map * point).cast<float>());
-  }
-  write_ply(file, cloud);
-}
-
 }  // namespace
 
 RunSummary run_track(const RunRequest& request) {
@@ -237,8 +202,7 @@ RunSummary run_track(const RunRequest& request) {
   TrackOutput output = track(config, dataset, input, request.repeat);
 
   const auto write_start = Clock::now();
-  write_tum_trajectory(writer.path() / "trajectory.txt", stamped_poses(output.poses));
-  write_poses_csv(writer.path() / "poses.csv", output.poses);
+  write_poses(writer.path(), output.poses);
   write_map(writer.path() / "map.ply", output.map, input.references.front().world_from_reference);
   output.timing.io_s = read_s + seconds_since(write_start);
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
@@ -247,9 +211,7 @@ RunSummary run_track(const RunRequest& request) {
   RunSummary summary;
   summary.events = input.events.size();
   summary.poses = output.poses.size();
-  summary.lost_poses = static_cast<std::size_t>(
-      std::count_if(output.poses.begin(), output.poses.end(),
-                    [](const TrackedPose& p) { return p.status == TrackStatus::kLost; }));
+  summary.lost_poses = count_lost(output.poses);
   summary.found = fmt::format("{} poses ({} lost)", summary.poses, summary.lost_poses);
   summary.wall_s = median(output.timing.wall_s);
   return summary;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/stage_clock.h"
 
@@ -38,22 +39,38 @@ void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviati
   motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera, deviation_px);
   points_ = {};
   brightness_ = {};
+  is_brightness_known_ = false;
   frame_index_ = 0;
   templates_drawn_ = 0;
   timing_ = {};
   suspicious_frames_ = 0;
 }
 
+void Tracker::set_map(const MapPoints& map) {
+  drawer_.set_map(map);
+  points_ = {};
+  is_brightness_known_ = false;  // another map lights another share of the pixels
+}
+
+void Tracker::start(std::span<const Event> events) {
+  window_.start(events);
+  frame_.clear();
+}
+
+std::optional<TrackedPose> Tracker::next() {
+  if (!window_.advance(next_frame_events())) return std::nullopt;
+  return track_frame();
+}
+
 std::vector<TrackedPose> Tracker::track(std::span<const Event> events,
                                         const std::function<void(std::size_t)>& progress) {
   std::vector<TrackedPose> poses;
-  window_.start(events);
-  frame_.clear();
-  while (true) {
-    if (!window_.advance(next_frame_events())) return poses;
-    poses.push_back(track_frame());
+  start(events);
+  while (const std::optional<TrackedPose> pose = next()) {
+    poses.push_back(*pose);
     if (progress) progress(window_.entered().size());
   }
+  return poses;
 }
 
 std::size_t Tracker::next_frame_events() {
@@ -126,7 +143,7 @@ AlignResult Tracker::align(TimeNs t_ns) {
   const Matrix6 precision = predicted.precision / window_.share_of_new();
   const std::optional<Rigid3> first_guess =
       coarse_.approach(frame_, current_from_template, precision, seed_, frame_index_);
-  if (frame_index_ == 0)
+  if (!std::exchange(is_brightness_known_, true))
     brightness_ = aligner_.measure_brightness(frame_, first_guess.value_or(current_from_template));
   return aligner_.align(frame_, current_from_template, precision, brightness_, seed_,
                         frame_index_++, first_guess);

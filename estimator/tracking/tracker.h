@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -85,6 +86,18 @@ class Tracker {
   /// Starts anew from a pose that is known to `deviation_px`, as image motion.
   void reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviation_px = 0.2);
 
+  /// Takes another map from the next frame on, in the frame of the first; `map` outlives the
+  /// tracker. Pose and motion go on.
+  void set_map(const MapPoints& map);
+
+  /// Moves pose and motion within the map: what was tracked so far stands elsewhere.
+  void correct(const Rigid3& map_from_before) { motion_.correct(map_from_before); }
+
+  /// Begins with a stream in order of time, which outlives its poses.
+  void start(std::span<const Event> events);
+  /// The pose of the next frame of the stream; nullopt where too few events are left for one.
+  [[nodiscard]] std::optional<TrackedPose> next();
+
   /// Tracks through `events` in order of time; a rest too short for a frame gives no pose.
   /// `progress` is called with the number of events done since its last call.
   [[nodiscard]] std::vector<TrackedPose> track(
@@ -96,6 +109,10 @@ class Tracker {
   [[nodiscard]] double least_inlier_ratio() const { return options_.lost.min_inlier_ratio; }
   /// Where the camera is, how it moves, and how well that is known; in the map's frame.
   [[nodiscard]] const MotionModel& motion() const { return motion_; }
+  /// Of what is seen of the map [m].
+  [[nodiscard]] double typical_depth_m() const { return typical_depth_m_; }
+  /// Pixels that the map lights in the last template.
+  [[nodiscard]] std::size_t lit_pixels() const { return drawer_.lit_pixels(); }
   [[nodiscard]] std::size_t templates_drawn() const { return templates_drawn_; }
   [[nodiscard]] const TrackTiming& timing() const { return timing_; }
 
@@ -122,6 +139,7 @@ class Tracker {
   std::span<const TemplatePoint> points_;
   double typical_depth_m_ = 1;
   BrightnessModel brightness_;  ///< running mean over the frames, which resemble each other
+  bool is_brightness_known_ = false;
   std::uint64_t frame_index_ = 0;
   std::size_t templates_drawn_ = 0;
   int suspicious_frames_ = 0;

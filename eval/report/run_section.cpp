@@ -9,6 +9,7 @@
 #include "eval/report/depth_section.h"
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
+#include "eval/report/keyframe_section.h"
 #include "eval/report/stabilization_section.h"
 
 namespace saccade {
@@ -245,7 +246,7 @@ std::string run_section(const RunData& data) {
                         escape_html(data.missing));
   html += key_numbers(data) + views(data);
   if (data.data) {
-    html += map_pictures(data) + depth_section(data) + image_section(data);
+    html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
     html += stabilization_section(data);
   }
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/odometry/keyframe.h"
+#include "estimator/tracking/map_extraction.h"
+
+namespace saccade {
+
+/// Which keyframes make up the map.
+struct EdgeMapOptions {
+  int active = 1;  ///< K: at most so many; 1 replaces the map by every new keyframe (the thesis)
+};
+
+/// The map that the camera is tracked by: the edges of some of the keyframes, in the world. A new
+/// keyframe always belongs to it; with it, of all others, those that show most of what the camera
+/// sees, the older where they show alike, because they have drifted less.
+class EdgeMap {
+ public:
+  EdgeMap(const EdgeMapOptions& options, const PinholeCamera& camera)
+      : options_(options), camera_(camera.undistorted()) {}
+
+  /// Adds a keyframe and chooses the active ones as of a camera.
+  void add(Keyframe keyframe, const Rigid3& world_from_camera);
+
+  [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  /// Indices of those that make up the map, in order of time.
+  [[nodiscard]] const std::vector<std::size_t>& active() const { return active_; }
+  /// Their edges; the object stays the same.
+  [[nodiscard]] const MapPoints& points() const { return points_; }
+  /// Share of a keyframe's edges that a camera has in its view.
+  [[nodiscard]] double visible_share(const Keyframe& keyframe,
+                                     const Rigid3& world_from_camera) const;
+
+ private:
+  EdgeMapOptions options_;
+  PinholeCamera camera_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<std::size_t> active_;
+  MapPoints points_;
+};
+
+}  // namespace saccade

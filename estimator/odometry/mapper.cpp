@@ -1,0 +1,169 @@
+#include "estimator/odometry/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/spline.h"
+#include "estimator/depth/sweep_depth.h"
+#include "estimator/reconstruction/point_surface.h"
+
+namespace saccade {
+namespace {
+
+/// Median of the depths [m]; `otherwise` for none.
+double median_depth(const DepthResult& result, double otherwise) {
+  if (result.points.empty()) return otherwise;
+  std::vector<float> inverse;
+  inverse.reserve(result.points.size());
+  for (const EdgeDepth& point : result.points) inverse.push_back(point.inverse_depth);
+  const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
+  std::nth_element(inverse.begin(), middle, inverse.end());
+  return 1 / static_cast<double>(*middle);
+}
+
+/// The points in the camera of their view.
+std::vector<SurfacePoint> surface_points(const DepthResult& result, const PinholeCamera& camera) {
+  std::vector<SurfacePoint> points;
+  points.reserve(result.points.size());
+  for (const EdgeDepth& point : result.points) {
+    const double depth = 1 / static_cast<double>(point.inverse_depth);
+    points.push_back({depth * camera.ray({point.x_px, point.y_px}),
+                      static_cast<double>(point.sigma / point.inverse_depth)});
+  }
+  return points;
+}
+
+ImageF dense_depth(const Keyframe& keyframe, const PinholeCamera& camera,
+                   const DepthSourceOptions& options) {
+  return surface_through(surface_points(keyframe.depth, camera), camera, options.smoothness);
+}
+
+/// Size of the reconstructed gradient where it is known, else 0.
+ImageF observed_magnitude(const Reconstruction& image) {
+  ImageF magnitude(image.gradient_x.width(), image.gradient_x.height());
+  for (std::size_t i = 0; i < magnitude.size(); ++i)
+    if (image.observed.pixels()[i] != 0)
+      magnitude.pixels()[i] =
+          std::hypot(image.gradient_x.pixels()[i], image.gradient_y.pixels()[i]);
+  return magnitude;
+}
+
+void append(MapPoints& points, const Eigen::Vector3d& point) {
+  points.x.push_back(static_cast<float>(point.x()));
+  points.y.push_back(static_cast<float>(point.y()));
+  points.z.push_back(static_cast<float>(point.z()));
+}
+
+}  // namespace
+
+Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
+    : options_(options), camera_(camera) {}
+
+Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const {
+  Mapping mapping;
+  Keyframe& keyframe = mapping.keyframe;
+  ViewWindow window;
+  window.events = newest(within(events, path.poses));
+  if (window.events.empty()) return mapping;
+  const Trajectory smooth = smoothed(path.poses, window.events);
+  Trajectory adjusted = smooth;
+  window.trajectory = &adjusted;
+  keyframe.start_s = seconds_from_ns(window.events.front().t_ns);
+  keyframe.end_s = seconds_from_ns(window.events.back().t_ns);
+  keyframe.events = window.events.size();
+  window.reference_s = options_.view == MappingOptions::View::kEnd
+                           ? keyframe.end_s
+                           : (keyframe.start_s + keyframe.end_s) / 2;
+  const double expected_m = path.typical_depth_m ? *path.typical_depth_m : sweep_depth(window);
+  adjust_path(window, adjusted, path, expected_m);
+  mapping.world_from_before =
+      adjusted.at_clamped(keyframe.end_s) * smooth.at_clamped(keyframe.end_s).inverse();
+  for (const StampedPose& pose : adjusted.poses())
+    if (pose.t_s >= keyframe.start_s) mapping.poses.push_back(pose);
+  keyframe.t_s = window.reference_s;
+  keyframe.world_from_camera = window.world_from_reference();
+  keyframe.depth = make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
+  keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
+  if (keyframe.depth.points.empty()) return mapping;
+  if (options_.image || options_.edges == MappingOptions::Edges::kGradient)
+    add_image(window, keyframe);
+  add_edges(keyframe);
+  return mapping;
+}
+
+void Mapper::adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
+                         double typical_depth_m) const {
+  if (options_.adjust_rounds == 0) return;
+  const RayDepth depth(options_.depth.rays, options_.depth.limits, camera_);
+  for (int i = 0; i < options_.adjust_rounds; ++i) {
+    const Adjustment adjustment =
+        adjust(window, depth.find_edges(window), camera_, known.settled_until_s, typical_depth_m,
+               options_.adjustment);
+    if (!adjustment.ok) return;
+    path = adjustment.trajectory;
+  }
+}
+
+std::span<const Event> Mapper::newest(std::span<const Event> events) const {
+  events = events.last(std::min(events.size(), static_cast<std::size_t>(options_.events)));
+  if (events.empty()) return events;
+  const TimeNs from_ns = events.back().t_ns - ns_from_seconds(options_.duration_s);
+  const auto first = std::partition_point(events.begin(), events.end(),
+                                          [from_ns](const Event& e) { return e.t_ns < from_ns; });
+  return events.subspan(static_cast<std::size_t>(first - events.begin()));
+}
+
+Trajectory Mapper::smoothed(const Trajectory& poses, std::span<const Event> events) const {
+  // Poses beside the window hold the spline's ends.
+  constexpr double kMargin_s = 0.05;
+  const double from_s = seconds_from_ns(events.front().t_ns) - kMargin_s;
+  std::vector<StampedPose> part;
+  for (const StampedPose& pose : poses.poses())
+    if (pose.t_s >= from_s) part.push_back(pose);
+  if (options_.smoothing_s <= 0 || part.back().t_s - part.front().t_s < 4 * options_.smoothing_s)
+    return Trajectory(std::move(part));
+  const Spline spline = Spline::smooth(part, options_.smoothing_s);
+  for (StampedPose& pose : part) pose.world_from_camera = spline.pose(pose.t_s);
+  return Trajectory(std::move(part));
+}
+
+double Mapper::sweep_depth(const ViewWindow& window) const {
+  const DepthLimits& limits = options_.depth.limits;
+  const SweepDepth sweep(options_.depth.sweep, limits, camera_);
+  return median_depth(sweep.estimate(window), std::sqrt(limits.near_m * limits.far_m));
+}
+
+void Mapper::add_image(const ViewWindow& window, Keyframe& keyframe) const {
+  const PinholeCamera camera = camera_.undistorted();
+  const DepthSourceOptions& propagation = options_.reconstruction.depth;
+  const ReconstructionWindow input{window,
+                                   scene_of(dense_depth(keyframe, camera, propagation), camera,
+                                            keyframe.world_from_camera, propagation),
+                                   options_.reconstruction.contrast_on.value_or(0.2),
+                                   options_.reconstruction.contrast_off.value_or(0.2)};
+  keyframe.image = make_image_estimator(options_.reconstruction, camera_)->reconstruct(input);
+}
+
+void Mapper::add_edges(Keyframe& keyframe) const {
+  const PinholeCamera camera = camera_.undistorted();
+  if (options_.edges == MappingOptions::Edges::kGradient) {
+    const MapPoints steep = lift_edges(observed_magnitude(keyframe.image),
+                                       dense_depth(keyframe, camera, options_.reconstruction.depth),
+                                       camera, options_.steep);
+    for (std::size_t i = 0; i < steep.size(); ++i)
+      append(keyframe.edges,
+             keyframe.world_from_camera * Eigen::Vector3d(steep.x[i], steep.y[i], steep.z[i]));
+    return;
+  }
+  const auto max_sigma = static_cast<float>(options_.max_sigma);
+  for (const EdgeDepth& point : keyframe.depth.points)
+    if (point.sigma < max_sigma * point.inverse_depth)
+      append(keyframe.edges,
+             keyframe.world_from_camera *
+                 (camera.ray({point.x_px, point.y_px}) / static_cast<double>(point.inverse_depth)));
+}
+
+}  // namespace saccade

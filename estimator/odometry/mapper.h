@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "core/trajectory.h"
+#include "estimator/depth/depth_config.h"
+#include "estimator/odometry/keyframe.h"
+#include "estimator/reconstruction/reconstruction_config.h"
+#include "estimator/refinement/edge_adjustment.h"
+
+namespace saccade {
+
+/// How a keyframe is made from events and poses.
+struct MappingOptions {
+  enum class Edges { kGradient, kDepth };
+  enum class View { kMiddle, kEnd };
+
+  int events = 200000;          ///< N_map: at most so many, the newest
+  double duration_s = 0.4;      ///< ... and of at most so long
+  View view = View::kEnd;       ///< where in its events the view lies
+  Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
+  bool image = true;            ///< whether an image is made where the edges do not need it
+  double max_sigma = 0.05;      ///< of a point's inverse depth that becomes an edge, relative
+  double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
+  /// Poses and edges are adjusted together that many times before the keyframe is made; 0: the
+  /// poses are taken as they are. Of depth.method: rays.
+  int adjust_rounds = 0;
+  AdjustmentOptions adjustment;
+  MapOptions steep;  ///< of kGradient
+  DepthConfig depth;
+  ReconstructionConfig reconstruction;
+};
+
+/// What is known of the camera's path.
+struct KnownPath {
+  Trajectory poses;
+  double settled_until_s = 0;             ///< poses until then do not change any more
+  std::optional<double> typical_depth_m;  ///< of the scene; nullopt: a space sweep finds it
+};
+
+/// A keyframe and the poses that it is consistent with.
+struct Mapping {
+  Keyframe keyframe;
+  std::vector<StampedPose> poses;  ///< of its events, adjusted; in order of time
+  /// Takes a pose at its last event, and those after it, to where it is now.
+  Rigid3 world_from_before;
+};
+
+/// Mapping (thesis chapter 7): depth, then image of the newest events with known poses. Thread-safe
+/// and deterministic.
+class Mapper {
+ public:
+  /// `camera` with its lens.
+  Mapper(const MappingOptions& options, const PinholeCamera& camera);
+
+  /// A keyframe from the newest of `events`, none of them beyond the poses.
+  [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
+
+ private:
+  [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
+  [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
+  [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
+  void adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
+                   double typical_depth_m) const;
+  void add_image(const ViewWindow& window, Keyframe& keyframe) const;
+  void add_edges(Keyframe& keyframe) const;
+
+  MappingOptions options_;
+  PinholeCamera camera_;
+};
+
+}  // namespace saccade

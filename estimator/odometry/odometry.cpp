@@ -1,0 +1,144 @@
+#include "estimator/odometry/odometry.h"
+
+#include <algorithm>
+#include <future>
+#include <utility>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "estimator/stage_clock.h"
+
+namespace saccade {
+namespace {
+
+/// Fewer edges track nothing.
+constexpr std::size_t kLeastEdges = 50;
+
+std::size_t count_until(std::span<const Event> events, double t_s) {
+  const TimeNs t_ns = ns_from_seconds(t_s);
+  const auto at = std::partition_point(events.begin(), events.end(),
+                                       [t_ns](const Event& e) { return e.t_ns <= t_ns; });
+  return static_cast<std::size_t>(at - events.begin());
+}
+
+}  // namespace
+
+/// A keyframe in the making.
+struct Odometry::Job {
+  double made_s = 0;
+  double seconds = 0;  ///< of work
+  std::future<Mapping> mapping;
+};
+
+Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, std::uint64_t seed)
+    : options_(options),
+      camera_(camera),
+      mapper_(options.mapping, camera),
+      map_(options.map, camera),
+      tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {}
+
+Odometry::~Odometry() = default;
+
+OdometryResult Odometry::run(std::span<const Event> events, const Trajectory& start,
+                             const std::function<void(std::size_t)>& progress) {
+  OdometryResult result;
+  known_.assign(start.poses().begin(), start.poses().end());
+  settled_until_s_ = start.end_s();
+  const std::size_t known = count_until(events, start.end_s());
+  {
+    const StageClock clock(result.mapping_s);
+    start_from(events.first(known), start);
+  }
+  if (progress) progress(known);
+  const std::span<const Event> unknown = events.subspan(known);
+  std::size_t done = 0;
+  tracker_.start(unknown);
+  while (true) {
+    std::optional<TrackedPose> pose;
+    {
+      const StageClock clock(result.tracking_s);
+      pose = tracker_.next();
+    }
+    if (!pose) break;
+    result.poses.push_back(*pose);
+    if (const double t_s = seconds_from_ns(pose->t_ns); t_s > known_.back().t_s)
+      known_.push_back({t_s, pose->world_from_camera});
+    const double now_s = seconds_from_ns(pose->last_ns);
+    const std::size_t until = count_until(unknown, now_s);
+    if (progress) progress(until - std::exchange(done, until));
+    if (!job_ && wants_keyframe(pose->world_from_camera))
+      begin_mapping(events.first(known + until), now_s);
+    if (job_ && now_s >= job_->made_s + options_.keyframe.handover_s) end_mapping(now_s, result);
+  }
+  if (job_) end_mapping(known_.back().t_s, result);
+  output(result);
+  return result;
+}
+
+void Odometry::start_from(std::span<const Event> events, const Trajectory& start) {
+  Keyframe first = mapper_.map(events, {start, start.end_s(), std::nullopt}).keyframe;
+  if (first.edges.size() < kLeastEdges)
+    throw InputError("start",
+                     "the events of the known poses show no edges in depth: the camera must "
+                     "move sideways there, or start.truth_s must be longer");
+  typical_depth_m_ = first.typical_depth_m;
+  last_keyframe_at_ = start.poses().back().world_from_camera;
+  map_.add(std::move(first), last_keyframe_at_);
+  tracker_.set_map(map_.points());
+  tracker_.reset(ns_from_seconds(start.end_s()), last_keyframe_at_);
+}
+
+bool Odometry::wants_keyframe(const Rigid3& world_from_camera) const {
+  const double way = (world_from_camera.translation() - last_keyframe_at_.translation()).norm();
+  if (way >= options_.keyframe.distance * typical_depth_m_) return true;
+  return options_.keyframe.min_visible > 0 &&
+         map_.visible_share(map_.keyframes().back(), world_from_camera) <
+             options_.keyframe.min_visible;
+}
+
+void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
+  job_ = std::make_unique<Job>();
+  job_->made_s = now_s;
+  last_keyframe_at_ = known_.back().world_from_camera;
+  const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
+  job_->mapping = std::async(
+      policy, [this, events, seconds = &job_->seconds,
+               path = KnownPath{Trajectory(known_), settled_until_s_, typical_depth_m_}] {
+        const StageClock clock(*seconds);
+        return mapper_.map(events, path);
+      });
+}
+
+void Odometry::end_mapping(double now_s, OdometryResult& result) {
+  const std::unique_ptr<Job> job = std::move(job_);
+  Mapping mapping = job->mapping.get();
+  Keyframe& keyframe = mapping.keyframe;
+  result.mapping_s += job->seconds;
+  // A keyframe that shows little is none: the map before goes on.
+  if (keyframe.edges.size() < kLeastEdges) return;
+  typical_depth_m_ = keyframe.typical_depth_m;
+  settled_until_s_ = std::max(settled_until_s_, keyframe.end_s - options_.keyframe.unsettled_s);
+  take_poses(mapping);
+  map_.add(std::move(keyframe), known_.back().world_from_camera);
+  tracker_.set_map(map_.points());
+  result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
+}
+
+void Odometry::take_poses(const Mapping& mapping) {
+  const Trajectory adjusted(mapping.poses);
+  for (StampedPose& pose : known_) {
+    if (pose.t_s < adjusted.start_s()) continue;
+    pose.world_from_camera = pose.t_s <= adjusted.end_s()
+                                 ? adjusted.at_clamped(pose.t_s)
+                                 : mapping.world_from_before * pose.world_from_camera;
+  }
+  tracker_.correct(mapping.world_from_before);
+}
+
+void Odometry::output(OdometryResult& result) const {
+  const Trajectory adjusted(known_);
+  for (TrackedPose& pose : result.poses)
+    pose.world_from_camera = adjusted.at_clamped(seconds_from_ns(pose.t_ns));
+}
+
+}  // namespace saccade

@@ -1,0 +1,127 @@
+#include "estimator/odometry/odometry_config.h"
+
+#include "estimator/tracking/track_config.h"
+
+namespace saccade {
+namespace {
+
+void describe_start(config::Fields& fields, StartOptions& options) {
+  fields
+      .value("truth_s", options.truth_s,
+             "the poses are given for so long from the first event on; no later one is read")
+      .range(0.001, 1e3);
+  fields
+      .value("truth_share", options.truth_share, "... but for no more than this share of the whole")
+      .above(0)
+      .at_most(1);
+}
+
+void describe_keyframe(config::Fields& fields, OdometryOptions& options) {
+  KeyframeOptions& keyframe = options.keyframe;
+  fields
+      .value("distance", keyframe.distance,
+             "d_kf: way after which a keyframe is made, as a share of the typical depth")
+      .range(1e-3, 100);
+  fields
+      .value("min_visible", keyframe.min_visible,
+             "it is made, too, when less than this share of the last one's edges is in view")
+      .range(0, 1);
+  fields
+      .value("handover_s", keyframe.handover_s,
+             "from its newest event to the first that is tracked by it; 0: tracking waits for it")
+      .range(0, 1e3);
+  fields
+      .value("unsettled_s", keyframe.unsettled_s,
+             "the poses of its last seconds may still change with the next")
+      .range(0, 1e3);
+  fields
+      .value("active", options.map.active,
+             "so many make up the map: the newest and those that show most of what is seen")
+      .range(1, 1000);
+}
+
+void describe_mapping(config::Fields& fields, MappingOptions& options) {
+  using Edges = MappingOptions::Edges;
+  using View = MappingOptions::View;
+  fields.value("events", options.events, "N_map: a keyframe is made of at most so many")
+      .range(100, 1e9);
+  fields.value("duration_s", options.duration_s, "... and of at most so long").range(1e-3, 1e3);
+  fields.choice("view", options.view, {{"middle", View::kMiddle}, {"end", View::kEnd}},
+                "where in its events the view lies");
+  fields.choice("edges", options.edges, {{"gradient", Edges::kGradient}, {"depth", Edges::kDepth}},
+                "what the camera is tracked by: steep pixels of the reconstruction, or the points "
+                "with depth");
+  if (options.edges == Edges::kGradient)
+    fields.group(
+        "steep", [&](config::Fields& f) { describe(f, options.steep); },
+        "which pixels those are (4.4)");
+  if (options.edges == Edges::kDepth) {
+    fields
+        .value("max_sigma", options.max_sigma,
+               "deviation of a point's depth up to which it is tracked, relative")
+        .above(0);
+    fields.value("image", options.image, "an image is made, too, for people");
+  }
+  fields
+      .value("smoothing_s", options.smoothing_s,
+             "spacing of the knots of a spline through the tracked poses; 0: none")
+      .range(0, 10);
+}
+
+void describe_adjustment(config::Fields& fields, MappingOptions& options) {
+  AdjustmentOptions& adjustment = options.adjustment;
+  fields
+      .value("rounds", options.adjust_rounds,
+             "of finding edges and adjusting them with the poses; 0: poses are taken as tracked")
+      .range(0, 100);
+  fields
+      .value("node_spacing_s", adjustment.node_spacing_s,
+             "the correction of the poses is linear between nodes")
+      .range(1e-4, 100);
+  fields.value("edges", adjustment.edges, "at most so many").range(30, 1e7);
+  fields.value("events_per_edge", adjustment.events_per_edge, "at most").range(5, 1e6);
+  fields.value("noise_px", adjustment.noise_px, "least deviation of an event from its edge")
+      .range(1e-3, 10);
+  fields.value("outlier", adjustment.outlier, "deviations beyond which an event counts less")
+      .range(0.1, 1e6);
+  fields.value("iterations", adjustment.iterations, "of Levenberg-Marquardt, at most")
+      .range(1, 1000);
+  fields.value("pose_sigma_px", adjustment.pose_sigma_px, "of poses, as image motion").above(0);
+  fields.value("step_sigma_px", adjustment.step_sigma_px, "of the correction from node to node")
+      .above(0);
+  fields.value("known_sigma_px", adjustment.known_sigma_px, "of poses that are settled").above(0);
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, OdometryConfig& config) {
+  using config::Fields;
+  OdometryOptions& odometry = config.odometry;
+  fields.group(
+      "start", [&](Fields& f) { describe_start(f, config.start); }, "what is known at the start");
+  fields.group(
+      "keyframe", [&](Fields& f) { describe_keyframe(f, odometry); }, "when the map is renewed");
+  fields.group(
+      "mapping", [&](Fields& f) { describe_mapping(f, odometry.mapping); },
+      "what a keyframe is made of");
+  fields.group(
+      "adjustment", [&](Fields& f) { describe_adjustment(f, odometry.mapping); },
+      "of the poses and edges of a keyframe, together; of depth.method: rays");
+  fields.group(
+      "depth", [&](Fields& f) { describe_depth_method(f, odometry.mapping.depth); },
+      "as of saccade run depth");
+  if (odometry.mapping.image || odometry.mapping.edges == MappingOptions::Edges::kGradient)
+    fields.group(
+        "reconstruction",
+        [&](Fields& f) { describe_image_method(f, odometry.mapping.reconstruction); },
+        "as of saccade run reconstruct");
+  fields.group(
+      "tracking", [&](Fields& f) { describe(f, odometry.tracker); },
+      "as of saccade run track, method: edges");
+  fields.expect(odometry.mapping.adjust_rounds == 0 ||
+                    odometry.mapping.depth.method == DepthConfig::Method::kRays,
+                "adjustment", "rounds need depth.method: rays");
+  fields.value("seed", config.seed, "of the samples");
+}
+
+}  // namespace saccade

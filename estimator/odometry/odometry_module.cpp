@@ -1,0 +1,104 @@
+#include "estimator/odometry/odometry_module.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/progress.h"
+#include "estimator/odometry/odometry_config.h"
+#include "estimator/odometry/odometry_output.h"
+#include "estimator/run_input.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+#include "estimator/tracking/pose_output.h"
+
+namespace saccade {
+namespace {
+
+/// The poses of the start. None beyond is looked at.
+Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
+                       const StartOptions& options) {
+  const double from_s = seconds_from_ns(events.front().t_ns);
+  const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
+  const double truth_s = std::min(options.truth_s, options.truth_share * whole_s);
+  std::vector<StampedPose> start;
+  const StampedPose* before = nullptr;
+  for (const StampedPose& pose : dataset.groundtruth().poses()) {
+    if (pose.t_s > from_s + truth_s) break;
+    if (pose.t_s < from_s)
+      before = &pose;
+    else
+      start.push_back(pose);
+  }
+  if (before != nullptr && (start.empty() || start.front().t_s > from_s))
+    start.insert(start.begin(), *before);
+  if (start.size() < 2)
+    throw InputError(
+        dataset.folder().string(),
+        fmt::format("groundtruth.txt holds fewer than two poses of the first {:.4g} s, "
+                    "which start.truth_s asks for",
+                    truth_s));
+  return Trajectory(std::move(start));
+}
+
+}  // namespace
+
+RunSummary run_odometry(const RunRequest& request) {
+  OdometryConfig config = config::read<OdometryConfig>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  check(request);
+  RunWriter writer(request);
+
+  RunTiming timing;
+  std::optional<StageClock> io(timing.io_s);
+  const Dataset dataset = Dataset::open(request.dataset);
+  const Events events = load_events(request, dataset);
+  const Trajectory start = start_poses(dataset, events, config.start);
+  io.reset();
+
+  // What is scored begins where the given poses end.
+  RunRecord::Window window =
+      window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
+  window.start_s = start.end_s();
+  timing.events = events.size();
+  timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
+
+  OdometryResult result;
+  std::optional<Odometry> odometry;
+  Progress progress("odometry", events.size() * static_cast<std::size_t>(request.repeat), "events");
+  for (int i = 0; i < request.repeat; ++i) {
+    odometry.emplace(config.odometry, dataset.camera(), config.seed);
+    double wall_s = 0;
+    {
+      const StageClock clock(wall_s);
+      result = odometry->run(events, start, [&](std::size_t n) { progress.add(n); });
+    }
+    timing.wall_s.push_back(wall_s);
+  }
+  timing.stages_s = {{"tracking", result.tracking_s}, {"mapping", result.mapping_s}};
+  timing.poses = result.poses.size();
+
+  io.emplace(timing.io_s);
+  write_odometry(writer.path(), dataset.camera(), result, odometry->map());
+  io.reset();
+  writer.finish("odometry", request, dataset, window, config.seed, config::print(config), timing);
+
+  RunSummary summary;
+  summary.events = events.size();
+  summary.poses = result.poses.size();
+  summary.lost_poses = count_lost(result.poses);
+  summary.found = fmt::format("{} poses ({} lost) by {} keyframes", summary.poses,
+                              summary.lost_poses, odometry->map().keyframes().size());
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+std::string print_odometry_config(const config::Document& document) {
+  return config::print_documented(config::read<OdometryConfig>(document));
+}
+
+}  // namespace saccade

@@ -1,0 +1,75 @@
+#include "estimator/odometry/odometry_output.h"
+
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "core/io/keyframe_list.h"
+#include "core/io/view_list.h"
+#include "estimator/depth/depth_output.h"
+#include "estimator/reconstruction/reconstruction_output.h"
+#include "estimator/tracking/pose_output.h"
+
+namespace saccade {
+namespace {
+
+RunView write_view(const std::filesystem::path& folder, std::size_t index,
+                   const PinholeCamera& camera, const Keyframe& keyframe) {
+  RunView view;
+  view.t_s = keyframe.t_s;
+  view.world_from_camera = keyframe.world_from_camera;
+  view.start_s = keyframe.start_s;
+  view.end_s = keyframe.end_s;
+  view.depth = folder / "depth" / fmt::format("depth_{:08}.exr", index);
+  write_depth_map(view.depth, camera, keyframe.depth);
+  if (keyframe.image.log_image.empty()) return view;
+  view.gradient = folder / "gradient" / fmt::format("gradient_{:08}.exr", index);
+  view.image = folder / "image" / fmt::format("image_{:08}.exr", index);
+  write_image_view(keyframe.image, view);
+  return view;
+}
+
+KeyframeEntry entry_of(const Keyframe& keyframe) {
+  KeyframeEntry entry;
+  entry.t_s = keyframe.t_s;
+  entry.world_from_camera = keyframe.world_from_camera;
+  entry.made_s = entry.taken_s = keyframe.end_s;
+  entry.events = static_cast<std::int64_t>(keyframe.events);
+  entry.points = static_cast<std::int64_t>(keyframe.depth.points.size());
+  entry.edges = static_cast<std::int64_t>(keyframe.edges.size());
+  entry.typical_depth_m = keyframe.typical_depth_m;
+  return entry;
+}
+
+MapPoints all_edges(const EdgeMap& map) {
+  MapPoints all;
+  for (const Keyframe& keyframe : map.keyframes()) append(all, keyframe.edges);
+  return all;
+}
+
+}  // namespace
+
+void write_odometry(const std::filesystem::path& folder, const PinholeCamera& camera,
+                    const OdometryResult& result, const EdgeMap& map) {
+  const PinholeCamera undistorted = camera.undistorted();
+  for (const char* name : {"depth", "gradient", "image"})
+    std::filesystem::create_directories(folder / name);
+  std::vector<RunView> views;
+  std::vector<KeyframeEntry> entries;
+  for (std::size_t i = 0; i < map.keyframes().size(); ++i) {
+    views.push_back(write_view(folder, i, undistorted, map.keyframes()[i]));
+    entries.push_back(entry_of(map.keyframes()[i]));
+  }
+  entries.front().active = {0};
+  for (const KeyframeChange& change : result.changes) {
+    entries[change.keyframe].made_s = change.made_s;
+    entries[change.keyframe].taken_s = change.taken_s;
+    entries[change.keyframe].active.assign(change.active.begin(), change.active.end());
+  }
+  write_view_list(folder / "views.yaml", views);
+  write_keyframe_list(folder / "keyframes.yaml", entries);
+  write_poses(folder, result.poses);
+  write_map(folder / "map.ply", all_edges(map), Rigid3());
+}
+
+}  // namespace saccade

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+
+namespace saccade {
+
+/// What an event says of the edge that it saw, in the edge's view (docs/odometry.md):
+///   r = (n . (x(rho) - e) - c - m t . (x(rho) - e) - h p) / g,   g = (1 - rho o_z) / (R q)_z,
+///   x(rho) = K (a + rho (o_xy - o_z a)),   a = (R q)_xy / (R q)_z,   (R, o) = view_from_camera.
+/// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
+/// scatter, and a residual in the view would be made small by any motion that shrinks the picture.
+/// With q = K^-1 u the event's ray, rho the edge's inverse depth, c its offset, m its tilt and h
+/// the hysteresis of the thresholds.
+struct EdgeObservation {
+  Rigid3 view_from_camera;  ///< at the event's time, as it is assumed
+  Eigen::Vector3d ray;      ///< q, z = 1
+  double polarity = 0;      ///< p, +1 or -1
+  Eigen::Vector2d pixel;    ///< e, in the view
+  Eigen::Vector2d normal;   ///< n, unit
+};
+
+/// The unknowns of an edge in the order rho [1/m], c [px], m, h [px].
+using EdgeUnknowns = Eigen::Vector4d;
+
+/// The residual's derivatives by the unknowns and by a small motion of the camera,
+/// view_from_camera exp(xi).
+struct EdgeDerivatives {
+  Eigen::Matrix<double, 1, 6> motion;
+  Eigen::Matrix<double, 1, 4> edge;
+};
+
+/// The residual [px] after the camera has moved by `motion` (v, w); `derivatives`: may be null. A
+/// ray that does not reach in front of the view is NaN.
+[[nodiscard]] double edge_residual(const EdgeObservation& observation, const PinholeCamera& camera,
+                                   const Twist& motion, const EdgeUnknowns& edge,
+                                   EdgeDerivatives* derivatives);
+
+}  // namespace saccade

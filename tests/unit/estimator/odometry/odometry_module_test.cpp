@@ -1,0 +1,187 @@
+#include "estimator/odometry/odometry_module.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/config/document.h"
+#include "core/io/image_file.h"
+#include "core/io/keyframe_list.h"
+#include "core/io/trajectory_file.h"
+#include "core/io/view_list.h"
+#include "core/parallel.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::read_file;
+using testing::TemporaryFolder;
+
+constexpr double kEnd_s = 0.5;
+constexpr double kDepth_m = 2.2;
+
+/// Sideways with a turn, seen by a small camera in front of a corner.
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.25 * t_s, 0.3 * t_s}),
+          {0.8 * t_s, 0.1 * std::sin(6 * t_s), 0.1 * t_s}};
+}
+
+void write_poses_until(const fs::path& folder, double end_s) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i * 1e-3 <= end_s + 1e-9; ++i) poses.push_back({i * 1e-3, glide(i * 1e-3)});
+  write_tum_trajectory(folder / "groundtruth.txt", poses);
+}
+
+/// A recording in the layout of the Event Camera Dataset: events, calibration, poses, and a picture
+/// for the sensor's size.
+void write_recording(const fs::path& folder) {
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  fs::create_directories(folder / "images");
+  std::ofstream events(folder / "events.txt");
+  events.precision(9);
+  events << std::fixed;
+  for (const Event& e : world.simulate(glide, 0, kEnd_s, 1e-3, 0.12))
+    events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0 ? 1 : 0)
+           << '\n';
+  const PinholeCamera& camera = world.camera();
+  std::ofstream(folder / "calib.txt")
+      << camera.fx << ' ' << camera.fy << ' ' << camera.cx << ' ' << camera.cy << " 0 0 0 0 0\n";
+  std::ofstream(folder / "images.txt") << "0 images/a.png\n";
+  write_png(folder / "images/a.png", ImageU8(camera.width, camera.height));
+  write_poses_until(folder, kEnd_s);
+}
+
+constexpr const char* kQuick = R"(
+start: {truth_s: 0.2, truth_share: 0.4}
+keyframe: {distance: 0.05, active: 3}
+mapping: {duration_s: 0.3, view: middle, edges: depth, image: false}
+depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_sigma: 0.05}}}
+tracking:
+  event_frame: {ratio: 0.2}
+  motion: {prediction: constant_velocity}
+)";
+
+class OdometryModule : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    recording_ = new TemporaryFolder;
+    write_recording(recording_->path() / "corner");
+  }
+  static void TearDownTestSuite() {
+    delete recording_;
+    recording_ = nullptr;
+  }
+
+  [[nodiscard]] RunRequest request(const std::string& name, const std::string& yaml = kQuick) {
+    RunRequest request;
+    request.dataset = recording_->path() / "corner";
+    request.output = folder_.path() / name;
+    request.config = config::parse(yaml, "o.yaml");
+    return request;
+  }
+
+  static TemporaryFolder* recording_;
+  TemporaryFolder folder_;
+};
+
+TemporaryFolder* OdometryModule::recording_ = nullptr;
+
+TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
+  const RunSummary summary = run_odometry(request(
+      "run", std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n"));
+  EXPECT_GT(summary.poses, 20U);
+  EXPECT_EQ(summary.lost_poses, 0U);
+  const Trajectory found = read_trajectory(folder_.path() / "run" / "trajectory.txt");
+  EXPECT_GE(found.start_s(), 0.2) << "the given poses are not an output";
+  double most_m = 0, most_rad = 0;
+  for (const StampedPose& pose : found.poses()) {
+    const Rigid3 error = glide(pose.t_s).inverse() * pose.world_from_camera;
+    most_m = std::max(most_m, error.translation().norm());
+    most_rad = std::max(most_rad, so3_log(error.rotation()).norm());
+  }
+  // Of 0.35 m and 0.16 rad that it moved.
+  EXPECT_LT(most_m, 0.015 * kDepth_m);
+  EXPECT_LT(most_rad, 0.015);
+}
+
+TEST_F(OdometryModule, WritesKeyframesWithTheirViews) {
+  (void)run_odometry(request("run", kQuick));
+  const fs::path run = folder_.path() / "run";
+  const auto keyframes = read_keyframe_list(run / "keyframes.yaml");
+  const auto views = read_view_list(run / "views.yaml");
+  ASSERT_GE(keyframes.size(), 3U);
+  ASSERT_EQ(views.size(), keyframes.size());
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    EXPECT_EQ(views[i].t_s, keyframes[i].t_s);
+    EXPECT_TRUE(fs::is_regular_file(views[i].depth));
+    EXPECT_GT(keyframes[i].edges, 50);
+    EXPECT_GE(keyframes[i].taken_s, keyframes[i].made_s);
+    EXPECT_LE(keyframes[i].active.size(), 3U);
+    EXPECT_EQ(keyframes[i].active.back(), static_cast<std::int64_t>(i)) << "the newest belongs";
+  }
+}
+
+TEST_F(OdometryModule, LooksAtNoPoseBeyondTheStart) {
+  (void)run_odometry(request("all"));
+  write_poses_until(recording_->path() / "corner", 0.2);
+  (void)run_odometry(request("start"));
+  write_poses_until(recording_->path() / "corner", kEnd_s);
+  for (const char* file : {"trajectory.txt", "poses.csv", "map.ply"})
+    EXPECT_EQ(read_file(folder_.path() / "all" / file), read_file(folder_.path() / "start" / file))
+        << file;
+}
+
+TEST_F(OdometryModule, MapsBesideTrackingWithTheSameResultForAnyNumberOfThreads) {
+  const std::string beside = std::string(kQuick) + "adjustment: {rounds: 1, edges: 300}\n";
+  std::string yaml = beside;
+  yaml.replace(yaml.find("active: 3"), 9, "active: 3, handover_s: 0.03");
+  set_thread_count(1);
+  (void)run_odometry(request("one", yaml));
+  set_thread_count(2);
+  (void)run_odometry(request("two", yaml));
+  set_thread_count(0);
+  for (const char* file : {"trajectory.txt", "poses.csv", "map.ply", "keyframes.yaml"})
+    EXPECT_EQ(read_file(folder_.path() / "one" / file), read_file(folder_.path() / "two" / file))
+        << file;
+  const auto keyframes = read_keyframe_list(folder_.path() / "one" / "keyframes.yaml");
+  ASSERT_GE(keyframes.size(), 2U);
+  EXPECT_GE(keyframes[1].taken_s, keyframes[1].made_s + 0.03);
+}
+
+TEST_F(OdometryModule, ThesisMakesItsMapFromTheReconstructedGradient) {
+  const RunSummary summary = run_odometry(request("thesis", R"(
+start: {truth_s: 0.3, truth_share: 0.6}
+keyframe: {distance: 1}
+mapping: {view: end, edges: gradient}
+depth: {method: thesis, thesis: {filter: {converged: 0.1}}}
+reconstruction: {method: gradient}
+)"));
+  EXPECT_GT(summary.poses, 5U);
+  const auto views = read_view_list(folder_.path() / "thesis" / "views.yaml");
+  ASSERT_FALSE(views.empty());
+  EXPECT_NEAR(views.front().t_s, 0.3, 2e-3) << "at the newest event";
+  EXPECT_TRUE(fs::is_regular_file(views.front().image));
+}
+
+TEST_F(OdometryModule, SaysWhatIsWrong) {
+  fs::remove(recording_->path() / "corner" / "groundtruth.txt");
+  EXPECT_THAT(error_of([&] { return run_odometry(request("none")); }), HasSubstr("start.truth_s"));
+  write_poses_until(recording_->path() / "corner", kEnd_s);
+  EXPECT_THAT(error_of([&] { return run_odometry(request("rays", "adjustment: {rounds: 1}\n")); }),
+              HasSubstr("depth.method: rays"));
+}
+
+}  // namespace
+}  // namespace saccade

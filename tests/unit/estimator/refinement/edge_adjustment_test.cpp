@@ -1,0 +1,106 @@
+#include "estimator/refinement/edge_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "estimator/depth/depth_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_world;
+using testing::PlanarWorld;
+
+constexpr double kEnd_s = 0.3;
+constexpr double kKnown_s = 0.15;
+constexpr double kDepth_m = 2.2;
+
+/// Mostly sideways, some 35 px of parallax, with a turn.
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
+}
+
+/// The same, drifting away after kKnown_s.
+Rigid3 drifted(double t_s, double share) {
+  const double away = share * std::max(0.0, t_s - kKnown_s) / (kEnd_s - kKnown_s);
+  return glide(t_s) *
+         Rigid3::exp(away * (Twist() << 0.01, -0.008, 0.012, 0.002, 0.003, -0.004).finished());
+}
+
+Trajectory trajectory_of(const testing::Motion& motion) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
+  return Trajectory(poses);
+}
+
+struct Recording {
+  PlanarWorld world = corner_world(160, 120);
+  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+struct Error {
+  double position_m = 0, turn_rad = 0;
+};
+
+Error error_at(const Trajectory& trajectory, double t_s) {
+  const Rigid3 error = glide(t_s).inverse() * trajectory.at_clamped(t_s);
+  return {error.translation().norm(), so3_log(error.rotation()).norm()};
+}
+
+Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
+  const ViewWindow window{recording().events, &start, reference_s};
+  const DepthConfig config;
+  const RayDepth depth(config.rays, config.limits, recording().world.camera());
+  return adjust(window, depth.find_edges(window), recording().world.camera(), kKnown_s, kDepth_m,
+                {});
+}
+
+TEST(EdgeAdjustment, LeavesTheTruthWhereItIs) {
+  const Adjustment result = adjusted(trajectory_of(glide));
+  ASSERT_TRUE(result.ok);
+  for (const double t_s : {0.05, 0.15, 0.25, 0.3}) {
+    // A fifth of a pixel of 133 px focal length; events scatter by a third of a pixel.
+    EXPECT_LT(error_at(result.trajectory, t_s).position_m, 1.5e-3 * kDepth_m) << t_s;
+    EXPECT_LT(error_at(result.trajectory, t_s).turn_rad, 1.5e-3) << t_s;
+  }
+}
+
+// A residual in the view instead of on the sensor would be made small by motion towards the scene.
+TEST(EdgeAdjustment, DoesNotShrinkThePicture) {
+  const Adjustment result = adjusted(trajectory_of(glide));
+  ASSERT_TRUE(result.ok);
+  const Rigid3 error = glide(kEnd_s).inverse() * result.trajectory.at_clamped(kEnd_s);
+  EXPECT_LT(std::abs(error.translation().z()), 1e-3 * kDepth_m);
+}
+
+TEST(EdgeAdjustment, TooFewEdgesChangeNothing) {
+  const Trajectory start = trajectory_of(glide);
+  const ViewWindow window{recording().events, &start, 0.15};
+  const Adjustment result = adjust(window, {}, recording().world.camera(), kKnown_s, kDepth_m, {});
+  EXPECT_FALSE(result.ok);
+  EXPECT_EQ(result.trajectory.size(), start.size());
+}
+
+TEST(EdgeAdjustment, BringsADriftingPathBack) {
+  const Trajectory start = trajectory_of([](double t_s) { return drifted(t_s, 1); });
+  const Adjustment first = adjusted(start);
+  ASSERT_TRUE(first.ok);
+  EXPECT_LT(first.residual_after_px, first.residual_before_px);
+  // Better poses find better edges.
+  const Adjustment result = adjusted(first.trajectory);
+  ASSERT_TRUE(result.ok);
+  const Error before = error_at(start, kEnd_s), after = error_at(result.trajectory, kEnd_s);
+  EXPECT_LT(after.position_m, 0.25 * before.position_m);
+  EXPECT_LT(after.turn_rad, 0.25 * before.turn_rad);
+}
+
+}  // namespace
+}  // namespace saccade
