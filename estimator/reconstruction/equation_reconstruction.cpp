@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,7 +18,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBatch = 16384;  ///< events whose levels are found at a time
+constexpr std::size_t kBatch = 65536;  ///< events whose levels are found at a time
 
 /// The view with `scale` pixels in place of one, the first centred on the first.
 PinholeCamera finer(const PinholeCamera& camera, int scale) {
@@ -40,112 +39,109 @@ float value_at(const ImageF& image, const GridPoint& point) {
   return value;
 }
 
-/// What distinguishes few sorts of levels: see PlaceLevel.
-struct LevelSort {
-  float deviation, slack, beyond;
-  bool operator==(const LevelSort&) const = default;
-};
-
-/// A level in as little memory as will do, of which there are several per event.
-struct KeptLevel {
-  float x, y, level;
-  std::uint32_t track_and_sort;  ///< the sort in the lowest bits
-
-  [[nodiscard]] std::uint32_t track() const { return track_and_sort >> kSortBits; }
-  [[nodiscard]] std::uint32_t sort() const { return track_and_sort & ((1U << kSortBits) - 1); }
-  static constexpr std::uint32_t kSortBits = 3;
+struct WeightedSort : LevelSort {
+  float weight;  ///< 1 / deviation^2
 };
 
 /// All levels by track and, within one, in order of time. Tracks that begin near each other follow
 /// each other, so that what they touch is at hand.
 class LevelsByTrack {
  public:
+  LevelsByTrack(const PinholeCamera& camera, std::span<const LevelSort> sorts)
+      : tiles_per_row_(camera.width / kTile + 1),
+        tiles_(static_cast<std::size_t>(tiles_per_row_ * (camera.height / kTile + 1))) {
+    for (const LevelSort& sort : sorts)
+      sorts_.push_back({sort, 1 / (sort.deviation * sort.deviation)});
+  }
+
+  /// Tracks are new in the order of their numbers.
   void add(std::span<const PlaceLevel> levels) {
-    std::vector<KeptLevel>& part = parts_.emplace_back();
-    part.reserve(levels.size());
-    for (const PlaceLevel& l : levels)
-      part.push_back({l.x, l.y, l.level,
-                      l.track << KeptLevel::kSortBits | sort_of({l.deviation, l.slack, l.beyond})});
+    for (const PlaceLevel& l : levels) {
+      if (l.track() == homes_.size()) {
+        const auto tile = static_cast<std::uint32_t>(
+            static_cast<int>(l.y) / kTile * tiles_per_row_ + static_cast<int>(l.x) / kTile);
+        homes_.push_back({tile, tiles_[tile].tracks++});
+      }
+      const Home home = homes_[l.track()];
+      tiles_[home.tile].levels.push_back(
+          {l.x, l.y, l.level, PlaceLevel::tag(home.track, l.sort())});
+    }
   }
-  /// After the last add().
-  void order(std::uint32_t tracks) {
-    const std::vector<std::uint32_t> rank = ranks(tracks);
-    first_.assign(tracks + 1, 0);
-    for (const auto& part : parts_)
-      for (const KeptLevel& level : part) ++first_[rank[level.track()] + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    levels_.resize(first_.back());
-    for (const auto& part : parts_)
-      for (const KeptLevel& level : part) levels_[next[rank[level.track()]]++] = level;
-    parts_.clear();
+
+  /// After the last add(). Joins successive levels of one sort whose places lie within `thin_px` of
+  /// the first of them: what they say of the image is nearly the same, and their mean says it.
+  void order(float thin_px) {
+    std::vector<PlaceLevel> ordered;
+    std::vector<std::uint32_t> next;
+    for (Tile& tile : tiles_) {
+      tile.first.assign(tile.tracks + 1, 0);
+      for (const PlaceLevel& level : tile.levels) ++tile.first[level.track() + 1];
+      std::partial_sum(tile.first.begin(), tile.first.end(), tile.first.begin());
+      next.assign(tile.first.begin(), tile.first.end() - 1);
+      ordered.resize(tile.levels.size());
+      for (const PlaceLevel& level : tile.levels) ordered[next[level.track()]++] = level;
+      thin(ordered, thin_px, tile);
+      size_ += tile.levels.size();
+    }
+    homes_ = {};
   }
-  /// Joins successive levels of one sort whose places lie within `px` of the first of them: what
-  /// they say of the image is nearly the same, and their mean says it.
-  void thin(float px) {
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Calls body(levels) for every track.
+  template <class Body>
+  void for_each(const Body& body) const {
+    for (const Tile& tile : tiles_)
+      for (std::size_t t = 0; t < tile.tracks; ++t)
+        body(std::span(tile.levels).subspan(tile.first[t], tile.first[t + 1] - tile.first[t]));
+  }
+  [[nodiscard]] const WeightedSort& sort(const PlaceLevel& level) const {
+    return sorts_[level.sort()];
+  }
+
+ private:
+  static constexpr int kTile = 16;  ///< [px]
+
+  struct Tile {
+    std::vector<PlaceLevel> levels;    ///< with the tile's own numbers of tracks
+    std::vector<std::uint32_t> first;  ///< of every track, and the end
+    std::uint32_t tracks = 0;
+  };
+  /// Where a track is.
+  struct Home {
+    std::uint32_t tile, track;
+  };
+
+  static void thin(std::span<const PlaceLevel> all, float px, Tile& tile) {
     std::size_t end = 0;
-    for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
-      const std::size_t begin = first_[t], last = first_[t + 1];
-      first_[t] = static_cast<std::uint32_t>(end);
+    for (std::size_t t = 0; t < tile.tracks; ++t) {
+      const std::size_t begin = tile.first[t], last = tile.first[t + 1];
+      tile.first[t] = static_cast<std::uint32_t>(end);
       for (std::size_t k = begin; k < last;) {
-        const KeptLevel head = levels_[k];
+        const PlaceLevel head = all[k];
         float x = 0, y = 0, level = 0;
-        std::size_t n = 0;
+        std::size_t n = 1;
         for (; k + n < last; ++n) {
-          const KeptLevel& next = levels_[k + n];
+          const PlaceLevel& next = all[k + n];
           const float dx = next.x - head.x, dy = next.y - head.y;
-          if (next.sort() != head.sort() || dx * dx + dy * dy > px * px) break;
+          if (next.sort() != head.sort() || !(dx * dx + dy * dy <= px * px) || px == 0) break;
           x += dx;
           y += dy;
           level += next.level - head.level;
         }
         const float share = 1 / static_cast<float>(n);
-        levels_[end++] = {head.x + x * share, head.y + y * share, head.level + level * share,
-                          head.track_and_sort};
+        tile.levels[end++] = {head.x + x * share, head.y + y * share, head.level + level * share,
+                              head.track_and_sort};
         k += n;
       }
     }
-    first_.back() = static_cast<std::uint32_t>(end);
-    levels_.resize(end);
-  }
-  [[nodiscard]] std::size_t size() const { return levels_.size(); }
-  [[nodiscard]] std::size_t tracks() const { return first_.size() - 1; }
-  [[nodiscard]] std::span<const KeptLevel> track(std::size_t i) const {
-    return std::span(levels_).subspan(first_[i], first_[i + 1] - first_[i]);
-  }
-  [[nodiscard]] const LevelSort& sort(const KeptLevel& level) const { return sorts_[level.sort()]; }
-
- private:
-  /// The place of every track in the order of where they begin.
-  [[nodiscard]] std::vector<std::uint32_t> ranks(std::uint32_t tracks) const {
-    constexpr int kTile = 16, kTilesPerRow = 4096;
-    std::vector<std::uint32_t> tile(tracks, std::numeric_limits<std::uint32_t>::max());
-    for (const auto& part : parts_)
-      for (const KeptLevel& level : part)
-        if (std::uint32_t& t = tile[level.track()]; t == std::numeric_limits<std::uint32_t>::max())
-          t = static_cast<std::uint32_t>(static_cast<int>(level.y) / kTile * kTilesPerRow +
-                                         static_cast<int>(level.x) / kTile);
-    std::vector<std::uint32_t> order(tracks);
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return tile[a] < tile[b]; });
-    std::vector<std::uint32_t> rank(tracks);
-    for (std::uint32_t i = 0; i < tracks; ++i) rank[order[i]] = i;
-    return rank;
+    tile.first.back() = static_cast<std::uint32_t>(end);
+    tile.levels.resize(end);
   }
 
-  std::uint32_t sort_of(const LevelSort& sort) {
-    const auto found = std::find(sorts_.begin(), sorts_.end(), sort);
-    const auto index = static_cast<std::uint32_t>(found - sorts_.begin());
-    if (found == sorts_.end()) sorts_.push_back(sort);
-    SACCADE_CHECK(index < 1U << KeptLevel::kSortBits);
-    return index;
-  }
-
-  std::vector<std::vector<KeptLevel>> parts_;
-  std::vector<KeptLevel> levels_;
-  std::vector<std::uint32_t> first_;  ///< of every track, and the end
-  std::vector<LevelSort> sorts_;
+  std::vector<WeightedSort> sorts_;
+  int tiles_per_row_;
+  std::vector<Tile> tiles_;
+  std::vector<Home> homes_;  ///< of every track
+  std::size_t size_ = 0;
 };
 
 /// What a level is taken for in one round.
@@ -157,28 +153,25 @@ struct Target {
 /// its bounds where the image is beyond them, and hardly where it is within. Events that disagree
 /// with the image count less (Cauchy's weights). `seen`: the image's level, less the track's
 /// offset.
-Target target_of(float level, const LevelSort& sort, std::optional<float> seen,
+Target target_of(float level, const WeightedSort& sort, float seen,
                  const EquationOptions& options) {
-  const float weight = 1 / (sort.deviation * sort.deviation);
-  if (!seen) return {level + sort.beyond, weight};
-  const float error = *seen - level;
+  const float error = seen - level;
   if (sort.slack > 0) {
     const auto sigma = static_cast<float>(options.bound_sigma);
     return {level + std::clamp(error, -sort.slack, sort.slack), 1 / (sigma * sigma)};
   }
-  const float share = error / (static_cast<float>(options.outlier) * sort.deviation);
-  return {level, weight / (1 + share * share)};
+  const float share = error / static_cast<float>(options.outlier);
+  return {level, sort.weight / (1 + share * share * sort.weight)};
 }
 
 /// The offset of a track that agrees best with what the image shows at its places.
-float offset_of(const LevelsByTrack& all, std::span<const KeptLevel> levels,
+float offset_of(const LevelsByTrack& all, std::span<const PlaceLevel> levels,
                 std::span<const float> seen) {
   float offset = 0, sum = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const LevelSort& sort = all.sort(levels[k]);
-    const float weight = 1 / (sort.deviation * sort.deviation);
-    offset += weight * (seen[k] - levels[k].level - sort.beyond);
-    sum += weight;
+    const WeightedSort& sort = all.sort(levels[k]);
+    offset += sort.weight * (seen[k] - levels[k].level - sort.beyond);
+    sum += sort.weight;
   }
   return offset / sum;
 }
@@ -186,26 +179,32 @@ float offset_of(const LevelsByTrack& all, std::span<const KeptLevel> levels,
 /// All levels; after the first round `image` is what it found.
 void add_levels(LevelSystem& system, const ReferenceGrid& grid, const LevelsByTrack& all,
                 const ImageF& image, const EquationOptions& options) {
-  std::vector<GridPoint> places;
+  std::vector<GridLevel> track;
   std::vector<float> seen;
-  for (std::size_t t = 0; t < all.tracks(); ++t) {
-    const auto levels = all.track(t);
-    if (levels.size() < 2) continue;
-    places.clear();
-    seen.clear();
-    for (const KeptLevel& level : levels) places.push_back(grid.at(level.x, level.y));
-    if (!image.empty())
-      for (const GridPoint& place : places) seen.push_back(value_at(image, place));
-    const float offset = image.empty() ? 0 : offset_of(all, levels, seen);
-    system.begin_track();
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-      std::optional<float> here;
-      if (!image.empty()) here = seen[k] - offset;
-      const Target target = target_of(levels[k].level, all.sort(levels[k]), here, options);
-      system.add(places[k], target.level, target.weight);
+  all.for_each([&](std::span<const PlaceLevel> levels) {
+    if (levels.size() < 2) return;
+    track.resize(levels.size());
+    seen.resize(levels.size());
+    for (std::size_t k = 0; k < levels.size(); ++k)
+      track[k].place = grid.at(levels[k].x, levels[k].y);
+    if (image.empty()) {
+      for (std::size_t k = 0; k < levels.size(); ++k) {
+        const WeightedSort& sort = all.sort(levels[k]);
+        track[k].level = levels[k].level + sort.beyond;
+        track[k].weight = sort.weight;
+      }
+    } else {
+      for (std::size_t k = 0; k < levels.size(); ++k) seen[k] = value_at(image, track[k].place);
+      const float offset = offset_of(all, levels, seen);
+      for (std::size_t k = 0; k < levels.size(); ++k) {
+        const Target target =
+            target_of(levels[k].level, all.sort(levels[k]), seen[k] - offset, options);
+        track[k].level = target.level;
+        track[k].weight = target.weight;
+      }
     }
-    system.end_track();
-  }
+    system.add_track(track);
+  });
 }
 
 /// The squared difference of neighbours; against an image their absolute difference (total
@@ -239,15 +238,12 @@ std::vector<GradientState> gradient_states(const PinholeCamera& camera, const Im
   std::vector<GradientState> states(image.size());
   const auto prior = static_cast<float>(1 / (prior_sigma * prior_sigma));
   for (GradientState& s : states) s.pxx = s.pyy = prior;
-  for (std::size_t t = 0; t < all.tracks(); ++t) {
-    const auto levels = all.track(t);
+  all.for_each([&](std::span<const PlaceLevel> levels) {
     for (std::size_t k = 1; k < levels.size(); ++k) {
-      const KeptLevel& to = levels[k];
+      const PlaceLevel& to = levels[k];
       const float hx = to.x - levels[k - 1].x;
       const float hy = to.y - levels[k - 1].y;
-      const float deviation = all.sort(to).deviation;
-      const float weight =
-          1 / (deviation * deviation * std::max(0.02F, std::sqrt(hx * hx + hy * hy)));
+      const float weight = all.sort(to).weight / std::max(0.02F, std::sqrt(hx * hx + hy * hy));
       const auto x = static_cast<int>(to.x + 0.5F);
       const auto y = static_cast<int>(to.y + 0.5F);
       GradientState& s = states[static_cast<std::size_t>(y * camera.width + x)];
@@ -255,7 +251,7 @@ std::vector<GradientState> gradient_states(const PinholeCamera& camera, const Im
       s.pxy += weight * hx * hy;
       s.pyy += weight * hy * hy;
     }
-  }
+  });
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
       GradientState& s = states[static_cast<std::size_t>(y * camera.width + x)];
@@ -280,15 +276,16 @@ ImageF coarser(const ImageF& image, int scale) {
 }  // namespace
 
 Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& window) const {
-  double levels_s = 0, equations_s = 0, solve_s = 0;
+  double levels_s = 0, order_s = 0, equations_s = 0, solve_s = 0;
   const Rigid3 reference_from_world = window.world_from_reference().inverse();
   ImageF reference(camera_.width, camera_.height);
-  LevelsByTrack tracks;
+  window.scene.draw(reference_from_world, camera_.undistorted(), reference);
+  LevelFinder finder(camera_, window.scene, reference_from_world.inverse(), reference,
+                     window.contrast_on, window.contrast_off, options_.levels);
+  finder.expect(window.events);
+  LevelsByTrack tracks(camera_, finder.sorts());
   {
     const StageClock clock(levels_s);
-    window.scene.draw(reference_from_world, camera_.undistorted(), reference);
-    LevelFinder finder(camera_, window.scene, reference_from_world.inverse(), reference,
-                       window.contrast_on, window.contrast_off, options_.levels);
     std::vector<PlaceLevel> part;
     for (std::size_t begin = 0; begin < window.events.size(); begin += kBatch) {
       part.clear();
@@ -296,8 +293,10 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
                   *window.trajectory, part);
       tracks.add(part);
     }
-    tracks.order(finder.tracks());
-    if (options_.thin_px > 0) tracks.thin(static_cast<float>(options_.thin_px));
+  }
+  {
+    const StageClock clock(order_s);
+    tracks.order(static_cast<float>(options_.thin_px));
   }
   const PinholeCamera fine = finer(camera_, options_.scale);
   ImageF fine_reference(fine.width, fine.height);
@@ -309,6 +308,7 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
     {
       const StageClock clock(equations_s);
       system.clear();
+      system.reserve(tracks.size());
       add_levels(system, grid, tracks, image, options_);
       add_smoothness(system, grid, options_, image);
     }
@@ -322,7 +322,8 @@ Reconstruction EquationReconstruction::reconstruct(const ReconstructionWindow& w
                gradient_states(camera_, result.log_image, tracks, options_.prior_sigma),
                options_.observed_sigma);
   result.levels = tracks.size();
-  result.stages_s = {{"levels", levels_s}, {"equations", equations_s}, {"solve", solve_s}};
+  result.stages_s = {
+      {"levels", levels_s}, {"order", order_s}, {"equations", equations_s}, {"solve", solve_s}};
   return result;
 }
 

@@ -24,18 +24,19 @@ float GradientState::least_variance() const {
   return (pxx + pyy) / 2 - std::hypot((pxx - pyy) / 2, pxy);
 }
 
-GradientFilter::GradientFilter(const ReferenceGrid& grid, double prior_variance)
+GradientFilter::GradientFilter(const ReferenceGrid& grid, std::span<const LevelSort> sorts,
+                               double prior_variance)
     : grid_(grid),
+      sorts_(sorts.begin(), sorts.end()),
       states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())) {
   for (GradientState& state : states_) state.pxx = state.pyy = static_cast<float>(prior_variance);
 }
 
 void GradientFilter::add(std::span<const PlaceLevel> levels) {
   for (const PlaceLevel& level : levels) {
-    if (level.track >= last_.size())
-      last_.resize(level.track + 1, PlaceLevel{~0U, 0, 0, 0, 0, 0, 0});
-    PlaceLevel& last = last_[level.track];
-    if (last.track == level.track) measure(last, level);
+    if (level.track() >= last_.size()) last_.resize(level.track() + 1, PlaceLevel{-1, -1, 0, 0});
+    PlaceLevel& last = last_[level.track()];
+    if (last.x >= 0) measure(last, level);
     last = level;
   }
 }
@@ -47,8 +48,9 @@ void GradientFilter::measure(const PlaceLevel& from, const PlaceLevel& to) {
   const float hy = to.y - from.y;
   const float length = std::hypot(hx, hy);
   const float pieces = std::max(1.0F, std::ceil(length));
-  const float noise = to.deviation * to.deviation * std::max(length, kShortest) / pieces;
-  const float change = (to.level + to.beyond - from.level - from.beyond) / pieces;
+  const LevelSort& sort = sorts_[to.sort()];
+  const float noise = sort.deviation * sort.deviation * std::max(length, kShortest) / pieces;
+  const float change = (to.level + sort.beyond - from.level - sorts_[from.sort()].beyond) / pieces;
   for (float i = 0.5F; i < pieces; ++i) {
     const GridPoint point = grid_.at(from.x + i / pieces * hx, from.y + i / pieces * hy);
     for (std::size_t k = 0; k < 4; ++k)

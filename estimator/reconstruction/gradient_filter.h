@@ -33,7 +33,8 @@ struct GradientState {
 class GradientFilter {
  public:
   /// `prior_variance` > 0: P0 of (6.6).
-  GradientFilter(const ReferenceGrid& grid, double prior_variance);
+  GradientFilter(const ReferenceGrid& grid, std::span<const LevelSort> sorts,
+                 double prior_variance);
 
   void add(std::span<const PlaceLevel> levels);
 
@@ -43,8 +44,9 @@ class GradientFilter {
   void measure(const PlaceLevel& from, const PlaceLevel& to);
 
   const ReferenceGrid& grid_;
+  std::vector<LevelSort> sorts_;  ///< of levels
   std::vector<GradientState> states_;
-  std::vector<PlaceLevel> last_;  ///< of every track
+  std::vector<PlaceLevel> last_;  ///< of every track; x < 0: none
 };
 
 }  // namespace saccade

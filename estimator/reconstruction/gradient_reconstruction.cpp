@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBatch = 16384;  ///< events whose levels are kept at a time
+constexpr std::size_t kBatch = 65536;  ///< events whose levels are kept at a time
 
 /// From the pixels' centres to the midpoints between neighbours, where the Laplacian wants them.
 GradientField between_pixels(const ImageF& gx, const ImageF& gy) {
@@ -32,7 +32,7 @@ Reconstruction GradientReconstruction::reconstruct(const ReconstructionWindow& w
   const ReferenceGrid grid(reference, 1, options_.levels.places.same_surface);
   LevelFinder finder(camera_, window.scene, world_from_reference, reference, window.contrast_on,
                      window.contrast_off, options_.levels);
-  GradientFilter filter(grid, options_.prior_sigma * options_.prior_sigma);
+  GradientFilter filter(grid, finder.sorts(), options_.prior_sigma * options_.prior_sigma);
   std::vector<PlaceLevel> levels;
   std::size_t count = 0;
   for (std::size_t begin = 0; begin < window.events.size(); begin += kBatch) {

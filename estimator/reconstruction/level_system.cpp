@@ -2,16 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <numeric>
-
-#include <Eigen/Core>
 
 #include "core/check.h"
 #include "estimator/reconstruction/poisson.h"
 
 namespace saccade {
 namespace {
+
+/// What a level adds to its square of four pixels, whose corners are 0 upper left, 1 upper right, 2
+/// lower left and 3 lower right, all at once: the products of the corners' weights, then those with
+/// the level (4). Lane 5 is 0.
+using LaneIndices = int __attribute__((vector_size(kLanes * sizeof(int))));
+constexpr LaneIndices kOne = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 0, 1, 2, 3, 5, 5};
+constexpr LaneIndices kOther = {0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 4, 4, 4, 4, 5, 5};
+constexpr std::size_t kProducts = 10;
+/// Where a product belongs: the corner kOne, whose neighbour kOther is.
+constexpr std::array<std::size_t, kProducts> kCorner = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3};
+constexpr std::array<std::size_t, kProducts> kNeighbour = {0, 1, 3, 4, 0, 2, 3, 0, 1, 0};
+
+/// Four values of a square.
+using Corners = float __attribute__((vector_size(4 * sizeof(float))));
+
+Corners corners_of(const float* values) {
+  Corners corners;
+  std::memcpy(&corners, values, sizeof corners);
+  return corners;
+}
+
+/// Two of them at a time.
+Corners corners_at(const float* upper, const float* lower) {
+  using Pairs = double __attribute__((vector_size(2 * sizeof(double))));
+  double upper_pair = 0, lower_pair = 0;
+  std::memcpy(&upper_pair, upper, sizeof upper_pair);
+  std::memcpy(&lower_pair, lower, sizeof lower_pair);
+  return reinterpret_cast<Corners>(Pairs{upper_pair, lower_pair});
+}
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0;
@@ -57,66 +84,39 @@ LevelSystem::LevelSystem(int width, int height)
     : width_(width),
       height_(height),
       rows_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
-      diagonal_(rows_.size()),
-      right_side_(rows_.size()),
-      sum_(rows_.size()) {
+      cells_(rows_.size()),
+      right_side_(rows_.size()) {
   SACCADE_CHECK(width > 1 && height > 1);
 }
 
 void LevelSystem::clear() {
   std::fill(rows_.begin(), rows_.end(), std::array<float, kNeighbours>{});
-  std::fill(diagonal_.begin(), diagonal_.end(), 0.0F);
-  std::fill(right_side_.begin(), right_side_.end(), 0.0);
+  std::fill(cells_.begin(), cells_.end(), Lanes{});
+  std::fill(right_side_.begin(), right_side_.end(), 0.0F);
   entries_.clear();
   tracks_.clear();
 }
 
-void LevelSystem::begin_track() {
-  touched_.clear();
-  track_weight_ = track_level_ = 0;
-}
-
-void LevelSystem::add(const GridPoint& place, float level, float weight) {
-  const auto& i = place.index;
-  const auto& f = place.weight;
-  const auto row = [&](std::size_t k) -> std::array<float, kNeighbours>& {
-    return rows_[static_cast<std::size_t>(i[k])];
-  };
-  row(0)[0] += weight * f[0] * f[0];
-  row(0)[1] += weight * f[0] * f[1];
-  row(0)[3] += weight * f[0] * f[2];
-  row(0)[4] += weight * f[0] * f[3];
-  row(1)[0] += weight * f[1] * f[1];
-  row(1)[2] += weight * f[1] * f[2];
-  row(1)[3] += weight * f[1] * f[3];
-  row(2)[0] += weight * f[2] * f[2];
-  row(2)[1] += weight * f[2] * f[3];
-  row(3)[0] += weight * f[3] * f[3];
-  for (std::size_t k = 0; k < 4; ++k) {
-    const float scaled = weight * f[k];
-    if (scaled == 0) continue;
-    const auto at = static_cast<std::size_t>(i[k]);
-    right_side_[at] += static_cast<double>(scaled) * static_cast<double>(level);
-    if (sum_[at] == 0) touched_.push_back(i[k]);
-    sum_[at] += scaled;
+void LevelSystem::add_track(std::span<const GridLevel> levels) {
+  double weight = 0, level = 0;
+  for (const GridLevel& l : levels) {
+    weight += static_cast<double>(l.weight);
+    level += static_cast<double>(l.weight * (l.level - levels.front().level));
   }
-  track_weight_ += static_cast<double>(weight);
-  track_level_ += static_cast<double>(weight) * static_cast<double>(level);
-}
-
-void LevelSystem::end_track() {
-  if (!(track_weight_ > 0)) return;
-  const auto scale = static_cast<float>(1 / track_weight_);
-  const double mean_level = track_level_ / track_weight_;
+  if (!(weight > 0)) return;
+  const float mean = levels.front().level + static_cast<float>(level / weight);
+  const auto scale = static_cast<float>(1 / weight);
   const std::size_t begin = entries_.size();
-  for (const int index : touched_) {
-    const auto at = static_cast<std::size_t>(index);
-    entries_.push_back({index, sum_[at] * scale});
-    right_side_[at] -= static_cast<double>(sum_[at]) * mean_level;
-    diagonal_[at] += sum_[at] * sum_[at] * scale;
-    sum_[at] = 0;
+  for (const GridLevel& l : levels) {
+    const auto& f = l.place.weight;
+    const Lanes row = {f[0], f[1], f[2], f[3], l.level - mean};
+    cells_[static_cast<std::size_t>(l.place.index[0])] +=
+        l.weight * __builtin_shuffle(row, kOne) * __builtin_shuffle(row, kOther);
+    const float share = l.weight * scale;
+    entries_.push_back(
+        {l.place.index[0], {share * f[0], share * f[1], share * f[2], share * f[3]}});
   }
-  tracks_.push_back({begin, entries_.size(), static_cast<float>(track_weight_)});
+  tracks_.push_back({begin, entries_.size(), static_cast<float>(weight)});
 }
 
 void LevelSystem::add_smooth(int i, int j, float weight) {
@@ -129,8 +129,7 @@ void LevelSystem::add_smooth(int i, int j, float weight) {
 
 void LevelSystem::add_value(int i, float value, float weight) {
   rows_[static_cast<std::size_t>(i)][0] += weight;
-  right_side_[static_cast<std::size_t>(i)] +=
-      static_cast<double>(weight) * static_cast<double>(value);
+  right_side_[static_cast<std::size_t>(i)] += weight * value;
 }
 
 double LevelSystem::track_variance() const {
@@ -140,8 +139,10 @@ double LevelSystem::track_variance() const {
     const Track& track = tracks_[t];
     double x = 0, y = 0, square = 0;
     for (std::size_t k = track.begin; k < track.end; ++k) {
-      const double u = entries_[k].index % width_, v = entries_[k].index / width_;
-      const auto f = static_cast<double>(entries_[k].factor);
+      const Entry& entry = entries_[k];
+      const double u = entry.index % width_, v = entry.index / width_;
+      const auto f = static_cast<double>(entry.factor[0] + entry.factor[1] + entry.factor[2] +
+                                         entry.factor[3]);
       x += f * u;
       y += f * v;
       square += f * (u * u + v * v);
@@ -152,11 +153,19 @@ double LevelSystem::track_variance() const {
   return weight > 0 ? std::max(sum / weight, 0.25) : 0.25;
 }
 
-LevelSystem::Stencil LevelSystem::stencil() const {
+LevelSystem::Stencil LevelSystem::stencil(std::vector<float>& right_side) const {
   Stencil stencil;
   for (std::size_t k = 0; k < kNeighbours; ++k) {
     stencil[k].resize(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) stencil[k][i] = rows_[i][k];
+  }
+  const auto width = static_cast<std::size_t>(width_);
+  const std::array<std::size_t, 4> corner = {0, 1, width, width + 1};
+  for (std::size_t i = 0; i + width + 1 < rows_.size(); ++i) {
+    const Lanes& cell = cells_[i];
+    for (std::size_t p = 0; p < kProducts; ++p)
+      stencil[kNeighbour[p]][i + corner[kCorner[p]]] += cell[p];
+    for (std::size_t k = 0; k < 4; ++k) right_side[i + corner[k]] += cell[kProducts + k];
   }
   return stencil;
 }
@@ -176,34 +185,30 @@ void LevelSystem::multiply(const Stencil& stencil, const std::vector<float>& x,
     for (std::size_t i = 0; i < count; ++i) target[i] += factor[i] * x[i];
   }
   const float* from = x.data();
+  const float* below = from + width;
   float* to = y.data();
+  float* to_below = to + width;
   for (const Track& track : tracks_) {
-    const Entry* entries = entries_.data() + track.begin;
-    const std::size_t count = track.end - track.begin;
-    // Four sums, so that none waits for the one before it.
-    Eigen::Array4f sums = Eigen::Array4f::Zero();
-    std::size_t k = 0;
-    for (; k + 4 <= count; k += 4) {
-      const Entry* e = entries + k;
-      sums +=
-          Eigen::Array4f(e[0].factor, e[1].factor, e[2].factor, e[3].factor) *
-          Eigen::Array4f(from[e[0].index], from[e[1].index], from[e[2].index], from[e[3].index]);
+    const std::span<const Entry> entries(entries_.data() + track.begin, track.end - track.begin);
+    Corners sums{};
+    for (const auto& [i, f] : entries)
+      sums += corners_of(f.data()) * corners_at(from + i, below + i);
+    const float mean = (sums[0] + sums[1] + (sums[2] + sums[3])) * track.weight;
+    for (const auto& [i, f] : entries) {
+      to[i] -= f[0] * mean;
+      to[i + 1] -= f[1] * mean;
+      to_below[i] -= f[2] * mean;
+      to_below[i + 1] -= f[3] * mean;
     }
-    float mean = sums.sum();
-    for (; k < count; ++k) mean += entries[k].factor * from[entries[k].index];
-    mean *= track.weight;
-    for (k = 0; k < count; ++k) to[entries[k].index] -= entries[k].factor * mean;
   }
 }
 
 GridSolution LevelSystem::solve(int iterations, double tolerance, const ImageF& start) const {
   const std::size_t n = rows_.size();
-  std::vector<float> diagonal(n);
-  for (std::size_t i = 0; i < n; ++i) diagonal[i] = rows_[i][0];
-  const Stencil stencil = this->stencil();
-  CosinePreconditioner preconditioner(width_, height_, diagonal, track_variance());
+  std::vector<float> x(n, 0), r = right_side_, z(n), p, q(n);
+  const Stencil stencil = this->stencil(r);
+  CosinePreconditioner preconditioner(width_, height_, stencil[0], track_variance());
   GridSolution solution{ImageF(width_, height_), 0, 0};
-  std::vector<float> x(n, 0), r(right_side_.begin(), right_side_.end()), z(n), p, q(n);
   preconditioner.apply(r, z);
   const double full = std::max(dot(r, z), 1e-30);
   if (!start.empty()) {

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/image.h"
+#include "estimator/lanes.h"
 
 namespace saccade {
 
@@ -13,6 +15,12 @@ namespace saccade {
 struct GridPoint {
   std::array<int, 4> index;
   std::array<float, 4> weight;
+};
+
+/// What is known of the image at a place.
+struct GridLevel {
+  GridPoint place;
+  float level, weight;
 };
 
 struct GridSolution {
@@ -34,10 +42,11 @@ class LevelSystem {
   /// Forgets what was added, but keeps the memory.
   void clear();
 
-  /// Tracks come one after the other: begin_track(), then add() for its levels, end_track().
-  void begin_track();
-  void add(const GridPoint& place, float level, float weight);
-  void end_track();
+  /// Room for so many levels.
+  void reserve(std::size_t levels) { entries_.reserve(levels); }
+
+  /// The levels of one track. A place's four pixels are a square, the first its upper left.
+  void add_track(std::span<const GridLevel> levels);
 
   /// w (I(j) - I(i))^2 for two neighbours.
   void add_smooth(int i, int j, float weight);
@@ -51,32 +60,29 @@ class LevelSystem {
  private:
   static constexpr int kNeighbours = 5;  ///< itself, right, left below, below, right below
 
+  /// A level's share of its track's mean.
   struct Entry {
-    int index;
-    float factor;
+    int index;  ///< of the upper left pixel
+    std::array<float, 4> factor;
   };
   struct Track {
     std::size_t begin, end;  ///< of its entries
     float weight;
   };
 
-  /// rows_, one neighbour after the other.
+  /// rows_ with what the levels add, one neighbour after the other.
   using Stencil = std::array<std::vector<float>, kNeighbours>;
 
-  [[nodiscard]] Stencil stencil() const;
+  [[nodiscard]] Stencil stencil(std::vector<float>& right_side) const;
   void multiply(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y) const;
   [[nodiscard]] double track_variance() const;
 
   int width_, height_;
   std::vector<std::array<float, kNeighbours>> rows_;
+  std::vector<Lanes> cells_;  ///< what levels add, by the upper left pixel of their square
   std::vector<Entry> entries_;
   std::vector<Track> tracks_;
-  std::vector<float> diagonal_;  ///< of the tracks' part
-  std::vector<double> right_side_;
-  // The track that is being added: the sum of its rows by pixel.
-  std::vector<float> sum_;
-  std::vector<int> touched_;
-  double track_weight_ = 0, track_level_ = 0;
+  std::vector<float> right_side_;
 };
 
 }  // namespace saccade

@@ -1,6 +1,7 @@
 #include "estimator/reconstruction/place_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,26 +11,43 @@ namespace saccade {
 namespace {
 
 constexpr float kSameSurface = 1.1F;   ///< ratio of depths
+constexpr int kTurns = 3;              ///< in which pixels without a place are asked again
+constexpr std::size_t kChunk = 128;    ///< pixels that are followed together
 constexpr double kLargestMargin = 64;  ///< of the drawn view [px]
 
 Rigid3 rigid_of(const CameraPose& pose) {
   return {Eigen::Quaterniond(pose.r.cast<double>()), pose.t.cast<double>()};
 }
 
+/// The larger, or of `sign` -1 the smaller, of every value and another one.
+void keep_extreme(float* values, const float* others, int count, float sign) {
+  for (int i = 0; i < count; ++i) {
+    const float a = sign * values[i], b = sign * others[i];
+    values[i] = sign * (a > b ? a : b);
+  }
+}
+
 /// The largest (of `sign` -1: smallest) value within `radius`, in x and y.
 ImageF extreme_within(const ImageF& image, int radius, float sign) {
-  ImageF along_x = image, result(image.width(), image.height());
-  const auto more = [sign](float a, float b) { return sign * a > sign * b ? a : b; };
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      for (int u = std::max(x - radius, 0); u <= std::min(x + radius, image.width() - 1); ++u)
-        along_x(x, y) = more(along_x(x, y), image(u, y));
-  result = along_x;
-  for (int y = 0; y < image.height(); ++y)
-    for (int v = std::max(y - radius, 0); v <= std::min(y + radius, image.height() - 1); ++v)
-      for (int x = 0; x < image.width(); ++x) result(x, y) = more(result(x, y), along_x(x, v));
+  const int width = image.width(), height = image.height();
+  const auto row = [width](auto& of, int y) {
+    return of.data() + static_cast<std::ptrdiff_t>(y) * width;
+  };
+  ImageF along_x = image;
+  for (int y = 0; y < height; ++y)
+    for (int d = 1; d <= std::min(radius, width - 1); ++d) {
+      keep_extreme(row(along_x, y), row(image, y) + d, width - d, sign);
+      keep_extreme(row(along_x, y) + d, row(image, y), width - d, sign);
+    }
+  ImageF result = along_x;
+  for (int y = 0; y < height; ++y)
+    for (int v = std::max(y - radius, 0); v <= std::min(y + radius, height - 1); ++v)
+      keep_extreme(row(result, y), row(along_x, v), width, sign);
   return result;
 }
+
+/// 1 or 0, which vector code multiplies more readily than it branches.
+inline float yes(bool is_so) { return is_so ? 1.0F : 0.0F; }
 
 }  // namespace
 
@@ -51,6 +69,8 @@ PlaceFinder::PlaceFinder(const PinholeCamera& camera, const DepthScene& scene,
       cy_(static_cast<float>(camera.cy)),
       same_surface_(static_cast<float>(options.same_surface)),
       rays_(camera.width, camera.height),
+      ray_x_(camera.width, camera.height),
+      ray_y_(camera.width, camera.height),
       planes_(camera.width, camera.height) {
   const int margin = static_cast<int>(std::ceil(std::min(options.redraw_px, kLargestMargin)));
   margin_ = static_cast<float>(margin);
@@ -59,11 +79,13 @@ PlaceFinder::PlaceFinder(const PinholeCamera& camera, const DepthScene& scene,
   view_camera_.cx += margin;
   view_camera_.cy += margin;
   inverse_depth_ = ImageF(view_camera_.width, view_camera_.height);
-  is_near_step_ = ImageU8(view_camera_.width, view_camera_.height);
   const UndistortionTable undistorted(camera);
   for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x)
+    for (int x = 0; x < camera.width; ++x) {
       rays_(x, y) = camera_.ray(undistorted(x, y).cast<double>()).cast<float>();
+      ray_x_(x, y) = rays_(x, y).x();
+      ray_y_(x, y) = rays_(x, y).y();
+    }
   set_planes(reference_inverse_depth);
 }
 
@@ -117,11 +139,13 @@ void PlaceFinder::mark_steps() {
   for (float& value : known.pixels())
     if (!(value > 0)) value = std::numeric_limits<float>::infinity();
   const ImageF low = extreme_within(known, radius, -1);
+  open_inverse_depth_ = inverse_depth_;
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < high.size(); ++i) {
     const bool is_step = high.pixels()[i] > kSameSurface * low.pixels()[i];
-    is_near_step_.pixels()[i] = is_step && options_.step_margin_px > 0 ? 1 : 0;
-    if (is_step) at.push_back(i);
+    if (!is_step) continue;
+    if (options_.step_margin_px > 0) open_inverse_depth_.pixels()[i] = 0;
+    at.push_back(i);
   }
   steps_.clear();
   for (std::size_t k = 0; k < at.size(); k += at.size() / kMost + 1) {
@@ -149,24 +173,144 @@ double PlaceFinder::parallax_px(const CameraPose& reference_from_camera) const {
   return static_cast<double>(furthest);
 }
 
-double PlaceFinder::moved_px(const CameraPose& reference_from_camera,
-                             const CameraPose& earlier_from_reference) const {
+std::vector<Eigen::Vector3f> PlaceFinder::samples(const CameraPose& reference_from_camera) const {
   constexpr int kEvery = 31;
   const auto margin = static_cast<int>(margin_);
-  double furthest = 0;
+  std::vector<Eigen::Vector3f> points;
   for (int y = kEvery / 2; y < camera_.height; y += kEvery)
     for (int x = kEvery / 2; x < camera_.width; x += kEvery) {
       const float known = inverse_depth_(x + margin, y + margin);
       const float z = known > 0 ? 1 / known : scene_.typical_depth_m;
       const Eigen::Vector3f ray = camera_.ray({x, y}).cast<float>();
-      const Eigen::Vector3f p = earlier_from_reference.r * (reference_from_camera.r * (z * ray) +
-                                                            reference_from_camera.t) +
-                                earlier_from_reference.t;
-      if (!(p.z() > 0)) return std::numeric_limits<double>::infinity();
-      const Eigen::Vector2d moved = camera_.project(p.cast<double>()) - Eigen::Vector2d(x, y);
-      furthest = std::max(furthest, moved.norm());
+      points.emplace_back(reference_from_camera.r * (z * ray) + reference_from_camera.t);
     }
-  return furthest;
+  return points;
+}
+
+double PlaceFinder::moved_px(const CameraPose& reference_from_camera,
+                             const CameraPose& earlier_from_reference) const {
+  return motion(reference_from_camera, earlier_from_reference, earlier_from_reference).length;
+}
+
+ImageMotion PlaceFinder::motion(const CameraPose& reference_from_first,
+                                const CameraPose& middle_from_reference,
+                                const CameraPose& last_from_reference) const {
+  const CameraPose first_from_reference = inverse_of(reference_from_first);
+  const auto seen = [&](const CameraPose& camera_from_reference, const Eigen::Vector3f& point) {
+    const Eigen::Vector3f p = camera_from_reference.r * point + camera_from_reference.t;
+    if (!(p.z() > 0))
+      return Eigen::Vector2f::Constant(std::numeric_limits<float>::infinity()).eval();
+    return Eigen::Vector2f(fx_ * p.x() / p.z(), fy_ * p.y() / p.z());
+  };
+  float length = 0, bend = 0;
+  for (const Eigen::Vector3f& point : samples(reference_from_first)) {
+    const Eigen::Vector2f first = seen(first_from_reference, point);
+    const Eigen::Vector2f middle = seen(middle_from_reference, point);
+    const Eigen::Vector2f last = seen(last_from_reference, point);
+    if (!middle.allFinite() || !last.allFinite())
+      return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    length = std::max(length, (last - first).norm());
+    bend = std::max(bend, (middle - (first + last) / 2).norm());
+  }
+  return {static_cast<double>(length), static_cast<double>(bend)};
+}
+
+void PlaceFinder::follow(const CameraPose& reference_from_camera, const PlaceField& earlier,
+                         PlaceField& places) {
+  const std::size_t count = planes_.size();
+  for (std::size_t i = 0; i < count; i += kChunk)
+    follow_chunk(i, std::min(kChunk, count - i), reference_from_camera, earlier, places);
+  std::size_t i = 0;
+  for (int y = 0; y < camera_.height; ++y)
+    for (int x = 0; x < camera_.width; ++x, ++i) {
+      if (places.inverse_depth[i] > 0) continue;
+      const bool is_lost = earlier.inverse_depth[i] > 0;
+      if (!is_lost && follows_ > 0 && (x + 3 * y + follows_) % kTurns != 0) continue;
+      const Eigen::Vector2f from(earlier.x[i], earlier.y[i]);
+      const auto place = find(x, y, reference_from_camera, is_lost ? &from : nullptr);
+      if (!place) continue;
+      places.x[i] = place->x;
+      places.y[i] = place->y;
+      places.inverse_depth[i] = place->inverse_depth;
+    }
+  ++follows_;
+}
+
+void PlaceFinder::follow_chunk(std::size_t first, std::size_t count,
+                               const CameraPose& reference_from_camera, const PlaceField& earlier,
+                               PlaceField& places) const {
+  // find() for one plane, that of the earlier place, in homogeneous coordinates: the point is
+  // (px, py, pz) / den. Loops with arithmetic alone, which become vector code, between others that
+  // fetch.
+  const Eigen::Matrix3f& r = reference_from_camera.r;
+  const Eigen::Vector3f& t = reference_from_camera.t;
+  const Eigen::Matrix3f& rv = view_from_reference_.r;
+  const Eigen::Vector3f& tv = view_from_reference_.t;
+  const float r00 = r(0, 0), r01 = r(0, 1), r02 = r(0, 2), r10 = r(1, 0), r11 = r(1, 1),
+              r12 = r(1, 2), r20 = r(2, 0), r21 = r(2, 1), r22 = r(2, 2);
+  const float v00 = rv(0, 0), v01 = rv(0, 1), v02 = rv(0, 2), v10 = rv(1, 0), v11 = rv(1, 1),
+              v12 = rv(1, 2), v20 = rv(2, 0), v21 = rv(2, 1), v22 = rv(2, 2);
+  const float tx = t.x(), ty = t.y(), tz = t.z(), wx = tv.x(), wy = tv.y(), wz = tv.z();
+  const float fx = fx_, fy = fy_, cx = cx_, cy = cy_, same = same_surface_;
+  const float vcx = cx_ + margin_ + 0.5F, vcy = cy_ + margin_ + 0.5F;
+  const int width = camera_.width, view_width = view_camera_.width;
+  const auto most_x = static_cast<float>(width - 1);
+  const auto most_y = static_cast<float>(camera_.height - 1);
+  const auto most_u = static_cast<float>(view_width);
+  const auto most_v = static_cast<float>(view_camera_.height);
+  const float* ray_x = ray_x_.data() + first;
+  const float* ray_y = ray_y_.data() + first;
+  const float* from_x = earlier.x.data() + first;
+  const float* from_y = earlier.y.data() + first;
+  const float* from_inverse = earlier.inverse_depth.data() + first;
+  std::array<int, kChunk> at, at_view;
+  std::array<Plane, kChunk> plane;
+  std::array<float, kChunk> x, y, inverse, den, depth, is_in, known, seen;
+  for (std::size_t i = 0; i < count; ++i)
+    at[i] = static_cast<int>(from_y[i] + 0.5F) * width + static_cast<int>(from_x[i] + 0.5F);
+  for (std::size_t i = 0; i < count; ++i) plane[i] = planes_.data()[at[i]];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float nx = plane[i].normal[0], ny = plane[i].normal[1], nz = plane[i].normal[2];
+    const float dx = r00 * ray_x[i] + r01 * ray_y[i] + r02;
+    const float dy = r10 * ray_x[i] + r11 * ray_y[i] + r12;
+    const float dz = r20 * ray_x[i] + r21 * ray_y[i] + r22;
+    const float d = nx * dx + ny * dy + nz * dz;
+    const float num = 1 - (nx * tx + ny * ty + nz * tz);
+    const float px = tx * d + num * dx, py = ty * d + num * dy, pz = tz * d + num * dz;
+    const float over_pz = 1 / pz;
+    x[i] = fx * px * over_pz + cx;
+    y[i] = fy * py * over_pz + cy;
+    inverse[i] = d * over_pz;
+    den[i] = d;
+    const float is_here = yes(from_inverse[i] > 0) * yes(num > 0) * yes(d > 0) * yes(pz > 0) *
+                          yes(x[i] >= 0) * yes(y[i] >= 0) * yes(x[i] <= most_x) *
+                          yes(y[i] <= most_y);
+    x[i] = is_here > 0 ? x[i] : 0;
+    y[i] = is_here > 0 ? y[i] : 0;
+    at[i] = static_cast<int>(y[i] + 0.5F) * width + static_cast<int>(x[i] + 0.5F);
+    const float qx = v00 * px + v01 * py + v02 * pz + wx * d;
+    const float qy = v10 * px + v11 * py + v12 * pz + wy * d;
+    const float qz = v20 * px + v21 * py + v22 * pz + wz * d;
+    const float over_qz = 1 / qz;
+    const float u = fx * qx * over_qz + vcx, v = fy * qy * over_qz + vcy;
+    const float is_shown =
+        is_here * yes(qz > 0) * yes(u >= 0) * yes(v >= 0) * yes(u < most_u) * yes(v < most_v);
+    const float safe_u = is_shown > 0 ? u : 0, safe_v = is_shown > 0 ? v : 0;
+    at_view[i] = static_cast<int>(safe_v) * view_width + static_cast<int>(safe_u);
+    depth[i] = qz;
+    is_in[i] = is_shown;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    known[i] = planes_.data()[at[i]].inverse_depth;
+    seen[i] = open_inverse_depth_.data()[at_view[i]];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const float is_found = is_in[i] * yes(std::abs(known[i] - inverse[i]) <= same * inverse[i]) *
+                           yes(std::abs(seen[i] * depth[i] - den[i]) <= same * den[i]);
+    places.x[first + i] = x[i];
+    places.y[first + i] = y[i];
+    places.inverse_depth[first + i] = is_found > 0 ? inverse[i] : 0;
+  }
 }
 
 std::optional<Place> PlaceFinder::find(int x, int y, const CameraPose& reference_from_camera,
@@ -224,8 +368,8 @@ bool PlaceFinder::meet_surface(const Eigen::Vector3f& direction, const Eigen::Ve
 bool PlaceFinder::is_seen(const Eigen::Vector3f& point) const {
   const Eigen::Vector3f in_view = view_from_reference_.r * point + view_from_reference_.t;
   const int index = view_index(in_view);
-  return index >= 0 && is_near_step_.pixels()[static_cast<std::size_t>(index)] == 0 &&
-         is_same(inverse_depth_.pixels()[static_cast<std::size_t>(index)] * in_view.z(), 1);
+  return index >= 0 &&
+         is_same(open_inverse_depth_.pixels()[static_cast<std::size_t>(index)] * in_view.z(), 1);
 }
 
 }  // namespace saccade

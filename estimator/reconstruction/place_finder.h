@@ -28,6 +28,24 @@ struct Place {
   float inverse_depth = 0;  ///< 1 / z in the reference view [1/m]
 };
 
+/// Where all pixels of the sensor look at one time, in row-major order.
+struct PlaceField {
+  std::vector<float> x, y;           ///< [px of the reference view]
+  std::vector<float> inverse_depth;  ///< 1 / z in the reference view [1/m]; 0: no place is seen
+
+  void resize(std::size_t pixels) {
+    x.resize(pixels);
+    y.resize(pixels);
+    inverse_depth.resize(pixels);
+  }
+};
+
+/// How far what a camera sees moves in its image [px], the furthest of a few points.
+struct ImageMotion {
+  double length = 0;  ///< from the first pose to the last
+  double bend = 0;    ///< at the middle pose, from where it would be half way
+};
+
 struct PlaceOptions {
   double redraw_px = 8;  ///< image motion after which the surfaces are drawn anew
   double parallax_px =
@@ -57,6 +75,11 @@ class PlaceFinder {
   [[nodiscard]] std::optional<Place> find(int x, int y, const CameraPose& reference_from_camera,
                                           const Eigen::Vector2f* earlier = nullptr) const;
 
+  /// The same for all pixels, into `places`. `earlier`: their places a little earlier, which they
+  /// are followed from, many at a time; those that had none are looked for in turns.
+  void follow(const CameraPose& reference_from_camera, const PlaceField& earlier,
+              PlaceField& places);
+
   /// How often the surfaces were drawn.
   [[nodiscard]] int draws() const { return draws_; }
 
@@ -64,6 +87,11 @@ class PlaceFinder {
   /// [px]; infinity where one was behind it. After prepare().
   [[nodiscard]] double moved_px(const CameraPose& reference_from_camera,
                                 const CameraPose& earlier_from_reference) const;
+
+  /// ... and along a path of three poses. Infinite where a point gets behind the camera.
+  [[nodiscard]] ImageMotion motion(const CameraPose& reference_from_first,
+                                   const CameraPose& middle_from_reference,
+                                   const CameraPose& last_from_reference) const;
 
  private:
   /// The plane n . p = 1 of the surface at a pixel of the reference view.
@@ -78,6 +106,10 @@ class PlaceFinder {
   };
 
   void set_planes(const ImageF& inverse_depth);
+  /// Points of what the camera sees near a pose, a few all over its image.
+  [[nodiscard]] std::vector<Eigen::Vector3f> samples(const CameraPose& reference_from_camera) const;
+  void follow_chunk(std::size_t first, std::size_t count, const CameraPose& reference_from_camera,
+                    const PlaceField& earlier, PlaceField& places) const;
   void mark_steps();
   /// How far surfaces have shifted against each other since the view was drawn [px].
   [[nodiscard]] double parallax_px(const CameraPose& reference_from_camera) const;
@@ -124,12 +156,14 @@ class PlaceFinder {
   float same_surface_;
   float margin_;                 ///< of the drawn view around the camera's [px]
   Image<Eigen::Vector3f> rays_;  ///< of the sensor's pixels, z = 1
+  ImageF ray_x_, ray_y_;         ///< the same
   Image<Plane> planes_;          ///< of the reference view
   ImageF inverse_depth_;         ///< of the drawn view
-  ImageU8 is_near_step_;         ///< of the drawn view
+  ImageF open_inverse_depth_;    ///< the same, 0 near steps of depth
   std::vector<Step> steps_;      ///< some of them
   CameraPose view_from_reference_;
   int draws_ = 0;
+  int follows_ = 0;
 };
 
 [[nodiscard]] CameraPose inverse_of(const CameraPose& pose);

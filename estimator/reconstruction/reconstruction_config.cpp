@@ -34,6 +34,10 @@ void describe_levels(config::Fields& fields, LevelOptions& options) {
   fields.value("still_turns", options.still_turns, "every n-th of them at a time, each in its turn")
       .range(1, 64);
   fields
+      .value("still_events", options.still_events,
+             "... in proportion more seldom where there are more events per pixel than this")
+      .above(0);
+  fields
       .value("beyond", options.beyond,
              "a silent pixel's level goes on past its last event, by this share of a threshold")
       .range(0, 1);

