@@ -17,6 +17,7 @@ struct EdgeDepth {
   float y_px = 0;
   float inverse_depth = 0;  ///< 1 / z [1/m], > 0
   float sigma = 0;          ///< standard deviation of inverse_depth [1/m], > 0
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();  ///< unit, across the edge; 0: not known
 };
 
 /// Depths that may occur [m], 0 < near < far; all that a method knows of the scene beforehand.

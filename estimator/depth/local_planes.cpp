@@ -15,6 +15,12 @@ namespace {
 constexpr float kTukey = 4.685F;
 constexpr float kMaxSlope = 0.02F;     ///< relative change of inverse depth per pixel at the start
 constexpr float kSameSurface = 0.02F;  ///< relative distance
+constexpr float kBehind = 0.05F;       ///< relative distance of a surface behind, at least
+constexpr float kBehindRadii = 3;      ///< within which one is looked for
+constexpr float kLeastBehind = 2;      ///< points, since one may be wrong
+constexpr float kMoreBehind = 3;       ///< times those on the other side
+constexpr float kOnEdge_px = 1;        ///< nearer than that a point is on neither side
+constexpr float kGoesOn = 0.25F;  ///< share of the weights beyond an edge of what goes on there
 constexpr float kSlopePrior = 0.01F;
 /// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
 constexpr float kWeightedVariance = 1.29F;
@@ -47,9 +53,8 @@ int LocalPlanes::cell_of(float px, int cells) const {
 }
 
 template <class Visit>
-void LocalPlanes::for_near(float x_px, float y_px, const Visit& visit) const {
+void LocalPlanes::for_near(float x_px, float y_px, float radius, const Visit& visit) const {
   if (points_.empty()) return;
-  const auto radius = static_cast<float>(options_.radius_px);
   const auto left = static_cast<std::size_t>(cell_of(x_px - radius, columns_));
   const auto right = static_cast<std::size_t>(cell_of(x_px + radius, columns_));
   const auto bottom = static_cast<std::size_t>(cell_of(y_px + radius, rows_));
@@ -66,28 +71,32 @@ void LocalPlanes::for_near(float x_px, float y_px, const Visit& visit) const {
 const EdgeDepth* LocalPlanes::nearest(float x_px, float y_px) const {
   const EdgeDepth* best = nullptr;
   float least = 0;
-  for_near(x_px, y_px, [&](const EdgeDepth& point, float, float, float squared) {
-    if (best != nullptr && squared >= least) return;
-    best = &point;
-    least = squared;
-  });
+  for_near(x_px, y_px, static_cast<float>(options_.radius_px),
+           [&](const EdgeDepth& point, float, float, float squared) {
+             if (best != nullptr && squared >= least) return;
+             best = &point;
+             least = squared;
+           });
   return best;
 }
 
 void LocalPlanes::gather(const EdgeDepth& start) {
   const float model = static_cast<float>(options_.model_error) * start.inverse_depth;
   dx_.clear(), dy_.clear(), difference_.clear(), per_sigma_.clear();
-  for_near(start.x_px, start.y_px, [&](const EdgeDepth& other, float dx, float dy, float squared) {
-    const float difference = other.inverse_depth - start.inverse_depth;
-    const float allowed = kMaxSlope * std::sqrt(squared) * start.inverse_depth +
-                          3 * std::sqrt(start.sigma * start.sigma + other.sigma * other.sigma);
-    if (std::abs(difference) > allowed) return;
-    dx_.push_back(dx);
-    dy_.push_back(dy);
-    difference_.push_back(difference);
-    per_sigma_.push_back(1 / std::sqrt(other.sigma * other.sigma + model * model));
-  });
+  for_near(start.x_px, start.y_px, static_cast<float>(options_.radius_px),
+           [&](const EdgeDepth& other, float dx, float dy, float squared) {
+             const float difference = other.inverse_depth - start.inverse_depth;
+             const float allowed =
+                 kMaxSlope * std::sqrt(squared) * start.inverse_depth +
+                 3 * std::sqrt(start.sigma * start.sigma + other.sigma * other.sigma);
+             if (std::abs(difference) > allowed) return;
+             dx_.push_back(dx);
+             dy_.push_back(dy);
+             difference_.push_back(difference);
+             per_sigma_.push_back(1 / std::sqrt(other.sigma * other.sigma + model * model));
+           });
   count_ = dx_.size();
+  start_inverse_depth_ = start.inverse_depth;
   for (auto* array : {&dx_, &dy_, &difference_, &per_sigma_})
     array->resize(padded_to_lanes(count_), 0.F);
 }
@@ -145,16 +154,65 @@ LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
   return result;
 }
 
+LocalPlanes::Sides LocalPlanes::plane_sides(const LocalPlane& plane,
+                                            const Eigen::Vector2f& normal) const {
+  const float change = plane.inverse_depth - start_inverse_depth_;
+  const float per_cut = 1 / (kTukey * plane.spread);
+  Sides sides;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const float across = dx_[k] * normal.x() + dy_[k] * normal.y();
+    if (std::abs(across) < kOnEdge_px) continue;
+    const float residual =
+        difference_[k] - change - plane.slope.x() * dx_[k] - plane.slope.y() * dy_[k];
+    const float u = residual * per_sigma_[k] * per_cut;
+    const float v = std::max(0.F, 1 - u * u);
+    (across > 0 ? sides.along : sides.against) += v * v;
+  }
+  return sides;
+}
+
+LocalPlanes::Sides LocalPlanes::behind_sides(const EdgeDepth& start,
+                                             const LocalPlane& plane) const {
+  Sides sides;
+  const float radius = kBehindRadii * static_cast<float>(options_.radius_px);
+  for_near(start.x_px, start.y_px, radius, [&](const EdgeDepth& other, float dx, float dy, float) {
+    const float expected = plane.inverse_depth + plane.slope.x() * dx + plane.slope.y() * dy;
+    if (other.inverse_depth > (1 - kBehind) * expected) return;
+    const float across = dx * start.normal.x() + dy * start.normal.y();
+    (across > 0 ? sides.along : sides.against) += 1;
+  });
+  return sides;
+}
+
+int LocalPlanes::surface_side(const EdgeDepth& start, const LocalPlane& plane) const {
+  const Sides own = plane_sides(plane, start.normal);
+  const bool is_along = own.along > own.against;
+  const float more = is_along ? own.along : own.against;
+  if (more > 0 && (is_along ? own.against : own.along) > kGoesOn * more) return 0;
+  const Sides behind = behind_sides(start, plane);
+  const auto is_on = [](float here, float there) {
+    return here >= kLeastBehind && here > kMoreBehind * there;
+  };
+  if (more > 0) {
+    if ((is_along ? behind.against : behind.along) < kLeastBehind) return 0;
+    return is_along ? 1 : -1;
+  }
+  // A contour of which nothing else is known.
+  if (is_on(behind.along, behind.against)) return -1;
+  return is_on(behind.against, behind.along) ? 1 : 0;
+}
+
 float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) const {
   float nearest = std::numeric_limits<float>::infinity(), second = nearest;
   const float always = kSameSurface * plane.inverse_depth;
-  for_near(x_px, y_px, [&](const EdgeDepth& other, float dx, float dy, float) {
-    const float gap = std::abs(other.inverse_depth - plane.inverse_depth - plane.slope.x() * dx -
-                               plane.slope.y() * dy);
-    if (gap < always + kTukey * plane.spread * other.sigma || gap >= second) return;
-    second = gap >= nearest ? gap : nearest;
-    nearest = std::min(nearest, gap);
-  });
+  for_near(x_px, y_px, static_cast<float>(options_.radius_px),
+           [&](const EdgeDepth& other, float dx, float dy, float) {
+             const float gap = std::abs(other.inverse_depth - plane.inverse_depth -
+                                        plane.slope.x() * dx - plane.slope.y() * dy);
+             if (gap < always + kTukey * plane.spread * other.sigma || gap >= second) return;
+             second = gap >= nearest ? gap : nearest;
+             nearest = std::min(nearest, gap);
+           });
   return second;
 }
 

@@ -37,6 +37,11 @@ class LocalPlanes {
   /// within the radius count, one at `start` itself included. Not thread-safe.
   [[nodiscard]] LocalPlane fit(const EdgeDepth& start);
 
+  /// On which side of an edge through the start of the last fit() its surface lies: 1 on that of
+  /// the edge's normal, -1 on the other; 0 where it goes on on both, and where no surface farther
+  /// away is found on the side that it leaves empty.
+  [[nodiscard]] int surface_side(const EdgeDepth& start, const LocalPlane& plane) const;
+
   /// Distance in inverse depth of the nearest other surface: of the points around that are not on
   /// the plane, the second nearest to it, since one alone may be wrong. Infinity where there is
   /// none.
@@ -46,9 +51,17 @@ class LocalPlanes {
   [[nodiscard]] const EdgeDepth* nearest(float x_px, float y_px) const;
 
  private:
+  /// What lies on either side of an edge.
+  struct Sides {
+    float along = 0;    ///< on that of its normal
+    float against = 0;  ///< on the other
+  };
+
   template <class Visit>
-  void for_near(float x_px, float y_px, const Visit& visit) const;
+  void for_near(float x_px, float y_px, float radius, const Visit& visit) const;
   void gather(const EdgeDepth& start);
+  [[nodiscard]] Sides plane_sides(const LocalPlane& plane, const Eigen::Vector2f& normal) const;
+  [[nodiscard]] Sides behind_sides(const EdgeDepth& start, const LocalPlane& plane) const;
   [[nodiscard]] int cell_of(float px, int cells) const;
 
   PlaneOptions options_;
@@ -59,6 +72,7 @@ class LocalPlanes {
 
   // Neighbours of the pixel at hand, padded to lanes.
   std::size_t count_ = 0;
+  float start_inverse_depth_ = 0;
   std::vector<float> dx_, dy_;
   std::vector<float> difference_;  ///< of inverse depth from the start
   std::vector<float> per_sigma_;   ///< 0 behind `count_`

@@ -23,6 +23,17 @@ float sigma_of(const LocalPlane& plane, const FusionOptions& options) {
   return std::sqrt(fit * fit * (1 + few * few) + surface * surface + common * common);
 }
 
+/// What a point's own place and neighbourhood add to the deviation of its plane.
+float local_sigma_of(const EdgeDepth& point, const LocalPlane& plane,
+                     const FusionOptions& options) {
+  const float place = static_cast<float>(options.position_error_px) * plane.slope.norm();
+  const float own =
+      static_cast<float>(options.own_share) * (point.inverse_depth - plane.inverse_depth);
+  const float scatter = static_cast<float>(options.scatter_share) * point.sigma *
+                        std::sqrt(plane.spread * plane.spread - 1);
+  return std::sqrt(place * place + own * own + scatter * scatter);
+}
+
 }  // namespace
 
 std::vector<EdgeDepth> supported(const std::vector<EdgeDepth>& points,
@@ -42,10 +53,16 @@ std::vector<EdgeDepth> fused(const std::vector<EdgeDepth>& points, const FusionO
   for (const EdgeDepth& point : points) {
     const LocalPlane plane = planes.fit(point);
     if (!is_supported(point, plane, options)) continue;
+    const float sigma = sigma_of(plane, options);
+    if (sigma > static_cast<float>(options.max_sigma) * plane.inverse_depth) continue;
+    const Eigen::Vector2f shift = static_cast<float>(options.step_shift_px) *
+                                  static_cast<float>(planes.surface_side(point, plane)) *
+                                  point.normal;
     EdgeDepth smooth = point;
-    smooth.inverse_depth = plane.inverse_depth;
-    smooth.sigma = sigma_of(plane, options);
-    if (smooth.sigma > static_cast<float>(options.max_sigma) * smooth.inverse_depth) continue;
+    smooth.x_px += shift.x();
+    smooth.y_px += shift.y();
+    smooth.inverse_depth = plane.inverse_depth + plane.slope.dot(shift);
+    smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options));
     if (smooth.inverse_depth > 0) result.push_back(smooth);
   }
   return result;

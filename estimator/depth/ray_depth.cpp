@@ -101,7 +101,8 @@ std::vector<EdgeDepth> RayDepth::points_of(const std::vector<FittedEdge>& edges)
   for (const FittedEdge& e : edges)
     if (e.unseen_px <= static_cast<float>(options_.max_unseen_px) &&
         camera_.contains(e.edge.pixel.cast<double>()))
-      points.push_back({e.edge.pixel.x(), e.edge.pixel.y(), e.edge.inverse_depth, e.sigma});
+      points.push_back(
+          {e.edge.pixel.x(), e.edge.pixel.y(), e.edge.inverse_depth, e.sigma, e.edge.normal});
   return points;
 }
 

@@ -76,6 +76,22 @@ void describe_fusion(config::Fields& fields, FusionOptions& options) {
   fields.value("few_error", options.few_error, "of a surface through so few points, relative")
       .range(0, 1);
   fields.value("floor", options.floor, "of the deviation, relative").range(0, 1);
+  fields
+      .value("position_error_px", options.position_error_px,
+             "deviation of a point's place, which counts on steep surfaces")
+      .range(0, 100);
+  fields
+      .value("own_share", options.own_share,
+             "of a point's distance from its plane, added to its deviation")
+      .range(0, 10);
+  fields
+      .value("scatter_share", options.scatter_share,
+             "of what the points around scatter more than they should, added to its deviation")
+      .range(0, 10);
+  fields
+      .value("step_shift_px", options.step_shift_px,
+             "of a point on a contour, onto the surface that ends there")
+      .range(0, 5);
   fields.value("max_sigma", options.max_sigma, "of a point, relative; others are dropped").above(0);
 }
 

@@ -27,6 +27,7 @@ class EdgeMap {
   void add(Keyframe keyframe, const Rigid3& world_from_camera);
 
   [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  [[nodiscard]] std::vector<Keyframe>& keyframes() { return keyframes_; }
   /// Indices of those that make up the map, in order of time.
   [[nodiscard]] const std::vector<std::size_t>& active() const { return active_; }
   /// Their edges; the object stays the same.

@@ -38,7 +38,7 @@ std::vector<SurfacePoint> surface_points(const DepthResult& result, const Pinhol
 
 ImageF dense_depth(const Keyframe& keyframe, const PinholeCamera& camera,
                    const DepthSourceOptions& options) {
-  return surface_through(surface_points(keyframe.depth, camera), camera, options.smoothness);
+  return surface_through(surface_points(keyframe.depth, camera), camera, options.planes);
 }
 
 /// Size of the reconstructed gradient where it is known, else 0.
@@ -88,10 +88,21 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   keyframe.depth = make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
   keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
   if (keyframe.depth.points.empty()) return mapping;
-  if (options_.image || options_.edges == MappingOptions::Edges::kGradient)
-    add_image(window, keyframe);
+  if (options_.edges == MappingOptions::Edges::kGradient) reconstruct(window, keyframe);
   add_edges(keyframe);
   return mapping;
+}
+
+void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
+                       Keyframe& keyframe) const {
+  if (!keyframe.image.log_image.empty() || keyframe.depth.points.empty()) return;
+  ViewWindow window{within(events, poses), &poses, keyframe.t_s};
+  const auto first = std::partition_point(
+      window.events.begin(), window.events.end(),
+      [&](const Event& e) { return seconds_from_ns(e.t_ns) < keyframe.start_s; });
+  window.events = window.events.subspan(static_cast<std::size_t>(first - window.events.begin()));
+  window.events = window.events.first(std::min(window.events.size(), keyframe.events));
+  reconstruct(window, keyframe);
 }
 
 void Mapper::adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
@@ -136,7 +147,7 @@ double Mapper::sweep_depth(const ViewWindow& window) const {
   return median_depth(sweep.estimate(window), std::sqrt(limits.near_m * limits.far_m));
 }
 
-void Mapper::add_image(const ViewWindow& window, Keyframe& keyframe) const {
+void Mapper::reconstruct(const ViewWindow& window, Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
   const DepthSourceOptions& propagation = options_.reconstruction.depth;
   const ReconstructionWindow input{window,

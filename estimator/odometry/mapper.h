@@ -23,7 +23,7 @@ struct MappingOptions {
   double duration_s = 0.4;      ///< ... and of at most so long
   View view = View::kEnd;       ///< where in its events the view lies
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
-  bool image = true;            ///< whether an image is made where the edges do not need it
+  bool image = true;            ///< made for people where the edges do not need it, after the last event
   double max_sigma = 0.05;      ///< of a point's inverse depth that becomes an edge, relative
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// Poses and edges are adjusted together that many times before the keyframe is made; 0: the
@@ -60,13 +60,16 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
 
+  /// The image of a keyframe that was tracked without one; `events` hold its own.
+  void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
+
  private:
   [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   void adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
                    double typical_depth_m) const;
-  void add_image(const ViewWindow& window, Keyframe& keyframe) const;
+  void reconstruct(const ViewWindow& window, Keyframe& keyframe) const;
   void add_edges(Keyframe& keyframe) const;
 
   MappingOptions options_;

@@ -135,6 +135,13 @@ void Odometry::take_poses(const Mapping& mapping) {
   tracker_.correct(mapping.world_from_before);
 }
 
+void Odometry::add_images(std::span<const Event> events) {
+  const Trajectory poses(known_);
+  std::vector<Keyframe>& keyframes = map_.keyframes();
+  parallel_for(keyframes.size(),
+               [&](std::size_t i) { mapper_.add_image(events, poses, keyframes[i]); });
+}
+
 void Odometry::output(OdometryResult& result) const {
   const Trajectory adjusted(known_);
   for (TrackedPose& pose : result.poses)

@@ -71,6 +71,10 @@ class Odometry {
 
   [[nodiscard]] const EdgeMap& map() const { return map_; }
 
+  /// Images for people, after run(): of every keyframe that has none, with the poses as last
+  /// adjusted; in parallel.
+  void add_images(std::span<const Event> events);
+
  private:
   struct Job;
   void start_from(std::span<const Event> events, const Trajectory& start);

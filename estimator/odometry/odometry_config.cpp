@@ -60,7 +60,7 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
         .value("max_sigma", options.max_sigma,
                "deviation of a point's depth up to which it is tracked, relative")
         .above(0);
-    fields.value("image", options.image, "an image is made, too, for people");
+    fields.value("image", options.image, "an image is made, too, for people; after the last event");
   }
   fields
       .value("smoothing_s", options.smoothing_s,

@@ -79,7 +79,12 @@ RunSummary run_odometry(const RunRequest& request) {
     }
     timing.wall_s.push_back(wall_s);
   }
-  timing.stages_s = {{"tracking", result.tracking_s}, {"mapping", result.mapping_s}};
+  double images_s = 0;
+  if (config.odometry.mapping.image) {
+    const StageClock clock(images_s);
+    odometry->add_images(events);
+  }
+  timing.stages_s = {{"tracking", result.tracking_s}, {"mapping", result.mapping_s}, {"images", images_s}};
   timing.poses = result.poses.size();
 
   io.emplace(timing.io_s);

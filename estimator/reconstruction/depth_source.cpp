@@ -98,7 +98,7 @@ ImageF DepthSource::joined_points(const Rigid3& world_from_reference) const {
   for (const RunView& view : views_) append_points(view, camera, points);
   const Rigid3 reference_from_world = world_from_reference.inverse();
   for (SurfacePoint& point : points) point.position = reference_from_world * point.position;
-  return surface_through(points, camera, options_.smoothness);
+  return surface_through(points, camera, options_.planes);
 }
 
 }  // namespace saccade

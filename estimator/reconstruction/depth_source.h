@@ -9,6 +9,7 @@
 #include "core/io/view_list.h"
 #include "core/trajectory.h"
 #include "estimator/reconstruction/place_finder.h"
+#include "estimator/reconstruction/plane_labels.h"
 
 namespace saccade {
 
@@ -18,8 +19,8 @@ struct DepthSourceOptions {
   /// How depth gets from the view where it is known to others: a surface between neighbouring
   /// pixels, or the thesis's Gaussians (6.3).
   Propagation propagation = Propagation::kSurface;
-  int kernel_px = 3;          ///< of kSplat; odd
-  double smoothness = 0.001;  ///< of a map through points: relative difference that counts linearly
+  int kernel_px = 3;         ///< of kSplat; odd
+  PlaneLabelOptions planes;  ///< of a map through points
 };
 
 /// The scene as one depth map [m], 0 = unknown, of `camera` with its lens knows it.

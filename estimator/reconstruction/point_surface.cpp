@@ -2,83 +2,91 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
-#include "estimator/reconstruction/level_system.h"
+#include "estimator/reconstruction/plane_candidates.h"
 
 namespace saccade {
 namespace {
 
-constexpr int kRounds = 6;
-constexpr double kLeastSigma = 0.003;  ///< of a point's relative depth
-constexpr double kOutlier = 3;         ///< deviations beyond which a point counts less
+constexpr double kLeastSigma = 0.001;  ///< of a point's relative depth
+constexpr int kCell_px = 8;            ///< the nearest and the farthest plane in it are offered
+constexpr int kReach_px = 24;          ///< ... to the pixels so far around it
 
-/// A point on the map: its log inverse depth, so that near and far weigh alike.
-struct Anchor {
-  int index;
-  float value;
-  float sigma;
-};
-
-std::vector<Anchor> anchors_of(std::span<const SurfacePoint> points, const PinholeCamera& camera) {
-  std::vector<Anchor> anchors;
+std::vector<SurfaceAnchor> anchors_of(std::span<const SurfacePoint> points,
+                                      const PinholeCamera& camera) {
+  std::vector<SurfaceAnchor> anchors;
   for (const SurfacePoint& point : points) {
     if (!(point.position.z() > 0)) continue;
     const Eigen::Vector2d pixel = camera.project(point.position);
     if (!camera.contains(pixel)) continue;
-    const auto x = static_cast<int>(std::lround(pixel.x()));
-    const auto y = static_cast<int>(std::lround(pixel.y()));
-    anchors.push_back({y * camera.width + x, static_cast<float>(-std::log(point.position.z())),
+    anchors.push_back({static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
+                       static_cast<float>(1 / point.position.z()),
                        static_cast<float>(std::max(point.relative_sigma, kLeastSigma))});
   }
   return anchors;
 }
 
-void add_anchors(LevelSystem& system, const std::vector<Anchor>& anchors, const ImageF& map) {
-  for (const Anchor& anchor : anchors) {
-    float weight = 1 / (anchor.sigma * anchor.sigma);
-    if (!map.empty()) {
-      const float error = map.pixels()[static_cast<std::size_t>(anchor.index)] - anchor.value;
-      const float share = error / (static_cast<float>(kOutlier) * anchor.sigma);
-      weight /= 1 + share * share;
-    }
-    system.add_value(anchor.index, anchor.value, weight);
-  }
-}
-
-/// |d| as d^2 / |d before|, for every pair of neighbours.
-void add_variation(LevelSystem& system, const PinholeCamera& camera, const ImageF& map,
-                   double smoothness) {
-  const auto least = static_cast<float>(smoothness * smoothness);
-  const auto add = [&](int i, int j) {
-    const float difference = map.empty() ? 0
-                                         : map.pixels()[static_cast<std::size_t>(i)] -
-                                               map.pixels()[static_cast<std::size_t>(j)];
-    system.add_smooth(i, j, 1 / (least + static_cast<float>(smoothness) * std::abs(difference)));
+/// The cells of an image, each with its nearest and its farthest anchor.
+class AnchorCells {
+ public:
+  static constexpr int kNone = -1;
+  struct Cell {
+    int near = kNone, far = kNone;
   };
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const int i = y * camera.width + x;
-      if (x + 1 < camera.width) add(i, i + 1);
-      if (y + 1 < camera.height) add(i, i + camera.width);
+
+  AnchorCells(std::span<const SurfaceAnchor> anchors, const PinholeCamera& camera)
+      : cells_(camera.width / kCell_px + 1, camera.height / kCell_px + 1) {
+    const auto of = [&](int k) { return anchors[static_cast<std::size_t>(k)].inverse_depth; };
+    for (int k = 0; k < static_cast<int>(anchors.size()); ++k) {
+      const SurfaceAnchor& anchor = anchors[static_cast<std::size_t>(k)];
+      Cell& cell = cells_(index(anchor.x_px, cells_.width()), index(anchor.y_px, cells_.height()));
+      if (cell.near == kNone || of(k) > of(cell.near)) cell.near = k;
+      if (cell.far == kNone || of(k) < of(cell.far)) cell.far = k;
+    }
+  }
+
+  [[nodiscard]] const Image<Cell>& cells() const { return cells_; }
+
+ private:
+  static int index(float px, int cells) {
+    return std::clamp(static_cast<int>(px) / kCell_px, 0, cells - 1);
+  }
+  Image<Cell> cells_;
+};
+
+void expand_locally(PlaneLabels& labels, const Image<AnchorCells::Cell>& cells,
+                    std::span<const ImagePlane> planes) {
+  for (int row = 0; row < cells.height(); ++row)
+    for (int column = 0; column < cells.width(); ++column) {
+      const auto [near, far] = cells(column, row);
+      if (near == AnchorCells::kNone) continue;
+      const int x = column * kCell_px + kCell_px / 2, y = row * kCell_px + kCell_px / 2;
+      labels.expand_near(planes[static_cast<std::size_t>(near)], x, y, kReach_px);
+      if (far != near) labels.expand_near(planes[static_cast<std::size_t>(far)], x, y, kReach_px);
     }
 }
 
 }  // namespace
 
 ImageF surface_through(std::span<const SurfacePoint> points, const PinholeCamera& camera,
-                       double smoothness) {
-  const std::vector<Anchor> anchors = anchors_of(points, camera);
-  ImageF map;
-  if (anchors.empty()) return {camera.width, camera.height};
-  for (int round = 0; round < kRounds; ++round) {
-    LevelSystem system(camera.width, camera.height);
-    add_anchors(system, anchors, map);
-    add_variation(system, camera, map, smoothness);
-    map = system.solve(60, 1e-3, map).image;
-  }
-  for (float& value : map.pixels()) value = std::exp(-value);
-  return map;
+                       const PlaneLabelOptions& options) {
+  const std::vector<SurfaceAnchor> anchors = anchors_of(points, camera);
+  ImageF depth(camera.width, camera.height);
+  if (anchors.empty()) return depth;
+  const std::vector<ImagePlane> local = planes_around(anchors);
+  const std::vector<ImagePlane> common = common_planes(anchors, local);
+  PlaneLabels labels(camera.width, camera.height, anchors, local, options);
+  const auto expand_everywhere = [&] {
+    for (const ImagePlane& plane : common) labels.expand(plane);
+  };
+  expand_everywhere();
+  expand_locally(labels, AnchorCells(anchors, camera).cells(), local);
+  expand_everywhere();
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) depth(x, y) = std::exp(-labels.log_inverse_depth(x, y));
+  return depth;
 }
 
 }  // namespace saccade

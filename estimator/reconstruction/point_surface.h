@@ -6,6 +6,7 @@
 
 #include "core/camera.h"
 #include "core/image.h"
+#include "estimator/reconstruction/plane_labels.h"
 
 namespace saccade {
 
@@ -15,13 +16,11 @@ struct SurfacePoint {
   double relative_sigma = 0.01;  ///< deviation of its depth, as a share of it
 };
 
-/// A dense depth map [m] through single points, in `camera` (no lens): the log inverse depth r of
-/// least total variation that agrees with them, found by reweighted least squares,
-///   sum_i (r(u_i) - r_i)^2 / sigma_i^2 + sum over neighbours (r_a - r_b)^2 / (s^2 + s |r_a -
-///   r_b|),
-/// with s = `smoothness`, so that steps between points stay steps; points that disagree count less.
-/// 0 everywhere where there is no point.
+/// A dense depth map [m] through single points, in `camera` (no lens), of planes: those around the
+/// points and those that many of them lie on. Which of them a pixel belongs to is decided by
+/// PlaneLabels; where surfaces are curved, the planes are small. Points from other views may be
+/// hidden in this one. 0 everywhere where there is no point.
 [[nodiscard]] ImageF surface_through(std::span<const SurfacePoint> points,
-                                     const PinholeCamera& camera, double smoothness);
+                                     const PinholeCamera& camera, const PlaneLabelOptions& options);
 
 }  // namespace saccade

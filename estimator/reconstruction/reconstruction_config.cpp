@@ -3,6 +3,26 @@
 namespace saccade {
 namespace {
 
+void describe_planes(config::Fields& fields, PlaneLabelOptions& options) {
+  fields.value("step_cost", options.step_cost, "of a step of depth, per pixel of its length")
+      .range(0, 1000);
+  fields.value("full_step", options.full_step, "relative; smaller steps cost less, in proportion")
+      .range(1e-4, 10);
+  fields.value("outlier_cost", options.outlier_cost, "most that a point before the surface costs")
+      .range(0, 1000);
+  fields.value("hidden_cost", options.hidden_cost, "... and one behind it").range(0, 1000);
+  fields.value("model_error", options.model_error, "of surfaces from planes, relative")
+      .range(1e-6, 1);
+  fields.value("nearness_cost", options.nearness_cost, "of a pixel, per log inverse depth")
+      .range(0, 1000);
+  fields.value("reach_cost", options.reach_cost, "of a pixel, per pixel from the plane's points")
+      .range(0, 1000);
+  fields
+      .value("steepness_cost", options.steepness_cost,
+             "of a pixel, per log inverse depth per pixel")
+      .range(0, 1000);
+}
+
 void describe_depth(config::Fields& fields, DepthSourceOptions& options) {
   using Propagation = DepthSourceOptions::Propagation;
   fields.choice("propagation", options.propagation,
@@ -12,11 +32,9 @@ void describe_depth(config::Fields& fields, DepthSourceOptions& options) {
     fields.value("kernel_px", options.kernel_px, "side of a Gaussian, odd (fig. 6.2)").range(1, 99);
     fields.expect(options.kernel_px % 2 == 1, "kernel_px", "must be odd");
   }
-  fields
-      .value(
-          "smoothness", options.smoothness,
-          "of the map through the points of a depth run: how far neighbours may differ, relative")
-      .range(1e-5, 1);
+  fields.group(
+      "planes", [&](config::Fields& f) { describe_planes(f, options.planes); },
+      "the map through the points of a depth run: what each pixel's plane costs");
 }
 
 void describe_levels(config::Fields& fields, LevelOptions& options) {

@@ -59,7 +59,9 @@ TEST(PlanarFusion, FewNeighboursMeanALargerSigma) {
   std::vector<EdgeDepth> some;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (i / 20 % 3 == 0) some.push_back(all[i]);
-  const auto dense = fused(all, FusionOptions{}), sparse = fused(some, FusionOptions{});
+  FusionOptions options;
+  options.position_error_px = 0;  // alike in both
+  const auto dense = fused(all, options), sparse = fused(some, options);
   ASSERT_FALSE(sparse.empty());
   const auto median = [](std::vector<EdgeDepth> points) {
     std::nth_element(points.begin(),
@@ -68,6 +70,49 @@ TEST(PlanarFusion, FewNeighboursMeanALargerSigma) {
     return points[points.size() / 2].sigma;
   };
   EXPECT_GT(median(sparse), 1.5F * median(dense));
+}
+
+/// A near surface left of column 20, one behind it from column 25 on, and points on the contour.
+std::vector<EdgeDepth> contour_points() {
+  std::vector<EdgeDepth> points;
+  for (int y = 0; y < 40; y += 2)
+    for (int x = 0; x < 40; x += 2) {
+      if (x > 20 && x < 25) continue;
+      points.push_back(
+          {static_cast<float>(x), static_cast<float>(y), x <= 20 ? 0.5F : 0.3F, 1e-3F});
+      points.back().normal = {1, 0};
+    }
+  return points;
+}
+
+TEST(PlanarFusion, PointsOnAContourMoveOntoTheirSurface) {
+  int moved = 0;
+  for (const EdgeDepth& p : fused(contour_points(), FusionOptions{})) {
+    const bool is_on_contour = std::abs(p.x_px - 19.5F) < 0.1F;
+    EXPECT_TRUE(is_on_contour || std::lround(p.x_px) % 2 == 0) << p.x_px;
+    EXPECT_NEAR(p.inverse_depth, p.x_px < 22 ? 0.5F : 0.3F, 1e-4F);
+    moved += is_on_contour ? 1 : 0;
+  }
+  EXPECT_EQ(moved, 20);
+}
+
+TEST(PlanarFusion, WithNothingBehindNoPointMoves) {
+  std::vector<EdgeDepth> points = contour_points();
+  std::erase_if(points, [](const EdgeDepth& p) { return p.x_px > 22; });
+  for (const EdgeDepth& p : fused(points, FusionOptions{}))
+    EXPECT_EQ(std::lround(p.x_px * 2) % 4, 0) << p.x_px;
+}
+
+TEST(PlanarFusion, SteepSurfacesAndDisagreementMeanALargerSigma) {
+  const std::vector<EdgeDepth> slanted = grid_of_points(1e-5);
+  std::vector<EdgeDepth> flat = slanted;
+  for (EdgeDepth& p : flat) p.inverse_depth = 0.5F;
+  EXPECT_GT(fused(slanted, FusionOptions{})[210].sigma,
+            2 * fused(flat, FusionOptions{})[210].sigma);
+  flat[210].inverse_depth += 0.004F;
+  flat[210].sigma = 0.002F;
+  const auto points = fused(flat, FusionOptions{});
+  EXPECT_GT(points[210].sigma, 2 * points[300].sigma);
 }
 
 TEST(PlanarFusion, WhatIsTooUncertainIsDropped) {

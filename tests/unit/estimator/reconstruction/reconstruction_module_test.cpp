@@ -28,9 +28,6 @@ using testing::TemporaryFolder;
 constexpr const char* kBest =
     "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1, still_turns: 2, "
     "step_margin_px: 1, track_events: 8}, equations: {smoothness: 0.05, rounds: 2, thin_px: 0.8}}";
-constexpr const char* kSparse =
-    "{method: equations, depth: {smoothness: 0.02}, levels: {event_sigma: 0.1, still_px: 0.5}, "
-    "equations: {smoothness: 0.05, rounds: 3}}";
 constexpr const char* kThesis =
     "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
     "levels: {event_sigma: 0.1, still: false}}";
@@ -110,8 +107,7 @@ TEST_F(ReconstructionModule, IsTheSameForAnyNumberOfThreads) {
 TEST_F(ReconstructionModule, TakesTheDepthOfARun) {
   RunRequest depth = request("depth", "window: {duration_s: 0.15}");
   (void)run_module("depth", depth);
-  // Few points, of which little is to be smoothed away.
-  RunRequest run = request("with_depth", kSparse);
+  RunRequest run = request("with_depth", kBest);
   run.depth_from = path("depth");
   (void)run_module("reconstruct", run);
   EXPECT_GT(correlation("with_depth"), 0.75);
