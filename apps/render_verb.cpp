@@ -68,9 +68,10 @@ void add_overlay_options(CLI::App& verb, RenderVerbOptions& options) {
 void add_render_verb(CLI::App& command) {
   const auto options = std::make_shared<RenderVerbOptions>();
   RenderOptions& render = options->render;
-  CLI::App* verb = command.add_subcommand(
-      "render",
-      "Draw a dataset (events, frames, depth) or a run (the map over its events, or its views)");
+  CLI::App* verb = command.add_subcommand("render",
+                                          "Draw a dataset (events, frames, depth) or a run (the "
+                                          "map over its events, its views, or what "
+                                          "it stabilized)");
   verb->add_option("PATH", options->path, "Dataset or run folder")->required();
   verb->add_option("-o,--output", options->output, "Picture (.png) or video (.mp4, by ffmpeg)")
       ->required()

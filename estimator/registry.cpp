@@ -5,6 +5,7 @@
 #include "estimator/imu/stabilize_module.h"
 #include "estimator/odometry/odometry_module.h"
 #include "estimator/reconstruction/reconstruction_module.h"
+#include "estimator/rotation/rotation_module.h"
 #include "estimator/tracking/track_module.h"
 
 namespace saccade {
@@ -21,6 +22,8 @@ constexpr Module kModules[] = {
      false, false, run_odometry, print_odometry_config},
     {"stabilize", "events and frames as of a camera that does not turn (thesis chapter 3)", true,
      false, run_stabilization, print_stabilization_config},
+    {"rotation", "angular velocity of the camera from events, gyroscope or both", false, false,
+     run_rotation, print_rotation_config},
 };
 
 }  // namespace

@@ -48,6 +48,9 @@ void score_turning(const RunFolder& run, const Dataset& dataset, Metrics& metric
       input.imu_truth = dataset.load_imu_truth();
     merge(metrics, score_orientation(input), "");
   }
+  const std::filesystem::path rates = run.folder / "angular_velocity.txt";
+  if (std::filesystem::exists(rates) && std::filesystem::exists(dataset.folder() / "twist.txt"))
+    merge(metrics, score_rates(read_angular_velocities(rates), dataset.load_twists()), "");
   if (std::filesystem::exists(run.folder / "stabilized" / "windows.csv"))
     merge(metrics, score_stabilization(load_stabilized(run.folder / "stabilized"), dataset), "");
 }

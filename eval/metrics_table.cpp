@@ -103,6 +103,14 @@ void add_orientation(std::string& text, const Metrics& metrics) {
                         fixed(get("bias_error_rad_s"), 6), fixed(get("bias_sigma_rad_s"), 6));
 }
 
+void add_rates(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key, int decimals) {
+    return fixed(metrics.get(std::string("orientation.rate_") + key), decimals);
+  };
+  text += fmt::format("  angular velocity {} rad/s RMSE, {} % of the peak of {} rad/s\n",
+                      get("rmse_rad_s", 4), get("rmse_percent", 2), get("peak_rad_s", 2));
+}
+
 void add_sharpness(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) { return fixed(metrics.get(key), 1); };
   text += fmt::format("  sharpness: raw {}, stabilized {}, by the true rotation {}\n",
@@ -143,6 +151,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
   if (metrics.values().contains("depth.points")) add_depth(text, metrics);
   if (metrics.values().contains("reconstruction.views")) add_reconstruction(text, metrics);
   if (metrics.get("orientation.roll_pitch_rmse_deg")) add_orientation(text, metrics);
+  if (metrics.get("orientation.rate_rmse_rad_s")) add_rates(text, metrics);
   if (metrics.get("sharpness.stabilized")) add_sharpness(text, metrics);
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-3;
 constexpr const char* kObject = "t object tx ty tz qx qy qz qw";
+constexpr const char* kRate = "t wx wy wz";
 constexpr const char* kTwist = "t vx vy vz wx wy wz";
 
 Eigen::Quaterniond read_rotation(TextRow& row) {
@@ -158,6 +159,32 @@ void write_twists(const std::filesystem::path& file, std::span<const StampedTwis
     const Eigen::Vector3d& w = twist.angular_velocity;
     fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {} {} {} {}\n", twist.t_s, v.x(), v.y(),
                    v.z(), w.x(), w.y(), w.z());
+  }
+  write_atomically(file, {text.data(), text.size()});
+}
+
+std::vector<StampedTwist> read_angular_velocities(const std::filesystem::path& file) {
+  std::vector<StampedTwist> twists;
+  for_each_row(file, [&](TextRow& row) {
+    StampedTwist twist;
+    twist.t_s = row.number("t");
+    for (int i = 0; i < 3; ++i)
+      twist.angular_velocity[i] =
+          row.number(std::array{"wx", "wy", "wz"}[static_cast<std::size_t>(i)]);
+    row.expect_end(kRate);
+    append(twists, twist, row);
+    return true;
+  });
+  return twists;
+}
+
+void write_angular_velocities(const std::filesystem::path& file,
+                              std::span<const StampedTwist> twists) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "# {}\n", kRate);
+  for (const StampedTwist& twist : twists) {
+    const Eigen::Vector3d& w = twist.angular_velocity;
+    fmt::format_to(std::back_inserter(text), "{:.9f} {} {} {}\n", twist.t_s, w.x(), w.y(), w.z());
   }
   write_atomically(file, {text.data(), text.size()});
 }

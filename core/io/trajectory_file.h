@@ -36,6 +36,12 @@ void write_orientations(const std::filesystem::path& file, std::span<const Stamp
 [[nodiscard]] std::vector<StampedTwist> read_twists(const std::filesystem::path& file);
 void write_twists(const std::filesystem::path& file, std::span<const StampedTwist> twists);
 
+/// Lines `t wx wy wz` below a comment that names the columns; the velocities are zero and left out.
+/// Likewise.
+[[nodiscard]] std::vector<StampedTwist> read_angular_velocities(const std::filesystem::path& file);
+void write_angular_velocities(const std::filesystem::path& file,
+                              std::span<const StampedTwist> twists);
+
 /// Lines `t object tx ty tz qx qy qz qw` (T_world_object) below a comment that names the columns:
 /// seconds with 9 decimals, the object's index in the scene's mesh list, its pose exact in double.
 /// In order of time, then of the object; InputError with `file:line`.

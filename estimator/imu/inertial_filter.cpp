@@ -11,8 +11,8 @@
 namespace saccade {
 namespace {
 
-constexpr int kTheta = 0, kBias = 3, kVelocity = 6, kForceBias = 9;
-using Columns = Eigen::Matrix<double, 12, 3>;
+constexpr int kTheta = 0, kBias = 3, kVelocity = 6, kForceBias = 9, kPosition = 12;
+using Columns = Eigen::Matrix<double, 15, 3>;
 constexpr double kRestSpeed = 0.01;  ///< deviation of the velocity at rest [m/s]
 
 }  // namespace
@@ -47,6 +47,9 @@ void InertialFilter::update(const ImuSample& sample) {
     propagate_covariance();
     const double speed = options_.speed;
     measure(kVelocity, -velocity_, speed * speed * options_.speed_time_s / interval_s);
+    if (options_.reach)
+      measure(kPosition, -position_,
+              *options_.reach * *options_.reach * options_.reach_time_s / interval_s);
   }
   if (window) {
     measure(kVelocity, -velocity_, kRestSpeed * kRestSpeed);
@@ -57,14 +60,17 @@ void InertialFilter::update(const ImuSample& sample) {
 }
 
 void InertialFilter::start(const ImuSample& sample) {
-  for (const int first : {kTheta, kVelocity}) {
+  for (const int first : {kTheta, kVelocity, kPosition}) {
     covariance_.middleRows<3>(first).setZero();
     covariance_.middleCols<3>(first).setZero();
   }
   // The heading is what it is by definition.
   covariance_.diagonal().segment<2>(kTheta).setConstant(options_.tilt_sigma * options_.tilt_sigma);
   covariance_.diagonal().segment<3>(kVelocity).setConstant(options_.speed * options_.speed);
+  const double reach = options_.reach.value_or(0);  // else the position starts at 0 by definition
+  covariance_.diagonal().segment<3>(kPosition).setConstant(reach * reach);
   velocity_.setZero();
+  position_.setZero();
   force_sum_.setZero();
   interval_s_ = 0;
   readings_ = 0;
@@ -80,7 +86,9 @@ void InertialFilter::propagate(const ImuSample& sample, double dt_s) {
   const Eigen::Quaterniond middle = world_from_imu_ * half;
   const Eigen::Vector3d force =
       middle * Eigen::Vector3d(0.5 * (last_.specific_force + sample.specific_force) - force_bias_);
-  velocity_ += dt_s * (force - Eigen::Vector3d(0, 0, options_.gravity));
+  const Eigen::Vector3d change = dt_s * (force - Eigen::Vector3d(0, 0, options_.gravity));
+  position_ += dt_s * (velocity_ + 0.5 * change);
+  velocity_ += change;
   force_sum_ += dt_s * force;
   interval_s_ += dt_s;
   world_from_imu_ = (middle * half).normalized();
@@ -90,16 +98,20 @@ void InertialFilter::propagate_covariance() {
   const Eigen::Matrix3d turned = interval_s_ * world_from_imu_.toRotationMatrix();
   const Eigen::Matrix3d pull = skew(force_sum_);
   // P <- F P F^T, where F is the identity but for three blocks.
-  const auto transform = [&](auto&& theta, auto&& bias, auto&& velocity, auto&& force_bias) {
+  const auto transform = [&](auto&& theta, auto&& bias, auto&& velocity, auto&& force_bias,
+                             auto&& position) {
+    position += interval_s_ * velocity;
     velocity -= pull * theta + turned * force_bias;
     theta -= turned * bias;
   };
   transform(covariance_.middleRows<3>(kTheta), covariance_.middleRows<3>(kBias),
-            covariance_.middleRows<3>(kVelocity), covariance_.middleRows<3>(kForceBias));
+            covariance_.middleRows<3>(kVelocity), covariance_.middleRows<3>(kForceBias),
+            covariance_.middleRows<3>(kPosition));
   transform(covariance_.middleCols<3>(kTheta).transpose(),
             covariance_.middleCols<3>(kBias).transpose(),
             covariance_.middleCols<3>(kVelocity).transpose(),
-            covariance_.middleCols<3>(kForceBias).transpose());
+            covariance_.middleCols<3>(kForceBias).transpose(),
+            covariance_.middleCols<3>(kPosition).transpose());
   const auto add = [&](int first, double density) {
     covariance_.diagonal().segment<3>(first).array() += density * density * interval_s_;
   };
@@ -117,11 +129,12 @@ void InertialFilter::measure(int first, const Eigen::Vector3d& innovation, doubl
   Eigen::Matrix3d sum = covariance_.block<3, 3>(first, first);
   sum.diagonal().array() += variance;
   const Columns gain = to_measured * sum.inverse();
-  const Eigen::Matrix<double, 12, 1> correction = gain * innovation;
+  const Eigen::Matrix<double, 15, 1> correction = gain * innovation;
   world_from_imu_ = (so3_exp(correction.segment<3>(kTheta)) * world_from_imu_).normalized();
   bias_ += correction.segment<3>(kBias);
   velocity_ += correction.segment<3>(kVelocity);
   force_bias_ += correction.segment<3>(kForceBias);
+  position_ += correction.segment<3>(kPosition);
   covariance_ -= gain * to_measured.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
 }

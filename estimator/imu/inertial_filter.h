@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -17,9 +19,13 @@ struct AccelerometerNoise {
 };
 
 struct InertialOptions {
-  double gravity = 9.81;         ///< [m/s^2]
-  double speed = 1;              ///< deviation of a component of the velocity [m/s],
-  double speed_time_s = 1;       ///< which is another one after this time
+  double gravity = 9.81;    ///< [m/s^2]
+  double speed = 1;         ///< deviation of a component of the velocity [m/s],
+  double speed_time_s = 1;  ///< which is another one after this time
+  /// Deviation of a component of the position [m], another one after this time; nullopt: it may go
+  /// anywhere.
+  std::optional<double> reach = 0.5;
+  double reach_time_s = 0.5;
   double tilt_sigma = 0.1;       ///< deviation of the tilt read from one specific force [rad]
   double max_gap_s = 0.1;        ///< after a longer one the tilt is read again
   int readings_per_update = 10;  ///< the covariance follows the state in steps of so many
@@ -28,16 +34,19 @@ struct InertialOptions {
   AccelerometerNoise accelerometer;
 };
 
-/// Orientation, velocity and both biases by an error-state Kalman filter. What tells gravity
-/// from acceleration is that the velocity of a thing in a hand stays small, however hard it is
-/// shaken:
-///   R' = R exp((w - b) dt),  v' = v + (R (f - c) - g) dt,   R = world_from_imu
+/// Orientation, velocity, position and both biases by an error-state Kalman filter. What tells
+/// gravity from acceleration is that a thing in a hand stays slow and within reach, however hard it
+/// is shaken:
+///   R' = R exp((w - b) dt),  v' = v + (R (f - c) - g) dt,  p' = p + v dt,   R = world_from_imu
 ///   errors  theta' = theta - R db dt,  dv' = dv - [R (f - c)]x theta dt - R dc dt,
-///           R_true = exp(theta) R
-///   measured  v = 0 +- speed, once in speed_time_s;  at rest v = 0 and b = w
-/// The specific force enters as a vector: normalised, as the complementary filter has it, its
-/// direction under strong accelerations is no longer that of gravity on the average.
-/// The world's z axis points up, heading as in ComplementaryFilter.
+///           dp' = dp + dv dt,  R_true = exp(theta) R
+///   measured  v = 0 +- speed, once in speed_time_s,  p = 0 +- reach, once in reach_time_s;
+///             at rest v = 0 and b = w
+/// A tilt that is wrong by an angle a moves the position by g a t^2 / 2, the velocity by g a t:
+/// over many seconds the position says more, but of things that stay where they are. The specific
+/// force enters as a vector: normalised, as the complementary filter has it, its direction under
+/// strong accelerations is no longer that of gravity on the average. The world's z axis points up,
+/// heading as in ComplementaryFilter.
 class InertialFilter {
  public:
   explicit InertialFilter(const InertialOptions& options);
@@ -53,7 +62,7 @@ class InertialFilter {
   [[nodiscard]] int gaps() const { return gaps_; }
 
  private:
-  using Covariance = Eigen::Matrix<double, 12, 12>;
+  using Covariance = Eigen::Matrix<double, 15, 15>;
 
   void start(const ImuSample& sample);
   void propagate(const ImuSample& sample, double dt_s);
@@ -67,7 +76,8 @@ class InertialFilter {
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_bias_ = Eigen::Vector3d::Zero();  ///< c [m/s^2]
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();    ///< in the world [m/s]
-  Covariance covariance_ = Covariance::Zero();            ///< of theta, b, v, c
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();    ///< in the world [m]
+  Covariance covariance_ = Covariance::Zero();            ///< of theta, b, v, c, p
   ImuSample last_;
   bool has_last_ = false;
   int readings_ = 0;                                     ///< since the last update

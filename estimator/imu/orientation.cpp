@@ -16,13 +16,6 @@ void describe_rest(config::Fields& fields, RestOptions& options) {
       .range(1e-6, 100);
 }
 
-void describe_gyroscope(config::Fields& fields, GyroscopeNoise& noise) {
-  fields.value("density", noise.density, "of the white noise [rad/s/sqrt(Hz)]").range(1e-9, 10);
-  fields.value("random_walk", noise.random_walk, "of the bias [rad/s^2/sqrt(Hz)]").range(0, 10);
-  fields.value("bias_sigma", noise.bias_sigma, "deviation of the bias at the start [rad/s]")
-      .range(1e-9, 10);
-}
-
 void describe_accelerometer(config::Fields& fields, AccelerometerNoise& noise) {
   fields.value("density", noise.density, "of the white noise [m/s^2/sqrt(Hz)]").range(1e-9, 100);
   fields.value("random_walk", noise.random_walk, "of the bias [m/s^3/sqrt(Hz)]").range(0, 100);
@@ -45,6 +38,10 @@ void describe_inertial(config::Fields& fields, InertialOptions& options) {
       .range(1e-3, 1000);
   fields.value("speed_time_s", options.speed_time_s, "after which the velocity is another one")
       .range(1e-3, 1000);
+  fields.value("reach", options.reach, "deviation of a component of the position [m]; ~ for none")
+      .range(1e-3, 1000);
+  fields.value("reach_time_s", options.reach_time_s, "after which the position is another one")
+      .range(1e-3, 1000);
   fields.value("tilt_sigma", options.tilt_sigma, "deviation of the tilt read from one force [rad]")
       .range(1e-4, 3);
   describe_gap(fields, options.max_gap_s);
@@ -53,8 +50,7 @@ void describe_inertial(config::Fields& fields, InertialOptions& options) {
              "the covariance follows the state in steps of so many readings")
       .range(1, 1000);
   fields.group(
-      "gyroscope", [&](config::Fields& f) { describe_gyroscope(f, options.gyroscope); },
-      "its noise");
+      "gyroscope", [&](config::Fields& f) { describe(f, options.gyroscope); }, "its noise");
   fields.group(
       "accelerometer", [&](config::Fields& f) { describe_accelerometer(f, options.accelerometer); },
       "its noise");
@@ -71,7 +67,7 @@ void describe_bias(config::Fields& fields, SteadyBiasOptions& options) {
       "rest", [&](config::Fields& f) { describe_rest(f, options.rest); },
       "when the sensor does not move");
   fields.group(
-      "gyroscope", [&](config::Fields& f) { describe_gyroscope(f, options.noise); }, "its noise");
+      "gyroscope", [&](config::Fields& f) { describe(f, options.noise); }, "its noise");
 }
 
 void describe_complementary(config::Fields& fields, ComplementaryOptions& options) {
@@ -123,6 +119,13 @@ std::vector<ImuOrientation> run_complementary(std::span<const ImuSample> samples
 }
 
 }  // namespace
+
+void describe(config::Fields& fields, GyroscopeNoise& noise) {
+  fields.value("density", noise.density, "of the white noise [rad/s/sqrt(Hz)]").range(1e-9, 10);
+  fields.value("random_walk", noise.random_walk, "of the bias [rad/s^2/sqrt(Hz)]").range(0, 10);
+  fields.value("bias_sigma", noise.bias_sigma, "deviation of the bias at the start [rad/s]")
+      .range(1e-9, 10);
+}
 
 void describe(config::Fields& fields, OrientationOptions& options) {
   using Method = OrientationOptions::Method;

@@ -24,6 +24,7 @@ struct OrientationOptions {
   ComplementaryOptions complementary;
 };
 
+void describe(config::Fields& fields, GyroscopeNoise& noise);
 void describe(config::Fields& fields, OrientationOptions& options);
 
 /// At one reading.

@@ -23,9 +23,9 @@ struct MappingOptions {
   double duration_s = 0.4;      ///< ... and of at most so long
   View view = View::kEnd;       ///< where in its events the view lies
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
-  bool image = true;            ///< made for people where the edges do not need it, after the last event
-  double max_sigma = 0.05;      ///< of a point's inverse depth that becomes an edge, relative
-  double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
+  bool image = true;  ///< made for people where the edges do not need it, after the last event
+  double max_sigma = 0.05;  ///< of a point's inverse depth that becomes an edge, relative
+  double smoothing_s = 0;   ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// Poses and edges are adjusted together that many times before the keyframe is made; 0: the
   /// poses are taken as they are. Of depth.method: rays.
   int adjust_rounds = 0;

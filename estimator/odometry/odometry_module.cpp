@@ -84,7 +84,8 @@ RunSummary run_odometry(const RunRequest& request) {
     const StageClock clock(images_s);
     odometry->add_images(events);
   }
-  timing.stages_s = {{"tracking", result.tracking_s}, {"mapping", result.mapping_s}, {"images", images_s}};
+  timing.stages_s = {
+      {"tracking", result.tracking_s}, {"mapping", result.mapping_s}, {"images", images_s}};
   timing.poses = result.poses.size();
 
   io.emplace(timing.io_s);

@@ -11,19 +11,22 @@
 namespace saccade {
 
 struct RotationOptions {
-  int events = 40000;          ///< per window
+  int events = 80000;          ///< per window
+  int min_events = 2000;       ///< fewer say nothing
   double max_window_s = 0.05;  ///< a slow window is cut here
   int samples = 20000;         ///< at most so many of them are used
   double blur_px = 1;          ///< of the image of events
-  int iterations = 12;         ///< of quasi-Newton steps, at most
+  double burst_share = 0.15;   ///< of the window's length, see RotationContrast
+  int iterations = 30;         ///< of quasi-Newton steps, at most
   double tolerance_px = 0.01;  ///< a step that moves events by less is the last
 };
 
 /// What one window says.
 struct RotationEstimate {
-  double t_s = 0;                                  ///< middle of the window
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< in camera axes [rad/s]
-  double contrast = 0;                             ///< reached
+  double t_s = 0;          ///< middle of the window
+  Turning turning;         ///< then
+  double contrast = 0;     ///< reached
+  double px_per_rate = 0;  ///< by how much the events move at 1 rad/s, RMS [px]
   int iterations = 0;
   bool is_valid = false;
 };
@@ -34,16 +37,19 @@ class RotationEstimator {
  public:
   RotationEstimator(const PinholeCamera& camera, const RotationOptions& options);
 
-  /// `events`: a window, in order of time, at least one. `guess`: where the search starts [rad/s].
-  [[nodiscard]] RotationEstimate estimate(std::span<const Event> events,
-                                          const Eigen::Vector3d& guess);
+  /// `events`: a window, in order of time, at least one. `guess`: where the search starts.
+  [[nodiscard]] RotationEstimate estimate(std::span<const Event> events, const Turning& guess);
+
+  /// Where the search begins at `t_s`, if `last` came before it.
+  [[nodiscard]] static Turning predict(const RotationEstimate& last, double t_s);
 
  private:
   RotationOptions options_;
   RotationContrast contrast_;
 };
 
-/// The events of the next window: `options.events`, or fewer where they take too long.
+/// The events of the next window: `options.events`, or fewer where they take too long; all that are
+/// left where these are not half as many more.
 [[nodiscard]] std::size_t next_window(std::span<const Event> events,
                                       const RotationOptions& options);
 

@@ -92,4 +92,28 @@ Metrics score_orientation(const OrientationScoreInput& input) {
   return metrics;
 }
 
+Metrics score_rates(std::span<const StampedTwist> estimate, std::span<const StampedTwist> truth) {
+  Metrics metrics;
+  double squares = 0, peak = 0, count = 0;
+  for (const StampedTwist& one : estimate) {
+    const auto after = std::partition_point(
+        truth.begin(), truth.end(), [&](const StampedTwist& t) { return t.t_s <= one.t_s; });
+    if (after == truth.begin() || after == truth.end()) continue;
+    const StampedTwist& a = *(after - 1);
+    const double share = (one.t_s - a.t_s) / (after->t_s - a.t_s);
+    const Eigen::Vector3d rate =
+        a.angular_velocity + share * (after->angular_velocity - a.angular_velocity);
+    squares += (one.angular_velocity - rate).squaredNorm();
+    peak = std::max(peak, rate.norm());
+    ++count;
+  }
+  if (!(count > 0)) return metrics;
+  const double rmse = std::sqrt(squares / count);
+  metrics.set("orientation.rate_rmse_rad_s", rmse);
+  metrics.set("orientation.rate_peak_rad_s", peak);
+  metrics.set("orientation.rate_rmse_percent",
+              peak > 0 ? std::optional(100 * rmse / peak) : std::nullopt);
+  return metrics;
+}
+
 }  // namespace saccade

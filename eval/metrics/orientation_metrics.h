@@ -37,4 +37,10 @@ struct OrientationError {
 /// orientation.bias_sigma_rad_s (what the filter believed it to be).
 [[nodiscard]] Metrics score_orientation(const OrientationScoreInput& input);
 
+/// Of angular velocities within the truth's time: orientation.rate_rmse_rad_s (RMS of the length of
+/// the difference), orientation.rate_peak_rad_s (the truth's largest length at those times) and
+/// orientation.rate_rmse_percent (of that). The truth is linear between its entries.
+[[nodiscard]] Metrics score_rates(std::span<const StampedTwist> estimate,
+                                  std::span<const StampedTwist> truth);
+
 }  // namespace saccade

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "core/error.h"
 #include "core/io/image_file.h"
-#include "core/progress.h"
 #include "eval/metrics/scored_samples.h"
+#include "eval/picture/film.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/picture/sheet.h"
+#include "eval/picture/stabilized_view.h"
 #include "eval/picture/trajectory_picture.h"
-#include "eval/picture/video.h"
 #include "eval/picture/view_render.h"
 #include "eval/run_folder.h"
 
@@ -165,15 +164,10 @@ void write_video(const Scene& scene, const TimeSpan& span, const std::filesystem
                  const RenderOptions& options) {
   const double fps = options.fps.value_or(kFps);
   const double step_s = 1 / (fps * options.slow_motion);
-  const auto frames = static_cast<std::uint64_t>((span.end_s - span.start_s) / step_s) + 1;
-  const ImageRgb8 first = moment(scene, span.start_s);
-  VideoWriter video(output, first.width(), first.height(), fps);
-  Progress progress("rendering", frames, "frames");
-  for (std::uint64_t i = 0; i < frames; ++i) {
-    video.add(moment(scene, span.start_s + static_cast<double>(i) * step_s));
-    progress.add(1);
-  }
-  video.finish();
+  const auto frames = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
+  write_film(output, frames, fps, [&](std::size_t i) {
+    return moment(scene, span.start_s + static_cast<double>(i) * step_s);
+  });
 }
 
 }  // namespace
@@ -192,6 +186,9 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
       return render_views(*subject.run, subject.dataset, views, title_of(subject), span, output,
                           options);
   }
+  if (subject.run && !options.overlay && StabilizedView::is_in(*subject.run))
+    return render_stabilized(*subject.run, subject.dataset, title_of(subject), span, output,
+                             options);
   const bool single = ending == ".png" && options.time_s.has_value();
   const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
   // Before the events are loaded, which takes longer than to say what is wrong with the overlay.

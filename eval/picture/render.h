@@ -16,7 +16,8 @@ struct RenderOptions {
   std::optional<double> duration_s = std::nullopt;
   /// Dataset of a run, instead of the one in its run.yaml.
   std::optional<std::filesystem::path> dataset = std::nullopt;
-  /// Events drawn per picture, those nearest in time; nullopt: 15 % of the number of pixels.
+  /// Events drawn per picture, those nearest in time; nullopt: 15 % of the number of pixels,
+  /// of stabilized events 100 %.
   std::optional<std::size_t> events = std::nullopt;
   int upscale = 3;  ///< screen pixels per sensor pixel, 1..8
   /// Frame rate of a video, 1..240; nullopt: 30, of views and growth 3.
@@ -36,6 +37,8 @@ struct RenderOptions {
 ///   .png   a row per view, at most six or the one nearest to `time_s`: events, depth or image,
 ///          truth, error
 ///   .mp4   the image growing with the events where the run kept growth/, else view after view
+/// Of a run that stabilized frames and events: both before and after, at three moments or at
+/// `time_s`; likewise in a video.
 /// Events are drawn undistorted wherever something is drawn over them.
 /// With an overlay: events and frame, with the picture in them.
 /// Throws InputError for another ending, an option out of range, a moment without events or truth,

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "core/error.h"
 #include "core/io/image_file.h"
-#include "core/progress.h"
 #include "eval/number_text.h"
 #include "eval/picture/canvas.h"
-#include "eval/picture/video.h"
+#include "eval/picture/film.h"
 
 namespace saccade {
 namespace {
@@ -41,18 +39,6 @@ std::vector<std::size_t> shown_views(const ViewPictures& views, const TimeSpan& 
     throw InputError(fmt::format("{:.3f} .. {:.3f} s", span.start_s, span.end_s),
                      "holds no view of the run");
   return shown;
-}
-
-void write_film(const std::filesystem::path& output, std::size_t count, double fps,
-                const std::function<ImageRgb8(std::size_t)>& frame) {
-  const ImageRgb8 first = frame(0);
-  VideoWriter video(output, first.width(), first.height(), fps);
-  Progress progress("rendering", count, "frames");
-  for (std::size_t i = 0; i < count; ++i) {
-    video.add(i == 0 ? first : frame(i));
-    progress.add(1);
-  }
-  video.finish();
 }
 
 /// Pictures side by side, each with its caption beneath.

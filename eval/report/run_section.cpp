@@ -10,6 +10,7 @@
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
 #include "eval/report/keyframe_section.h"
+#include "eval/report/rotation_section.h"
 #include "eval/report/stabilization_section.h"
 
 namespace saccade {
@@ -46,6 +47,8 @@ std::string key_numbers(const RunData& data) {
   };
   plain("orientation.roll_pitch_rmse_deg", "deg", "roll and pitch, RMSE");
   plain("orientation.yaw_drift_deg_per_min", "deg/min", "drift of the heading");
+  plain("orientation.rate_rmse_rad_s", "rad/s", "angular velocity, RMSE");
+  plain("orientation.rate_rmse_percent", "%", "of its peak");
   plain("sharpness.raw", "", "sharpness of the events as fired");
   plain("sharpness.stabilized", "", "stabilized");
   plain("sharpness.truth", "", "by the true rotation");
@@ -54,7 +57,8 @@ std::string key_numbers(const RunData& data) {
   add(coverage, fixed(coverage, 1), "%", "of the time covered");
   const std::optional<double> poses = m.get("trajectory.poses");
   add(poses, grouped(poses), "", "poses");
-  const bool has_poses = poses.has_value() || !(m.get("depth.points") || m.get("sharpness.raw"));
+  const bool has_poses = poses.has_value() || !(m.get("depth.points") || m.get("sharpness.raw") ||
+                                                m.get("orientation.rate_rmse_rad_s"));
   const char* unit = has_poses ? "poses" : "events";
   const std::optional<double> rate = speed_value(m, fmt::format("speed.{}_per_s", unit));
   add(rate, grouped(rate), "/s", unit);
@@ -247,7 +251,7 @@ std::string run_section(const RunData& data) {
   html += key_numbers(data) + views(data);
   if (data.data) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
-    html += stabilization_section(data);
+    html += stabilization_section(data) + rotation_section(data);
   }
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
 }

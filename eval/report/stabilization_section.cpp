@@ -9,10 +9,10 @@
 
 #include "core/io/file_list.h"
 #include "core/io/image_file.h"
-#include "core/srgb.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/log_picture.h"
+#include "eval/picture/stabilized_view.h"
 #include "eval/report/html.h"
 
 namespace saccade {
@@ -27,21 +27,6 @@ std::size_t index_at(double share, std::size_t count) {
 
 std::string picture(const ImageRgb8& image, const std::string& caption, const char* alt) {
   return figure(upscale(image, kUpscale), caption, alt);
-}
-
-/// Counts on a scale that shows edges as well as single events.
-ImageRgb8 draw_counts(const ImageF& counts, float most) {
-  ImageF shown = counts;
-  for (float& value : shown.pixels()) value = std::log1p(value);
-  return draw_amount(shown, {}, std::log1p(most));
-}
-
-/// As the stabilized frames are written.
-ImageRgb8 as_shown(const ImageF& radiance) {
-  const ImageU8 codes = srgb8_from_linear(radiance);
-  ImageRgb8 picture(codes.width(), codes.height());
-  for (std::size_t i = 0; i < codes.size(); ++i) picture.pixels()[i].fill(codes.pixels()[i]);
-  return picture;
 }
 
 std::string event_pictures(const std::filesystem::path& folder, const Dataset& dataset) {
@@ -73,8 +58,9 @@ std::string frame_pictures(const std::filesystem::path& folder, const Dataset& d
     for (std::size_t i = 0; i < dataset.frames().size(); ++i) {
       if (std::abs(dataset.frames()[i].t_s - file.t_s) > 1e-6) continue;
       const std::string at = fmt::format("{:.3f} s: ", file.t_s);
-      html += picture(as_shown(dataset.load_frame(i)), at + "frame", "frame before stabilization") +
-              picture(read_image_rgb(file.file), at + "stabilized", "frame after stabilization");
+      html +=
+          picture(draw_frame(dataset.load_frame(i)), at + "frame", "frame before stabilization") +
+          picture(read_image_rgb(file.file), at + "stabilized", "frame after stabilization");
     }
   }
   return html + "</div>\n";

@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnitTolerance = 1e-3;
 
 /// The keys stand beside those of the position, not in a section of their own.
-void describe_orientation(config::Fields& fields, OrientationOptions& options) {
+void describe_orientation(config::Fields& fields, PresetOrientation& options) {
   const bool looks =
       fields.reading() ? fields.has("look_at") || fields.has("up") : options.look_at.has_value();
   if (looks) {

@@ -15,7 +15,7 @@ namespace saccade {
 /// Where the camera (x right, y down, z forward) looks: a fixed rotation world_from_camera = Rz Ry
 /// Rx, or towards a point with `up` upwards in the picture. [-90, 0, 0] degrees looks level along
 /// +y.
-struct OrientationOptions {
+struct PresetOrientation {
   Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> look_at;  ///< [m], instead of rotation_deg
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -25,7 +25,7 @@ struct OrientationOptions {
 struct ViewOptions {
   double t_s = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  OrientationOptions orientation;
+  PresetOrientation orientation;
 };
 
 enum class SpeedProfile {
@@ -39,7 +39,7 @@ struct SliderOptions {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of any length > 0
   double distance_m = 1;
   SpeedProfile profile = SpeedProfile::kConstant;
-  OrientationOptions orientation;
+  PresetOrientation orientation;
 };
 
 /// At constant speed around `centre` in the plane across `normal`, from the direction `start` on,
@@ -50,7 +50,7 @@ struct CircleOptions {
   Eigen::Vector3d start = Eigen::Vector3d::UnitX();  ///< its part in the plane counts
   double radius_m = 1;
   double revolutions = 1;  ///< negative: clockwise
-  OrientationOptions orientation;
+  PresetOrientation orientation;
 };
 
 /// amplitude * sin(2 pi frequency t + phase) along each axis.
@@ -63,7 +63,7 @@ struct Oscillation {
 /// Oscillations of position (world axes) and of the rotation vector (camera axes) about a pose.
 struct LissajousOptions {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< [m]
-  OrientationOptions orientation;
+  PresetOrientation orientation;
   Oscillation position{{0.5, 0.5, 0}, {1, 2, 1}, {0, 90, 0}};
   Oscillation rotation;
 };
@@ -72,7 +72,7 @@ struct LissajousOptions {
 /// greatest rate, which fix its frequency.
 struct ShakeOptions {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  OrientationOptions orientation;
+  PresetOrientation orientation;
   Eigen::Vector3d rotation_amplitude_deg{5, 5, 5};
   Eigen::Vector3d peak_rate_rad_s{2, 1.6, 1.2};  ///< > 0
   Eigen::Vector3d translation_amplitude_m{0.01, 0.01, 0.01};
@@ -84,7 +84,7 @@ struct ShakeOptions {
 struct RandomMotionOptions {
   std::uint64_t seed = 1;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  OrientationOptions orientation;
+  PresetOrientation orientation;
   Eigen::Vector3d position_rms_m{0.2, 0.2, 0.2};  ///< over a long time, along world axes
   Eigen::Vector3d rotation_rms_deg{8, 8, 8};      ///< of the rotation vector, camera axes
   std::array<double, 2> frequency_hz{0.2, 1.0};

@@ -126,7 +126,7 @@ Preset random_motion(const RandomMotionOptions& o) {
 
 }  // namespace
 
-Eigen::Quaterniond orientation_at(const OrientationOptions& options, const Vector3d& position) {
+Eigen::Quaterniond orientation_at(const PresetOrientation& options, const Vector3d& position) {
   if (!options.look_at) return Eigen::Quaterniond(rotation_of(options.rotation_deg));
   constexpr double kNearlyZero = 1e-6;
   const Vector3d forward = *options.look_at - position;

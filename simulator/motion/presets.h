@@ -18,7 +18,7 @@ struct Preset {
 
 /// The camera's rotation at `position`; throws InputError naming `look_at` or `up` where it is
 /// undefined.
-[[nodiscard]] Eigen::Quaterniond orientation_at(const OrientationOptions& options,
+[[nodiscard]] Eigen::Quaterniond orientation_at(const PresetOrientation& options,
                                                 const Eigen::Vector3d& position);
 
 }  // namespace saccade

@@ -135,6 +135,27 @@ TEST(ObjectPoses, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(error_in("0 1 0 0 0 0 0 1\n"), HasSubstr("objects.txt:1: qw"));
 }
 
+TEST(AngularVelocities, ComeBackAndNameTheLineOfWhatIsWrong) {
+  const TemporaryFolder folder;
+  const std::vector<StampedTwist> written = {{0.1, Eigen::Vector3d::Zero(), {1.0 / 3, -2, 3e-9}},
+                                             {0.2, Eigen::Vector3d::Zero(), {0, 1e5, -0.1}}};
+  const auto file = folder.path() / "angular_velocity.txt";
+  write_angular_velocities(file, written);
+  const std::vector<StampedTwist> read = read_angular_velocities(file);
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read[i].t_s, written[i].t_s);
+    EXPECT_EQ(read[i].angular_velocity, written[i].angular_velocity);
+    EXPECT_EQ(read[i].velocity, Eigen::Vector3d::Zero());
+  }
+  const auto error_in = [&](const std::string& text) {
+    return error_of([&] { return read_angular_velocities(folder.write("w.txt", text)); });
+  };
+  EXPECT_THAT(error_in("# t wx wy wz\n0 1 2\n"), HasSubstr("w.txt:2: wz"));
+  EXPECT_THAT(error_in("0 1 2 x\n"), HasSubstr("w.txt:1: wz"));
+  EXPECT_THAT(error_in("0.2 1 2 3\n0.1 1 2 3\n"), HasSubstr("w.txt:2"));
+}
+
 TEST(TrajectoryFile, ReadsHandHeldMotion) {
   SACCADE_SHARED_DATA_OR_SKIP(file, "trajectories/poster_6dof_handheld.csv");
   const Trajectory t = read_trajectory(file);

@@ -13,9 +13,9 @@ namespace {
 
 const PinholeCamera kCamera{120, 90, 100, 102, 59.5, 44.5, {-0.1, 0.02, 0, 0, 0}};
 
-/// Events of points at infinity before a camera that turns evenly: one each time a point enters
-/// another pixel.
-Events turning(const Eigen::Vector3d& rate, double duration_s, int points = 150) {
+/// Events of points at infinity before a camera that turns: one each time a point enters another
+/// pixel.
+Events turning(const Turning& truth, double duration_s, int points = 150) {
   Events events;
   const Random random(7);
   constexpr int kSteps = 400;
@@ -26,7 +26,9 @@ Events turning(const Eigen::Vector3d& rate, double duration_s, int points = 150)
     int x = -1, y = -1;
     for (int step = 0; step <= kSteps; ++step) {
       const double t_s = duration_s * step / kSteps;
-      const Eigen::Vector3d seen = so3_exp(rate * (t_s - duration_s / 2)).conjugate() * point;
+      const double t = t_s - duration_s / 2;
+      const Eigen::Vector3d angle = t * truth.rate + 0.5 * t * t * truth.acceleration;
+      const Eigen::Vector3d seen = so3_exp(angle).conjugate() * point;
       const Eigen::Vector2d pixel = kCamera.distort(kCamera.project(seen));
       const auto u = static_cast<int>(std::lround(pixel.x()));
       const auto v = static_cast<int>(std::lround(pixel.y()));
@@ -42,51 +44,106 @@ Events turning(const Eigen::Vector3d& rate, double duration_s, int points = 150)
   return events;
 }
 
+using Parameters = RotationContrast::Parameters;
+
 TEST(RotationContrast, GradientIsThatOfTheContrast) {
-  RotationContrast contrast(kCamera, 1, 5000);
-  contrast.load(turning({1.5, -2, 1}, 0.05));
-  for (const Eigen::Vector3d& at :
-       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, -1.5, 0.2), Eigen::Vector3d(2, -2.5, 2)}) {
-    const auto value = contrast.evaluate(at);
-    Eigen::Vector3d numeric;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d step = 0.02 * Eigen::Vector3d::Unit(axis);
+  RotationContrast contrast(kCamera, 1, 0, 5000);
+  contrast.load(turning({{1.5, -2, 1}, {20, -10, 30}}, 0.05));
+  for (const Turning& at :
+       {Turning{}, Turning{{1, -1.5, 0.2}, {5, -30, 0}}, Turning{{2, -2.5, 2}, {0, 0, 60}}}) {
+    const Parameters place = contrast.parameters_of(at);
+    const auto value = contrast.evaluate(place);
+    Parameters numeric;
+    for (int axis = 0; axis < 6; ++axis) {
+      // A move of 0.03 px.
+      const double delta =
+          0.03 / (axis < 3 ? contrast.px_per_rate() : contrast.px_per_acceleration());
+      const Parameters step = delta * Parameters::Unit(axis);
       numeric[axis] =
-          (contrast.evaluate(at + step).contrast - contrast.evaluate(at - step).contrast) / 0.04;
+          (contrast.evaluate(place + step).contrast - contrast.evaluate(place - step).contrast) /
+          (2 * delta);
     }
     // The bilinear image has kinks, and the turn is differentiated to first order.
-    EXPECT_LT((value.gradient - numeric).norm(), 0.05 * numeric.norm()) << at.transpose();
+    EXPECT_LT((value.gradient - numeric).head<3>().norm(), 0.05 * numeric.head<3>().norm());
+    EXPECT_LT((value.gradient - numeric).tail<3>().norm(), 0.1 * numeric.tail<3>().norm());
   }
 }
 
-TEST(RotationContrast, IsLargestAtTheTrueRate) {
-  const Eigen::Vector3d truth(1.5, -2, 1);
-  RotationContrast contrast(kCamera, 1, 5000);
+TEST(RotationContrast, ParametersAreThoseOfATurning) {
+  RotationContrast contrast(kCamera, 1, 0.1, 5000);
+  Events events = turning({{1.5, -2, 1}, {20, -10, 30}}, 0.05);
+  events.resize(2 * events.size() / 3);
+  contrast.load(events);
+  const Turning turning{{1, 2, 3}, {40, 50, 60}};
+  const Turning back = contrast.turning_of(contrast.parameters_of(turning));
+  EXPECT_LT((back.rate - turning.rate).norm(), 1e-12);
+  EXPECT_EQ(back.acceleration, turning.acceleration);
+}
+
+TEST(RotationContrast, IsLargestAtTheTrueMotion) {
+  const Turning truth{{1.5, -2, 1}, {20, -10, 30}};
+  RotationContrast contrast(kCamera, 1, 0, 5000);
   contrast.load(turning(truth, 0.08));
-  const double best = contrast.evaluate(truth).contrast;
-  for (int axis = 0; axis < 3; ++axis)
+  const Parameters best = contrast.parameters_of(truth);
+  for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {-1.0, 1.0})
-      EXPECT_LT(contrast.evaluate(truth + sign * 0.5 * Eigen::Vector3d::Unit(axis)).contrast, best);
+      EXPECT_LT(
+          contrast.evaluate(best + sign * (axis < 3 ? 0.5 : 30) * Parameters::Unit(axis)).contrast,
+          contrast.evaluate(best).contrast)
+          << axis;
+}
+
+RotationOptions few_events() {
+  RotationOptions options;
+  options.min_events = 100;
+  return options;
 }
 
 TEST(RotationEstimator, FindsTheRateFromEventsAlone) {
-  RotationEstimator estimator(kCamera, {});
+  RotationEstimator estimator(kCamera, few_events());
   for (const Eigen::Vector3d& truth :
        {Eigen::Vector3d(1.5, -2, 1), Eigen::Vector3d(-0.8, 0, 3), Eigen::Vector3d(0, 3, 0)}) {
-    const Events events = turning(truth, 0.05);
-    const RotationEstimate estimate = estimator.estimate(events, 0.7 * truth);
+    const Events events = turning({truth, Eigen::Vector3d::Zero()}, 0.05);
+    const RotationEstimate estimate =
+        estimator.estimate(events, {0.7 * truth, Eigen::Vector3d::Zero()});
     EXPECT_TRUE(estimate.is_valid);
     EXPECT_NEAR(estimate.t_s, 0.025, 1e-3);
-    EXPECT_LT((estimate.rate - truth).norm(), 0.03 * truth.norm()) << estimate.rate.transpose();
+    EXPECT_LT((estimate.turning.rate - truth).norm(), 0.03 * truth.norm())
+        << estimate.turning.rate.transpose();
   }
+}
+
+TEST(RotationEstimator, FindsARateThatChanges) {
+  RotationEstimator estimator(kCamera, few_events());
+  const Turning truth{{1, -2, 0.5}, {-60, 80, 40}};
+  const RotationEstimate estimate = estimator.estimate(turning(truth, 0.05), {});
+  EXPECT_LT((estimate.turning.rate - truth.rate).norm(), 0.25);
+  EXPECT_LT((estimate.turning.acceleration - truth.acceleration).norm(), 20);
+  const Turning later = RotationEstimator::predict(estimate, estimate.t_s + 0.01);
+  EXPECT_LT((later.rate - truth.rate - 0.01 * truth.acceleration).norm(), 0.4);
+}
+
+TEST(RotationEstimator, AGuessFarOffDoesNoHarm) {
+  RotationEstimator estimator(kCamera, few_events());
+  const Turning truth{{1, -2, 0.5}, Eigen::Vector3d::Zero()};
+  const RotationEstimate estimate =
+      estimator.estimate(turning(truth, 0.05), {{900, 0, -700}, {1e5, 0, 0}});
+  EXPECT_LT((estimate.turning.rate - truth.rate).norm(), 0.1);
 }
 
 TEST(RotationEstimator, TooFewEventsSayNothing) {
   RotationEstimator estimator(kCamera, {});
   const Events events(5, Event{1000, 3, 4, 1});
-  const RotationEstimate estimate = estimator.estimate(events, {1, 2, 3});
+  const RotationEstimate estimate =
+      estimator.estimate(events, {{1, 2, 3}, Eigen::Vector3d::Zero()});
   EXPECT_FALSE(estimate.is_valid);
-  EXPECT_EQ(estimate.rate, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(estimate.turning.rate, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(RotationEstimator, EventsOfOneMomentSayNothing) {
+  RotationEstimator estimator(kCamera, few_events());
+  const Events events(500, Event{1000, 3, 4, 1});
+  EXPECT_FALSE(estimator.estimate(events, {}).is_valid);
 }
 
 TEST(RotationEstimator, ASlowWindowIsCut) {
@@ -99,6 +156,9 @@ TEST(RotationEstimator, ASlowWindowIsCut) {
   options.max_window_s = 1;
   EXPECT_EQ(next_window(events, options), 100U);
   EXPECT_EQ(next_window({}, options), 0U);
+  // Of what is left, no window is less than half of one.
+  EXPECT_EQ(next_window(std::span(events).first(149), options), 149U);
+  EXPECT_EQ(next_window(std::span(events).first(150), options), 100U);
 }
 
 }  // namespace

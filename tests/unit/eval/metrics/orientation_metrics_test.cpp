@@ -78,5 +78,21 @@ TEST(OrientationMetrics, WithoutTruthThereIsNone) {
   EXPECT_TRUE(score_orientation(input).empty());
 }
 
+TEST(OrientationMetrics, RatesAreScoredAgainstTheTruthBetweenItsEntries) {
+  std::vector<StampedTwist> truth, estimate;
+  for (int i = 0; i <= 10; ++i)
+    truth.push_back({0.1 * i, Eigen::Vector3d::Zero(), {2.0 * i, 0, 0}});
+  estimate.push_back({-0.5, Eigen::Vector3d::Zero(), {900, 0, 0}});  // outside
+  estimate.push_back({0.25, Eigen::Vector3d::Zero(), {5, 0.3, 0}});
+  estimate.push_back({0.55, Eigen::Vector3d::Zero(), {11, 0, -0.4}});
+  estimate.push_back({7, Eigen::Vector3d::Zero(), {900, 0, 0}});  // outside
+  const Metrics m = score_rates(estimate, truth);
+  const double rmse = std::sqrt((0.09 + 0.16) / 2);
+  EXPECT_NEAR(*m.get("orientation.rate_rmse_rad_s"), rmse, 1e-12);
+  EXPECT_NEAR(*m.get("orientation.rate_peak_rad_s"), 11, 1e-12);
+  EXPECT_NEAR(*m.get("orientation.rate_rmse_percent"), 100 * rmse / 11, 1e-9);
+  EXPECT_TRUE(score_rates({}, truth).empty());
+}
+
 }  // namespace
 }  // namespace saccade

@@ -5,7 +5,11 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "core/io/dataset.h"
+#include "core/io/events_h5.h"
+#include "core/io/file_list.h"
 #include "core/io/image_file.h"
+#include "core/io/stabilized_events.h"
 #include "eval/picture/video.h"
 #include "tests/unit/eval/fake_folders.h"
 
@@ -35,6 +39,46 @@ TEST_F(Render, OneMomentIsOneRow) {
   EXPECT_GT(image.width(), 2 * 2 * 80);
   EXPECT_LT(image.height(), 2 * 2 * 60);
   EXPECT_EQ(image(0, 0), (Rgb8{255, 255, 255}));
+}
+
+/// The events of the dataset, moved by a pixel, and its frames as they are.
+fs::path stabilized_run(const fs::path& run, const fs::path& data, const fs::path& folder) {
+  fs::copy(run, folder, fs::copy_options::recursive);
+  const fs::path stabilized = folder / "stabilized";
+  fs::create_directories(stabilized);
+  const Dataset dataset = Dataset::open(data);
+  Events events;
+  StabilizedPlaces places;
+  for (const Event& event : dataset.load_events()) {
+    if (event.x + 1 >= dataset.camera().width) continue;
+    places.source_x.push_back(event.x);
+    places.source_y.push_back(event.y);
+    places.x.push_back(event.x + 1.25F);
+    places.y.push_back(event.y);
+    events.push_back(event);
+    ++events.back().x;
+  }
+  EventH5Writer writer(stabilized / "events.h5", TimestampUnit::kNanoseconds);
+  writer.append(events);
+  writer.close();
+  write_stabilized_places(stabilized / "places.h5", places);
+  write_stabilized_windows(stabilized / "windows.csv", {});
+  write_file_list(stabilized / "images.txt", dataset.frames());
+  return folder;
+}
+
+TEST_F(Render, FramesAndEventsBeforeAndAfterStabilization) {
+  const fs::path run_folder = stabilized_run(run(), dataset(), folder.path() / "run");
+  const fs::path picture = folder.path() / "stabilized.png";
+  render(run_folder, picture, {.time_s = 0.1, .upscale = 2});
+  const ImageRgb8 image = read_image_rgb(picture);
+  EXPECT_GT(image.width(), 2 * 2 * 80);
+  EXPECT_LT(image.width(), 3 * 2 * 80);
+  EXPECT_GT(image.height(), 2 * 2 * 60);
+  render(run_folder, picture, {.upscale = 2});
+  EXPECT_GT(read_image_rgb(picture).height(), 6 * 2 * 60);
+  fs::remove(run_folder / "stabilized" / "places.h5");
+  EXPECT_THROW(render(run_folder, picture), InputError);
 }
 
 TEST_F(Render, RefusesWhatItCannotDraw) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
 #include "eval/report/run_series.h"
 #include "tests/unit/eval/fake_folders.h"
@@ -56,6 +57,18 @@ void expect_links_lead_somewhere(const std::string& page) {
 }
 
 TEST_F(Report, EveryLinkLeadsToASection) { expect_links_lead_somewhere(written({run(), run()})); }
+
+TEST_F(Report, ShowsTheAngularVelocityOfARunThatFoundOne) {
+  EXPECT_EQ(count(written({run()}), "Angular velocity</h4>"), 0U);
+  const fs::path with_rates = folder.path() / "with_rates";
+  fs::copy(run(), with_rates, fs::copy_options::recursive);
+  write_angular_velocities(with_rates / "angular_velocity.txt", {});
+  EXPECT_EQ(count(written({with_rates}), "Angular velocity</h4>"), 0U);
+  const std::vector<StampedTwist> rates = {{0.1, Eigen::Vector3d::Zero(), {1, 2, 3}},
+                                           {0.2, Eigen::Vector3d::Zero(), {1, 0, 3}}};
+  write_angular_velocities(with_rates / "angular_velocity.txt", rates);
+  EXPECT_EQ(count(written({with_rates}), "Angular velocity</h4>"), 1U);
+}
 
 TEST_F(Report, LeavesOutWhatTheRunLacks) {
   const fs::path bare = folder.path() / "bare";

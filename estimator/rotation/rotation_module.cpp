@@ -1,0 +1,173 @@
+#include "estimator/rotation/rotation_module.h"
+
+#include <fmt/core.h>
+
+#include <optional>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/io/trajectory_file.h"
+#include "core/progress.h"
+#include "estimator/imu/imu_input.h"
+#include "estimator/rotation/rotation_config.h"
+#include "estimator/run_input.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+#include "estimator/tracking/gyroscope.h"
+
+namespace saccade {
+namespace {
+
+using Source = RotationConfig::Source;
+using Rates = std::vector<StampedTwist>;  // without velocity
+
+StampedTwist rate_at(double t_s, const Eigen::Vector3d& rate) {
+  return {t_s, Eigen::Vector3d::Zero(), rate};
+}
+
+double middle_of(std::span<const Event> window) {
+  return seconds_from_ns((window.front().t_ns + window.back().t_ns) / 2);
+}
+
+/// Window by window, from events alone.
+Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
+               const RotationOptions& options, Progress& progress) {
+  Rates rates;
+  RotationEstimator estimator(camera, options);
+  RotationEstimate last;
+  while (!events.empty()) {
+    const std::span<const Event> window = events.first(next_window(events, options));
+    last = estimator.estimate(window, RotationEstimator::predict(last, middle_of(window)));
+    if (last.is_valid) rates.push_back(rate_at(last.t_s, last.turning.rate));
+    events = events.subspan(window.size());
+    progress.add(window.size());
+  }
+  return rates;
+}
+
+/// The gyroscope in the middle of a window. The mean over a window of length T is w + w'' T^2 / 24,
+/// that over its inner half w + w'' T^2 / 96; without w'' the variance is that of a mean over
+/// kMiddleShare of the window.
+constexpr double kMiddleShare = 0.36;
+Turning turning_of(const Gyroscope& gyroscope, TimeNs start_ns, TimeNs end_ns) {
+  const TimeNs length_ns = end_ns - start_ns, middle_ns = start_ns + length_ns / 2;
+  Turning turning;
+  turning.rate = (4 * gyroscope.mean_rate(start_ns + length_ns / 4, end_ns - length_ns / 4) -
+                  gyroscope.mean_rate(start_ns, end_ns)) /
+                 3;
+  if (length_ns > 0)
+    turning.acceleration =
+        (gyroscope.mean_rate(middle_ns, end_ns) - gyroscope.mean_rate(start_ns, middle_ns)) /
+        seconds_from_ns(length_ns / 2);
+  return turning;
+}
+
+/// Likewise, from both; the search begins where the gyroscope says.
+Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
+               const RotationConfig& config, const Gyroscope& gyroscope, Progress& progress) {
+  Rates rates;
+  RotationEstimator estimator(camera, config.events);
+  RateFusion fusion(config.fusion);
+  while (!events.empty()) {
+    const std::span<const Event> window = events.first(next_window(events, config.events));
+    const TimeNs start_ns = window.front().t_ns, end_ns = window.back().t_ns;
+    const Turning read = turning_of(gyroscope, start_ns, end_ns);
+    const RotationEstimate found =
+        estimator.estimate(window, {read.rate - fusion.bias(), read.acceleration});
+    const double averaged_s = kMiddleShare * seconds_from_ns(end_ns - start_ns);
+    // Before the first events nothing is known of the bias.
+    if (found.is_valid)
+      rates.push_back(rate_at(found.t_s, fusion.fuse({found.t_s, averaged_s, found.px_per_rate,
+                                                      read.rate, found.turning.rate})));
+    else if (!rates.empty())
+      rates.push_back(rate_at(found.t_s, fusion.without_events(read.rate)));
+    events = events.subspan(window.size());
+    progress.add(window.size());
+  }
+  return rates;
+}
+
+/// The readings without the bias that the orientation filter knows of by then, means over
+/// `average_s`, or each.
+Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double average_s) {
+  Rates rates;
+  const auto orientations = estimate_orientations(imu.samples, options);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+    sum += imu.samples[i].angular_velocity - orientations[i].gyro.bias;
+    const TimeNs first_ns = imu.samples[begin].t_ns, t_ns = imu.samples[i].t_ns;
+    if (seconds_from_ns(t_ns - first_ns) < average_s) continue;
+    rates.push_back(rate_at(seconds_from_ns(first_ns + (t_ns - first_ns) / 2),
+                            imu.camera_from_imu * sum / static_cast<double>(i - begin + 1)));
+    sum.setZero();
+    begin = i + 1;
+  }
+  return rates;
+}
+
+Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
+                 std::span<const Event> events, const std::optional<ImuInput>& imu,
+                 Progress& progress) {
+  switch (config.source) {
+    case Source::kEvents:
+      return rates_of(events, camera, config.events, progress);
+    case Source::kImu:
+      return rates_of(*imu, config.orientation, config.average_s);
+    case Source::kBoth:
+      break;
+  }
+  const Gyroscope gyroscope(imu->samples, imu->camera_from_imu, Eigen::Vector3d::Zero());
+  return rates_of(events, camera, config, gyroscope, progress);
+}
+
+}  // namespace
+
+RunSummary run_rotation(const RunRequest& request) {
+  RotationConfig config = config::read<RotationConfig>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  check(request);
+  RunWriter writer(request);
+
+  RunTiming timing;
+  const Dataset dataset = Dataset::open(request.dataset);
+  std::optional<ImuInput> imu;
+  Events events;
+  {
+    const StageClock clock(timing.io_s);
+    if (config.source != Source::kEvents) imu = load_imu_input(dataset, "source: imu or both");
+    if (config.source != Source::kImu) events = load_events(request, dataset);
+  }
+  timing.events = events.size();
+  Rates rates;
+  Progress progress("rotation", timing.events * static_cast<std::size_t>(request.repeat), "events");
+  for (int i = 0; i < request.repeat; ++i) {
+    double wall_s = 0;
+    {
+      const StageClock clock(wall_s);
+      rates = find_rates(config, dataset.camera(), events, imu, progress);
+    }
+    timing.wall_s.push_back(wall_s);
+  }
+  const double first_s = rates.empty() ? 0 : rates.front().t_s;
+  const double last_s = rates.empty() ? 0 : rates.back().t_s;
+  timing.sequence_s = last_s - first_s;
+  {
+    const StageClock clock(timing.io_s);
+    write_angular_velocities(writer.path() / "angular_velocity.txt", rates);
+  }
+  writer.finish("rotation", request, dataset, window_of(request, first_s, last_s), config.seed,
+                config::print(config), timing);
+
+  RunSummary summary;
+  summary.found = fmt::format("{} angular velocities", rates.size());
+  summary.events = timing.events;
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+std::string print_rotation_config(const config::Document& document) {
+  return config::print_documented(config::read<RotationConfig>(document));
+}
+
+}  // namespace saccade

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run rotation`: the camera's angular velocity from events alone, from its gyroscope, or
+/// from both. Writes angular_velocity.txt, run.yaml and timing.json. Throws InputError for bad
+/// input.
+RunSummary run_rotation(const RunRequest& request);
+
+/// The resolved configuration, documented.
+[[nodiscard]] std::string print_rotation_config(const config::Document& document);
+
+}  // namespace saccade

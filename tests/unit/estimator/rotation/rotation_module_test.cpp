@@ -1,0 +1,106 @@
+#include "estimator/rotation/rotation_module.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "core/config/config.h"
+#include "estimator/rotation/rotation_config.h"
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/unit/estimator/imu/turning_dataset.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+class RotationModule : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    testing::write_turning_dataset(path("corner"), 0.25, 120);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
+
+  /// RMS error [rad/s].
+  static double run(const std::string& name, const std::string& yaml) {
+    RunRequest request;
+    request.dataset = path("corner");
+    request.output = path(name);
+    request.config = config::parse(yaml, "t.yaml");
+    run_rotation(request);
+    const auto rates = read_angular_velocities(path(name) / "angular_velocity.txt");
+    EXPECT_GT(rates.size(), 2U);
+    double squares = 0;
+    for (const StampedTwist& rate : rates)
+      squares += (rate.angular_velocity - testing::corner_rate(rate.t_s)).squaredNorm();
+    return std::sqrt(squares / static_cast<double>(rates.size()));
+  }
+
+ private:
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(RotationModule, ThePerfectSensorIsRight) {
+  EXPECT_LT(run("imu", "{source: imu, orientation: {method: gyroscope}}"), 1e-6);
+}
+
+TEST_F(RotationModule, AveragesTheReadings) {
+  EXPECT_LT(run("average", "{source: imu, average_s: 0.01, orientation: {method: gyroscope}}"),
+            0.05);
+}
+
+TEST_F(RotationModule, BothFollowTheSensorOverAWindow) {
+  // The corner also moves, which events alone take for a turn: the bias follows it.
+  EXPECT_LT(run("both", "{source: both, events: {events: 4000, min_events: 500}}"), 2);
+}
+
+TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
+  EXPECT_THAT(
+      error_of([] {
+        return config::read<RotationConfig>(config::parse("events: {blurr_px: 2}", "t.yaml")).seed;
+      }),
+      ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("blur_px")));
+  EXPECT_THAT(error_of([] {
+                return config::read<RotationConfig>(config::parse("source: eyes", "t.yaml")).seed;
+              }),
+              HasSubstr("t.yaml:1"));
+}
+
+TEST_F(RotationModule, EventsOfAStillCameraSayNothing) {
+  RunRequest request;
+  request.dataset = path("corner");
+  request.output = path("still");
+  request.config = config::parse("events: {min_events: 100000000}", "t.yaml");
+  run_rotation(request);
+  EXPECT_TRUE(read_angular_velocities(path("still") / "angular_velocity.txt").empty());
+}
+
+TEST_F(RotationModule, WithoutASensorItSaysWhatIsMissing) {
+  testing::write_corner_dataset(path("no_imu"), "corner", 0.05, 80);
+  RunRequest request;
+  request.dataset = path("no_imu");
+  request.output = path("x");
+  request.config = config::parse("source: both", "t.yaml");
+  EXPECT_THAT(error_of([&] { return run_rotation(request).found; }), HasSubstr("holds no imu.txt"));
+}
+
+TEST(RotationConfig, ShippedFilesAreRead) {
+  const std::string folder = SACCADE_SOURCE_DIR "/configs/rotation/";
+  const auto source = [&](const char* name) {
+    return config::read<RotationConfig>(config::load(folder + name)).source;
+  };
+  EXPECT_EQ(source("events.yaml"), RotationConfig::Source::kEvents);
+  EXPECT_EQ(source("imu.yaml"), RotationConfig::Source::kImu);
+  EXPECT_EQ(source("both.yaml"), RotationConfig::Source::kBoth);
+}
+
+}  // namespace
+}  // namespace saccade
