@@ -192,9 +192,9 @@ double PlaceFinder::moved_px(const CameraPose& reference_from_camera,
   return motion(reference_from_camera, earlier_from_reference, earlier_from_reference).length;
 }
 
-ImageMotion PlaceFinder::motion(const CameraPose& reference_from_first,
-                                const CameraPose& middle_from_reference,
-                                const CameraPose& last_from_reference) const {
+ViewShift PlaceFinder::motion(const CameraPose& reference_from_first,
+                              const CameraPose& middle_from_reference,
+                              const CameraPose& last_from_reference) const {
   const CameraPose first_from_reference = inverse_of(reference_from_first);
   const auto seen = [&](const CameraPose& camera_from_reference, const Eigen::Vector3f& point) {
     const Eigen::Vector3f p = camera_from_reference.r * point + camera_from_reference.t;

@@ -41,7 +41,7 @@ struct PlaceField {
 };
 
 /// How far what a camera sees moves in its image [px], the furthest of a few points.
-struct ImageMotion {
+struct ViewShift {
   double length = 0;  ///< from the first pose to the last
   double bend = 0;    ///< at the middle pose, from where it would be half way
 };
@@ -89,9 +89,9 @@ class PlaceFinder {
                                 const CameraPose& earlier_from_reference) const;
 
   /// ... and along a path of three poses. Infinite where a point gets behind the camera.
-  [[nodiscard]] ImageMotion motion(const CameraPose& reference_from_first,
-                                   const CameraPose& middle_from_reference,
-                                   const CameraPose& last_from_reference) const;
+  [[nodiscard]] ViewShift motion(const CameraPose& reference_from_first,
+                                 const CameraPose& middle_from_reference,
+                                 const CameraPose& last_from_reference) const;
 
  private:
   /// The plane n . p = 1 of the surface at a pixel of the reference view.

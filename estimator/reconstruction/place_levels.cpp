@@ -101,7 +101,7 @@ void LevelFinder::advance(const Trajectory& world_from_camera, TimeNs last_ns) {
     pose = pose_at(world_from_camera, end_.t_ns);
     const CameraPose middle =
         pose_at(world_from_camera, begin_.t_ns + (end_.t_ns - begin_.t_ns) / 2);
-    const ImageMotion motion =
+    const ViewShift motion =
         places_.motion(begin_.reference_from_camera, inverse_of(middle), inverse_of(pose));
     const double share =
         std::max(motion.length / longest_px, std::sqrt(motion.bend / kMostBend_px));
