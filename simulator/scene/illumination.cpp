@@ -17,7 +17,7 @@ struct WayToLight {
   double irradiance;
 };
 
-WayToLight way_to(const LightOptions& light, const SurfacePoint& point) {
+WayToLight way_to(const LightOptions& light, const LitPoint& point) {
   const bool is_point = light.type == LightType::kPoint;
   const Eigen::Vector3d direction = is_point ? Eigen::Vector3d(light.position - point.position)
                                              : Eigen::Vector3d(-light.direction);
@@ -36,7 +36,7 @@ Illumination::Illumination(double ambient, const std::vector<LightOptions>& ligh
   for (LightOptions& light : lights_) light.direction.normalize();
 }
 
-void Illumination::find_lamps(std::span<const SurfacePoint> points, const Visibility& blockers,
+void Illumination::find_lamps(std::span<const LitPoint> points, const Visibility& blockers,
                               std::span<LampSet> lamps) const {
   std::fill(lamps.begin(), lamps.end(), LampSet{0});
   std::array<Ray, kPacket> rays;
@@ -46,7 +46,7 @@ void Illumination::find_lamps(std::span<const SurfacePoint> points, const Visibi
   for (std::size_t lamp = 0; lamp < lights_.size(); ++lamp) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const SurfacePoint& point = points[i];
+      const LitPoint& point = points[i];
       const WayToLight way = way_to(lights_[lamp], point);
       if (!(way.irradiance > 0) || point.plane_normal.dot(way.direction) <= 0) continue;
       rays[n] = {point.position + shadow_offset_ * point.plane_normal, way.direction, point.time_s};
@@ -61,7 +61,7 @@ void Illumination::find_lamps(std::span<const SurfacePoint> points, const Visibi
   }
 }
 
-double Illumination::from_lamps(const SurfacePoint& point, LampSet lamps) const {
+double Illumination::from_lamps(const LitPoint& point, LampSet lamps) const {
   double sum = ambient_;
   for (std::size_t lamp = 0; lamp < lights_.size(); ++lamp)
     if ((lamps >> lamp & 1) != 0) sum += std::max(0.0, way_to(lights_[lamp], point).irradiance);

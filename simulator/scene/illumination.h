@@ -11,7 +11,7 @@
 namespace saccade {
 
 /// A point on a surface in the world, with unit normals on the side that is looked at.
-struct SurfacePoint {
+struct LitPoint {
   Eigen::Vector3d position;
   Eigen::Vector3d plane_normal;
   Eigen::Vector3d shading_normal;
@@ -25,12 +25,12 @@ class Illumination {
   Illumination(double ambient, const std::vector<LightOptions>& lights, double shadow_offset);
 
   /// The lamps that each of at most 16 points faces and that nothing hides from it.
-  void find_lamps(std::span<const SurfacePoint> points, const Visibility& blockers,
+  void find_lamps(std::span<const LitPoint> points, const Visibility& blockers,
                   std::span<LampSet> lamps) const;
 
   /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
   /// without the distance) over `lamps`.
-  [[nodiscard]] double from_lamps(const SurfacePoint& point, LampSet lamps) const;
+  [[nodiscard]] double from_lamps(const LitPoint& point, LampSet lamps) const;
 
   /// With unit directions.
   [[nodiscard]] std::span<const LightOptions> lights() const { return lights_; }

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/spline.h"
-#include "simulator/motion/pose_table.h"
+#include "simulator/motion/spline_table.h"
 
 namespace saccade {
 
@@ -39,7 +39,7 @@ class MovingObject {
   Spline world_from_object_;
   Eigen::AlignedBox3d box_;
   double tables_per_s_;
-  std::vector<PoseTable> tables_;  ///< of equal stretches of the spline
+  std::vector<SplineTable> tables_;  ///< of equal stretches of the spline
 };
 
 }  // namespace saccade

@@ -53,17 +53,16 @@ bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
   return cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point)) >= 0.5;
 }
 
-SurfacePoint Scene::State::surface_point(const Ray& ray, double distance,
-                                         TriangleId triangle) const {
+LitPoint Scene::State::surface_point(const Ray& ray, double distance, TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
   if (surface.body == kStill) return local_point(ray, distance, triangle);
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
-  const SurfacePoint local = local_point(in_frame(frame, ray), distance, triangle);
+  const LitPoint local = local_point(in_frame(frame, ray), distance, triangle);
   return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
           frame.rotation * local.shading_normal, ray.time_s};
 }
 
-SurfacePoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
+LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
   const AffineForm& plane = surfaces[triangle].plane;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
   const double side = plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
@@ -196,7 +195,7 @@ void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> tr
   SACCADE_CHECK(rays.size() <= kPacket && triangles.size() == rays.size() &&
                 looks.size() == rays.size());
   if (!state_->illumination) return;
-  std::array<SurfacePoint, kPacket> points;
+  std::array<LitPoint, kPacket> points;
   std::array<LampSet, kPacket> lamps;
   std::array<std::size_t, kPacket> owners;
   std::size_t n = 0;

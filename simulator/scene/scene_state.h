@@ -114,8 +114,7 @@ struct Scene::State {
   [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
                                            const Eigen::Matrix3d& body_from_camera) const;
   /// In the body's frame.
-  [[nodiscard]] SurfacePoint local_point(const Ray& ray, double distance,
-                                         TriangleId triangle) const;
+  [[nodiscard]] LitPoint local_point(const Ray& ray, double distance, TriangleId triangle) const;
 
   /// nullopt: it casts none, edge-on to the lamp. `patch`: a point near where it may fall.
   [[nodiscard]] std::optional<ShadowCaster> shadow_caster(TriangleId triangle,
@@ -142,8 +141,7 @@ struct Scene::State {
   [[nodiscard]] const WholeLight& whole_light(TriangleId triangle, double side);
 
   /// In the world, as is `ray`.
-  [[nodiscard]] SurfacePoint surface_point(const Ray& ray, double distance,
-                                           TriangleId triangle) const;
+  [[nodiscard]] LitPoint surface_point(const Ray& ray, double distance, TriangleId triangle) const;
 };
 
 /// Distance along the ray to a plane [length of the direction]; not finite where they are parallel.

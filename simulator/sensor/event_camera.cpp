@@ -47,7 +47,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
 void EventCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
   if (!started_) {
-    const PoseTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
+    const SplineTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
     for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, 0); });
     started_ = true;
   }
@@ -58,7 +58,7 @@ void EventCamera::record(double duration_s, const Sink& sink) {
     // No sliver at the end: the rest is split evenly.
     const double slabs_left = std::ceil((until_s - t_s_) / slab_s);
     const double end_s = slabs_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slabs_left;
-    const PoseTable poses(motion_, t_s_, end_s);
+    const SplineTable poses(motion_, t_s_, end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
       TileMotion motion = motions_[i];
       motion.pixels *= end_s - t_s_;

@@ -44,7 +44,7 @@ class LockstepTile final : public EventTile {
         foresight_(world.scene, tracer_, outline_, kEdge_px / world.rays.camera().fx,
                    tolerance_s_) {}
 
-  void start(const PoseTable& poses, double t_s) override {
+  void start(const SplineTable& poses, double t_s) override {
     tracer_.use(poses);
     TileLook look;
     look.trace(tracer_, directions_, t_s, all_pixels());

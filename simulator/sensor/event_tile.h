@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/event.h"
-#include "simulator/motion/pose_table.h"
+#include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/image_motion.h"
@@ -29,7 +29,7 @@ struct EventWorld {
 
 /// A short time over which tiles sense.
 struct Slab {
-  const PoseTable& poses;  ///< cover it
+  const SplineTable& poses;  ///< cover it
   double end_s = 0;
 };
 
@@ -51,7 +51,7 @@ class EventTile {
   virtual ~EventTile() = default;
 
   /// Takes the references at time `t_s`, which the poses cover.
-  virtual void start(const PoseTable& poses, double t_s) = 0;
+  virtual void start(const SplineTable& poses, double t_s) = 0;
   /// Senses to the end of the slab, divided down to equal steps of at most `max_step_px` for the
   /// pixels that need it. Where a single triangle provably fills the tile's surroundings all the
   /// time, no ray is traced and the steps are longer.

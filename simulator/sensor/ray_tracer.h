@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "simulator/motion/pose_table.h"
+#include "simulator/motion/spline_table.h"
 #include "simulator/scene/patch_light.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/image_motion.h"
@@ -48,7 +48,7 @@ class RayTracer {
       : scene_(scene), statistics_(statistics), footprints_(footprints) {}
 
   /// The motion during what follows; outlives it.
-  void use(const PoseTable& poses) { poses_ = &poses; }
+  void use(const SplineTable& poses) { poses_ = &poses; }
 
   /// All triangles that rays can meet in what follows, as far as a search found them; none: not
   /// known. Outlives it.
@@ -170,7 +170,7 @@ class RayTracer {
   const Scene& scene_;
   EventStatistics& statistics_;
   const PixelRays* footprints_;
-  const PoseTable* poses_ = nullptr;
+  const SplineTable* poses_ = nullptr;
   std::span<const TriangleId> within_reach_;
   Sweep sweep_;                     ///< of what follows
   std::vector<KnownLight> lights_;  ///< of what has been seen in it so far, `light_count_` of them

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -84,6 +85,22 @@ std::vector<std::string> check_source(const fs::path& path, const std::string& t
   return errors;
 }
 
+/// The types that a header defines at its outermost level, with the first namespace that it opens.
+std::vector<std::string> defined_types(const std::string& text) {
+  static const std::regex kNamespace(R"(^namespace ([A-Za-z0-9_:]+) \{)");
+  static const std::regex kType(
+      R"(^(?:struct|class) (?:alignas\([^)]*\) )?([A-Za-z0-9_]+)(?: final)?(?: :[^:;]*)?\s*(?:\{.*)?$)");
+  std::vector<std::string> types;
+  std::istringstream lines(text);
+  std::string line, space;
+  std::smatch match;
+  while (std::getline(lines, line)) {
+    if (space.empty() && std::regex_search(line, match, kNamespace)) space = match[1];
+    if (std::regex_search(line, match, kType)) types.push_back(space + "::" + match[1].str());
+  }
+  return types;
+}
+
 std::string read_text(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -159,6 +176,29 @@ TEST(Layering, EveryIncludeFollowsTheDirection) {
       ADD_FAILURE() << error;
     }
   }
+}
+
+TEST(DefinedTypes, AreThoseOfTheOutermostLevelThatAreNotOnlyDeclared) {
+  const std::vector<std::string> types = defined_types(
+      "namespace saccade {\nclass Later;\nstruct A {\n  struct Inner {\n  };\n};\n"
+      "class B : public A {\n};\nstruct alignas(32) C {\n};\n}  // namespace saccade\n");
+  const std::vector<std::string> expected{"saccade::A", "saccade::B", "saccade::C"};
+  EXPECT_EQ(types, expected);
+}
+
+// All rooms are linked into one program: of two types of one name the linker would keep one's
+// functions for both.
+TEST(Layering, EveryTypeHasANameOfItsOwn) {
+  const fs::path root = SACCADE_SOURCE_DIR;
+  std::map<std::string, fs::path> where;
+  for (const fs::path& source : find_sources(root)) {
+    if (source.extension() != ".h" || room_of(source) == "tests") continue;
+    for (const std::string& type : defined_types(read_text(root / source))) {
+      const auto [first, is_new] = where.emplace(type, source);
+      EXPECT_TRUE(is_new) << type << " in " << source << " and " << first->second;
+    }
+  }
+  EXPECT_GT(where.size(), 100U);
 }
 
 }  // namespace

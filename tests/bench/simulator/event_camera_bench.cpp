@@ -53,7 +53,7 @@ BENCHMARK(render_frame)->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealT
 
 void evaluate_pose(benchmark::State& state) {
   const Spline motion = ClosedFormPlane::smooth(8, 8).motion();
-  const PoseTable table(motion, 0, 0.02);
+  const SplineTable table(motion, 0, 0.02);
   double t = 0;
   for (auto _ : state) {
     t = t < 0.0199 ? t + 1e-7 : 0;

@@ -11,7 +11,7 @@ name ~ /EventLog|BlockJournal|H5|hdf5|libz|deflate|Sha|sha256|Crc|DatasetWriter|
 name ~ /find_exit|first_exit|refine|PixelSignal|PlaneSignal|PixelSensor|interpolate|is_straight|dividing|change_s|is_crease|EventPixel|libm/ { part["roots"] += percent; next }
 name ~ /sort|partition|SensedEvent|deliver/ { part["sort"] += percent; next }
 name ~ /Scene|RayTracer|Texture|PlaneView|PlanePath|sample|illuminat|Illumination|Background|SurfaceLook/ { part["look"] += percent; next }
-name ~ /Tile|EventCamera|FrameCamera|Function_handler|PoseTable|ObjectMotion|image_speed|interaction|Spline|tbb|parallel/ { part["schedule"] += percent; next }
+name ~ /Tile|EventCamera|FrameCamera|Function_handler|SplineTable|ObjectMotion|image_speed|interaction|Spline|tbb|parallel/ { part["schedule"] += percent; next }
 { part["other"] += percent }
 END {
   for (p in part) total += part[p]

@@ -5,7 +5,7 @@
 
 #include "core/image.h"
 #include "core/random.h"
-#include "simulator/motion/pose_table.h"
+#include "simulator/motion/spline_table.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/sample_times.h"
@@ -60,9 +60,9 @@ Spline lively_motion() {
   return Spline::interpolate(poses);
 }
 
-TEST(PoseTable, FollowsTheSpline) {
+TEST(SplineTable, FollowsTheSpline) {
   const Spline motion = lively_motion();
-  const PoseTable table(motion, 0.213, 0.236);
+  const SplineTable table(motion, 0.213, 0.236);
   for (int k = 0; k <= 1000; ++k) {
     const double t = 0.213 + 0.023 * k / 1000;
     const Rigid3 pose = motion.pose(t);

@@ -20,10 +20,10 @@ struct CameraFrame {
 /// A stretch of a spline as cubic Hermite pieces of all twelve entries of [R | p], ten times faster
 /// to evaluate. Pieces are halved until, at the middle of every one, no entry is off the spline by
 /// more than 1e-9 (or a piece is shorter than 5 us), which is 2e-7 px for a focal length of 200 px.
-class PoseTable {
+class SplineTable {
  public:
   /// `from_s` < `to_s`, within the spline's span.
-  PoseTable(const Spline& world_from_body, double from_s, double to_s);
+  SplineTable(const Spline& world_from_body, double from_s, double to_s);
 
   [[nodiscard]] double to_s() const { return from_s_ + length_s_; }
 

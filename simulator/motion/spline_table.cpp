@@ -1,4 +1,4 @@
-#include "simulator/motion/pose_table.h"
+#include "simulator/motion/spline_table.h"
 
 #include "core/check.h"
 
@@ -25,7 +25,7 @@ Knot knot_at(const Spline& spline, double t_s) {
 
 }  // namespace
 
-PoseTable::PoseTable(const Spline& world_from_body, double from_s, double to_s)
+SplineTable::SplineTable(const Spline& world_from_body, double from_s, double to_s)
     : from_s_(from_s), length_s_(to_s - from_s) {
   SACCADE_CHECK(to_s > from_s);
   std::size_t count = kFewestPieces;
@@ -35,7 +35,7 @@ PoseTable::PoseTable(const Spline& world_from_body, double from_s, double to_s)
     fill(world_from_body, count *= 2);
 }
 
-void PoseTable::fill(const Spline& spline, std::size_t count) {
+void SplineTable::fill(const Spline& spline, std::size_t count) {
   const double piece_s = length_s_ / static_cast<double>(count);
   pieces_per_s_ = 1 / piece_s;
   pieces_.clear();
@@ -50,7 +50,7 @@ void PoseTable::fill(const Spline& spline, std::size_t count) {
   }
 }
 
-double PoseTable::largest_error(const Spline& spline) const {
+double SplineTable::largest_error(const Spline& spline) const {
   double largest = 0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const double t = from_s_ + (static_cast<double>(i) + 0.5) / pieces_per_s_;
