@@ -44,11 +44,11 @@ bool is_within(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
 
 }  // namespace
 
-bool Patch::fits(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
+bool FramePatch::fits(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
   return is_within(frame, centre, radius + 1);
 }
 
-Patch::Patch(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
+FramePatch::FramePatch(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
   const Eigen::Index size = 2 * radius + 1;
   values_.resize(size * size);
   dx_.resize(size * size);
@@ -69,8 +69,9 @@ Patch::Patch(const ImageF& frame, const Eigen::Vector2d& centre, int radius) {
   }
 }
 
-SearchResult search_along(const Patch& reference, const ImageF& frame, const Eigen::Vector2d& start,
-                          const Eigen::Vector2d& direction, const SearchOptions& options) {
+SearchResult search_along(const FramePatch& reference, const ImageF& frame,
+                          const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
+                          const SearchOptions& options) {
   SearchResult result;
   const Eigen::Vector2f line = direction.cast<float>();
   const Eigen::VectorXf jacobian = line.x() * reference.dx() + line.y() * reference.dy();

@@ -18,13 +18,13 @@ struct SearchOptions {
 
 /// A square of an event frame around a sub-pixel position, with zero mean and unit norm, row by
 /// row, and its derivatives.
-class Patch {
+class FramePatch {
  public:
   /// True where the patch and one pixel around it lie within the frame.
   [[nodiscard]] static bool fits(const ImageF& frame, const Eigen::Vector2d& centre, int radius);
 
   /// `centre` fits. A flat patch is all zero.
-  Patch(const ImageF& frame, const Eigen::Vector2d& centre, int radius);
+  FramePatch(const ImageF& frame, const Eigen::Vector2d& centre, int radius);
 
   [[nodiscard]] const Eigen::VectorXf& values() const { return values_; }
   [[nodiscard]] const Eigen::VectorXf& dx() const { return dx_; }  ///< [1/px], zero mean
@@ -47,7 +47,7 @@ struct SearchResult {
 ///   J = grad T . (cos th, sin th),  p <- p - (sum J (I - T)) / sum J^2   (inverse compositional).
 /// Both patches have zero mean and unit norm, so that only their shapes count. `start` = u_init
 /// [px], `direction` of unit length.
-[[nodiscard]] SearchResult search_along(const Patch& reference, const ImageF& frame,
+[[nodiscard]] SearchResult search_along(const FramePatch& reference, const ImageF& frame,
                                         const Eigen::Vector2d& start,
                                         const Eigen::Vector2d& direction,
                                         const SearchOptions& options);

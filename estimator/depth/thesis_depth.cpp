@@ -14,7 +14,7 @@ namespace saccade {
 struct ThesisDepth::Keypoint {
   Eigen::Vector2d pixel;
   Eigen::Vector3d ray;
-  Patch patch;
+  FramePatch patch;
   DepthBelief belief;
 };
 
@@ -125,8 +125,8 @@ std::vector<ThesisDepth::Keypoint> ThesisDepth::start_keypoints(const ImageF& re
   for (const Eigen::Vector2f& centre : find_keypoints(reference, options_.keypoints)) {
     const Eigen::Vector2d pixel = centre.cast<double>();
     const int radius = options_.search.patch_radius_px;
-    if (!Patch::fits(reference, pixel, radius)) continue;
-    keypoints.push_back({pixel, camera_.ray(pixel), Patch(reference, pixel, radius), prior});
+    if (!FramePatch::fits(reference, pixel, radius)) continue;
+    keypoints.push_back({pixel, camera_.ray(pixel), FramePatch(reference, pixel, radius), prior});
   }
   return keypoints;
 }
