@@ -73,7 +73,7 @@ BENCHMARK(derotate)->Unit(benchmark::kMicrosecond);
 void search(benchmark::State& state) {
   const int radius = static_cast<int>(state.range(0));
   const ImageF image = frame();
-  const Patch reference(image, {120.3, 90.6}, radius);
+  const FramePatch reference(image, {120.3, 90.6}, radius);
   const SearchOptions options{.patch_radius_px = radius, .min_alignment = 0, .min_correlation = -1};
   for (auto _ : state)
     benchmark::DoNotOptimize(search_along(reference, image, {121.1, 90.6}, {1, 0}, options));
