@@ -36,19 +36,11 @@ std::vector<SurfacePoint> surface_points(const DepthResult& result, const Pinhol
   return points;
 }
 
-ImageF dense_depth(const Keyframe& keyframe, const PinholeCamera& camera,
-                   const DepthSourceOptions& options) {
-  return surface_through(surface_points(keyframe.depth, camera), camera, options.planes);
-}
-
-/// Size of the reconstructed gradient where it is known, else 0.
-ImageF observed_magnitude(const Reconstruction& image) {
-  ImageF magnitude(image.gradient_x.width(), image.gradient_x.height());
-  for (std::size_t i = 0; i < magnitude.size(); ++i)
-    if (image.observed.pixels()[i] != 0)
-      magnitude.pixels()[i] =
-          std::hypot(image.gradient_x.pixels()[i], image.gradient_y.pixels()[i]);
-  return magnitude;
+/// A component of the reconstructed gradient where it is known, else 0.
+ImageF observed(ImageF component, const ImageU8& observed) {
+  for (std::size_t i = 0; i < component.size(); ++i)
+    if (observed.pixels()[i] == 0) component.pixels()[i] = 0;
+  return component;
 }
 
 void append(MapPoints& points, const Eigen::Vector3d& point) {
@@ -88,8 +80,13 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   keyframe.depth = make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
   keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
   if (keyframe.depth.points.empty()) return mapping;
-  if (options_.edges == MappingOptions::Edges::kGradient) reconstruct(window, keyframe);
-  add_edges(keyframe);
+  if (options_.edges == MappingOptions::Edges::kGradient) {
+    const ImageF depth = dense_depth(keyframe);
+    reconstruct(window, depth, keyframe);
+    add_steep_pixels(depth, keyframe);
+  } else {
+    add_points(keyframe);
+  }
   return mapping;
 }
 
@@ -102,7 +99,7 @@ void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
       [&](const Event& e) { return seconds_from_ns(e.t_ns) < keyframe.start_s; });
   window.events = window.events.subspan(static_cast<std::size_t>(first - window.events.begin()));
   window.events = window.events.first(std::min(window.events.size(), keyframe.events));
-  reconstruct(window, keyframe);
+  reconstruct(window, dense_depth(keyframe), keyframe);
 }
 
 void Mapper::adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
@@ -147,28 +144,34 @@ double Mapper::sweep_depth(const ViewWindow& window) const {
   return median_depth(sweep.estimate(window), std::sqrt(limits.near_m * limits.far_m));
 }
 
-void Mapper::reconstruct(const ViewWindow& window, Keyframe& keyframe) const {
+ImageF Mapper::dense_depth(const Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
-  const DepthSourceOptions& propagation = options_.reconstruction.depth;
-  const ReconstructionWindow input{window,
-                                   scene_of(dense_depth(keyframe, camera, propagation), camera,
-                                            keyframe.world_from_camera, propagation),
-                                   options_.reconstruction.contrast_on.value_or(0.2),
-                                   options_.reconstruction.contrast_off.value_or(0.2)};
+  return surface_through(surface_points(keyframe.depth, camera), camera,
+                         options_.reconstruction.depth.planes);
+}
+
+void Mapper::reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const {
+  const ReconstructionWindow input{
+      window,
+      scene_of(depth, camera_.undistorted(), keyframe.world_from_camera,
+               options_.reconstruction.depth),
+      options_.reconstruction.contrast_on.value_or(0.2),
+      options_.reconstruction.contrast_off.value_or(0.2)};
   keyframe.image = make_image_estimator(options_.reconstruction, camera_)->reconstruct(input);
 }
 
-void Mapper::add_edges(Keyframe& keyframe) const {
+void Mapper::add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const {
+  const Reconstruction& image = keyframe.image;
+  const MapPoints steep = lift_edges(observed(image.gradient_x, image.observed),
+                                     observed(image.gradient_y, image.observed), depth,
+                                     camera_.undistorted(), options_.steep);
+  for (std::size_t i = 0; i < steep.size(); ++i)
+    append(keyframe.edges,
+           keyframe.world_from_camera * Eigen::Vector3d(steep.x[i], steep.y[i], steep.z[i]));
+}
+
+void Mapper::add_points(Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
-  if (options_.edges == MappingOptions::Edges::kGradient) {
-    const MapPoints steep = lift_edges(observed_magnitude(keyframe.image),
-                                       dense_depth(keyframe, camera, options_.reconstruction.depth),
-                                       camera, options_.steep);
-    for (std::size_t i = 0; i < steep.size(); ++i)
-      append(keyframe.edges,
-             keyframe.world_from_camera * Eigen::Vector3d(steep.x[i], steep.y[i], steep.z[i]));
-    return;
-  }
   const auto max_sigma = static_cast<float>(options_.max_sigma);
   for (const EdgeDepth& point : keyframe.depth.points)
     if (point.sigma < max_sigma * point.inverse_depth)

@@ -69,8 +69,10 @@ class Mapper {
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   void adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
                    double typical_depth_m) const;
-  void reconstruct(const ViewWindow& window, Keyframe& keyframe) const;
-  void add_edges(Keyframe& keyframe) const;
+  [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;
+  void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;
+  void add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const;
+  void add_points(Keyframe& keyframe) const;
 
   MappingOptions options_;
   PinholeCamera camera_;

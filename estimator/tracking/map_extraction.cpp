@@ -9,16 +9,40 @@
 namespace saccade {
 namespace {
 
+/// By central differences [1/px]; 0 on the border and beside NaN pixels.
+struct Gradient {
+  ImageF x, y;
+
+  Gradient(int width, int height) : x(width, height), y(width, height) {}
+  explicit Gradient(const ImageF& image) : Gradient(image.width(), image.height()) {
+    for (int v = 1; v + 1 < image.height(); ++v)
+      for (int u = 1; u + 1 < image.width(); ++u) {
+        const float gx = (image(u + 1, v) - image(u - 1, v)) / 2;
+        const float gy = (image(u, v + 1) - image(u, v - 1)) / 2;
+        if (!std::isfinite(gx) || !std::isfinite(gy)) continue;
+        x(u, v) = gx;
+        y(u, v) = gy;
+      }
+  }
+};
+
+ImageF magnitude_of(const ImageF& gradient_x, const ImageF& gradient_y) {
+  ImageF magnitude(gradient_x.width(), gradient_x.height());
+  for (int y = 1; y + 1 < magnitude.height(); ++y)
+    for (int x = 1; x + 1 < magnitude.width(); ++x)
+      magnitude(x, y) =
+          std::sqrt(gradient_x(x, y) * gradient_x(x, y) + gradient_y(x, y) * gradient_y(x, y));
+  return magnitude;
+}
+
 /// True unless a neighbour across the edge, one pixel along the gradient, is steeper.
-bool is_ridge(const ImageF& magnitude, const ImageF& image, int x, int y) {
-  const float gx = image(x + 1, y) - image(x - 1, y);
-  const float gy = image(x, y + 1) - image(x, y - 1);
-  const float length = std::sqrt(gx * gx + gy * gy);
-  const float dx = gx / length;
-  const float dy = gy / length;
+bool is_ridge(const ImageF& magnitude, const ImageF& gradient_x, const ImageF& gradient_y, int x,
+              int y) {
+  const float here = magnitude(x, y);
+  const float dx = gradient_x(x, y) / here;
+  const float dy = gradient_y(x, y) / here;
   const auto fx = static_cast<float>(x);
   const auto fy = static_cast<float>(y);
-  const float here = magnitude(x, y);
   // >= on one side only, so that a tie keeps exactly one of two equal neighbours.
   return here >= sample(magnitude, fx + dx, fy + dy) && here > sample(magnitude, fx - dx, fy - dy);
 }
@@ -51,27 +75,6 @@ float gradient_threshold(const ImageF& magnitude, float largest, const MapOption
   return std::max(threshold, *last);
 }
 
-/// All steep pixels of known depth; with `image` only the ridges of its gradient.
-MapPoints lift(const ImageF& magnitude, const ImageF* image, const ImageF& depth,
-               const PinholeCamera& camera, const MapOptions& options) {
-  float largest = 0;
-  for (const float g : magnitude.pixels()) largest = std::max(largest, g);
-  const float threshold = gradient_threshold(magnitude, largest, options);
-  MapPoints map;
-  for (int y = 1; y + 1 < depth.height(); ++y)
-    for (int x = 1; x + 1 < depth.width(); ++x) {
-      if (!(magnitude(x, y) > threshold)) continue;
-      if (image != nullptr && !is_ridge(magnitude, *image, x, y)) continue;
-      const float z = options.foreground_depth ? foreground_depth(depth, x, y) : depth(x, y);
-      if (!(z > 0)) continue;
-      const Eigen::Vector3d ray = camera.ray({x, y});
-      map.x.push_back(static_cast<float>(ray.x()) * z);
-      map.y.push_back(static_cast<float>(ray.y()) * z);
-      map.z.push_back(z);
-    }
-  return map;
-}
-
 }  // namespace
 
 void append(MapPoints& all, const MapPoints& more) {
@@ -81,28 +84,36 @@ void append(MapPoints& all, const MapPoints& more) {
 }
 
 ImageF gradient_magnitude(const ImageF& image) {
-  ImageF magnitude(image.width(), image.height());
-  for (int y = 1; y + 1 < image.height(); ++y)
-    for (int x = 1; x + 1 < image.width(); ++x) {
-      const float gx = (image(x + 1, y) - image(x - 1, y)) / 2;
-      const float gy = (image(x, y + 1) - image(x, y - 1)) / 2;
-      const float g = std::sqrt(gx * gx + gy * gy);
-      if (std::isfinite(g)) magnitude(x, y) = g;
-    }
-  return magnitude;
+  const Gradient gradient(image);
+  return magnitude_of(gradient.x, gradient.y);
 }
 
 MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const PinholeCamera& camera,
                       const MapOptions& options) {
-  SACCADE_CHECK(log_intensity.width() == depth.width() && log_intensity.height() == depth.height());
-  return lift(gradient_magnitude(log_intensity), options.thin ? &log_intensity : nullptr, depth,
-              camera, options);
+  const Gradient gradient(log_intensity);
+  return lift_edges(gradient.x, gradient.y, depth, camera, options);
 }
 
-MapPoints lift_edges(const ImageF& magnitude, const ImageF& depth, const PinholeCamera& camera,
-                     const MapOptions& options) {
-  SACCADE_CHECK(magnitude.width() == depth.width() && magnitude.height() == depth.height());
-  return lift(magnitude, nullptr, depth, camera, options);
+MapPoints lift_edges(const ImageF& gradient_x, const ImageF& gradient_y, const ImageF& depth,
+                     const PinholeCamera& camera, const MapOptions& options) {
+  SACCADE_CHECK(gradient_x.width() == depth.width() && gradient_x.height() == depth.height());
+  const ImageF magnitude = magnitude_of(gradient_x, gradient_y);
+  float largest = 0;
+  for (const float g : magnitude.pixels()) largest = std::max(largest, g);
+  const float threshold = gradient_threshold(magnitude, largest, options);
+  MapPoints map;
+  for (int y = 1; y + 1 < depth.height(); ++y)
+    for (int x = 1; x + 1 < depth.width(); ++x) {
+      if (!(magnitude(x, y) > threshold)) continue;
+      if (options.thin && !is_ridge(magnitude, gradient_x, gradient_y, x, y)) continue;
+      const float z = options.foreground_depth ? foreground_depth(depth, x, y) : depth(x, y);
+      if (!(z > 0)) continue;
+      const Eigen::Vector3d ray = camera.ray({x, y});
+      map.x.push_back(static_cast<float>(ray.x()) * z);
+      map.y.push_back(static_cast<float>(ray.y()) * z);
+      map.z.push_back(z);
+    }
+  return map;
 }
 
 }  // namespace saccade

@@ -38,8 +38,9 @@ void append(MapPoints& all, const MapPoints& more);
 [[nodiscard]] MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth,
                                     const PinholeCamera& camera, const MapOptions& options);
 
-/// The same from a gradient magnitude that is already known; `thin` is not for it.
-[[nodiscard]] MapPoints lift_edges(const ImageF& magnitude, const ImageF& depth,
-                                   const PinholeCamera& camera, const MapOptions& options);
+/// The same from a gradient [1/px] that is already known; 0 where it is not.
+[[nodiscard]] MapPoints lift_edges(const ImageF& gradient_x, const ImageF& gradient_y,
+                                   const ImageF& depth, const PinholeCamera& camera,
+                                   const MapOptions& options);
 
 }  // namespace saccade

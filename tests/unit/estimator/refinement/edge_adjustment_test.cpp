@@ -59,12 +59,21 @@ Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
   const ViewWindow window{recording().events, &start, reference_s};
   const DepthConfig config;
   const RayDepth depth(config.rays, config.limits, recording().world.camera());
+  AdjustmentOptions options;
+  options.edges = 600;
+  options.events_per_edge = 30;
   return adjust(window, depth.find_edges(window), recording().world.camera(), kKnown_s, kDepth_m,
-                {});
+                options);
+}
+
+/// From the true path.
+const Adjustment& from_truth() {
+  static const Adjustment result = adjusted(trajectory_of(glide));
+  return result;
 }
 
 TEST(EdgeAdjustment, LeavesTheTruthWhereItIs) {
-  const Adjustment result = adjusted(trajectory_of(glide));
+  const Adjustment& result = from_truth();
   ASSERT_TRUE(result.ok);
   for (const double t_s : {0.05, 0.15, 0.25, 0.3}) {
     // A fifth of a pixel of 133 px focal length; events scatter by a third of a pixel.
@@ -75,7 +84,7 @@ TEST(EdgeAdjustment, LeavesTheTruthWhereItIs) {
 
 // A residual in the view instead of on the sensor would be made small by motion towards the scene.
 TEST(EdgeAdjustment, DoesNotShrinkThePicture) {
-  const Adjustment result = adjusted(trajectory_of(glide));
+  const Adjustment& result = from_truth();
   ASSERT_TRUE(result.ok);
   const Rigid3 error = glide(kEnd_s).inverse() * result.trajectory.at_clamped(kEnd_s);
   EXPECT_LT(std::abs(error.translation().z()), 1e-3 * kDepth_m);
