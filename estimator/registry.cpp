@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "estimator/depth/depth_module.h"
 #include "estimator/imu/stabilize_module.h"
+#include "estimator/mosaic/mosaic_module.h"
 #include "estimator/odometry/odometry_module.h"
 #include "estimator/reconstruction/reconstruction_module.h"
 #include "estimator/rotation/rotation_module.h"
@@ -22,6 +23,8 @@ constexpr Module kModules[] = {
      false, false, run_odometry, print_odometry_config},
     {"stabilize", "events and frames as of a camera that does not turn (thesis chapter 3)", true,
      false, run_stabilization, print_stabilization_config},
+    {"mosaic", "panorama from the events of a camera that only turns (thesis 3.4.1)", true, false,
+     run_mosaic, print_mosaic_config},
     {"rotation", "angular velocity of the camera from events, gyroscope or both", false, false,
      run_rotation, print_rotation_config},
 };

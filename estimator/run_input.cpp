@@ -45,7 +45,11 @@ RunRecord::Window window_of(const RunRequest& request, double first_s, double la
 Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
   if (request.poses_from) {
     const std::filesystem::path& from = *request.poses_from;
-    return read_trajectory(std::filesystem::is_directory(from) ? from / "trajectory.txt" : from);
+    if (!std::filesystem::is_directory(from)) return read_trajectory(from);
+    const bool turns_only = !std::filesystem::exists(from / "trajectory.txt") &&
+                            std::filesystem::exists(from / "orientation.txt");
+    return turns_only ? read_orientations(from / "orientation.txt")
+                      : read_trajectory(from / "trajectory.txt");
   }
   if (dataset.groundtruth().empty())
     throw InputError(dataset.folder().string(),

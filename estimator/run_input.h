@@ -22,7 +22,8 @@ void check(const RunRequest& request);
 [[nodiscard]] RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s);
 
 /// world_from_camera of the run or the trajectory file at `poses_from`, without one the ground
-/// truth. Throws InputError where there is none.
+/// truth. Of a run that found orientations alone, these, at the origin. Throws InputError where
+/// there is none.
 [[nodiscard]] Trajectory load_poses(const RunRequest& request, const Dataset& dataset);
 
 }  // namespace saccade

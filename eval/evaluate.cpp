@@ -14,6 +14,7 @@
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory_metrics.h"
+#include "eval/mosaic_view.h"
 
 namespace saccade {
 namespace {
@@ -64,6 +65,8 @@ Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& d
   if (const auto images = load_image_views(run.folder); !images.empty())
     merge(metrics, score_images(images, dataset), "");
   score_turning(run, dataset, metrics);
+  if (const auto mosaic = load_mosaic(run))
+    merge(metrics, score_mosaic(compare_mosaic(*mosaic, run, dataset)), "");
   if (!run.trajectory) return metrics;
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;

@@ -28,20 +28,6 @@ ImageF take(std::vector<ExrChannel>& channels, const std::string& name) {
   return {};
 }
 
-ImageView read_log_image(const std::filesystem::path& file, double t_s) {
-  std::vector<ExrChannel> channels = read_exr_channels(file);
-  ImageView view;
-  view.t_s = t_s;
-  if (const ImageF mask = take(channels, "observed"); !mask.empty()) {
-    view.observed = ImageU8(mask.width(), mask.height());
-    for (std::size_t i = 0; i < mask.size(); ++i)
-      view.observed.pixels()[i] = mask.pixels()[i] > 0 ? 1 : 0;
-  }
-  view.log_image = take(channels, "L");
-  if (view.log_image.empty()) view.log_image = read_exr(file);
-  return view;
-}
-
 void read_gradient(const std::filesystem::path& file, ImageView& view) {
   std::vector<ExrChannel> channels = read_exr_channels(file);
   view.gradient_x = take(channels, "gx");
@@ -104,6 +90,20 @@ ImageF truth_at(const Dataset& dataset, double t_s) {
 }
 
 }  // namespace
+
+ImageView read_log_image(const std::filesystem::path& file, double t_s) {
+  std::vector<ExrChannel> channels = read_exr_channels(file);
+  ImageView view;
+  view.t_s = t_s;
+  if (const ImageF mask = take(channels, "observed"); !mask.empty()) {
+    view.observed = ImageU8(mask.width(), mask.height());
+    for (std::size_t i = 0; i < mask.size(); ++i)
+      view.observed.pixels()[i] = mask.pixels()[i] > 0 ? 1 : 0;
+  }
+  view.log_image = take(channels, "L");
+  if (view.log_image.empty()) view.log_image = read_exr(file);
+  return view;
+}
 
 std::vector<ImageView> load_image_views(const std::filesystem::path& folder) {
   const std::filesystem::path list = folder / "views.yaml";

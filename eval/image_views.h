@@ -21,6 +21,9 @@ struct ImageView {
   ImageF covariance_xx, covariance_xy, covariance_yy;  ///< of the gradient; empty: not stated
 };
 
+/// An EXR with channels L (or the only one) and, perhaps, observed.
+[[nodiscard]] ImageView read_log_image(const std::filesystem::path& file, double t_s);
+
 /// The views of views.yaml in `folder` that have an image. Empty without views.yaml.
 [[nodiscard]] std::vector<ImageView> load_image_views(const std::filesystem::path& folder);
 

@@ -121,6 +121,24 @@ void add_sharpness(std::string& text, const Metrics& metrics) {
   text += fmt::format("  {} % of the events within 1 px of their true place\n", fixed(within, 2));
 }
 
+void add_mosaic(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) { return metrics.get(std::string("mosaic.") + key); };
+  std::optional<double> observed = get("observed");
+  if (observed) *observed *= 100;
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}\n", "mosaic", "SSIM", "Pearson", "RMSE log",
+                      "grad Pearson");
+  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}\n", "by the start", fixed(get("ssim"), 4),
+                      fixed(get("pearson"), 4), fixed(get("rmse_log"), 4),
+                      fixed(get("gradient_pearson"), 4));
+  text +=
+      fmt::format("  {:<14}{:>10}{:>10}   turned by {} deg, orientations then off by {} deg\n",
+                  "by the mean", fixed(get("aligned.ssim"), 4), fixed(get("aligned.pearson"), 4),
+                  fixed(get("alignment.rotation_deg"), 3), fixed(get("alignment.residual_deg"), 3));
+  text += fmt::format("  {} % of the swept area observed; {} fields of view by area, {} by width\n",
+                      fixed(observed, 1), fixed(get("span.solid_angle"), 2),
+                      fixed(get("span.horizontal"), 2));
+}
+
 void add_speed(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) {
     return speed_value(metrics, std::string("speed.") + key);
@@ -151,6 +169,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
   if (metrics.values().contains("depth.points")) add_depth(text, metrics);
   if (metrics.values().contains("reconstruction.views")) add_reconstruction(text, metrics);
   if (metrics.get("orientation.roll_pitch_rmse_deg")) add_orientation(text, metrics);
+  if (metrics.values().contains("mosaic.ssim")) add_mosaic(text, metrics);
   if (metrics.get("orientation.rate_rmse_rad_s")) add_rates(text, metrics);
   if (metrics.get("sharpness.stabilized")) add_sharpness(text, metrics);
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);

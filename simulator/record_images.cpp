@@ -1,7 +1,11 @@
 #include "simulator/record_images.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
+#include "core/io/exr_file.h"
+#include "core/panorama.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "simulator/exposure.h"
@@ -58,6 +62,39 @@ void record_images(const Take& take) {
       take.writer.write_flow(i, t, renderer.flow(take.world_from_camera.state(t), t));
     progress.add(1);
   });
+}
+
+void record_panorama(const Take& take) {
+  const double fineness = take.config.groundtruth.panorama_px_per_rad;
+  if (!(fineness > 0)) return;
+  const Panorama panorama = Panorama::sphere(pixels_around(fineness));
+  const Eigen::Vector3d origin = take.pose(0).world_from_camera.translation();
+  const bool is_filtered = take.events.texture_filter != TextureFilter::kBilinear;
+  ImageF radiance(panorama.width, panorama.height);
+  Progress progress("panorama", radiance.size(), "pixels");
+  parallel_for(static_cast<std::size_t>(panorama.height), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    std::array<Ray, kTilePixels> rays;
+    std::array<TriangleId, kTilePixels> triangles;
+    const int packet = static_cast<int>(kTilePixels);
+    for (int first = 0; first < panorama.width; first += packet) {
+      const auto count = static_cast<std::size_t>(std::min(packet, panorama.width - first));
+      for (std::size_t k = 0; k < count; ++k)
+        rays[k] = {origin, panorama.direction(first + static_cast<int>(k), y), 0};
+      take.scene.visible({rays.data(), count}, {triangles.data(), count});
+      for (std::size_t k = 0; k < count; ++k) {
+        const int x = first + static_cast<int>(k);
+        const Shade shade =
+            is_filtered ? take.scene.shade(rays[k], triangles[k],
+                                           {panorama.direction(x + 1, y) - rays[k].direction,
+                                            panorama.direction(x, y + 1) - rays[k].direction})
+                        : take.scene.shade(rays[k], triangles[k]);
+        radiance(x, y) = static_cast<float>(shade.radiance);
+      }
+    }
+    progress.add(static_cast<std::size_t>(panorama.width));
+  });
+  write_exr(take.writer.folder() / "panorama.exr", radiance, "Y");
 }
 
 }  // namespace saccade

@@ -8,4 +8,8 @@ namespace saccade {
 /// behind complete are kept.
 void record_images(const Take& take);
 
+/// Writes panorama.exr where it is asked for: linear radiance in all directions of the world as the
+/// camera's position sees them at time 0, the whole sphere of core/panorama.h.
+void record_panorama(const Take& take);
+
 }  // namespace saccade

@@ -55,6 +55,7 @@ CameraReport record_camera(const Take& take, bool is_first, const std::string& n
   CameraReport report;
   const double path_length_m = record_groundtruth(take);
   if (is_first) record_imu(take);
+  if (is_first) record_panorama(take);
   record_images(take);
   report.images_s = watch.lap();
   report.events = record_events(take);

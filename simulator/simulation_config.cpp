@@ -74,6 +74,10 @@ void describe(config::Fields& fields, GroundtruthOptions& options) {
       .range(0, kHighestRate_hz);
   fields.value("event_labels", options.event_labels,
                "labels.h5: depth, motion, object and origin of every event");
+  fields
+      .value("panorama_px_per_rad", options.panorama_px_per_rad,
+             "panorama.exr: all that is seen from the first position, so fine; 0: none")
+      .range(0, 5000);
 }
 
 void describe(config::Fields& fields, SimulationConfig& config) {

@@ -42,6 +42,8 @@ struct GroundtruthOptions {
   double depth_rate_hz = 10;   ///< besides at the time of every frame
   double flow_rate_hz = 0;
   bool event_labels = false;  ///< labels.h5
+  /// Pixels per radian of panorama.exr, what is seen all around at time 0; 0: none.
+  double panorama_px_per_rad = 0;
 };
 
 /// Everything that `simulate` needs, with all its defaults.

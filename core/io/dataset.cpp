@@ -164,6 +164,15 @@ FlowField Dataset::load_flow(std::size_t index) const {
   return flow;
 }
 
+ImageF Dataset::load_panorama() const {
+  const fs::path file = folder_ / "panorama.exr";
+  if (!fs::exists(file)) return {};
+  ImageF image = read_exr(file);
+  if (image.width() < 4 || image.width() != 2 * image.height())
+    throw InputError(file.string(), "must be twice as wide as high: a whole sphere");
+  return image;
+}
+
 bool Dataset::has_labels() const { return fs::exists(folder_ / "labels.h5"); }
 
 EventLabels Dataset::load_labels(double start_s, double end_s) const {

@@ -65,6 +65,9 @@ class Dataset {
   /// z depth [m] of depth map `index`, 0 = nothing hit.
   [[nodiscard]] ImageF load_depth(std::size_t index) const;
   [[nodiscard]] FlowField load_flow(std::size_t index) const;
+  /// Linear radiance in all directions (panorama.exr), the whole sphere of core/panorama.h; empty
+  /// where the folder holds none.
+  [[nodiscard]] ImageF load_panorama() const;
   [[nodiscard]] bool has_labels() const;
   /// Labels of the events that load_events() gives for the same window.
   [[nodiscard]] EventLabels load_labels(

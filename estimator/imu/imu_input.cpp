@@ -1,5 +1,7 @@
 #include "estimator/imu/imu_input.h"
 
+#include <utility>
+
 #include "core/error.h"
 #include "core/io/calibration_file.h"
 
@@ -17,6 +19,33 @@ ImuInput load_imu_input(const Dataset& dataset, const std::string& needs) {
     if (const auto camera_from_imu = read_camera_chain(chain).front().camera_from_imu)
       input.camera_from_imu = camera_from_imu->rotation_matrix();
   return input;
+}
+
+ImuPoses camera_orientations(const ImuInput& imu, const OrientationOptions& options) {
+  const Eigen::Quaterniond imu_from_camera(Eigen::Matrix3d(imu.camera_from_imu.transpose()));
+  ImuPoses result;
+  std::vector<StampedPose> poses;
+  poses.reserve(imu.samples.size());
+  for (const ImuOrientation& one : estimate_orientations(imu.samples, options)) {
+    result.gyro.push_back(one.gyro);
+    poses.push_back({seconds_from_ns(one.gyro.t_ns),
+                     {one.world_from_imu * imu_from_camera, Eigen::Vector3d::Zero()}});
+  }
+  result.world_from_camera = Trajectory(std::move(poses));
+  return result;
+}
+
+Trajectory levelled(const Trajectory& world_from_camera, const ImuInput& imu) {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : imu.samples)
+    force += world_from_camera.at_clamped(seconds_from_ns(sample.t_ns)).rotation() *
+             (imu.camera_from_imu * sample.specific_force);
+  const auto level = Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ());
+  std::vector<StampedPose> poses(world_from_camera.poses().begin(),
+                                 world_from_camera.poses().end());
+  for (StampedPose& pose : poses)
+    pose.world_from_camera = Rigid3(level, Eigen::Vector3d::Zero()) * pose.world_from_camera;
+  return Trajectory(std::move(poses));
 }
 
 }  // namespace saccade

@@ -42,26 +42,10 @@ StabilizeInput load_input(const RunRequest& request, const Dataset& dataset) {
 }
 
 struct Stabilization {
-  Trajectory world_from_camera;
-  std::vector<GyroBiasEstimate> gyro;  ///< of the inertial sensor
+  ImuPoses camera;  ///< without an inertial sensor its biases are empty
   Trajectory world_from_steady;
   std::vector<StabilizedStretch> stretches;
 };
-
-/// The camera's orientations as the filter found them.
-Trajectory orientations_of(const ImuInput& imu, const OrientationOptions& options,
-                           std::vector<GyroBiasEstimate>& gyro) {
-  const Eigen::Quaterniond imu_from_camera(Eigen::Matrix3d(imu.camera_from_imu.transpose()));
-  std::vector<StampedPose> poses;
-  poses.reserve(imu.samples.size());
-  gyro.clear();
-  for (const ImuOrientation& one : estimate_orientations(imu.samples, options)) {
-    gyro.push_back(one.gyro);
-    poses.push_back({seconds_from_ns(one.gyro.t_ns),
-                     {one.world_from_imu * imu_from_camera, Eigen::Vector3d::Zero()}});
-  }
-  return Trajectory(std::move(poses));
-}
 
 /// Consecutive stretches of `window_s` from the first event on; those without events are left out.
 std::vector<StabilizedStretch> cut(std::span<const Event> events, double window_s) {
@@ -91,20 +75,20 @@ void stabilize(const StabilizeInput& input, const StabilizeConfig& config,
   double orientation_s = 0, events_s = 0;
   {
     const StageClock clock(orientation_s);
-    result.world_from_camera =
-        input.imu ? orientations_of(*input.imu, config.orientation, result.gyro) : input.poses;
-    result.world_from_steady = steady_poses(result.world_from_camera, config.steady);
+    result.camera =
+        input.imu ? camera_orientations(*input.imu, config.orientation) : ImuPoses{input.poses, {}};
+    result.world_from_steady = steady_poses(result.camera.world_from_camera, config.steady);
   }
   {
     const StageClock clock(events_s);
-    const Stabilizer stabilizer(camera, result.world_from_camera);
+    const Stabilizer stabilizer(camera, result.camera.world_from_camera);
     result.stretches = cut(input.events, config.window_s);
     parallel_for(result.stretches.size(), [&](std::size_t i) {
       StabilizedStretch& stretch = result.stretches[i];
       const double at_s = stretch.window.at_s;
       const Eigen::Quaterniond steady = result.world_from_steady.at_clamped(at_s).rotation();
       stretch.window.steady_from_camera =
-          steady.conjugate() * result.world_from_camera.at_clamped(at_s).rotation();
+          steady.conjugate() * result.camera.world_from_camera.at_clamped(at_s).rotation();
       stretch.stabilized = stabilizer.stabilize(stretch.events, steady);
     });
   }
@@ -115,13 +99,13 @@ void stabilize(const StabilizeInput& input, const StabilizeConfig& config,
 void write(const std::filesystem::path& folder, const Dataset& dataset,
            const StabilizeConfig& config, const Stabilization& result,
            const RunRecord::Window& window) {
-  write_orientations(folder / "orientation.txt", result.world_from_camera.poses());
-  if (!result.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.gyro);
+  write_orientations(folder / "orientation.txt", result.camera.world_from_camera.poses());
+  if (!result.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.camera.gyro);
   if (!result.stretches.empty())
     write_stabilized_events(folder / "stabilized", dataset.camera(), result.stretches);
   if (config.frames)
     write_stabilized_frames(folder / "stabilized", dataset, window,
-                            Stabilizer(dataset.camera(), result.world_from_camera),
+                            Stabilizer(dataset.camera(), result.camera.world_from_camera),
                             result.world_from_steady);
 }
 
@@ -148,7 +132,7 @@ RunSummary run_stabilization(const RunRequest& request) {
     stabilize(input, config, dataset.camera(), result, timing);
     progress.add(timing.events);
   }
-  const Trajectory& poses = result.world_from_camera;
+  const Trajectory& poses = result.camera.world_from_camera;
   timing.sequence_s = poses.end_s() - poses.start_s();
   const RunRecord::Window window = window_of(request, poses.start_s(), poses.end_s());
   {

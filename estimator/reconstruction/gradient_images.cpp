@@ -6,12 +6,12 @@
 
 namespace saccade {
 
-void set_gradient(Reconstruction& result, const PinholeCamera& camera,
+void set_gradient(Reconstruction& result, const ReferenceGrid& grid,
                   std::span<const GradientState> states, double observed_sigma) {
   for (ImageF* image : {&result.gradient_x, &result.gradient_y, &result.covariance_xx,
                         &result.covariance_xy, &result.covariance_yy})
-    *image = ImageF(camera.width, camera.height);
-  result.observed = ImageU8(camera.width, camera.height);
+    *image = ImageF(grid.width(), grid.height());
+  result.observed = ImageU8(grid.width(), grid.height());
   SACCADE_CHECK(states.size() == result.observed.size());
   const auto limit = static_cast<float>(observed_sigma * observed_sigma);
   for (std::size_t i = 0; i < states.size(); ++i) {

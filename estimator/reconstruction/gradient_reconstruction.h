@@ -1,9 +1,14 @@
 #pragma once
 
+#include <span>
+
 #include "core/camera.h"
+#include "core/event.h"
+#include "core/trajectory.h"
 #include "estimator/reconstruction/image_estimator.h"
 #include "estimator/reconstruction/place_levels.h"
 #include "estimator/reconstruction/poisson.h"
+#include "estimator/reconstruction/reference_grid.h"
 
 namespace saccade {
 
@@ -15,7 +20,14 @@ struct GradientOptions {
 };
 
 /// The thesis's reconstruction (chapter 6): gradients by a pixel-wise Kalman filter, the image by
-/// Poisson's equation.
+/// Poisson's equation. `grid`: the pixels of the view that `finder` finds places in; where it
+/// wraps, so does the image.
+[[nodiscard]] Reconstruction integrate_gradients(LevelFinder& finder, std::span<const Event> events,
+                                                 const Trajectory& world_from_camera,
+                                                 const ReferenceGrid& grid,
+                                                 const GradientOptions& options);
+
+/// ... of a view.
 class GradientReconstruction : public ImageEstimator {
  public:
   GradientReconstruction(const PinholeCamera& camera, const GradientOptions& options)

@@ -80,13 +80,14 @@ class CosinePreconditioner {
 
 }  // namespace
 
-LevelSystem::LevelSystem(int width, int height)
+LevelSystem::LevelSystem(int width, int height, bool wraps)
     : width_(width),
       height_(height),
-      rows_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+      columns_(wraps ? width + 1 : width),
+      rows_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(height)),
       cells_(rows_.size()),
       right_side_(rows_.size()) {
-  SACCADE_CHECK(width > 1 && height > 1);
+  SACCADE_CHECK(width > (wraps ? 2 : 1) && height > 1);
 }
 
 void LevelSystem::clear() {
@@ -110,37 +111,48 @@ void LevelSystem::add_track(std::span<const GridLevel> levels) {
   for (const GridLevel& l : levels) {
     const auto& f = l.place.weight;
     const Lanes row = {f[0], f[1], f[2], f[3], l.level - mean};
-    cells_[static_cast<std::size_t>(l.place.index[0])] +=
+    const int first = unrolled(l.place.index[0]);
+    cells_[static_cast<std::size_t>(first)] +=
         l.weight * __builtin_shuffle(row, kOne) * __builtin_shuffle(row, kOther);
     const float share = l.weight * scale;
-    entries_.push_back(
-        {l.place.index[0], {share * f[0], share * f[1], share * f[2], share * f[3]}});
+    entries_.push_back({first, {share * f[0], share * f[1], share * f[2], share * f[3]}});
   }
   tracks_.push_back({begin, entries_.size(), static_cast<float>(weight)});
 }
 
 void LevelSystem::add_smooth(int i, int j, float weight) {
-  const int first = std::min(i, j);
-  const int second = std::max(i, j);
+  const int lower = std::min(i, j);
+  const int upper = std::max(i, j);
+  const bool is_at_seam = wraps() && upper - lower == width_ - 1;
+  const int first = unrolled(is_at_seam ? upper : lower);
+  const int second = is_at_seam ? first + 1 : unrolled(upper);
   rows_[static_cast<std::size_t>(first)][0] += weight;
   rows_[static_cast<std::size_t>(second)][0] += weight;
   rows_[static_cast<std::size_t>(first)][second == first + 1 ? 1 : 3] -= weight;
 }
 
 void LevelSystem::add_value(int i, float value, float weight) {
-  rows_[static_cast<std::size_t>(i)][0] += weight;
-  right_side_[static_cast<std::size_t>(i)] += weight * value;
+  const auto at = static_cast<std::size_t>(unrolled(i));
+  rows_[at][0] += weight;
+  right_side_[at] += weight * value;
 }
 
 double LevelSystem::track_variance() const {
   double sum = 0, weight = 0;
   constexpr std::size_t kEvery = 8;  // they are many and alike
+  // Of a track that crosses the seam, as if the image went on.
+  const auto nearest_turn = [this](int column, int other) {
+    if (!wraps() || std::abs(column - other) <= width_ / 2) return column;
+    return column < other ? column + width_ : column - width_;
+  };
   for (std::size_t t = 0; t < tracks_.size(); t += kEvery) {
     const Track& track = tracks_[t];
+    const int first_column = entries_[track.begin].index % columns_;
     double x = 0, y = 0, square = 0;
     for (std::size_t k = track.begin; k < track.end; ++k) {
       const Entry& entry = entries_[k];
-      const double u = entry.index % width_, v = entry.index / width_;
+      const double u = nearest_turn(entry.index % columns_, first_column);
+      const double v = entry.index / columns_;
       const auto f = static_cast<double>(entry.factor[0] + entry.factor[1] + entry.factor[2] +
                                          entry.factor[3]);
       x += f * u;
@@ -159,7 +171,7 @@ LevelSystem::Stencil LevelSystem::stencil(std::vector<float>& right_side) const 
     stencil[k].resize(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) stencil[k][i] = rows_[i][k];
   }
-  const auto width = static_cast<std::size_t>(width_);
+  const auto width = static_cast<std::size_t>(columns_);
   const std::array<std::size_t, 4> corner = {0, 1, width, width + 1};
   for (std::size_t i = 0; i + width + 1 < rows_.size(); ++i) {
     const Lanes& cell = cells_[i];
@@ -170,9 +182,40 @@ LevelSystem::Stencil LevelSystem::stencil(std::vector<float>& right_side) const 
   return stencil;
 }
 
+std::vector<float> LevelSystem::unrolled(const std::vector<float>& image) const {
+  std::vector<float> result;
+  result.reserve(rows_.size());
+  for (auto row = image.begin(); row != image.end(); row += width_) {
+    result.insert(result.end(), row, row + width_);
+    if (wraps()) result.push_back(*row);
+  }
+  return result;
+}
+
+std::vector<float> LevelSystem::rolled_up(const std::vector<float>& sums) const {
+  std::vector<float> result;
+  result.reserve(sums.size());
+  for (auto row = sums.begin(); row != sums.end(); row += columns_) {
+    result.insert(result.end(), row, row + width_);
+    if (wraps()) *(result.end() - width_) += row[width_];
+  }
+  return result;
+}
+
 void LevelSystem::multiply(const Stencil& stencil, const std::vector<float>& x,
                            std::vector<float>& y) const {
-  const auto width = static_cast<std::size_t>(width_);
+  if (!wraps()) {
+    multiply_unrolled(stencil, x, y);
+    return;
+  }
+  std::vector<float> sums(rows_.size());
+  multiply_unrolled(stencil, unrolled(x), sums);
+  y = rolled_up(sums);
+}
+
+void LevelSystem::multiply_unrolled(const Stencil& stencil, const std::vector<float>& x,
+                                    std::vector<float>& y) const {
+  const auto width = static_cast<std::size_t>(columns_);
   const std::size_t offsets[kNeighbours] = {0, 1, width - 1, width, width + 1};
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = stencil[0][i] * x[i];
   for (std::size_t k = 1; k < kNeighbours; ++k) {
@@ -204,10 +247,12 @@ void LevelSystem::multiply(const Stencil& stencil, const std::vector<float>& x,
 }
 
 GridSolution LevelSystem::solve(int iterations, double tolerance, const ImageF& start) const {
-  const std::size_t n = rows_.size();
-  std::vector<float> x(n, 0), r = right_side_, z(n), p, q(n);
-  const Stencil stencil = this->stencil(r);
-  CosinePreconditioner preconditioner(width_, height_, stencil[0], track_variance());
+  std::vector<float> right_side = right_side_;
+  const Stencil stencil = this->stencil(right_side);
+  std::vector<float> r = rolled_up(right_side);
+  const std::size_t n = r.size();
+  std::vector<float> x(n, 0), z(n), p, q(n);
+  CosinePreconditioner preconditioner(width_, height_, rolled_up(stencil[0]), track_variance());
   GridSolution solution{ImageF(width_, height_), 0, 0};
   preconditioner.apply(r, z);
   const double full = std::max(dot(r, z), 1e-30);

@@ -34,10 +34,12 @@ struct GridSolution {
 /// The offsets are eliminated: with m_t the mean of a track's rows, n_t the sum of its weights, the
 /// normal matrix is the pixels' own (a stencil) minus sum_t n_t m_t m_t^T. Solved by conjugate
 /// gradients, preconditioned in the cosine domain: a wave shorter than the tracks is seen by every
-/// level, of a longer one only its slope.
+/// level, of a longer one only its slope. An image that wraps is unrolled by one column, the first
+/// one once more, behind which it ends like any other.
 class LevelSystem {
  public:
-  LevelSystem(int width, int height);
+  /// `wraps`: the last column is the first one's neighbour.
+  LevelSystem(int width, int height, bool wraps = false);
 
   /// Forgets what was added, but keeps the memory.
   void clear();
@@ -45,7 +47,8 @@ class LevelSystem {
   /// Room for so many levels.
   void reserve(std::size_t levels) { entries_.reserve(levels); }
 
-  /// The levels of one track. A place's four pixels are a square, the first its upper left.
+  /// The levels of one track. A place's four pixels are a square, the first its upper left; it may
+  /// lie across the seam of an image that wraps.
   void add_track(std::span<const GridLevel> levels);
 
   /// w (I(j) - I(i))^2 for two neighbours.
@@ -75,9 +78,19 @@ class LevelSystem {
 
   [[nodiscard]] Stencil stencil(std::vector<float>& right_side) const;
   void multiply(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y) const;
+  void multiply_unrolled(const Stencil& stencil, const std::vector<float>& x,
+                         std::vector<float>& y) const;
   [[nodiscard]] double track_variance() const;
 
+  [[nodiscard]] bool wraps() const { return columns_ > width_; }
+  /// The pixel in the unrolled image.
+  [[nodiscard]] int unrolled(int i) const { return wraps() ? i + i / width_ : i; }
+  [[nodiscard]] std::vector<float> unrolled(const std::vector<float>& image) const;
+  /// The transpose of it: what is found for the last column is the first one's, too.
+  [[nodiscard]] std::vector<float> rolled_up(const std::vector<float>& sums) const;
+
   int width_, height_;
+  int columns_;  ///< of the unrolled image, which what follows is of
   std::vector<std::array<float, kNeighbours>> rows_;
   std::vector<Lanes> cells_;  ///< what levels add, by the upper left pixel of their square
   std::vector<Entry> entries_;

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,8 +11,8 @@
 #include "core/event.h"
 #include "core/image.h"
 #include "core/trajectory.h"
-#include "estimator/reconstruction/place_finder.h"
-#include "estimator/reconstruction/pose_table.h"
+#include "estimator/reconstruction/direction_places.h"
+#include "estimator/reconstruction/surface_places.h"
 
 namespace saccade {
 
@@ -27,7 +27,7 @@ struct LevelSort {
 /// intensity there is `level` above an offset that is the same along the pixel's track. In little
 /// memory, as there are several per event.
 struct PlaceLevel {
-  float x, y;   ///< [px of the reference view], within it
+  float x, y;   ///< [px of the reference view], within it; see ReferenceGrid::at()
   float level;  ///< [log units]
   std::uint32_t track_and_sort;
 
@@ -54,27 +54,41 @@ struct LevelOptions {
 };
 
 /// Turns events into levels of the reference image. At the instant of an event the level is exact:
-/// the sum of all p C of the pixel so far. Places are visible where the reference view sees nothing
-/// nearer (z-test) and are within it. All pixels are followed from one time to the next, over which
-/// the image moves by less than a pixel, nearly straight; in between places are interpolated.
+/// the sum of all p C of the pixel so far.
 class LevelFinder {
  public:
-  /// `reference_inverse_depth`: what the reference view sees. All arguments outlive the finder.
-  LevelFinder(const PinholeCamera& camera, const DepthScene& scene,
-              const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
-              double contrast_on, double contrast_off, const LevelOptions& options);
+  virtual ~LevelFinder() = default;
 
   /// Tracks so far.
-  [[nodiscard]] std::uint32_t tracks() const { return tracks_; }
+  [[nodiscard]] virtual std::uint32_t tracks() const = 0;
 
-  [[nodiscard]] std::span<const LevelSort> sorts() const { return sorts_; }
+  [[nodiscard]] virtual std::span<const LevelSort> sorts() const = 0;
 
   /// Where many of `events` are to come, silent pixels will be asked seldom (still_events).
-  void expect(std::span<const Event> events);
+  virtual void expect(std::span<const Event> events) = 0;
 
   /// Appends what `events` say (in order of time, and not before those of an earlier call).
+  virtual void find(std::span<const Event> events, const Trajectory& world_from_camera,
+                    std::vector<PlaceLevel>& levels) = 0;
+
+  /// What all events say, handed to `use` part by part. Returns the seconds that finding it took.
+  double find_all(std::span<const Event> events, const Trajectory& world_from_camera,
+                  const std::function<void(std::span<const PlaceLevel>)>& use);
+};
+
+/// Where pixels look is what `Places` says, from one time to the next: SurfacePlaces or
+/// DirectionPlaces.
+template <class Places>
+class PlaceLevels : public LevelFinder {
+ public:
+  PlaceLevels(Places places, const PinholeCamera& camera, double contrast_on, double contrast_off,
+              const LevelOptions& options);
+
+  [[nodiscard]] std::uint32_t tracks() const override { return tracks_; }
+  [[nodiscard]] std::span<const LevelSort> sorts() const override { return sorts_; }
+  void expect(std::span<const Event> events) override;
   void find(std::span<const Event> events, const Trajectory& world_from_camera,
-            std::vector<PlaceLevel>& levels);
+            std::vector<PlaceLevel>& levels) override;
 
  private:
   /// Indices of sorts_.
@@ -91,34 +105,41 @@ class LevelFinder {
     int last = 0;    ///< polarity of the last event, 0: none so far
   };
 
-  /// All pixels at one time.
-  struct Moment {
-    TimeNs t_ns = 0;
-    CameraPose reference_from_camera;
-    PlaceField places;
-  };
-
-  [[nodiscard]] CameraPose pose_at(const Trajectory& world_from_camera, TimeNs t_ns) const;
-  void start(const Trajectory& world_from_camera, TimeNs t_ns);
-  /// From begin_ to end_, at most until `last_ns`.
-  void advance(const Trajectory& world_from_camera, TimeNs last_ns);
-  [[nodiscard]] std::optional<Place> place_of(const Event& event) const;
   void add_event(const Event& event, const Place& place, std::vector<PlaceLevel>& levels);
   void ask_still(std::vector<PlaceLevel>& levels);
-  void add_still(std::size_t pixel, std::vector<PlaceLevel>& levels);
+  void add_still(int x, int y, std::vector<PlaceLevel>& levels);
 
-  PlaceFinder places_;
-  Rigid3 reference_from_world_;
+  Places places_;
   float contrast_on_, contrast_off_;
   LevelOptions options_;
   std::array<LevelSort, kSorts> sorts_;
   Image<Pixel> pixels_;
   Image<int> turns_;                 ///< of silent pixels, by tile of the sensor
-  Moment begin_, end_;               ///< around the events that are at hand
-  TimeNs length_ns_ = 1'000'000;     ///< from one to the other, as it was last
   CameraPose asked_from_reference_;  ///< the camera when silent pixels were asked last
   int asked_ = 0;                    ///< how often they were
   std::uint32_t tracks_ = 0;
+};
+
+/// Levels of a view whose depth is known.
+class SurfaceLevels : public PlaceLevels<SurfacePlaces> {
+ public:
+  /// `reference_inverse_depth`: what the reference view sees. All but the options outlive the
+  /// finder.
+  SurfaceLevels(const PinholeCamera& camera, const DepthScene& scene,
+                const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
+                double contrast_on, double contrast_off, const LevelOptions& options)
+      : PlaceLevels(SurfacePlaces(camera, scene, world_from_reference, reference_inverse_depth,
+                                  options.places, options.still_px),
+                    camera, contrast_on, contrast_off, options) {}
+};
+
+/// Levels of a panorama, whose world is the reference view.
+class DirectionLevels : public PlaceLevels<DirectionPlaces> {
+ public:
+  DirectionLevels(const PinholeCamera& camera, const Panorama& panorama, double contrast_on,
+                  double contrast_off, const LevelOptions& options)
+      : PlaceLevels(DirectionPlaces(camera, panorama), camera, contrast_on, contrast_off, options) {
+  }
 };
 
 }  // namespace saccade

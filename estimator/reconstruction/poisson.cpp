@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -37,6 +38,19 @@ Matrix cosine_matrix(int size) {
   return m;
 }
 
+/// Orthonormal Hartley transform, cos + sin: symmetric and its own inverse.
+Matrix hartley_matrix(int size) {
+  Matrix m(size, size);
+  for (int i = 0; i < size; ++i)
+    for (int k = 0; k < size; ++k) {
+      // i k modulo the size, so that the angle is exact.
+      const auto turn = static_cast<double>(static_cast<long>(i) * k % size) / size;
+      const double angle = 2 * std::numbers::pi * turn;
+      m(i, k) = static_cast<float>((std::cos(angle) + std::sin(angle)) / std::sqrt(size));
+    }
+  return m;
+}
+
 double second_difference(double angle) { return 2 - 2 * std::cos(angle); }
 
 ImageMap map_of(ImageF& image) { return {image.data(), image.height(), image.width()}; }
@@ -64,6 +78,22 @@ ImageF solve_neumann(const ImageF& laplacian) {
     for (int k = 0; k < image.width(); ++k)
       image(k, l) = k + l == 0 ? 0 : image(k, l) / -static_cast<float>(transform.eigenvalue(k, l));
   transform.inverse(image);
+  return image;
+}
+
+ImageF solve_wrapped(const ImageF& laplacian) {
+  ImageF image = laplacian;
+  const int w = image.width(), h = image.height();
+  const Matrix along_x = hartley_matrix(w), along_y = cosine_matrix(h);
+  ImageMap m = map_of(image);
+  Matrix coefficients = along_y * m * along_x;
+  for (int l = 0; l < h; ++l)
+    for (int k = 0; k < w; ++k)
+      coefficients(l, k) /=
+          k + l == 0 ? -std::numeric_limits<float>::infinity()
+                     : -static_cast<float>(second_difference(2 * std::numbers::pi * k / w) +
+                                           second_difference(std::numbers::pi * l / h));
+  m = along_y.transpose() * coefficients * along_x;
   return image;
 }
 
@@ -95,13 +125,29 @@ GradientField forward_gradient(const ImageF& image) {
   return g;
 }
 
-ImageF divergence(const GradientField& gradient) {
+ImageF divergence(const GradientField& gradient, bool wraps) {
   ImageF d(gradient.x.width(), gradient.x.height());
-  for (int y = 0; y < d.height(); ++y)
-    for (int x = 0; x < d.width(); ++x)
-      d(x, y) = (x + 1 < d.width() ? gradient.x(x, y) : 0) - (x > 0 ? gradient.x(x - 1, y) : 0) +
+  const int last = d.width() - 1;
+  for (int y = 0; y < d.height(); ++y) {
+    const float across_seam = wraps ? gradient.x(last, y) : 0;
+    for (int x = 0; x <= last; ++x)
+      d(x, y) = (x < last ? gradient.x(x, y) : across_seam) -
+                (x > 0 ? gradient.x(x - 1, y) : across_seam) +
                 (y + 1 < d.height() ? gradient.y(x, y) : 0) - (y > 0 ? gradient.y(x, y - 1) : 0);
+  }
   return d;
+}
+
+GradientField between_pixels(const ImageF& gx, const ImageF& gy, bool wraps) {
+  GradientField g{gx, gy};
+  const int last = gx.width() - 1;
+  for (int y = 0; y < gx.height(); ++y) {
+    for (int x = 0; x < last; ++x) g.x(x, y) = (gx(x, y) + gx(x + 1, y)) / 2;
+    if (wraps) g.x(last, y) = (gx(last, y) + gx(0, y)) / 2;
+  }
+  for (int y = 0; y + 1 < gy.height(); ++y)
+    for (int x = 0; x < gy.width(); ++x) g.y(x, y) = (gy(x, y) + gy(x, y + 1)) / 2;
+  return g;
 }
 
 void subtract_mean(ImageF& image) {
@@ -111,7 +157,15 @@ void subtract_mean(ImageF& image) {
 }
 
 ImageF solve_poisson(const ImageF& laplacian, Boundary boundary) {
-  return boundary == Boundary::kDirichlet ? solve_dirichlet(laplacian) : solve_neumann(laplacian);
+  switch (boundary) {
+    case Boundary::kDirichlet:
+      return solve_dirichlet(laplacian);
+    case Boundary::kNeumann:
+      return solve_neumann(laplacian);
+    case Boundary::kWrapped:
+      return solve_wrapped(laplacian);
+  }
+  return {};
 }
 
 CosineTransform::CosineTransform(int width, int height) : width_(width), height_(height) {

@@ -11,25 +11,26 @@ constexpr TimeNs kStepNs = 200'000;
 
 }  // namespace
 
+CameraPose pose_at(const Trajectory& world_from_camera, const Rigid3& target_from_world,
+                   TimeNs t_ns) {
+  const Rigid3 pose = target_from_world * world_from_camera.at_clamped(seconds_from_ns(t_ns));
+  return {pose.rotation_matrix().cast<float>(), pose.translation().cast<float>()};
+}
+
 PoseTable::PoseTable(const Trajectory& world_from_camera, const Rigid3& target_from_world,
                      TimeNs start_ns, TimeNs end_ns)
     : start_ns_(start_ns) {
   SACCADE_CHECK(!world_from_camera.empty() && start_ns <= end_ns);
   const TimeNs count = (end_ns - start_ns) / kStepNs + 2;
-  for (TimeNs i = 0; i < count; ++i) {
-    const Rigid3 pose =
-        target_from_world * world_from_camera.at_clamped(seconds_from_ns(start_ns + i * kStepNs));
-    poses_.push_back({pose.rotation_matrix().cast<float>(), pose.translation().cast<float>()});
-  }
+  for (TimeNs i = 0; i < count; ++i)
+    poses_.push_back(pose_at(world_from_camera, target_from_world, start_ns + i * kStepNs));
 }
 
 CameraPose PoseTable::at(TimeNs t_ns) const {
   const TimeNs since = t_ns - start_ns_;
   const auto i = static_cast<std::size_t>(since / kStepNs);
   const float share = static_cast<float>(since % kStepNs) / static_cast<float>(kStepNs);
-  const CameraPose& a = poses_[i];
-  const CameraPose& b = poses_[i + 1];
-  return {a.r + share * (b.r - a.r), a.t + share * (b.t - a.t)};
+  return between(poses_[i], poses_[i + 1], share);
 }
 
 }  // namespace saccade

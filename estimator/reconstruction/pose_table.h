@@ -16,6 +16,15 @@ struct CameraPose {
   Eigen::Vector3f t;
 };
 
+/// target_from_camera, held beyond the trajectory's ends.
+[[nodiscard]] CameraPose pose_at(const Trajectory& world_from_camera,
+                                 const Rigid3& target_from_world, TimeNs t_ns);
+
+/// A `share` of the way from one pose to another one nearby, linear.
+[[nodiscard]] inline CameraPose between(const CameraPose& from, const CameraPose& to, float share) {
+  return {from.r + share * (to.r - from.r), from.t + share * (to.t - from.t)};
+}
+
 /// target_from_camera at the time of any event: exact every 0.2 ms and linear in between, where at
 /// 10 rad/s the rotation is 5e-7 off a true one.
 class PoseTable {

@@ -37,6 +37,25 @@ void describe_depth(config::Fields& fields, DepthSourceOptions& options) {
       "the map through the points of a depth run: what each pixel's plane costs");
 }
 
+void describe_places(config::Fields& fields, PlaceOptions& options) {
+  fields.value("redraw_px", options.redraw_px, "motion after which the depth is drawn anew")
+      .range(0.1, 100);
+  fields
+      .value("parallax_px", options.parallax_px,
+             "... or after which surfaces have shifted so far against each other")
+      .range(0.01, 100);
+  fields
+      .value("same_surface", options.same_surface,
+             "relative difference of depth up to which a place is the one that is seen (z-test)")
+      .range(1e-4, 10);
+  fields
+      .value("step_margin_px", options.step_margin_px,
+             "pixels this near to a step of depth say nothing")
+      .range(0, 20);
+}
+
+}  // namespace
+
 void describe_levels(config::Fields& fields, LevelOptions& options) {
   fields
       .value("event_sigma", options.event_sigma,
@@ -59,20 +78,6 @@ void describe_levels(config::Fields& fields, LevelOptions& options) {
       .value("beyond", options.beyond,
              "a silent pixel's level goes on past its last event, by this share of a threshold")
       .range(0, 1);
-  fields.value("redraw_px", options.places.redraw_px, "motion after which the depth is drawn anew")
-      .range(0.1, 100);
-  fields
-      .value("parallax_px", options.places.parallax_px,
-             "... or after which surfaces have shifted so far against each other")
-      .range(0.01, 100);
-  fields
-      .value("same_surface", options.places.same_surface,
-             "relative difference of depth up to which a place is the one that is seen (z-test)")
-      .range(1e-4, 10);
-  fields
-      .value("step_margin_px", options.places.step_margin_px,
-             "pixels this near to a step of depth say nothing")
-      .range(0, 20);
 }
 
 void describe_gradient(config::Fields& fields, GradientOptions& options) {
@@ -82,13 +87,9 @@ void describe_gradient(config::Fields& fields, GradientOptions& options) {
       .value("observed_sigma", options.observed_sigma,
              "a pixel is observed when its surest direction is this sure [1/px]")
       .range(1e-6, 100);
-  fields.choice("boundary", options.boundary,
-                {{"dirichlet", Boundary::kDirichlet}, {"neumann", Boundary::kNeumann}},
-                "of Poisson's equation (6.20)");
 }
 
 void describe_equations(config::Fields& fields, EquationOptions& options) {
-  fields.value("scale", options.scale, "unknowns per pixel and direction").range(1, 4);
   fields
       .value("thin_px", options.thin_px,
              "levels of a pixel whose places are this near are joined; 0: none are")
@@ -101,8 +102,6 @@ void describe_equations(config::Fields& fields, EquationOptions& options) {
       .value("knee", options.knee,
              "difference of neighbours from which on it counts by its size, not its square")
       .range(1e-6, 1e3);
-  fields.value("across", options.across, "the same across the edge of an occluder")
-      .range(1e-4, 1e4);
   fields.value("rounds", options.rounds, "from the second on, outliers count less").range(1, 20);
   fields.value("outlier", options.outlier, "deviations beyond which an equation counts less")
       .range(0.1, 1e6);
@@ -121,8 +120,6 @@ void describe_equations(config::Fields& fields, EquationOptions& options) {
       .range(1e-6, 100);
 }
 
-}  // namespace
-
 void describe_image_method(config::Fields& fields, ReconstructionConfig& config) {
   using Method = ReconstructionConfig::Method;
   fields.choice("method", config.method,
@@ -136,15 +133,32 @@ void describe_image_method(config::Fields& fields, ReconstructionConfig& config)
   LevelOptions& levels =
       config.method == Method::kGradient ? config.gradient.levels : config.equations.levels;
   fields.group(
-      "levels", [&](config::Fields& f) { describe_levels(f, levels); },
+      "levels",
+      [&](config::Fields& f) {
+        describe_levels(f, levels);
+        describe_places(f, levels.places);
+      },
       "what events say about the view");
   if (config.method == Method::kGradient)
     fields.group(
-        "gradient", [&](config::Fields& f) { describe_gradient(f, config.gradient); },
+        "gradient",
+        [&](config::Fields& f) {
+          describe_gradient(f, config.gradient);
+          f.choice("boundary", config.gradient.boundary,
+                   {{"dirichlet", Boundary::kDirichlet}, {"neumann", Boundary::kNeumann}},
+                   "of Poisson's equation (6.20)");
+        },
         "pixel-wise Kalman filter and Poisson's equation (chapter 6)");
   if (config.method == Method::kEquations)
     fields.group(
-        "equations", [&](config::Fields& f) { describe_equations(f, config.equations); },
+        "equations",
+        [&](config::Fields& f) {
+          f.value("scale", config.equations.scale, "unknowns per pixel and direction").range(1, 4);
+          describe_equations(f, config.equations);
+          f.value("across", config.equations.across,
+                  "as smoothness, across the edge of an occluder")
+              .range(1e-4, 1e4);
+        },
         "one linear equation per event, least squares");
 }
 

@@ -34,8 +34,13 @@ struct ReconstructionConfig {
 
 void describe(config::Fields& fields, ReconstructionConfig& config);
 
-/// The part of it that is the method, for other modules that reconstruct: all but window, growth
-/// and seed.
+/// The keys of both methods that say nothing of depth, as a mosaic has them, too.
+void describe_levels(config::Fields& fields, LevelOptions& options);
+void describe_gradient(config::Fields& fields, GradientOptions& options);
+void describe_equations(config::Fields& fields, EquationOptions& options);
+
+/// The part of a configuration that is the method, for other modules that reconstruct: all but
+/// window, growth and seed.
 void describe_image_method(config::Fields& fields, ReconstructionConfig& config);
 
 /// The method that the configuration names. `camera` with its lens.

@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/config/config.h"
-#include "core/error.h"
-#include "core/parallel.h"
+#include "estimator/reconstruction/contrasts.h"
 #include "estimator/reconstruction/depth_source.h"
+#include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_output.h"
 #include "estimator/run_input.h"
@@ -19,41 +18,15 @@
 namespace saccade {
 namespace {
 
-/// The threshold of the configuration, else the dataset's.
-double contrast_of(const std::optional<double>& configured, const std::optional<double>& stated,
-                   const Dataset& dataset, const char* key) {
-  if (configured) return *configured;
-  if (!stated)
-    throw InputError(dataset.folder().string(),
-                     fmt::format("does not state its contrast thresholds; state {}", key));
-  return *stated;
-}
-
 std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dataset& dataset,
                                                const DepthSource& depth,
                                                const ReconstructionConfig& config) {
-  const DatasetFacts& facts = dataset.facts();
-  const double on = contrast_of(config.contrast_on, facts.contrast_on, dataset, "contrast_on");
-  const double off = contrast_of(config.contrast_off, facts.contrast_off, dataset, "contrast_off");
+  const auto [on, off] = contrasts(config.contrast_on, config.contrast_off, dataset);
   std::vector<ReconstructionWindow> windows;
   for (const ViewWindow& part :
        cut_windows(input.events(), input.trajectory, config.window, dataset.frames()))
     windows.push_back({part, depth.scene_at(part.reference_s), on, off});
   return windows;
-}
-
-/// The first window from fewer events, as in thesis figs. 8.14 and 8.15.
-std::vector<GrowthPicture> grow(const ImageEstimator& estimator, const ReconstructionWindow& window,
-                                const std::vector<std::int64_t>& counts) {
-  std::vector<GrowthPicture> pictures(counts.size());
-  parallel_for(counts.size(), [&](std::size_t i) {
-    ReconstructionWindow part = window;
-    const auto count = std::min(window.events.size(),
-                                static_cast<std::size_t>(std::max<std::int64_t>(counts[i], 1)));
-    part.events = window.events.first(count);
-    pictures[i] = {count, estimator.reconstruct(part).log_image};
-  });
-  return pictures;
 }
 
 }  // namespace
@@ -77,7 +50,12 @@ RunSummary run_reconstruction(const RunRequest& request) {
   const auto results = estimate_views<Reconstruction>(
       "reconstruction", windows, request.repeat, timing,
       [&](const ReconstructionWindow& window) { return estimator->reconstruct(window); });
-  const auto growth = grow(*estimator, windows.front(), config.growth);
+  const auto growth =
+      grow(windows.front().events, config.growth, [&](std::span<const Event> events) {
+        ReconstructionWindow part = windows.front();
+        part.events = events;
+        return estimator->reconstruct(part).log_image;
+      });
   {
     const StageClock clock(timing.io_s);
     write_reconstruction(writer.path(), windows, results, growth);

@@ -13,7 +13,15 @@
 namespace saccade {
 namespace {
 
-/// From the 0.5th to the 99.5th percentile of what is observed; of everything where nothing is.
+ImageF as_float(const ImageU8& mask) {
+  ImageF image(mask.width(), mask.height());
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    image.pixels()[i] = static_cast<float>(mask.pixels()[i]);
+  return image;
+}
+
+}  // namespace
+
 ImageU8 grey_picture(const ImageF& log_image, const ImageU8& observed) {
   std::vector<float> values;
   for (std::size_t i = 0; i < log_image.size(); ++i)
@@ -33,14 +41,11 @@ ImageU8 grey_picture(const ImageF& log_image, const ImageU8& observed) {
   return picture;
 }
 
-ImageF as_float(const ImageU8& mask) {
-  ImageF image(mask.width(), mask.height());
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    image.pixels()[i] = static_cast<float>(mask.pixels()[i]);
-  return image;
+void write_log_image(const std::filesystem::path& file, const ImageF& log_image,
+                     const ImageU8& observed) {
+  const ExrChannel channels[] = {{"L", log_image}, {"observed", as_float(observed)}};
+  write_exr(file, channels);
 }
-
-}  // namespace
 
 void write_image_view(const Reconstruction& result, const RunView& view) {
   const ExrChannel gradient[] = {{"gx", result.gradient_x},
@@ -49,8 +54,7 @@ void write_image_view(const Reconstruction& result, const RunView& view) {
                                  {"Pxy", result.covariance_xy},
                                  {"Pyy", result.covariance_yy}};
   write_exr(view.gradient, gradient);
-  const ExrChannel image[] = {{"L", result.log_image}, {"observed", as_float(result.observed)}};
-  write_exr(view.image, image);
+  write_log_image(view.image, result.log_image, result.observed);
   write_png(std::filesystem::path(view.image).replace_extension(".png"),
             grey_picture(result.log_image, result.observed));
 }
@@ -74,11 +78,7 @@ void write_reconstruction(const std::filesystem::path& folder,
     views.push_back(view);
   }
   write_view_list(folder / "views.yaml", views);
-  if (growth.empty()) return;
-  std::filesystem::create_directories(folder / "growth");
-  for (const GrowthPicture& picture : growth)
-    write_png(folder / "growth" / fmt::format("growth_{:09}.png", picture.events),
-              grey_picture(picture.log_image, {}));
+  write_growth(folder, growth);
 }
 
 }  // namespace saccade

@@ -5,15 +5,18 @@
 #include <vector>
 
 #include "core/io/view_list.h"
+#include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/image_estimator.h"
 
 namespace saccade {
 
-/// The first window after its first events.
-struct GrowthPicture {
-  std::size_t events = 0;
-  ImageF log_image;
-};
+/// Log intensity as grey from the 0.5th to the 99.5th percentile of what is observed; of everything
+/// where nothing is, or `observed` is empty.
+[[nodiscard]] ImageU8 grey_picture(const ImageF& log_image, const ImageU8& observed);
+
+/// EXR with channels L and observed (0 or 1).
+void write_log_image(const std::filesystem::path& file, const ImageF& log_image,
+                     const ImageU8& observed);
 
 /// Writes into a run folder: gradient/gradient_%08d.exr (channels gx, gy [log units/px], their
 /// covariance Pxx, Pxy, Pyy), image/image_%08d.exr (L: log intensity of mean 0; observed: 0 or 1)

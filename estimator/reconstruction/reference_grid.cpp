@@ -27,6 +27,30 @@ ReferenceGrid::ReferenceGrid(ImageF inverse_depth, int scale, double same_surfac
     }
 }
 
+ReferenceGrid::ReferenceGrid(const Panorama& panorama)
+    : ReferenceGrid(ImageF(panorama.width, panorama.height, 1), 1, 1) {
+  wraps_ = panorama.wraps();
+  for (int y = 0; y < panorama.height; ++y)
+    row_width_.push_back(static_cast<float>(panorama.row_width(y)));
+}
+
+int ReferenceGrid::right_of(int x, int y) const {
+  if (x + 1 < width()) return y * width() + x + 1;
+  return wraps_ ? y * width() : -1;
+}
+
+int ReferenceGrid::below(int x, int y) const {
+  return y + 1 < height() ? (y + 1) * width() + x : -1;
+}
+
+GridPoint ReferenceGrid::at_seam(float x, float y) const {
+  const BilinearCell<float> c(0.0F, y, width(), height());
+  const int left = c.y0 * width() + width() - 1, right = c.y0 * width();
+  const float fx = std::min(x - static_cast<float>(width() - 1), 1.0F);
+  return {{left, right, left + width(), right + width()},
+          {(1 - fx) * (1 - c.fy), fx * (1 - c.fy), (1 - fx) * c.fy, fx * c.fy}};
+}
+
 void ReferenceGrid::keep_one_surface(GridPoint& point) const {
   const auto largest = std::max_element(point.weight.begin(), point.weight.end());
   const int nearest = point.index[static_cast<std::size_t>(largest - point.weight.begin())];

@@ -9,6 +9,7 @@
 #include "core/io/image_file.h"
 #include "eval/metrics/scored_samples.h"
 #include "eval/picture/film.h"
+#include "eval/picture/mosaic_picture.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/picture/sheet.h"
 #include "eval/picture/stabilized_view.h"
@@ -181,6 +182,9 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
   const Subject subject = open_subject(path, options);
   const TimeSpan span = span_of(subject, options);
   if (subject.run && !options.overlay) {
+    if (const auto mosaic = load_mosaic(*subject.run))
+      return render_mosaic(*subject.run, subject.dataset, *mosaic, title_of(subject), output,
+                           options);
     const ViewPictures views(subject.run->folder, subject.dataset);
     if (!views.times().empty())
       return render_views(*subject.run, subject.dataset, views, title_of(subject), span, output,

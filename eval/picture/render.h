@@ -37,6 +37,9 @@ struct RenderOptions {
 ///   .png   a row per view, at most six or the one nearest to `time_s`: events, depth or image,
 ///          truth, error
 ///   .mp4   the image growing with the events where the run kept growth/, else view after view
+/// Of a run with a mosaic:
+///   .png   mosaic, truth and error
+///   .mp4   the mosaic growing with the events, of a run that kept growth/
 /// Of a run that stabilized frames and events: both before and after, at three moments or at
 /// `time_s`; likewise in a video.
 /// Events are drawn undistorted wherever something is drawn over them.

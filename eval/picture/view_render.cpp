@@ -58,23 +58,20 @@ ImageRgb8 captioned_beneath(const std::vector<CaptionedPicture>& pictures, const
   return canvas.image();
 }
 
-/// The image of the first view as it grows with the events, beside the truth where it is known.
-void write_growth(const std::vector<GrowthStep>& steps, const RunFolder& run,
-                  const Dataset& dataset, const std::filesystem::path& output, double fps,
-                  const RenderOptions& options) {
+}  // namespace
+
+void write_growth_film(const std::vector<GrowthStep>& steps,
+                       const std::optional<CaptionedPicture>& truth,
+                       const std::filesystem::path& output, const RenderOptions& options) {
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
-  const std::vector<CaptionedPicture> whole =
-      image_pictures(load_image_views(run.folder).at(0), dataset, options.upscale);
-  write_film(output, steps.size(), fps, [&](std::size_t i) {
+  const int factor = truth ? options.upscale : 1;
+  write_film(output, steps.size(), options.fps.value_or(kFps), [&](std::size_t i) {
     std::vector<CaptionedPicture> pictures = {
-        {grouped(steps[i].events) + " events",
-         upscale(read_image_rgb(steps[i].file), options.upscale)}};
-    if (whole.size() > 1) pictures.push_back(whole[1]);
+        {grouped(steps[i].events) + " events", upscale(read_image_rgb(steps[i].file), factor)}};
+    if (truth) pictures.push_back(*truth);
     return captioned_beneath(pictures, theme);
   });
 }
-
-}  // namespace
 
 void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictures& views,
                   const std::string& title, const TimeSpan& span,
@@ -82,8 +79,12 @@ void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictur
   const bool film = output.extension() == ".mp4";
   const double fps = options.fps.value_or(kFps);
   if (film)
-    if (const auto steps = growth_steps(run.folder); !steps.empty())
-      return write_growth(steps, run, dataset, output, fps, options);
+    if (const auto steps = growth_steps(run.folder); !steps.empty()) {
+      const auto whole =
+          image_pictures(load_image_views(run.folder).at(0), dataset, options.upscale);
+      const auto truth = whole.size() > 1 ? std::optional(whole[1]) : std::nullopt;
+      return write_growth_film(steps, truth, output, options);
+    }
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
   const std::vector<std::size_t> shown =
       shown_views(views, span, film ? std::nullopt : options.time_s);

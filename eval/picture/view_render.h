@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "eval/picture/render.h"
 #include "eval/picture/sensor_view.h"
@@ -15,5 +17,11 @@ namespace saccade {
 void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictures& views,
                   const std::string& title, const TimeSpan& span,
                   const std::filesystem::path& output, const RenderOptions& options);
+
+/// A film of growth/, beside a `truth` that has the size of its pictures times `options.upscale`;
+/// without one the pictures as they are.
+void write_growth_film(const std::vector<GrowthStep>& steps,
+                       const std::optional<CaptionedPicture>& truth,
+                       const std::filesystem::path& output, const RenderOptions& options);
 
 }  // namespace saccade

@@ -74,18 +74,19 @@ std::string view_pictures(const ImageView& view, const Dataset& dataset, const I
   return html + "</div>\n";
 }
 
-std::string growth_pictures(const std::filesystem::path& folder) {
+}  // namespace
+
+std::string growth_pictures(const std::filesystem::path& folder, int factor) {
   const std::vector<GrowthStep> steps = growth_steps(folder);
   // A film's worth of pictures is for `saccade render`.
   constexpr std::size_t kMost = 8;
   if (steps.empty() || steps.size() > kMost) return "";
   std::string html = "<h4>Growing with the events</h4><div class=\"grid three\">";
   for (const GrowthStep& step : steps)
-    html += picture(read_image_rgb(step.file), grouped(step.events) + " events", "reconstruction");
+    html += figure(upscale(read_image_rgb(step.file), factor), grouped(step.events) + " events",
+                   "reconstruction");
   return html + "</div>\n";
 }
-
-}  // namespace
 
 std::string image_section(const RunData& data) {
   if (!data.data) return "";
@@ -107,7 +108,7 @@ std::string image_section(const RunData& data) {
   }
   html += "</tbody></table></div>\n";
   if (worst) html += view_pictures(views[*worst], *data.data, *comparisons[*worst]);
-  return html + growth_pictures(data.run.folder);
+  return html + growth_pictures(data.run.folder, kUpscale);
 }
 
 }  // namespace saccade

@@ -10,6 +10,7 @@
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
 #include "eval/report/keyframe_section.h"
+#include "eval/report/mosaic_section.h"
 #include "eval/report/rotation_section.h"
 #include "eval/report/stabilization_section.h"
 
@@ -45,6 +46,8 @@ std::string key_numbers(const RunData& data) {
   const auto plain = [&](const char* key, const char* unit, const char* label) {
     add(m.get(key), significant(m.get(key)), unit, label);
   };
+  plain("mosaic.ssim", "", "SSIM of the mosaic");
+  plain("mosaic.span.solid_angle", "", "fields of view");
   plain("orientation.roll_pitch_rmse_deg", "deg", "roll and pitch, RMSE");
   plain("orientation.yaw_drift_deg_per_min", "deg/min", "drift of the heading");
   plain("orientation.rate_rmse_rad_s", "rad/s", "angular velocity, RMSE");
@@ -57,8 +60,9 @@ std::string key_numbers(const RunData& data) {
   add(coverage, fixed(coverage, 1), "%", "of the time covered");
   const std::optional<double> poses = m.get("trajectory.poses");
   add(poses, grouped(poses), "", "poses");
-  const bool has_poses = poses.has_value() || !(m.get("depth.points") || m.get("sharpness.raw") ||
-                                                m.get("orientation.rate_rmse_rad_s"));
+  const bool has_poses =
+      poses.has_value() || !(m.get("depth.points") || m.get("sharpness.raw") ||
+                             m.get("mosaic.ssim") || m.get("orientation.rate_rmse_rad_s"));
   const char* unit = has_poses ? "poses" : "events";
   const std::optional<double> rate = speed_value(m, fmt::format("speed.{}_per_s", unit));
   add(rate, grouped(rate), "/s", unit);
@@ -251,7 +255,7 @@ std::string run_section(const RunData& data) {
   html += key_numbers(data) + views(data);
   if (data.data) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
-    html += stabilization_section(data) + rotation_section(data);
+    html += mosaic_section(data) + stabilization_section(data) + rotation_section(data);
   }
   return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
 }

@@ -16,9 +16,9 @@ bool contains_any(std::string_view text, std::span<const std::string_view> parts
 }
 
 Better guessed_direction(std::string_view key) {
-  static constexpr std::array<std::string_view, 11> kHigher{
+  static constexpr std::array<std::string_view, 12> kHigher{
       "per_s",   "realtime_factor", "coverage",  "delta_1", "completeness", "ssim",
-      "pearson", "observed",        "precision", "recall",  "sharpness"};
+      "pearson", "observed",        "precision", "recall",  "sharpness",    "span"};
   static constexpr std::array<std::string_view, 13> kNeither{
       "dataset.",       "poses",          "points",       "pairs",        "scale",
       "duration_s",     "path_length",    "mean_depth_m", "speed.events", "repetitions",

@@ -84,6 +84,7 @@ std::vector<std::string> print_call(const fs::path& config) {
   if (folder == "rotation") return {"run", "rotation", "-c", config.string(), "--print-config"};
   if (folder == "stabilization")
     return {"run", "stabilize", "-c", config.string(), "--print-config"};
+  if (folder == "mosaic") return {"run", "mosaic", "-c", config.string(), "--print-config"};
   ADD_FAILURE() << config << ": state here which verb reads the configurations of its folder";
   return {};
 }

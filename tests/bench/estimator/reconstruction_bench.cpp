@@ -80,8 +80,8 @@ void items_per_second(benchmark::State& state, std::size_t count) {
 
 std::vector<PlaceLevel> levels_of_recording() {
   const Recording& r = recording();
-  LevelFinder finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth, kContrast,
-                     kContrast, best().levels);
+  SurfaceLevels finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
+                       kContrast, kContrast, best().levels);
   finder.expect(r.events);
   std::vector<PlaceLevel> levels;
   finder.find(r.events, r.trajectory, levels);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "core/io/events_h5.h"
 #include "core/io/image_file.h"
 #include "core/io/imu_file.h"
+#include "core/panorama.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/srgb.h"
@@ -152,6 +154,29 @@ TEST_F(SimulatePlane, FramesShowTheRadianceAtTheirTime) {
       EXPECT_NEAR(frame(x, y), radiance, 1e-5 * radiance);
       EXPECT_EQ(picture(x, y), srgb8_from_linear(static_cast<float>(radiance)));
     }
+}
+
+TEST_F(SimulatePlane, ThePanoramaShowsWhatTheFirstFrameShows) {
+  simulate(config("groundtruth: {panorama_px_per_rad: 200}\nframes: {rate_hz: 24}\n"), output());
+  const Dataset dataset = Dataset::open(output());
+  const ImageF image = dataset.load_panorama();
+  const Panorama sphere = Panorama::sphere(image.width());
+  EXPECT_GE(sphere.pixels_per_radian(), 200);
+  const ImageF frame = dataset.load_frame(0);
+  const Eigen::Matrix3d turn = dataset.groundtruth().at_clamped(0).rotation_matrix();
+  for (int y = 5; y < frame.height(); y += 9)
+    for (int x = 5; x < frame.width(); x += 9) {
+      const Eigen::Vector2d at = sphere.pixel(turn * dataset.camera().ray({x, y}));
+      const double column = std::clamp(at.x(), 0.0, image.width() - 1.0);
+      const double row = std::clamp(at.y(), 0.0, image.height() - 1.0);
+      EXPECT_NEAR(sample(image, column, row), static_cast<double>(frame(x, y)), 0.01);
+    }
+  EXPECT_EQ(image(2, image.height() / 2), 0.5F) << "the background beside the camera";
+}
+
+TEST_F(SimulatePlane, ThereIsNoPanoramaUnlessItIsAskedFor) {
+  simulate(config(), output());
+  EXPECT_TRUE(Dataset::open(output()).load_panorama().empty());
 }
 
 TEST_F(SimulatePlane, LabelsEveryEvent) {

@@ -158,7 +158,7 @@ TEST(PlaceFinder, FindsNothingNextToAStepOfDepth) {
   }
 }
 
-TEST(LevelFinder, AsksEverySilentPixelInItsTurn) {
+TEST(SurfaceLevels, AsksEverySilentPixelInItsTurn) {
   const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
   DepthScene scene;
   scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
@@ -173,7 +173,7 @@ TEST(LevelFinder, AsksEverySilentPixelInItsTurn) {
     options.still_px = 0.5;
     options.places.redraw_px = 1;
     options.still_turns = turns;
-    LevelFinder finder(camera, scene, Rigid3(), reference, 0.2, 0.2, options);
+    SurfaceLevels finder(camera, scene, Rigid3(), reference, 0.2, 0.2, options);
     std::vector<PlaceLevel> levels;
     finder.find(events, motion, levels);
     std::vector<int> of_track(finder.tracks(), 0);

@@ -73,6 +73,53 @@ TEST(LevelSystem, EqualsTheDenseProblemWithOffsets) {
   EXPECT_LE(system.solve(500, 1e-4, solution.image).iterations, 3);
 }
 
+/// Where the columns of an image that goes around begin makes no difference.
+TEST(LevelSystem, HasNoSeamWhereItWraps) {
+  const ReferenceGrid grid(Panorama{kWidth, 0, 0, kWidth, kWidth / 2});
+  const Random random(5);
+  const auto solve = [&](int shift) {
+    LevelSystem system(grid.width(), grid.height(), true);
+    std::uint64_t draw = 0;
+    const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
+    for (int t = 0; t < 60; ++t) {
+      std::vector<GridLevel> track;
+      for (int k = 0; k < 6; ++k) {
+        const float x = kWidth * uniform() + static_cast<float>(shift);
+        const float y = (kWidth / 2 - 1) * uniform();
+        const float level = uniform();
+        track.push_back({grid.at(x, y), level, 0.5F + uniform()});
+      }
+      system.add_track(track);
+    }
+    for (int y = 0; y < grid.height(); ++y)
+      for (int x = 0; x < grid.width(); ++x) {
+        system.add_smooth(y * kWidth + x, grid.right_of(x, y), 0.2F);
+        if (y + 1 < grid.height()) system.add_smooth(y * kWidth + x, grid.below(x, y), 0.2F);
+      }
+    system.add_value(grid.height() / 2 * kWidth + shift % kWidth, 1, 1);
+    return system.solve(400, 1e-7).image;
+  };
+  const ImageF plain = solve(0), shifted = solve(5), turned = solve(kWidth);
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      EXPECT_NEAR(shifted((x + 5) % kWidth, y), plain(x, y), 2e-3) << x << " " << y;
+      EXPECT_NEAR(turned(x, y), plain(x, y), 2e-3) << x << " " << y;
+    }
+}
+
+TEST(ReferenceGrid, GoesAroundWhereAPanoramaWraps) {
+  const ReferenceGrid grid(Panorama::sphere(40));
+  for (const float x : {39.25F, -0.75F, 79.25F}) {
+    const GridPoint point = grid.at(x, 3);
+    EXPECT_EQ(point.index[0] % 40, 39);
+    EXPECT_EQ(point.index[1] % 40, 0);
+    EXPECT_NEAR(point.weight[1] + point.weight[3], 0.25F, 1e-4F);
+  }
+  EXPECT_EQ(grid.nearest(39.75F, 2), 80U);
+  EXPECT_EQ(grid.right_of(39, 2), 80);
+  EXPECT_EQ(ReferenceGrid(Panorama{40, 3, 0, 30, 20}).right_of(29, 2), -1);
+}
+
 TEST(ReferenceGrid, DoesNotMixSurfaces) {
   ImageF inverse_depth(4, 4, 1.0F);
   for (int y = 0; y < 4; ++y)

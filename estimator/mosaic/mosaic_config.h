@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/config/fields.h"
+#include "estimator/imu/orientation.h"
+#include "estimator/mosaic/mosaic.h"
+#include "estimator/mosaic/rate_offset.h"
+
+namespace saccade {
+
+/// The configuration of `saccade run mosaic`; describe() names the keys, ranges and defaults.
+struct MosaicConfig {
+  enum class Extent {
+    kSwept,  ///< what the camera saw
+    kSphere  ///< all directions
+  };
+
+  OrientationOptions orientation;
+  RateOffsetOptions rate_offset;
+  MosaicOptions mosaic;
+  std::optional<double> pixels_per_radian;  ///< nullopt: as fine as the middle of the sensor
+  Extent extent = Extent::kSwept;
+  std::optional<double> contrast_on;  ///< nullopt: the dataset's
+  std::optional<double> contrast_off;
+  std::vector<std::int64_t> growth;  ///< numbers of events after which a picture is kept
+  std::uint64_t seed = 1;
+};
+
+void describe(config::Fields& fields, MosaicConfig& config);
+
+}  // namespace saccade

@@ -1,0 +1,179 @@
+#include "estimator/mosaic/mosaic_module.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/image_file.h"
+#include "core/io/imu_file.h"
+#include "core/io/panorama_file.h"
+#include "core/io/trajectory_file.h"
+#include "core/progress.h"
+#include "estimator/imu/imu_input.h"
+#include "estimator/mosaic/mosaic_config.h"
+#include "estimator/mosaic/rate_offset.h"
+#include "estimator/mosaic/swept.h"
+#include "estimator/reconstruction/growth.h"
+#include "estimator/reconstruction/reconstruction_output.h"
+#include "estimator/run_input.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+#include "estimator/view_windows.h"
+
+namespace saccade {
+namespace {
+
+/// What the run starts from.
+struct MosaicSource {
+  std::optional<ImuInput> imu;  ///< none where another run's poses are used
+  Trajectory poses;             ///< those
+  Events events;
+};
+
+MosaicSource load_source(const RunRequest& request, const Dataset& dataset) {
+  MosaicSource source;
+  if (request.poses_from)
+    source.poses = load_poses(request, dataset);
+  else
+    source.imu = load_imu_input(dataset, "mosaic (or --poses-from RUN)");
+  source.events = load_events(request, dataset);
+  return source;
+}
+
+struct MosaicRun {
+  ImuPoses camera;                ///< without an inertial sensor its biases are empty
+  std::span<const Event> events;  ///< within the time of the orientations
+  Panorama panorama;
+  Reconstruction mosaic;
+};
+
+double fineness_of(const PinholeCamera& camera, const MosaicConfig& config) {
+  return config.pixels_per_radian.value_or(std::max(camera.fx, camera.fy));
+}
+
+Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
+                     std::span<const Event> events, const MosaicConfig& config) {
+  const double fineness = fineness_of(camera, config);
+  if (config.extent == MosaicConfig::Extent::kSphere)
+    return Panorama::sphere(pixels_around(fineness));
+  return panorama_around(FieldOfView(camera), turns_of(poses, events), fineness);
+}
+
+/// Without what the events say they turn too fast; then level again, where there is a sensor that
+/// feels gravity.
+Trajectory sharpened(const Trajectory& world_from_camera, std::span<const Event> events,
+                     const MosaicSource& source, const PinholeCamera& camera,
+                     const MosaicConfig& config) {
+  const Eigen::Vector3d rate = sharpest_rate_offset(
+      events, camera, world_from_camera, fineness_of(camera, config), config.rate_offset);
+  const Trajectory corrected =
+      without_rate(world_from_camera, rate, seconds_from_ns(events.front().t_ns));
+  return source.imu ? levelled(corrected, *source.imu) : corrected;
+}
+
+/// Everything but reading and writing.
+MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Contrasts& thresholds,
+                   const MosaicConfig& config, RunTiming& timing) {
+  double orientation_s = 0, offset_s = 0, wall_s = 0;
+  MosaicRun run;
+  {
+    const StageClock whole(wall_s);
+    Trajectory& poses = run.camera.world_from_camera;
+    {
+      const StageClock clock(orientation_s);
+      run.camera = source.imu ? camera_orientations(*source.imu, config.orientation)
+                              : ImuPoses{source.poses, {}};
+    }
+    run.events = within(source.events, poses);
+    if (run.events.empty())
+      throw InputError(dataset.folder().string(),
+                       "holds no events within the time of the orientations");
+    if (config.rate_offset.estimate) {
+      const StageClock clock(offset_s);
+      poses = sharpened(poses, run.events, source, dataset.camera(), config);
+    }
+    run.panorama = panorama_of(dataset.camera(), poses, run.events, config);
+    run.mosaic =
+        make_mosaic({dataset.camera(), run.events, poses, thresholds}, run.panorama, config.mosaic);
+  }
+  timing.wall_s.push_back(wall_s);
+  timing.stages_s = {{"orientation", orientation_s}, {"rate_offset", offset_s}};
+  timing.stages_s.insert(timing.stages_s.end(), run.mosaic.stages_s.begin(),
+                         run.mosaic.stages_s.end());
+  return run;
+}
+
+/// Unobserved pixels at half their brightness.
+ImageU8 marked_picture(const Reconstruction& mosaic) {
+  ImageU8 picture = grey_picture(mosaic.log_image, mosaic.observed);
+  for (std::size_t i = 0; i < picture.size(); ++i)
+    if (mosaic.observed.pixels()[i] == 0) picture.pixels()[i] /= 2;
+  return picture;
+}
+
+void write(const std::filesystem::path& folder, const MosaicRun& run,
+           std::span<const GrowthPicture> growth) {
+  write_log_image(folder / "mosaic.exr", run.mosaic.log_image, run.mosaic.observed);
+  write_png(folder / "mosaic.png", marked_picture(run.mosaic));
+  write_panorama(folder / "mosaic.yaml", run.panorama);
+  write_orientations(folder / "orientation.txt", run.camera.world_from_camera.poses());
+  if (!run.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", run.camera.gyro);
+  write_growth(folder, growth);
+}
+
+}  // namespace
+
+RunSummary run_mosaic(const RunRequest& request) {
+  MosaicConfig config = config::read<MosaicConfig>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  check(request);
+  RunWriter writer(request);
+
+  RunTiming timing;
+  const Dataset dataset = Dataset::open(request.dataset);
+  MosaicSource source;
+  {
+    const StageClock clock(timing.io_s);
+    source = load_source(request, dataset);
+  }
+  const Contrasts thresholds = contrasts(config.contrast_on, config.contrast_off, dataset);
+  const RunRecord::Window window = window_of(request, seconds_from_ns(source.events.front().t_ns),
+                                             seconds_from_ns(source.events.back().t_ns));
+  MosaicRun run;
+  Progress progress("mosaic", source.events.size() * static_cast<std::size_t>(request.repeat),
+                    "events");
+  for (int i = 0; i < request.repeat; ++i) {
+    run = run_once(source, dataset, thresholds, config, timing);
+    progress.add(source.events.size());
+  }
+  const std::span<const Event> events = run.events;
+  timing.events = events.size();
+  timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
+  const auto growth = grow(events, config.growth, [&](std::span<const Event> first) {
+    return make_mosaic({dataset.camera(), first, run.camera.world_from_camera, thresholds},
+                       run.panorama, config.mosaic)
+        .log_image;
+  });
+  {
+    const StageClock clock(timing.io_s);
+    write(writer.path(), run, growth);
+  }
+  writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);
+
+  RunSummary summary;
+  summary.found = fmt::format("a mosaic of {} x {} px", run.panorama.width, run.panorama.height);
+  summary.events = timing.events;
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+std::string print_mosaic_config(const config::Document& document) {
+  return config::print_documented(config::read<MosaicConfig>(document));
+}
+
+}  // namespace saccade
