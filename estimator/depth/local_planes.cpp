@@ -1,9 +1,8 @@
 #include "estimator/depth/local_planes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -101,52 +100,65 @@ void LocalPlanes::gather(const EdgeDepth& start) {
     array->resize(padded_to_lanes(count_), 0.F);
 }
 
+float LocalPlanes::spread_around_start() {
+  scratch_.resize(count_);
+  for (std::size_t i = 0; i < count_; ++i) scratch_[i] = std::abs(difference_[i]) * per_sigma_[i];
+  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
+  std::nth_element(scratch_.begin(), middle, scratch_.end());
+  return std::max(1.F, 1.4826F * *middle);
+}
+
+LocalPlanes::Sums LocalPlanes::weighted_sums(const Eigen::Vector3f& plane, float spread) const {
+  const float per_cut = 1 / (kTukey * spread);
+  Lanes weights{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
+  for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
+    const Lanes px = load_lanes(&dx_[k]), py = load_lanes(&dy_[k]),
+                delta = load_lanes(&difference_[k]);
+    const Lanes per_sigma = load_lanes(&per_sigma_[k]);
+    const Lanes r = (delta - plane.x() - plane.y() * px - plane.z() * py) * per_sigma;
+    const Lanes u = r * per_cut;
+    Lanes v = 1 - u * u;
+    v = v > 0 ? v : Lanes{};
+    const Lanes used = per_sigma > 0 ? Lanes{} + 1 : Lanes{};
+    const Lanes w = v * v * used;
+    const Lanes information = w * per_sigma * per_sigma;
+    const Lanes ix = information * px, iy = information * py;
+    weights += w, rr += w * r * r;
+    one += information, x += ix, y += iy, xx += ix * px, xy += ix * py, yy += iy * py;
+    d += information * delta, dx += ix * delta, dy += iy * delta;
+  }
+  Sums sums;
+  sums.weights = static_cast<float>(total(weights));
+  sums.squares = static_cast<float>(total(rr));
+  sums.normal << total(one), total(x), total(y),  //
+      total(x), total(xx), total(xy),             //
+      total(y), total(xy), total(yy);
+  sums.right = {total(d), total(dx), total(dy)};
+  return sums;
+}
+
 LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
   gather(start);
   LocalPlane result;
   result.inverse_depth = start.inverse_depth;
   result.sigma = start.sigma;
   if (count_ == 0) return result;
-  scratch_.resize(count_);
-  for (std::size_t i = 0; i < count_; ++i) scratch_[i] = std::abs(difference_[i]) * per_sigma_[i];
-  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
-  std::nth_element(scratch_.begin(), middle, scratch_.end());
-  result.spread = std::max(1.F, 1.4826F * *middle);
+  result.spread = spread_around_start();
   const double slope_information =
       1 / std::pow(static_cast<double>(kSlopePrior * start.inverse_depth), 2);
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
-  double squares = 0;
+  float squares = 0;
   for (int i = 0; i < options_.iterations; ++i) {
     if (i > 0)
-      result.spread = std::max(
-          1.F, std::sqrt(kWeightedVariance * static_cast<float>(squares) / result.weights));
-    const float per_cut = 1 / (kTukey * result.spread);
-    Lanes w_{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
-    for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
-      const Lanes px = load_lanes(&dx_[k]), py = load_lanes(&dy_[k]),
-                  delta = load_lanes(&difference_[k]);
-      const Lanes per_sigma = load_lanes(&per_sigma_[k]);
-      const Lanes r = (delta - plane.x() - plane.y() * px - plane.z() * py) * per_sigma;
-      const Lanes u = r * per_cut;
-      Lanes v = 1 - u * u;
-      v = v > 0 ? v : Lanes{};
-      const Lanes used = per_sigma > 0 ? Lanes{} + 1 : Lanes{};
-      const Lanes w = v * v * used;
-      const Lanes information = w * per_sigma * per_sigma;
-      const Lanes ix = information * px, iy = information * py;
-      w_ += w, rr += w * r * r;
-      one += information, x += ix, y += iy, xx += ix * px, xy += ix * py, yy += iy * py;
-      d += information * delta, dx += ix * delta, dy += iy * delta;
-    }
-    result.weights = static_cast<float>(total(w_));
-    squares = total(rr);
+      result.spread = std::max(1.F, std::sqrt(kWeightedVariance * squares / result.weights));
+    Sums sums = weighted_sums(plane, result.spread);
+    result.weights = sums.weights;
+    squares = sums.squares;
     if (!(result.weights > 0)) return result;
-    Eigen::Matrix3d a;
-    a << total(one), total(x), total(y),                     //
-        total(x), total(xx) + slope_information, total(xy),  //
-        total(y), total(xy), total(yy) + slope_information;
-    const Eigen::Matrix3d inverse = a.inverse();
-    plane = (inverse * Eigen::Vector3d(total(d), total(dx), total(dy))).cast<float>();
+    sums.normal(1, 1) += slope_information;
+    sums.normal(2, 2) += slope_information;
+    const Eigen::Matrix3d inverse = sums.normal.inverse();
+    plane = (inverse * sums.right).cast<float>();
     result.sigma = static_cast<float>(std::sqrt(inverse(0, 0)));
   }
   result.inverse_depth = start.inverse_depth + plane.x();
@@ -190,7 +202,7 @@ int LocalPlanes::surface_side(const EdgeDepth& start, const LocalPlane& plane) c
   const float more = is_along ? own.along : own.against;
   if (more > 0 && (is_along ? own.against : own.along) > kGoesOn * more) return 0;
   const Sides behind = behind_sides(start, plane);
-  const auto is_on = [](float here, float there) {
+  const auto is_mostly = [](float here, float there) {
     return here >= kLeastBehind && here > kMoreBehind * there;
   };
   if (more > 0) {
@@ -198,8 +210,8 @@ int LocalPlanes::surface_side(const EdgeDepth& start, const LocalPlane& plane) c
     return is_along ? 1 : -1;
   }
   // A contour of which nothing else is known.
-  if (is_on(behind.along, behind.against)) return -1;
-  return is_on(behind.against, behind.along) ? 1 : 0;
+  if (is_mostly(behind.along, behind.against)) return -1;
+  return is_mostly(behind.against, behind.along) ? 1 : 0;
 }
 
 float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) const {

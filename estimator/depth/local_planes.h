@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -57,9 +56,20 @@ class LocalPlanes {
     float against = 0;  ///< on the other
   };
 
+  /// Of the neighbours' weighted residuals from a plane, and the normal equations of the next one.
+  struct Sums {
+    float weights, squares;
+    Eigen::Matrix3d normal;
+    Eigen::Vector3d right;
+  };
+
   template <class Visit>
   void for_near(float x_px, float y_px, float radius, const Visit& visit) const;
   void gather(const EdgeDepth& start);
+  /// Robust scale of the neighbours' distances from the start's own depth, in their sigmas.
+  [[nodiscard]] float spread_around_start();
+  /// `plane`: change of inverse depth from the start, and slope.
+  [[nodiscard]] Sums weighted_sums(const Eigen::Vector3f& plane, float spread) const;
   [[nodiscard]] Sides plane_sides(const LocalPlane& plane, const Eigen::Vector2f& normal) const;
   [[nodiscard]] Sides behind_sides(const EdgeDepth& start, const LocalPlane& plane) const;
   [[nodiscard]] int cell_of(float px, int cells) const;

@@ -15,11 +15,10 @@ struct FusionOptions {
   double few_weights = 14;    ///< w_0: a plane through so few points has twice the variance
   double few_error = 0.0015;  ///< m: of a surface through w_0 points, relative
   double floor = 0.0004;      ///< f, relative: errors that all neighbours have in common
-  double position_error_px =
-      0.4;                      ///< u: of a point, on a surface that is not parallel to the image
-  double own_share = 0.4;       ///< o: of a point's distance from its plane
-  double scatter_share = 0.15;  ///< c: of what the points around scatter beyond their sigmas
-  double step_shift_px = 0.5;   ///< of a point on a contour, onto the surface that ends there
+  double position_error_px = 0.4;  ///< u: of a point's place, felt where the surface is slanted
+  double own_share = 0.4;          ///< o: of a point's distance from its plane
+  double scatter_share = 0.15;     ///< c: of what the points around scatter beyond their sigmas
+  double step_shift_px = 0.5;      ///< of a point on a contour, onto the surface that ends there
 };
 
 /// Those of the points that their neighbourhood supports; see fused().

@@ -160,7 +160,7 @@ class PlaceFinder {
   Image<Plane> planes_;          ///< of the reference view
   ImageF inverse_depth_;         ///< of the drawn view
   ImageF open_inverse_depth_;    ///< the same, 0 near steps of depth
-  std::vector<Step> steps_;      ///< some of them
+  std::vector<Step> steps_;      ///< a few of those pixels
   CameraPose view_from_reference_;
   int draws_ = 0;
   int follows_ = 0;

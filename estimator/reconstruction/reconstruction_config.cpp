@@ -169,6 +169,10 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
       "part of the events that makes one view");
   fields.value("growth", config.growth,
                "numbers of events of the first window after which a picture is kept");
+  fields.value(
+      "figures", config.figures,
+      "keep what Poisson's equation and the carrying of depth do by themselves (figs. 6.1, "
+      "6.2)");
   fields.value("seed", config.seed, "of random numbers; none are drawn");
 }
 

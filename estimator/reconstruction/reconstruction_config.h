@@ -29,6 +29,7 @@ struct ReconstructionConfig {
   GradientOptions gradient;
   EquationOptions equations;
   std::vector<std::int64_t> growth;  ///< numbers of events after which a picture is kept
+  bool figures = false;              ///< of single steps, see write_step_figures()
   std::uint64_t seed = 1;
 };
 
@@ -40,7 +41,7 @@ void describe_gradient(config::Fields& fields, GradientOptions& options);
 void describe_equations(config::Fields& fields, EquationOptions& options);
 
 /// The part of a configuration that is the method, for other modules that reconstruct: all but
-/// window, growth and seed.
+/// window, growth, figures and seed.
 void describe_image_method(config::Fields& fields, ReconstructionConfig& config);
 
 /// The method that the configuration names. `camera` with its lens.

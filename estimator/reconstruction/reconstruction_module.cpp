@@ -11,6 +11,7 @@
 #include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_output.h"
+#include "estimator/reconstruction/step_figures.h"
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/view_run.h"
@@ -59,6 +60,7 @@ RunSummary run_reconstruction(const RunRequest& request) {
   {
     const StageClock clock(timing.io_s);
     write_reconstruction(writer.path(), windows, results, growth);
+    if (config.figures) write_step_figures(writer.path(), dataset, windows.front());
   }
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),
                 timing);

@@ -13,6 +13,7 @@
 #include "eval/report/mosaic_section.h"
 #include "eval/report/rotation_section.h"
 #include "eval/report/stabilization_section.h"
+#include "eval/report/step_section.h"
 
 namespace saccade {
 namespace {
@@ -257,7 +258,8 @@ std::string run_section(const RunData& data) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
     html += mosaic_section(data) + stabilization_section(data) + rotation_section(data);
   }
-  return html + accuracy_details(data) + stages(data) + provenance(data) + "</section>\n";
+  return html + step_section(data) + accuracy_details(data) + stages(data) + provenance(data) +
+         "</section>\n";
 }
 
 }  // namespace saccade

@@ -15,6 +15,7 @@
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/fake_run.h"
+#include "tests/support/planar_world.h"
 
 namespace saccade {
 namespace {
@@ -88,6 +89,43 @@ TEST_F(ReconstructionModule, EquationsRecoverTheImage) {
 TEST_F(ReconstructionModule, GradientFilterRecoversTheImageNotItsNegative) {
   (void)run_reconstruction(request("thesis", kThesis));
   EXPECT_GT(correlation("thesis"), 0.4);
+}
+
+/// True gradients in, image out; depth where it is known is the depth that is there.
+TEST_F(ReconstructionModule, KeepsItsStepsByThemselves) {
+  (void)run_reconstruction(request("steps", "{method: equations, figures: true}"));
+  const fs::path figures = path("steps") / "figures";
+  const auto channel = [](const fs::path& file, const std::string& name) {
+    for (ExrChannel& c : read_exr_channels(file))
+      if (c.name == name) return c.image;
+    ADD_FAILURE() << name;
+    return ImageF();
+  };
+  const ImageF frame = channel(figures / "poisson.exr", "L");
+  const ImageF neumann = channel(figures / "poisson.exr", "neumann");
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    ASSERT_NEAR(neumann.pixels()[i], frame.pixels()[i], 1e-3) << i;
+
+  const RunView view = read_view_list(figures / "views.yaml").at(0);
+  const ImageF truth = testing::corner_world(120, 90).depth(testing::corner_motion(view.t_s));
+  std::size_t least = 0;
+  for (const char* name : {"k01", "k03", "k07", "k15", "k25"}) {
+    const ImageF depth = channel(view.depth, name);
+    std::size_t known = 0, wrong = 0;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      if (!(depth.pixels()[i] > 0)) continue;
+      ++known;
+      if (std::abs(depth.pixels()[i] / truth.pixels()[i] - 1) > 0.1F) ++wrong;
+    }
+    // Contours grow by half the kernel.
+    if (std::string(name) == "k03") {
+      EXPECT_LT(wrong, known / 10);
+    }
+    EXPECT_GE(known, least) << name;
+    least = known;
+  }
+  EXPECT_GT(least, truth.size() * 9 / 10);
+  EXPECT_FALSE(fs::exists(path("best") / "figures"));
 }
 
 TEST_F(ReconstructionModule, IsTheSameForAnyNumberOfThreads) {

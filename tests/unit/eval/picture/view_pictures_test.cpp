@@ -11,6 +11,8 @@
 #include "core/io/view_list.h"
 #include "eval/picture/derotation_picture.h"
 #include "eval/picture/render.h"
+#include "eval/picture/step_pictures.h"
+#include "eval/report/step_section.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
 #include "tests/unit/eval/fake_folders.h"
@@ -159,6 +161,48 @@ TEST(DerotatedEvents, MeetWhereOneDirectionIsSeen) {
   };
   EXPECT_GT(near(count_derotated_events(events, camera, trajectory, 0)), 20);
   EXPECT_LT(near(count_events(events, camera)), 6);
+}
+
+TEST_F(ViewPicturesTest, StepsAreDrawnWhereARunKeptThem) {
+  const fs::path run = write_run("steps", 1, true);
+  const Dataset data = Dataset::open(dataset());
+  EXPECT_THAT(poisson_pictures(run, 2), IsEmpty());
+  EXPECT_THAT(propagation_pictures(run, data, 2, kDarkTheme), IsEmpty());
+
+  const auto world = testing::corner_world(kWidth, kHeight);
+  RunView view;
+  view.t_s = 0.1;
+  view.world_from_camera = testing::corner_motion(view.t_s);
+  view.depth = run / "figures" / "propagation.exr";
+  const ImageF truth = world.depth(view.world_from_camera);
+  ImageF doubled = truth;
+  for (float& z : doubled.pixels()) z *= 2;
+  const ExrChannel maps[] = {{"Z", truth}, {"k01", ImageF(kWidth, kHeight)}, {"k15", doubled}};
+  fs::create_directories(run / "figures");
+  write_exr(view.depth, maps);
+  write_view_list(run / "figures" / "views.yaml", std::vector{view});
+  const auto drawn = propagation_pictures(run, data, 2, kDarkTheme);
+  ASSERT_EQ(drawn.size(), 4U);
+  EXPECT_THAT(drawn[0].caption, HasSubstr("1 x 1 px: 0.0 % known"));
+  EXPECT_THAT(drawn[1].caption, HasSubstr("15 x 15 px: 100.0 % known, 99."));
+  EXPECT_THAT(drawn[2].caption, HasSubstr("surface: 100.0 % known, 0."));
+  EXPECT_EQ(drawn[3].caption, "truth");
+
+  const ImageF flat(kWidth, kHeight);
+  std::vector<ExrChannel> steps;
+  for (const char* name : {"L", "gx", "gy", "div", "neumann"}) steps.push_back({name, flat});
+  write_exr(run / "figures" / "poisson.exr", steps);
+  EXPECT_THAT(error_of([&] { return poisson_pictures(run, 1).size(); }), HasSubstr("dirichlet"));
+  steps.push_back({"dirichlet", flat});
+  write_exr(run / "figures" / "poisson.exr", steps);
+  EXPECT_EQ(poisson_pictures(run, 1).size(), 8U);
+
+  RunData shown;
+  EXPECT_EQ(step_section(shown), "");
+  shown.run.folder = run;
+  shown.data = data;
+  EXPECT_THAT(step_section(shown), HasSubstr("residual, dirichlet"));
+  EXPECT_THAT(step_section(shown), HasSubstr("15 x 15 px"));
 }
 
 }  // namespace
