@@ -59,7 +59,9 @@ struct PlaneLabels::Moves {
     take[i] += first;
     take[j] -= first;
     const float cut = second + first - keep_both;
-    if (cut > 0) graph.addEdges(static_cast<int>(i), static_cast<int>(j), cut, 0.F);
+    if (!(cut > 0)) return;
+    graph.addEdges(static_cast<int>(i), static_cast<int>(j), cut, 0.F);
+    has_edges = true;
   }
 
   void solve() {
@@ -67,13 +69,19 @@ struct PlaneLabels::Moves {
       const float least = std::min(keep[i], take[i]);
       graph.addTermWeights(static_cast<int>(i), take[i] - least, keep[i] - least);
     }
-    graph.maxFlow();
+    if (has_edges) graph.maxFlow();  // which a graph without edges does not have
+  }
+
+  /// Whether a pixel takes the offer, after solve().
+  [[nodiscard]] bool takes(std::size_t i) const {
+    return has_edges ? !graph.inSourceSegment(static_cast<int>(i)) : take[i] < keep[i];
   }
 
   int left, top;
   Image<Sheet> offer;  ///< the plane at the pixels of the rectangle
   std::vector<float> keep, take;
-  cv::detail::GCGraph<float> graph;
+  mutable cv::detail::GCGraph<float> graph;  ///< its queries are not const
+  bool has_edges = false;
 };
 
 PlaneLabels::PlaneLabels(int width, int height, std::span<const SurfaceAnchor> anchors,
@@ -241,7 +249,7 @@ void PlaneLabels::make(Moves& moves) {
   moves.solve();
   for (int y = 0; y < offer.height(); ++y)
     for (int x = 0; x < offer.width(); ++x)
-      if (!moves.graph.inSourceSegment(static_cast<int>(moves.node(x, y))))
+      if (moves.takes(moves.node(x, y)))
         sheets_(moves.left + x, moves.top + y) = offer(x, y);
 }
 

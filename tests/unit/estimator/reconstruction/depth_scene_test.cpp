@@ -215,6 +215,16 @@ TEST(PointSurface, NearSurfacesEndWhereTheirPointsDo) {
   for (const int y : {5, 15, 55, 66}) EXPECT_NEAR(depth(45, y), 3, 0.03) << y;
 }
 
+// Offers that differ in nothing from what is there leave the moves without a pair to cut.
+TEST(PointSurface, PointsOfOnePlaneGiveThePlane) {
+  std::vector<SurfacePoint> points;
+  for (int y = 4; y < kSurfaceCamera.height; y += 8)
+    for (int x = 4; x < kSurfaceCamera.width; x += 8)
+      points.push_back({2.0 * kSurfaceCamera.ray({x, y}), 0.002});
+  const ImageF depth = surface_through(points, kSurfaceCamera, {});
+  for (const float z : depth.pixels()) EXPECT_NEAR(z, 2, 0.01);
+}
+
 TEST(PointSurface, IgnoresHiddenPointsAndOutliers) {
   const PinholeCamera& camera = kSurfaceCamera;
   std::vector<SurfacePoint> points;
