@@ -249,8 +249,7 @@ void PlaneLabels::make(Moves& moves) {
   moves.solve();
   for (int y = 0; y < offer.height(); ++y)
     for (int x = 0; x < offer.width(); ++x)
-      if (moves.takes(moves.node(x, y)))
-        sheets_(moves.left + x, moves.top + y) = offer(x, y);
+      if (moves.takes(moves.node(x, y))) sheets_(moves.left + x, moves.top + y) = offer(x, y);
 }
 
 void PlaneLabels::expand(const ImagePlane& plane) {
