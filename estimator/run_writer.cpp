@@ -50,6 +50,16 @@ std::string rate(std::string_view key, double numerator, const std::vector<doubl
                      per(median(wall_s)), per(*high), per(*low));
 }
 
+/// Median, 99 % and most.
+std::string latency(std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  const auto at = [&](double share) {
+    return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))];
+  };
+  return fmt::format("  \"latency_ms\": {{\"median\": {}, \"p99\": {}, \"max\": {}}},\n", at(0.5),
+                     at(0.99), ms.back());
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -71,6 +81,9 @@ std::string to_json(const RunTiming& timing) {
     json += rate("poses_per_s", static_cast<double>(*timing.poses), timing.wall_s);
   }
   json += rate("realtime_factor", timing.sequence_s, timing.wall_s);
+  if (!timing.latency_ms.empty()) json += latency(timing.latency_ms);
+  if (timing.dropped_events)
+    json += fmt::format("  \"dropped_events\": {},\n", *timing.dropped_events);
   json += fmt::format("  \"repetitions\": {},\n", timing.wall_s.size());
   json += "  \"stages_s\": {";
   for (std::size_t i = 0; i < timing.stages_s.size(); ++i)

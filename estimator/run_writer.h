@@ -22,6 +22,8 @@ struct RunTiming {
   double sequence_s = 0;             ///< length of the recording
   double io_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< of the last repetition
+  std::vector<double> latency_ms;  ///< of every pose of the last repetition, where it has one
+  std::optional<std::size_t> dropped_events;  ///< in the last repetition, where some may be
 };
 
 /// The JSON text: wall_s, events_per_s, poses_per_s and realtime_factor as median, min and max over

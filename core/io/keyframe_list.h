@@ -15,7 +15,7 @@ struct KeyframeEntry {
   double t_s = 0;  ///< of its view
   Rigid3 world_from_camera;
   double made_s = 0;                 ///< last event that it was made of
-  double taken_s = 0;                ///< first event that was tracked by it
+  double taken_s = 0;                ///< last event that was tracked without it
   std::int64_t events = 0;           ///< that it was made of
   std::int64_t points = 0;           ///< with depth
   std::int64_t edges = 0;            ///< that became the map

@@ -4,19 +4,56 @@
 #include <utility>
 
 namespace saccade {
+
 void EdgeMap::add(Keyframe keyframe, const Rigid3& world_from_camera) {
   keyframes_.push_back(std::move(keyframe));
-  const std::size_t newest = keyframes_.size() - 1;
-  std::vector<std::pair<double, std::size_t>> others;
-  for (std::size_t i = 0; i < newest; ++i)
-    others.emplace_back(visible_share(keyframes_[i], world_from_camera), i);
-  std::stable_sort(others.begin(), others.end(),
+  look_from(keyframes_.size() - 1, world_from_camera);
+}
+
+void EdgeMap::look_from(std::size_t keyframe, const Rigid3& world_from_camera) {
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < keyframes_.size(); ++i)
+    if (i != keyframe) others.push_back(i);
+  std::vector<std::size_t> chosen = most_visible(std::move(others), world_from_camera);
+  if (chosen.size() >= static_cast<std::size_t>(options_.active)) chosen.pop_back();
+  chosen.push_back(keyframe);
+  std::sort(chosen.begin(), chosen.end());
+  activate(std::move(chosen));
+}
+
+std::vector<std::size_t> EdgeMap::most_visible(std::vector<std::size_t> keyframes,
+                                               const Rigid3& world_from_camera) const {
+  std::vector<std::pair<double, std::size_t>> shares;
+  for (const std::size_t i : keyframes)
+    if (const double share = visible_share(keyframes_[i], world_from_camera); share > 0)
+      shares.emplace_back(share, i);
+  std::stable_sort(shares.begin(), shares.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  active_ = {newest};
-  for (const auto& [share, i] : others)
-    if (active_.size() < static_cast<std::size_t>(options_.active) && share > 0)
-      active_.push_back(i);
-  std::sort(active_.begin(), active_.end());
+  shares.resize(std::min(shares.size(), static_cast<std::size_t>(options_.active)));
+  keyframes.clear();
+  for (const auto& [share, i] : shares) keyframes.push_back(i);
+  return keyframes;
+}
+
+std::vector<Landmark> EdgeMap::landmarks(double before_s, const Rigid3& world_from_camera) const {
+  std::vector<std::size_t> older;
+  for (std::size_t i = 0; i < keyframes_.size() && keyframes_[i].t_s < before_s; ++i)
+    older.push_back(i);
+  std::vector<Landmark> landmarks;
+  for (const std::size_t i : most_visible(std::move(older), world_from_camera)) {
+    const Keyframe& keyframe = keyframes_[i];
+    for (const EdgeDepth& point : keyframe.depth.points) {
+      const double depth_m = 1 / static_cast<double>(point.inverse_depth);
+      landmarks.push_back(
+          {keyframe.world_from_camera * (depth_m * camera_.ray({point.x_px, point.y_px})),
+           static_cast<double>(point.sigma) * depth_m});
+    }
+  }
+  return landmarks;
+}
+
+void EdgeMap::activate(std::vector<std::size_t> keyframes) {
+  active_ = std::move(keyframes);
   points_ = {};
   for (const std::size_t i : active_) append(points_, keyframes_[i].edges);
 }

@@ -6,6 +6,7 @@
 #include "core/camera.h"
 #include "core/rigid3.h"
 #include "estimator/odometry/keyframe.h"
+#include "estimator/refinement/landmarks.h"
 #include "estimator/tracking/map_extraction.h"
 
 namespace saccade {
@@ -25,6 +26,14 @@ class EdgeMap {
 
   /// Adds a keyframe and chooses the active ones as of a camera.
   void add(Keyframe keyframe, const Rigid3& world_from_camera);
+  /// Chooses the active ones as of a camera and a keyframe that shall be among them.
+  void look_from(std::size_t keyframe, const Rigid3& world_from_camera);
+  /// Points of the keyframes whose views are older than a time and show most of what a camera
+  /// sees, of as many as make up the map.
+  [[nodiscard]] std::vector<Landmark> landmarks(double before_s,
+                                                const Rigid3& world_from_camera) const;
+  /// Makes up the map of these, in order of time.
+  void activate(std::vector<std::size_t> keyframes);
 
   [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   [[nodiscard]] std::vector<Keyframe>& keyframes() { return keyframes_; }
@@ -37,6 +46,9 @@ class EdgeMap {
                                      const Rigid3& world_from_camera) const;
 
  private:
+  [[nodiscard]] std::vector<std::size_t> most_visible(std::vector<std::size_t> keyframes,
+                                                      const Rigid3& world_from_camera) const;
+
   EdgeMapOptions options_;
   PinholeCamera camera_;
   std::vector<Keyframe> keyframes_;

@@ -70,14 +70,16 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;
   const double expected_m = path.typical_depth_m ? *path.typical_depth_m : sweep_depth(window);
-  adjust_path(window, adjusted, path, expected_m);
+  const std::optional<RayEdges> edges = adjust_path(window, adjusted, path, expected_m);
   mapping.world_from_before =
       adjusted.at_clamped(keyframe.end_s) * smooth.at_clamped(keyframe.end_s).inverse();
   for (const StampedPose& pose : adjusted.poses())
     if (pose.t_s >= keyframe.start_s) mapping.poses.push_back(pose);
   keyframe.t_s = window.reference_s;
   keyframe.world_from_camera = window.world_from_reference();
-  keyframe.depth = make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
+  keyframe.depth =
+      edges ? rays().fuse(*edges)
+            : make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
   keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
   if (keyframe.depth.points.empty()) return mapping;
   if (options_.edges == MappingOptions::Edges::kGradient) {
@@ -102,17 +104,24 @@ void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
   reconstruct(window, dense_depth(keyframe), keyframe);
 }
 
-void Mapper::adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
-                         double typical_depth_m) const {
-  if (options_.adjust_rounds == 0) return;
-  const RayDepth depth(options_.depth.rays, options_.depth.limits, camera_);
+RayDepth Mapper::rays() const {
+  return RayDepth(options_.depth.rays, options_.depth.limits, camera_);
+}
+
+std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
+                                            const KnownPath& known, double typical_depth_m) const {
+  std::optional<RayEdges> edges;
+  const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
-    const Adjustment adjustment =
-        adjust(window, depth.find_edges(window), camera_, known.settled_until_s, typical_depth_m,
+    edges = depth.find_edges(window);
+    Adjustment adjustment =
+        adjust(window, *edges, camera_, {known.settled_until_s, typical_depth_m, known.landmarks},
                options_.adjustment);
-    if (!adjustment.ok) return;
-    path = adjustment.trajectory;
+    if (!adjustment.ok) break;
+    path = std::move(adjustment.trajectory);
+    edges = std::move(adjustment.edges);
   }
+  return edges;
 }
 
 std::span<const Event> Mapper::newest(std::span<const Event> events) const {
@@ -128,9 +137,10 @@ Trajectory Mapper::smoothed(const Trajectory& poses, std::span<const Event> even
   // Poses beside the window hold the spline's ends.
   constexpr double kMargin_s = 0.05;
   const double from_s = seconds_from_ns(events.front().t_ns) - kMargin_s;
-  std::vector<StampedPose> part;
-  for (const StampedPose& pose : poses.poses())
-    if (pose.t_s >= from_s) part.push_back(pose);
+  // With the pose before, so that the part spans all of the events.
+  const std::size_t first = poses.last_before(from_s).value_or(0);
+  const std::span<const StampedPose> newest = poses.poses().subspan(first);
+  std::vector<StampedPose> part(newest.begin(), newest.end());
   if (options_.smoothing_s <= 0 || part.back().t_s - part.front().t_s < 4 * options_.smoothing_s)
     return Trajectory(std::move(part));
   const Spline spline = Spline::smooth(part, options_.smoothing_s);
@@ -155,8 +165,7 @@ void Mapper::reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe
       window,
       scene_of(depth, camera_.undistorted(), keyframe.world_from_camera,
                options_.reconstruction.depth),
-      options_.reconstruction.contrast_on.value_or(0.2),
-      options_.reconstruction.contrast_off.value_or(0.2)};
+      *options_.reconstruction.contrast_on, *options_.reconstruction.contrast_off};
   keyframe.image = make_image_estimator(options_.reconstruction, camera_)->reconstruct(input);
 }
 

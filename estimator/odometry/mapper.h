@@ -26,13 +26,21 @@ struct MappingOptions {
   bool image = true;  ///< made for people where the edges do not need it, after the last event
   double max_sigma = 0.05;  ///< of a point's inverse depth that becomes an edge, relative
   double smoothing_s = 0;   ///< spacing of the knots of a spline through the poses; 0: as tracked
-  /// Poses and edges are adjusted together that many times before the keyframe is made; 0: the
-  /// poses are taken as they are. Of depth.method: rays.
+  /// So many times edges are found and adjusted together with the poses; 0: the poses are taken as
+  /// they are. Of depth.method: rays.
   int adjust_rounds = 0;
   AdjustmentOptions adjustment;
   MapOptions steep;  ///< of kGradient
   DepthConfig depth;
-  ReconstructionConfig reconstruction;
+  /// Contrasts are stated: they matter for the image alone, and nothing comes from the dataset.
+  ReconstructionConfig reconstruction = with_contrast(0.2);
+
+ private:
+  [[nodiscard]] static ReconstructionConfig with_contrast(double contrast) {
+    ReconstructionConfig config;
+    config.contrast_on = config.contrast_off = contrast;
+    return config;
+  }
 };
 
 /// What is known of the camera's path.
@@ -40,6 +48,7 @@ struct KnownPath {
   Trajectory poses;
   double settled_until_s = 0;             ///< poses until then do not change any more
   std::optional<double> typical_depth_m;  ///< of the scene; nullopt: a space sweep finds it
+  std::vector<Landmark> landmarks;        ///< edges known from events before those of the window
 };
 
 /// A keyframe and the poses that it is consistent with.
@@ -67,8 +76,11 @@ class Mapper {
   [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
-  void adjust_path(ViewWindow& window, Trajectory& path, const KnownPath& known,
-                   double typical_depth_m) const;
+  [[nodiscard]] RayDepth rays() const;
+  /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.
+  [[nodiscard]] std::optional<RayEdges> adjust_path(ViewWindow& window, Trajectory& path,
+                                                    const KnownPath& known,
+                                                    double typical_depth_m) const;
   [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;
   void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;
   void add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const;

@@ -1,6 +1,8 @@
 #include "estimator/odometry/odometry.h"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <future>
 #include <utility>
 
@@ -44,39 +46,104 @@ OdometryResult Odometry::run(std::span<const Event> events, const Trajectory& st
   OdometryResult result;
   known_.assign(start.poses().begin(), start.poses().end());
   settled_until_s_ = start.end_s();
-  const std::size_t known = count_until(events, start.end_s());
+  Stream stream{events, count_until(events, start.end_s())};
   {
     const StageClock clock(result.mapping_s);
-    start_from(events.first(known), start);
+    start_from(events.first(stream.done), start);
   }
-  if (progress) progress(known);
-  const std::span<const Event> unknown = events.subspan(known);
-  std::size_t done = 0;
-  tracker_.start(unknown);
+  if (progress) progress(stream.done);
+  if (stream.rest().empty()) return result;
+  tracker_.start(stream.rest());
+  const EventClock clock(stream.rest().front().t_ns);
   while (true) {
+    std::size_t before = stream.done;
+    if (options_.mode == OdometryMode::kOnline) await_frame(clock, stream, result);
     std::optional<TrackedPose> pose;
     {
-      const StageClock clock(result.tracking_s);
+      const StageClock work(result.tracking_s);
       pose = tracker_.next();
     }
     if (!pose) break;
-    result.poses.push_back(*pose);
-    if (const double t_s = seconds_from_ns(pose->t_ns); t_s > known_.back().t_s)
-      known_.push_back({t_s, pose->world_from_camera});
     const double now_s = seconds_from_ns(pose->last_ns);
-    const std::size_t until = count_until(unknown, now_s);
-    if (progress) progress(until - std::exchange(done, until));
-    if (!job_ && wants_keyframe(pose->world_from_camera))
-      begin_mapping(events.first(known + until), now_s);
-    if (job_ && now_s >= job_->made_s + options_.keyframe.handover_s) end_mapping(now_s, result);
+    stream.done += count_until(stream.rest(), now_s);
+    if (options_.mode == OdometryMode::kOnline)
+      result.latency_ms.push_back(clock.age_ms(pose->last_ns));
+    if (progress) progress(stream.done - before);
+    take_pose(*pose, result);
+    if (!job_ && !is_lost_ && wants_keyframe(known_.back().world_from_camera))
+      begin_mapping(events.first(stream.done), now_s);
+    if (job_ && is_due(now_s)) end_mapping(now_s, result);
   }
   if (job_) end_mapping(known_.back().t_s, result);
   output(result);
   return result;
 }
 
+void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResult& result) {
+  const auto last_of_frame = [&] {
+    const std::size_t count = std::min(tracker_.next_frame_events(), stream.rest().size());
+    return count == 0 ? stream.all.back().t_ns : stream.rest()[count - 1].t_ns;
+  };
+  if (clock.age_ms(last_of_frame()) > options_.online.max_age_ms) {
+    const std::size_t late = count_until(stream.rest(), seconds_from_ns(clock.now_ns()));
+    result.dropped_events += late;
+    stream.done += late;
+    tracker_.start(stream.rest());
+  }
+  clock.wait_for(last_of_frame());
+}
+
+void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
+  const double now_s = seconds_from_ns(pose.last_ns);
+  if (pose.status == TrackStatus::kLost) {
+    const bool is_search_due = options_.relocation.every_s > 0 &&
+                               (!is_lost_ || now_s >= last_search_s_ + options_.relocation.every_s);
+    is_lost_ = true;
+    if (is_search_due) {
+      last_search_s_ = now_s;
+      pose = find_again().value_or(pose);
+    }
+  }
+  if (pose.status == TrackStatus::kRelocalised) {
+    // What is being mapped was seen on the way astray.
+    job_.reset();
+    mapped_from_s_ = now_s;
+    settled_until_s_ = std::max(settled_until_s_, seconds_from_ns(pose.t_ns));
+  }
+  result.poses.push_back(pose);
+  if (pose.status == TrackStatus::kLost) return;
+  is_lost_ = false;
+  if (const double t_s = seconds_from_ns(pose.t_ns); t_s > known_.back().t_s)
+    known_.push_back({t_s, pose.world_from_camera});
+}
+
+std::optional<TrackedPose> Odometry::find_again() {
+  // Where it was before it went astray, then at every keyframe, the newest first.
+  const Trajectory known(known_);
+  const double before_s = known.end_s() - options_.relocation.looks_back_s;
+  const std::array<Rigid3, 2> recent = {known.poses().back().world_from_camera,
+                                        known.at_clamped(before_s)};
+  if (auto pose = tracker_.relocate(recent)) return pose;
+  const std::vector<std::size_t> active = map_.active();
+  for (std::size_t i = map_.keyframes().size(); i-- > 0;) {
+    const Rigid3 place = map_.keyframes()[i].world_from_camera;
+    map_.look_from(i, place);
+    tracker_.set_map(map_.points());
+    if (auto pose = tracker_.relocate({&place, 1})) return pose;
+  }
+  map_.activate(active);
+  tracker_.set_map(map_.points());
+  return std::nullopt;
+}
+
+bool Odometry::is_due(double now_s) const {
+  if (options_.mode == OdometryMode::kOffline)
+    return now_s >= job_->made_s + options_.keyframe.handover_s;
+  return job_->mapping.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
+}
+
 void Odometry::start_from(std::span<const Event> events, const Trajectory& start) {
-  Keyframe first = mapper_.map(events, {start, start.end_s(), std::nullopt}).keyframe;
+  Keyframe first = mapper_.map(events, {start, start.end_s(), std::nullopt, {}}).keyframe;
   if (first.edges.size() < kLeastEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
@@ -101,11 +168,14 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_->made_s = now_s;
   last_keyframe_at_ = known_.back().world_from_camera;
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
-  job_->mapping = std::async(
-      policy, [this, events, seconds = &job_->seconds,
-               path = KnownPath{Trajectory(known_), settled_until_s_, typical_depth_m_}] {
+  const std::span<const Event> mapped = events.subspan(count_until(events, mapped_from_s_));
+  job_->mapping =
+      std::async(policy, [this, mapped, seconds = &job_->seconds,
+                          path = KnownPath{Trajectory(known_), settled_until_s_, typical_depth_m_,
+                                           map_.landmarks(now_s - options_.mapping.duration_s,
+                                                          known_.back().world_from_camera)}] {
         const StageClock clock(*seconds);
-        return mapper_.map(events, path);
+        return mapper_.map(mapped, path);
       });
 }
 
@@ -118,13 +188,13 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   if (keyframe.edges.size() < kLeastEdges) return;
   typical_depth_m_ = keyframe.typical_depth_m;
   settled_until_s_ = std::max(settled_until_s_, keyframe.end_s - options_.keyframe.unsettled_s);
-  take_poses(mapping);
+  take_mapped_poses(mapping);
   map_.add(std::move(keyframe), known_.back().world_from_camera);
   tracker_.set_map(map_.points());
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
 
-void Odometry::take_poses(const Mapping& mapping) {
+void Odometry::take_mapped_poses(const Mapping& mapping) {
   const Trajectory adjusted(mapping.poses);
   for (StampedPose& pose : known_) {
     if (pose.t_s < adjusted.start_s()) continue;
@@ -135,11 +205,14 @@ void Odometry::take_poses(const Mapping& mapping) {
   tracker_.correct(mapping.world_from_before);
 }
 
-void Odometry::add_images(std::span<const Event> events) {
+void Odometry::add_images(std::span<const Event> events,
+                          const std::function<void(std::size_t)>& progress) {
   const Trajectory poses(known_);
   std::vector<Keyframe>& keyframes = map_.keyframes();
-  parallel_for(keyframes.size(),
-               [&](std::size_t i) { mapper_.add_image(events, poses, keyframes[i]); });
+  parallel_for(keyframes.size(), [&](std::size_t i) {
+    mapper_.add_image(events, poses, keyframes[i]);
+    if (progress) progress(1);
+  });
 }
 
 void Odometry::output(OdometryResult& result) const {

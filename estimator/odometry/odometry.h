@@ -6,13 +6,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/event.h"
 #include "core/trajectory.h"
 #include "estimator/odometry/edge_map.h"
+#include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
 #include "estimator/tracking/tracker.h"
 
@@ -24,15 +25,36 @@ struct KeyframeOptions {
   double distance = 0.1;
   /// A keyframe is made, too, when less than this share of the last one's edges is in view.
   double min_visible = 0;
-  /// From the last event that it is made of to the first that is tracked by it. What is tracked
+  /// From the last event that it is made of to the last that is tracked without it. What is tracked
   /// meanwhile is tracked by the map before, beside the mapping; 0: tracking waits for it.
   double handover_s = 0;
   /// The poses of a keyframe's last seconds may still change with the next.
   double unsettled_s = 0.1;
 };
 
+/// Whether the events are worked through, or played as they were recorded.
+enum class OdometryMode {
+  kOffline,  ///< tracking waits for a keyframe: the result does not depend on the machine
+  kOnline    ///< events arrive at the pace of their times; keyframes come into force when ready
+};
+
+struct OnlineOptions {
+  /// When the events of a frame are as old as that before it is begun, all that have arrived are
+  /// dropped [ms].
+  double max_age_ms = 50;
+};
+
+/// What happens after the camera was lost.
+struct RelocationOptions {
+  double every_s = 0.01;       ///< it is looked for so often, in the events' time; 0: never
+  double looks_back_s = 0.05;  ///< first where it was so long before it was lost
+};
+
 struct OdometryOptions {
+  OdometryMode mode = OdometryMode::kOffline;
+  OnlineOptions online;
   KeyframeOptions keyframe;
+  RelocationOptions relocation;
   EdgeMapOptions map;
   MappingOptions mapping;
   TrackerOptions tracker;
@@ -41,7 +63,7 @@ struct OdometryOptions {
 /// A keyframe coming into force.
 struct KeyframeChange {
   double made_s = 0;   ///< last event that it was made of
-  double taken_s = 0;  ///< first event that is tracked by it
+  double taken_s = 0;  ///< last event that was tracked without it
   std::size_t keyframe = 0;
   std::vector<std::size_t> active;  ///< all that make up the map from then on
 };
@@ -51,6 +73,9 @@ struct OdometryResult {
   std::vector<KeyframeChange> changes;
   double tracking_s = 0;  ///< seconds of work
   double mapping_s = 0;
+  // Of kOnline.
+  std::vector<double> latency_ms;  ///< from the arrival of a pose's last event to the pose
+  std::size_t dropped_events = 0;
 };
 
 /// Visual odometry (thesis chapter 7): the camera is tracked by a map of edges until it has moved
@@ -63,6 +88,9 @@ class Odometry {
   Odometry(const OdometryOptions& options, const PinholeCamera& camera, std::uint64_t seed);
   ~Odometry();
 
+  /// For tracking.motion.prediction: imu.
+  void set_gyroscope(Gyroscope gyroscope) { tracker_.set_gyroscope(std::move(gyroscope)); }
+
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
   /// are found from the last of them on. `progress` is called with the number of events done since
   /// its last call. Throws InputError where the start shows no edges.
@@ -72,26 +100,41 @@ class Odometry {
   [[nodiscard]] const EdgeMap& map() const { return map_; }
 
   /// Images for people, after run(): of every keyframe that has none, with the poses as last
-  /// adjusted; in parallel.
-  void add_images(std::span<const Event> events);
+  /// adjusted; in parallel. `progress` is called, by any thread, with the number of keyframes done
+  /// since its last call.
+  void add_images(std::span<const Event> events,
+                  const std::function<void(std::size_t)>& progress = {});
 
  private:
   struct Job;
+  /// The events of a run and how far it has come.
+  struct Stream {
+    std::span<const Event> all;
+    std::size_t done = 0;  ///< tracked or dropped
+    [[nodiscard]] std::span<const Event> rest() const { return all.subspan(done); }
+  };
+
   void start_from(std::span<const Event> events, const Trajectory& start);
+  void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
+  void take_pose(TrackedPose pose, OdometryResult& result);
+  [[nodiscard]] std::optional<TrackedPose> find_again();
   [[nodiscard]] bool wants_keyframe(const Rigid3& world_from_camera) const;
+  [[nodiscard]] bool is_due(double now_s) const;
   void begin_mapping(std::span<const Event> events, double now_s);
   void end_mapping(double now_s, OdometryResult& result);
+  void take_mapped_poses(const Mapping& mapping);
+  void output(OdometryResult& result) const;
 
   OdometryOptions options_;
   PinholeCamera camera_;
   Mapper mapper_;
   EdgeMap map_;
   Tracker tracker_;
-  void take_poses(const Mapping& mapping);
-  void output(OdometryResult& result) const;
-
   std::vector<StampedPose> known_;  ///< the start, then what was tracked, as last adjusted
   double settled_until_s_ = 0;
+  double mapped_from_s_ = 0;  ///< poses before were lost and found again
+  bool is_lost_ = false;
+  double last_search_s_ = 0;
   Rigid3 last_keyframe_at_;  ///< where the camera was when the last one was begun
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;

@@ -27,8 +27,9 @@ void describe_keyframe(config::Fields& fields, OdometryOptions& options) {
              "it is made, too, when less than this share of the last one's edges is in view")
       .range(0, 1);
   fields
-      .value("handover_s", keyframe.handover_s,
-             "from its newest event to the first that is tracked by it; 0: tracking waits for it")
+      .value(
+          "handover_s", keyframe.handover_s,
+          "from its newest event to the last that is tracked without it; 0: tracking waits for it")
       .range(0, 1e3);
   fields
       .value("unsettled_s", keyframe.unsettled_s,
@@ -79,7 +80,15 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
              "the correction of the poses is linear between nodes")
       .range(1e-4, 100);
   fields.value("edges", adjustment.edges, "at most so many").range(30, 1e7);
-  fields.value("events_per_edge", adjustment.events_per_edge, "at most").range(5, 1e6);
+  fields.value("pairs", adjustment.pairs, "of an edge's events between two nodes, at most")
+      .range(1, 1e6);
+  fields
+      .value(
+          "landmark_px", adjustment.landmark_px,
+          "what an edge is off by from that of an older keyframe on which it lies; 0: those hold "
+          "nothing")
+      .range(0, 100);
+  fields.value("landmark_depth", adjustment.landmark_depth, "the same in depth, relative").above(0);
   fields.value("noise_px", adjustment.noise_px, "least deviation of an event from its edge")
       .range(1e-3, 10);
   fields.value("outlier", adjustment.outlier, "deviations beyond which an event counts less")
@@ -99,8 +108,33 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   OdometryOptions& odometry = config.odometry;
   fields.group(
       "start", [&](Fields& f) { describe_start(f, config.start); }, "what is known at the start");
+  fields.choice("mode", odometry.mode,
+                {{"offline", OdometryMode::kOffline}, {"online", OdometryMode::kOnline}},
+                "events are worked through with the same result on any machine, or played as they "
+                "were recorded");
+  if (odometry.mode == OdometryMode::kOnline)
+    fields.group(
+        "online",
+        [&](Fields& f) {
+          f.value("max_age_ms", odometry.online.max_age_ms,
+                  "when a frame's events are older before it is begun, all that have arrived are "
+                  "dropped")
+              .above(0);
+        },
+        "of mode: online");
   fields.group(
       "keyframe", [&](Fields& f) { describe_keyframe(f, odometry); }, "when the map is renewed");
+  fields.group(
+      "relocation",
+      [&](Fields& f) {
+        f.value("every_s", odometry.relocation.every_s,
+                "a lost camera is looked for at the keyframes so often; 0: never")
+            .range(0, 1e3);
+        f.value("looks_back_s", odometry.relocation.looks_back_s,
+                "and first where it was so long before")
+            .range(0, 1e3);
+      },
+      "what happens after the camera was lost");
   fields.group(
       "mapping", [&](Fields& f) { describe_mapping(f, odometry.mapping); },
       "what a keyframe is made of");
@@ -121,6 +155,9 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   fields.expect(odometry.mapping.adjust_rounds == 0 ||
                     odometry.mapping.depth.method == DepthConfig::Method::kRays,
                 "adjustment", "rounds need depth.method: rays");
+  const ReconstructionConfig& reconstruction = odometry.mapping.reconstruction;
+  fields.expect(reconstruction.contrast_on && reconstruction.contrast_off, "reconstruction",
+                "contrast_on and contrast_off must be stated: nothing comes from the dataset");
   fields.value("seed", config.seed, "of the samples");
 }
 

@@ -19,11 +19,6 @@ struct OdometryConfig {
   StartOptions start;
   OdometryOptions odometry;
   std::uint64_t seed = 1;
-
-  OdometryConfig() {
-    odometry.mapping.reconstruction.contrast_on = 0.2;
-    odometry.mapping.reconstruction.contrast_off = 0.2;
-  }
 };
 
 void describe(config::Fields& fields, OdometryConfig& config);

@@ -14,6 +14,7 @@
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/stage_clock.h"
+#include "estimator/tracking/gyroscope_input.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {
@@ -58,6 +59,7 @@ RunSummary run_odometry(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   const Events events = load_events(request, dataset);
   const Trajectory start = start_poses(dataset, events, config.start);
+  const Gyroscope gyroscope = load_gyroscope(config.odometry.tracker.motion, dataset);
   io.reset();
 
   // What is scored begins where the given poses end.
@@ -72,6 +74,7 @@ RunSummary run_odometry(const RunRequest& request) {
   Progress progress("odometry", events.size() * static_cast<std::size_t>(request.repeat), "events");
   for (int i = 0; i < request.repeat; ++i) {
     odometry.emplace(config.odometry, dataset.camera(), config.seed);
+    odometry->set_gyroscope(gyroscope);
     double wall_s = 0;
     {
       const StageClock clock(wall_s);
@@ -82,11 +85,14 @@ RunSummary run_odometry(const RunRequest& request) {
   double images_s = 0;
   if (config.odometry.mapping.image) {
     const StageClock clock(images_s);
-    odometry->add_images(events);
+    Progress images("images", odometry->map().keyframes().size(), "keyframes");
+    odometry->add_images(events, [&](std::size_t n) { images.add(n); });
   }
   timing.stages_s = {
       {"tracking", result.tracking_s}, {"mapping", result.mapping_s}, {"images", images_s}};
   timing.poses = result.poses.size();
+  timing.latency_ms = std::move(result.latency_ms);
+  if (config.odometry.mode == OdometryMode::kOnline) timing.dropped_events = result.dropped_events;
 
   io.emplace(timing.io_s);
   write_odometry(writer.path(), dataset.camera(), result, odometry->map());

@@ -1,188 +1,165 @@
 #include "estimator/refinement/edge_adjustment.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <ceres/ceres.h>
 
-#include "estimator/refinement/edge_residual.h"
+#include "estimator/refinement/adjustment_costs.h"
+#include "estimator/refinement/edge_fit.h"
+#include "estimator/refinement/event_steps.h"
+#include "estimator/refinement/path_correction.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kLeastEdges = 30;
-constexpr int kNodeSize = 6;
-constexpr int kEdgeSize = 4;
+/// Steps that an event lags behind the level between its own and the one before, on average.
+constexpr double kFirstLag = 0.25;
 
-/// An edge with the events that speak for it.
-struct ChosenEdge {
-  std::size_t index;  ///< in RayEdges
-  std::vector<std::uint32_t> events;
+/// An event of an edge between two nodes of the correction.
+struct ChosenEvent {
+  EdgeObservation observation;
+  int node;      ///< the earlier
+  double share;  ///< of the later
 };
 
-/// Every n-th of a list, n so that at most `most` remain.
-template <class T>
-std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
-  if (all.size() <= most) return all;
-  std::vector<T> some;
-  some.reserve(most);
-  for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);
-  return some;
-}
-
-std::vector<ChosenEdge> choose(const RayEdges& edges, const AdjustmentOptions& options) {
-  std::vector<std::size_t> indices(edges.edges.size());
-  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = i;
-  std::vector<ChosenEdge> chosen;
-  for (const std::size_t i : thinned(indices, static_cast<std::size_t>(options.edges))) {
-    const FittedEdge& edge = edges.edges[i];
-    std::vector<std::uint32_t> events(edges.events.event.begin() + edge.first,
-                                      edges.events.event.begin() + edge.last);
-    std::sort(events.begin(), events.end());
-    chosen.push_back({i, thinned(events, static_cast<std::size_t>(options.events_per_edge))});
-  }
-  return chosen;
-}
-
-/// The correction of the path over time.
-class Nodes {
+/// The edges of a window with the events that speak for them.
+class ObservedEdges {
  public:
-  Nodes(double start_s, double end_s, double spacing_s)
-      : start_s_(start_s),
-        count_(std::max(2, 1 + static_cast<int>(std::lround((end_s - start_s) / spacing_s)))),
-        spacing_s_((end_s - start_s) / (count_ - 1)),
-        corrections_(static_cast<std::size_t>(count_)) {
-    for (auto& correction : corrections_) correction.fill(0);
-  }
-  [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] double time_s(int i) const { return start_s_ + i * spacing_s_; }
-  [[nodiscard]] double* data(int i) { return corrections_[static_cast<std::size_t>(i)].data(); }
-  /// The node before a time, and the share of the one after it.
-  [[nodiscard]] std::pair<int, double> before(double t_s) const {
-    const double at = std::clamp((t_s - start_s_) / spacing_s_, 0.0, count_ - 1.0);
-    const int i = std::min(static_cast<int>(at), count_ - 2);
-    return {i, at - i};
-  }
-  [[nodiscard]] Twist at(double t_s) const {
-    const auto [i, share] = before(t_s);
-    const auto twist = [&](int k) {
-      return Eigen::Map<const Twist>(corrections_[static_cast<std::size_t>(k)].data());
-    };
-    return (1 - share) * twist(i) + share * twist(i + 1);
-  }
-
- private:
-  double start_s_;
-  int count_;
-  double spacing_s_;
-  std::vector<std::array<double, kNodeSize>> corrections_;
-};
-
-/// A derivative as Ceres wants it, by rows.
-template <int kRows, int kColumns>
-void write(double* target, const Eigen::Matrix<double, kRows, kColumns>& derivative) {
-  Eigen::Map<Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>> map(target);
-  map = derivative;
-}
-
-/// One event: two nodes and an edge.
-class EventCost : public ceres::SizedCostFunction<1, kNodeSize, kNodeSize, kEdgeSize> {
- public:
-  EventCost(const EdgeObservation& observation, const PinholeCamera& camera, double share,
-            double weight)
-      : observation_(observation), camera_(camera), share_(share), weight_(weight) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Twist motion = (1 - share_) * Eigen::Map<const Twist>(parameters[0]) +
-                         share_ * Eigen::Map<const Twist>(parameters[1]);
-    const Eigen::Map<const EdgeUnknowns> edge(parameters[2]);
-    EdgeDerivatives derivatives;
-    residuals[0] = weight_ * edge_residual(observation_, camera_, motion, edge,
-                                           jacobians != nullptr ? &derivatives : nullptr);
-    if (!std::isfinite(residuals[0])) return false;
-    if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr)
-      write<1, kNodeSize>(jacobians[0], weight_ * (1 - share_) * derivatives.motion);
-    if (jacobians[1] != nullptr)
-      write<1, kNodeSize>(jacobians[1], weight_ * share_ * derivatives.motion);
-    if (jacobians[2] != nullptr) write<1, kEdgeSize>(jacobians[2], weight_ * derivatives.edge);
-    return true;
-  }
-
- private:
-  EdgeObservation observation_;
-  PinholeCamera camera_;
-  double share_, weight_;
-};
-
-/// (x_k - mean_k) / sigma_k; a sigma of infinity holds nothing.
-template <int kSize>
-class PriorCost : public ceres::SizedCostFunction<kSize, kSize> {
- public:
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  PriorCost(const Vector& mean, const Vector& sigma)
-      : mean_(mean), precision_(sigma.cwiseInverse()) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Vector> x(parameters[0]);
-    Eigen::Map<Vector>(residuals, kSize) = precision_.cwiseProduct(x - mean_);
-    if (jacobians != nullptr && jacobians[0] != nullptr)
-      write<kSize, kSize>(jacobians[0], precision_.asDiagonal().toDenseMatrix());
-    return true;
-  }
-
- private:
-  Vector mean_, precision_;
-};
-
-/// The difference of two nodes.
-class StepCost : public ceres::SizedCostFunction<kNodeSize, kNodeSize, kNodeSize> {
- public:
-  explicit StepCost(const Twist& sigma) : precision_(sigma.cwiseInverse()) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Twist> a(parameters[0]), b(parameters[1]);
-    Eigen::Map<Twist>(residuals, kNodeSize) = precision_.cwiseProduct(b - a);
-    if (jacobians == nullptr) return true;
-    const Matrix6 by_b = precision_.asDiagonal();
-    if (jacobians[0] != nullptr) write<kNodeSize, kNodeSize>(jacobians[0], -by_b);
-    if (jacobians[1] != nullptr) write<kNodeSize, kNodeSize>(jacobians[1], by_b);
-    return true;
-  }
-
- private:
-  Twist precision_;
-};
-
-class Problem {
- public:
-  Problem(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
-          double typical_depth_m, const AdjustmentOptions& options)
+  ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+                const PathCorrection& correction, int pairs)
       : window_(window),
         edges_(edges),
         camera_(camera),
         undistorted_(camera.undistorted()),
-        options_(options),
-        depth_m_(typical_depth_m),
-        nodes_(seconds_from_ns(window.events.front().t_ns),
-               seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
-        chosen_(choose(edges, options)),
-        unknowns_(chosen_.size()) {}
+        correction_(correction),
+        most_(2 * static_cast<std::size_t>(pairs)),
+        view_from_world_(window.world_from_reference().inverse()),
+        steps_(event_steps(window.events, camera)) {}
 
-  Adjustment solve(double known_until_s) {
+  /// In order of time, at most so many between two nodes.
+  [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdge& edge) const {
+    std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
+                                      edges_.events.event.begin() + edge.last);
+    std::sort(events.begin(), events.end());
+    const double mean_step = mean_of(events);
+    const auto node_of = [&](std::uint32_t e) { return correction_.before(time_s(e)).first; };
+    std::vector<ChosenEvent> chosen;
+    for (auto first = events.begin(); first != events.end();) {
+      const auto last = std::partition_point(
+          first, events.end(),
+          [&, node = node_of(*first)](std::uint32_t e) { return node_of(e) == node; });
+      const auto count = static_cast<std::size_t>(last - first);
+      const std::size_t taken = std::min(most_, count);
+      for (std::size_t i = 0; i < taken; ++i)
+        chosen.push_back(
+            observed(edge, mean_step,
+                     *(first + static_cast<std::ptrdiff_t>((2 * i + 1) * count / (2 * taken)))));
+      first = last;
+    }
+    return chosen;
+  }
+
+  [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
+
+ private:
+  [[nodiscard]] double time_s(std::uint32_t event) const {
+    return seconds_from_ns(window_.events[event].t_ns);
+  }
+  [[nodiscard]] double mean_of(const std::vector<std::uint32_t>& events) const {
+    double sum = 0;
+    double count = 0;
+    for (const std::uint32_t e : events)
+      if (steps_[e] > 0) sum += steps_[e], ++count;
+    return count > 0 ? sum / count : 0;
+  }
+  [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
+                                     std::uint32_t index) const {
+    const Event& event = window_.events[index];
+    const double t_s = time_s(index);
+    EdgeObservation observation;
+    observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
+    observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
+    const double lag = steps_[index] > 0 ? steps_[index] - mean_step : 0;
+    observation.lag = event.polarity * (lag + kFirstLag);
+    observation.pixel = edge.edge.pixel.cast<double>();
+    observation.normal = edge.edge.normal.cast<double>();
+    const auto [node, share] = correction_.before(t_s);
+    return {observation, node, share};
+  }
+
+  const ViewWindow& window_;
+  const RayEdges& edges_;
+  const PinholeCamera& camera_;
+  PinholeCamera undistorted_;
+  const PathCorrection& correction_;
+  std::size_t most_;
+  Rigid3 view_from_world_;
+  std::vector<std::uint8_t> steps_;
+};
+
+EdgeUnknowns unknowns_of(const FittedEdge& edge) {
+  return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};
+}
+
+FittedEdge corrected(FittedEdge fitted, const EdgeUnknowns& unknowns) {
+  RayEdge& edge = fitted.edge;
+  const Eigen::Vector2f tangent = edge.tangent();
+  const auto inverse_depth = static_cast<float>(unknowns[0]);
+  edge.pixel += static_cast<float>(unknowns[1]) * edge.normal;
+  edge.normal = (edge.normal - static_cast<float>(unknowns[2]) * tangent).normalized();
+  fitted.sigma *= inverse_depth / edge.inverse_depth;
+  edge.inverse_depth = inverse_depth;
+  return fitted;
+}
+
+/// The edge as another view sees it; nullopt for behind it.
+std::optional<FittedEdge> seen_by(const Rigid3& other_from_view, FittedEdge fitted,
+                                  const PinholeCamera& camera) {
+  RayEdge& edge = fitted.edge;
+  const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
+  const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {
+    return other_from_view * (depth_m * camera.ray(pixel.cast<double>()));
+  };
+  const Eigen::Vector3d point = moved(edge.pixel);
+  const Eigen::Vector3d along = moved(edge.pixel + edge.tangent());
+  if (!(point.z() > 0 && along.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d pixel = camera.project(point);
+  const Eigen::Vector2d tangent = (camera.project(along) - pixel).normalized();
+  edge.pixel = pixel.cast<float>();
+  edge.normal = Eigen::Vector2f(static_cast<float>(tangent.y()), static_cast<float>(-tangent.x()));
+  fitted.sigma *= static_cast<float>(depth_m / point.z());
+  edge.inverse_depth = static_cast<float>(1 / point.z());
+  return fitted;
+}
+
+class WindowProblem {
+ public:
+  WindowProblem(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+                const KnownScene& known, const AdjustmentOptions& options)
+      : window_(window),
+        edges_(edges),
+        options_(options),
+        known_(known),
+        landmarks_(known.landmarks, window.world_from_reference().inverse(), camera.undistorted()),
+        correction_(seconds_from_ns(window.events.front().t_ns),
+                    seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
+        observed_(window, edges, camera, correction_, options.pairs) {}
+
+  Adjustment solve() {
     Adjustment result;
     result.trajectory = *window_.trajectory;
     result.edges = edges_;
-    if (chosen_.size() < kLeastEdges) return result;
+    if (edges_.edges.size() < kLeastEdges) return result;
     add_edges();
-    add_nodes(known_until_s);
+    add_nodes();
     result.residual_before_px = deviation_px();
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_SCHUR;
@@ -194,7 +171,6 @@ class Problem {
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_, &summary);
     result.residual_after_px = deviation_px();
-    result.iterations = static_cast<int>(summary.iterations.size());
     result.ok = summary.IsSolutionUsable();
     if (result.ok) take(result);
     return result;
@@ -204,104 +180,149 @@ class Problem {
   /// Pixels as a motion (v, w).
   [[nodiscard]] Twist sigma_of_px(double px) const {
     Twist sigma;
-    sigma.head<3>().setConstant(px * depth_m_ / undistorted_.fx);
-    sigma.tail<3>().setConstant(px / undistorted_.fx);
+    sigma.head<3>().setConstant(px * known_.typical_depth_m / observed_.camera().fx);
+    sigma.tail<3>().setConstant(px / observed_.camera().fx);
     return sigma;
   }
 
+  [[nodiscard]] double noise_px(const FittedEdge& edge) const {
+    return std::max(options_.noise_px, static_cast<double>(edge.residual_px));
+  }
+
   void add_edges() {
-    const Rigid3 view_from_world = window_.world_from_reference().inverse();
-    for (std::size_t k = 0; k < chosen_.size(); ++k) {
-      const FittedEdge& fitted = edges_.edges[chosen_[k].index];
-      const auto rho = static_cast<double>(fitted.edge.inverse_depth);
-      unknowns_[k] = {rho, 0, 0, 0};
-      double* unknowns = unknowns_[k].data();
-      const double noise_px = std::max(options_.noise_px, static_cast<double>(fitted.residual_px));
-      for (const std::uint32_t e : chosen_[k].events) {
-        const Event& event = window_.events[e];
-        const double t_s = seconds_from_ns(event.t_ns);
-        EdgeObservation observation;
-        observation.view_from_camera = view_from_world * window_.trajectory->at_clamped(t_s);
-        observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
-        observation.polarity = event.polarity;
-        observation.pixel = fitted.edge.pixel.cast<double>();
-        observation.normal = fitted.edge.normal.cast<double>();
-        const auto [node, share] = nodes_.before(t_s);
-        observations_.push_back({observation, k, t_s});
-        problem_.AddResidualBlock(new EventCost(observation, undistorted_, share, 1 / noise_px),
-                                  new ceres::CauchyLoss(options_.outlier), nodes_.data(node),
-                                  nodes_.data(node + 1), unknowns);
+    const std::size_t all = edges_.edges.size();
+    const std::size_t count = std::min(all, static_cast<std::size_t>(options_.edges));
+    chosen_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const FittedEdge& fitted = edges_.edges[k * all / count];
+      ChosenEdge& edge = chosen_[k];
+      edge.unknowns = unknowns_of(fitted);
+      edge.events = observed_.of(fitted);
+      const double weight = 1 / noise_px(fitted);
+      for (std::size_t i = 0; i < edge.events.size();) {
+        // One that is left alone is paired with nothing.
+        const bool is_pair =
+            i + 1 < edge.events.size() && edge.events[i + 1].node == edge.events[i].node;
+        add_pair(edge, edge.events[i], edge.events[is_pair ? i + 1 : i],
+                 {weight, is_pair ? weight : 0});
+        i += is_pair ? 2 : 1;
       }
-      EdgeUnknowns sigma(std::numeric_limits<double>::infinity(), options_.offset_px,
-                         options_.tilt_sigma, options_.hysteresis_px);
-      sigma[0] = rho;  // hardly any hold: where a window says nothing of an edge
-      problem_.AddResidualBlock(new PriorCost<kEdgeSize>(EdgeUnknowns(rho, 0, 0, 0), sigma),
-                                nullptr, unknowns);
-      ordering_->AddElementToGroup(unknowns, 0);
+      add_prior(edge, prior_of(fitted));
     }
   }
 
-  void add_nodes(double known_until_s) {
-    const Twist step = sigma_of_px(options_.step_sigma_px);
-    for (int i = 0; i < nodes_.count(); ++i) {
-      const bool is_known = nodes_.time_s(i) <= known_until_s;
-      const Twist sigma = sigma_of_px(is_known ? options_.known_sigma_px : options_.pose_sigma_px);
-      problem_.AddResidualBlock(new PriorCost<kNodeSize>(Twist::Zero(), sigma), nullptr,
-                                nodes_.data(i));
-      if (i > 0)
-        problem_.AddResidualBlock(new StepCost(step), nullptr, nodes_.data(i - 1), nodes_.data(i));
-      ordering_->AddElementToGroup(nodes_.data(i), 1);
+  struct ChosenEdge {
+    EdgeUnknowns unknowns;
+    std::vector<ChosenEvent> events;
+  };
+
+  void add_pair(ChosenEdge& edge, const ChosenEvent& first, const ChosenEvent& second,
+                const std::array<double, 2>& weights) {
+    const std::array<WeighedEvent, 2> pair = {
+        WeighedEvent{first.observation, first.share, weights[0]},
+        WeighedEvent{second.observation, second.share, weights[1]}};
+    problem_.AddResidualBlock(new EventPairCost(pair, observed_.camera(), options_.outlier),
+                              nullptr, correction_.data(first.node),
+                              correction_.data(first.node + 1), edge.unknowns.data());
+  }
+
+  /// By the landmark that the edge lies on, where there is one.
+  [[nodiscard]] EdgePrior prior_of(const FittedEdge& fitted) const {
+    constexpr double kReach_px = 1.5;
+    constexpr double kTolerance = 0.1;
+    const RayEdge& edge = fitted.edge;
+    EdgePrior prior{unknowns_of(fitted),
+                    {static_cast<double>(edge.inverse_depth), options_.offset_px,
+                     options_.tilt_sigma, options_.hysteresis_px}};
+    if (options_.landmark_px <= 0) return prior;
+    if (const auto* seen = landmarks_.near(edge, kReach_px, kTolerance)) {
+      prior.mean[0] = seen->inverse_depth;
+      prior.sigma[0] = std::hypot(seen->sigma, options_.landmark_depth * seen->inverse_depth);
+      prior.mean[1] = edge.normal.cast<double>().dot(seen->pixel - edge.pixel.cast<double>());
+      prior.sigma[1] = options_.landmark_px;
     }
+    return prior;
+  }
+
+  /// Robust, since not every landmark is on the edge.
+  void add_prior(ChosenEdge& edge, const EdgePrior& prior) {
+    for (const int first : {0, 2})
+      problem_.AddResidualBlock(
+          new EdgePriorCost(first, prior.mean.segment<2>(first), prior.sigma.segment<2>(first)),
+          new ceres::CauchyLoss(options_.outlier), edge.unknowns.data());
+    ordering_->AddElementToGroup(edge.unknowns.data(), 0);
+  }
+
+  void add_nodes() {
+    const PinholeCamera& camera = observed_.camera();
+    const auto root = [&](double sigma_px) {
+      return image_motion_root(camera, known_.typical_depth_m, sigma_px);
+    };
+    const Matrix6 step = root(options_.step_sigma_px), assumed = root(options_.pose_sigma_px);
+    const Matrix6 held = sigma_of_px(options_.known_sigma_px).cwiseInverse().asDiagonal();
+    for (int i = 0; i < correction_.count(); ++i) {
+      const bool is_known = correction_.time_s(i) <= known_.until_s;
+      problem_.AddResidualBlock(new NodePriorCost(is_known ? held : assumed), nullptr,
+                                correction_.data(i));
+      if (i > 0)
+        problem_.AddResidualBlock(new NodeStepCost(step), nullptr, correction_.data(i - 1),
+                                  correction_.data(i));
+      ordering_->AddElementToGroup(correction_.data(i), 1);
+    }
+  }
+
+  /// The event's observation after the correction.
+  [[nodiscard]] EdgeObservation moved(const ChosenEvent& event) {
+    EdgeObservation observation = event.observation;
+    const auto twist = [&](int node) { return Eigen::Map<const Twist>(correction_.data(node)); };
+    observation.view_from_camera =
+        observation.view_from_camera *
+        Rigid3::exp((1 - event.share) * twist(event.node) + event.share * twist(event.node + 1));
+    return observation;
   }
 
   /// Median of the absolute residuals, as a Gaussian's deviation [px].
-  [[nodiscard]] double deviation_px() const {
+  [[nodiscard]] double deviation_px() {
     std::vector<double> residuals;
-    for (const auto& [observation, k, t_s] : observations_)
-      residuals.push_back(std::abs(
-          edge_residual(observation, undistorted_, nodes_.at(t_s), unknowns_[k], nullptr)));
+    for (const ChosenEdge& edge : chosen_)
+      for (const ChosenEvent& event : edge.events)
+        residuals.push_back(std::abs(edge_residual(moved(event), observed_.camera(), Twist::Zero(),
+                                                   edge.unknowns, nullptr)));
     const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
     std::nth_element(residuals.begin(), middle, residuals.end());
     return 1.4826 * *middle;
   }
 
-  void take(Adjustment& result) const {
+  void take(Adjustment& result) {
     std::vector<StampedPose> poses(window_.trajectory->poses().begin(),
                                    window_.trajectory->poses().end());
     for (StampedPose& pose : poses)
-      if (pose.t_s >= nodes_.time_s(0))
-        pose.world_from_camera = pose.world_from_camera * Rigid3::exp(nodes_.at(pose.t_s));
+      if (pose.t_s >= correction_.time_s(0))
+        pose.world_from_camera = pose.world_from_camera * Rigid3::exp(correction_.at(pose.t_s));
     result.trajectory = Trajectory(std::move(poses));
+    const Rigid3 now_from_view = result.trajectory.at_clamped(window_.reference_s).inverse() *
+                                 window_.world_from_reference();
     result.edges.edges.clear();
-    for (std::size_t k = 0; k < chosen_.size(); ++k) {
-      const EdgeUnknowns& x = unknowns_[k];
-      FittedEdge fitted = edges_.edges[chosen_[k].index];
-      if (!(x[0] > 0)) continue;
-      RayEdge& edge = fitted.edge;
-      const Eigen::Vector2f tangent = edge.tangent();
-      edge.pixel += static_cast<float>(x[1]) * edge.normal;
-      edge.normal = (edge.normal - static_cast<float>(x[2]) * tangent).normalized();
-      edge.inverse_depth = static_cast<float>(x[0]);
-      result.edges.edges.push_back(fitted);
+    std::vector<EdgeObservation> events;
+    for (const FittedEdge& fitted : edges_.edges) {
+      events.clear();
+      for (const ChosenEvent& event : observed_.of(fitted)) events.push_back(moved(event));
+      const auto unknowns = fit_edge(events, observed_.camera(), unknowns_of(fitted),
+                                     prior_of(fitted), noise_px(fitted), options_.outlier);
+      if (!unknowns) continue;
+      if (auto edge = seen_by(now_from_view, corrected(fitted, *unknowns), observed_.camera()))
+        result.edges.edges.push_back(*edge);
     }
   }
 
-  struct Observed {
-    EdgeObservation observation;
-    std::size_t edge;
-    double t_s;
-  };
-
   const ViewWindow& window_;
   const RayEdges& edges_;
-  const PinholeCamera& camera_;
-  PinholeCamera undistorted_;
   AdjustmentOptions options_;
-  double depth_m_;
-  Nodes nodes_;
+  const KnownScene& known_;
+  SeenLandmarks landmarks_;
+  PathCorrection correction_;
+  ObservedEdges observed_;
   std::vector<ChosenEdge> chosen_;
-  std::vector<EdgeUnknowns> unknowns_;
-  std::vector<Observed> observations_;
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();
@@ -310,8 +331,8 @@ class Problem {
 }  // namespace
 
 Adjustment adjust(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
-                  double known_until_s, double typical_depth_m, const AdjustmentOptions& options) {
-  return Problem(window, edges, camera, typical_depth_m, options).solve(known_until_s);
+                  const KnownScene& known, const AdjustmentOptions& options) {
+  return WindowProblem(window, edges, camera, known, options).solve();
 }
 
 }  // namespace saccade

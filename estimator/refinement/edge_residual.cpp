@@ -23,7 +23,7 @@ double edge_residual(const EdgeObservation& observation, const PinholeCamera& ca
   const Eigen::Vector2d tangent(-observation.normal.y(), observation.normal.x());
   const double along = tangent.dot(from_edge);
   const double in_view =
-      observation.normal.dot(from_edge) - edge[1] - tilt * along - edge[3] * observation.polarity;
+      observation.normal.dot(from_edge) - edge[1] - tilt * along - edge[3] * observation.lag;
   if (derivatives != nullptr) {
     const Eigen::RowVector2d across =
         (observation.normal - tilt * tangent).cwiseProduct(focal).transpose();
@@ -45,7 +45,7 @@ double edge_residual(const EdgeObservation& observation, const PinholeCamera& ca
     derivatives->motion =
         (across * x_by_motion - share * larger_by_motion) / larger * se3_left_jacobian(-motion);
     derivatives->edge << across * parallax + share * origin.z() / direction.z(), -1, -along,
-        -observation.polarity;
+        -observation.lag;
     derivatives->edge /= larger;
   }
   return in_view / larger;

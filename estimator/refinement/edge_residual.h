@@ -17,7 +17,7 @@ namespace saccade {
 struct EdgeObservation {
   Rigid3 view_from_camera;  ///< at the event's time, as it is assumed
   Eigen::Vector3d ray;      ///< q, z = 1
-  double polarity = 0;      ///< p, +1 or -1
+  double lag = 0;           ///< p j, how many contrasts the edge had changed by; see below
   Eigen::Vector2d pixel;    ///< e, in the view
   Eigen::Vector2d normal;   ///< n, unit
 };

@@ -23,14 +23,25 @@ std::vector<StampedPose> stamped_poses(std::span<const TrackedPose> poses) {
   return stamped;
 }
 
+std::string name_of(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::kOk:
+      return "ok";
+    case TrackStatus::kLost:
+      return "lost";
+    case TrackStatus::kRelocalised:
+      return "relocalised";
+  }
+  return {};
+}
+
 void write_poses_csv(const std::filesystem::path& file, std::span<const TrackedPose> poses) {
   CsvTable table({"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations",
                   "residual", "position_sigma_m", "rotation_sigma_deg"});
   for (const TrackedPose& p : poses)
     table.add({seconds_from_ns(p.t_ns), seconds_from_ns(p.first_ns), seconds_from_ns(p.last_ns),
-               std::string(p.status == TrackStatus::kOk ? "ok" : "lost"), p.inlier_ratio,
-               static_cast<long long>(p.iterations), p.residual, p.position_sigma_m,
-               p.rotation_sigma_rad * 180 / std::numbers::pi});
+               name_of(p.status), p.inlier_ratio, static_cast<long long>(p.iterations), p.residual,
+               p.position_sigma_m, p.rotation_sigma_rad * 180 / std::numbers::pi});
   table.save(file);
 }
 

@@ -11,11 +11,11 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/progress.h"
-#include "estimator/imu/imu_input.h"
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/grey_frames.h"
+#include "estimator/tracking/gyroscope_input.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/pose_output.h"
@@ -63,12 +63,6 @@ Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double st
   return dataset.groundtruth().at_clamped(start_s);
 }
 
-/// The dataset's gyroscope, turned into the frame of the camera by camera.yaml.
-Gyroscope load_gyroscope(const TrackConfig& config, const Dataset& dataset) {
-  const ImuInput imu = load_imu_input(dataset, "motion.prediction: imu");
-  return {imu.samples, imu.camera_from_imu, config.tracker.motion.gyro_bias};
-}
-
 std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double first_s = dataset.frames().empty() ? 0 : dataset.frames().front().t_s;
@@ -90,8 +84,7 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
   input.references =
       load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
-  if (config.tracker.motion.prediction == PredictionOptions::Prediction::kImu)
-    input.gyroscope = load_gyroscope(config, dataset);
+  input.gyroscope = load_gyroscope(config.tracker.motion, dataset);
   return input;
 }
 

@@ -20,6 +20,13 @@ double typical_depth(std::span<const TemplatePoint> points) {
   return sum > 0 ? count / sum : 1;
 }
 
+/// Of a frame with the template, as the ratio of what this explains to what it does not; unlike the
+/// inlier ratio it is 0 where they have nothing in common.
+double agreement(const AlignResult& aligned) {
+  const BrightnessModel& brightness = aligned.brightness;
+  return brightness.gain > 0 ? brightness.gain * brightness.gain / brightness.variance : 0;
+}
+
 }  // namespace
 
 Tracker::Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
@@ -44,6 +51,7 @@ void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviati
   templates_drawn_ = 0;
   timing_ = {};
   suspicious_frames_ = 0;
+  usual_agreement_ = 0;
 }
 
 void Tracker::set_map(const MapPoints& map) {
@@ -153,27 +161,72 @@ TrackedPose Tracker::track_frame() {
   TrackedPose pose;
   draw_frame(pose);
   const AlignResult aligned = align(pose.t_ns);
+  if (aligned.status == AlignStatus::kOk)
+    take(aligned);
+  else
+    motion_.stop();
+  pose.status = judge(aligned);
+  write_evidence(aligned, pose);
+  last_ = pose;
+  return pose;
+}
+
+void Tracker::take(const AlignResult& aligned) {
+  motion_.update(map_from_template_ * aligned.current_from_template.inverse(),
+                 aligned.information * window_.share_of_new());
+  brightness_.learn(aligned.brightness);
+}
+
+void Tracker::write_evidence(const AlignResult& aligned, TrackedPose& pose) const {
   pose.iterations = aligned.iterations;
   pose.inlier_ratio = aligned.inlier_ratio;
   pose.residual = aligned.residual;
-  if (aligned.status == AlignStatus::kOk) {
-    motion_.update(map_from_template_ * aligned.current_from_template.inverse(),
-                   aligned.information * window_.share_of_new());
-    brightness_.learn(aligned.brightness);
-  } else {
-    motion_.stop();
-  }
-  pose.status = judge(aligned);
   pose.world_from_camera = world_from_map_ * motion_.pose();
   pose.set_sigmas(motion_.covariance());
-  return pose;
 }
 
 TrackStatus Tracker::judge(const AlignResult& aligned) {
   if (aligned.status != AlignStatus::kOk) return TrackStatus::kLost;
   const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio;
   suspicious_frames_ = suspicious ? suspicious_frames_ + 1 : 0;
+  if (!suspicious) {
+    constexpr double kMemory = 0.05;
+    usual_agreement_ = usual_agreement_ == 0
+                           ? agreement(aligned)
+                           : std::lerp(usual_agreement_, agreement(aligned), kMemory);
+  }
   return suspicious_frames_ >= options_.lost.frames ? TrackStatus::kLost : TrackStatus::kOk;
+}
+
+std::optional<TrackedPose> Tracker::relocate(std::span<const Rigid3> world_from_camera) {
+  // What a place is off by, and the share of the usual agreement that it must reach.
+  constexpr double kPlace_px = 6;
+  constexpr double kShare = 0.5;
+  const MotionModel before = motion_;
+  std::optional<AlignResult> best;
+  double best_agreement = kShare * usual_agreement_;
+  MotionModel best_motion = motion_;
+  for (const Rigid3& place : world_from_camera) {
+    motion_.reset(last_.t_ns, world_from_map_.inverse() * place, kPlace_px);
+    points_ = {};
+    is_brightness_known_ = false;
+    prepare_template(motion_.pose());
+    const AlignResult aligned = align(last_.t_ns);
+    if (aligned.status != AlignStatus::kOk || agreement(aligned) <= best_agreement) continue;
+    best_agreement = agreement(aligned);
+    take(aligned);
+    best = aligned;
+    best_motion = motion_;
+  }
+  motion_ = best ? best_motion : before;
+  points_ = {};
+  is_brightness_known_ = false;
+  if (!best) return std::nullopt;
+  suspicious_frames_ = 0;
+  TrackedPose pose = last_;
+  pose.status = TrackStatus::kRelocalised;
+  write_evidence(*best, pose);
+  return pose;
 }
 
 }  // namespace saccade

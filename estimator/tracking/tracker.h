@@ -35,7 +35,8 @@ struct TrackerOptions {
   LostOptions lost;
 };
 
-enum class TrackStatus { kOk, kLost };
+/// kRelocalised: the first pose after having been lost.
+enum class TrackStatus { kOk, kLost, kRelocalised };
 
 /// One pose with its evidence.
 struct TrackedPose {
@@ -93,6 +94,11 @@ class Tracker {
   /// Moves pose and motion within the map: what was tracked so far stands elsewhere.
   void correct(const Rigid3& map_from_before) { motion_.correct(map_from_before); }
 
+  /// Looks for the camera where it may be, with the frame of the last next(): starts anew from the
+  /// place at which map and frame agree best, if they agree there nearly as well as usual. nullopt,
+  /// and nothing is changed, where they do not.
+  [[nodiscard]] std::optional<TrackedPose> relocate(std::span<const Rigid3> world_from_camera);
+
   /// Begins with a stream in order of time, which outlives its poses.
   void start(std::span<const Event> events);
   /// The pose of the next frame of the stream; nullopt where too few events are left for one.
@@ -124,6 +130,8 @@ class Tracker {
   [[nodiscard]] AlignResult align(TimeNs t_ns);
   [[nodiscard]] TrackStatus judge(const AlignResult& aligned);
   [[nodiscard]] TrackedPose track_frame();
+  void take(const AlignResult& aligned);
+  void write_evidence(const AlignResult& aligned, TrackedPose& pose) const;
 
   TrackerOptions options_;
   PinholeCamera camera_;  ///< undistorted
@@ -143,6 +151,8 @@ class Tracker {
   std::uint64_t frame_index_ = 0;
   std::size_t templates_drawn_ = 0;
   int suspicious_frames_ = 0;
+  double usual_agreement_ = 0;  ///< running mean over the frames that were not suspicious
+  TrackedPose last_;            ///< of the last next()
   TrackTiming timing_;
 };
 

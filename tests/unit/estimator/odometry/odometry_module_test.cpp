@@ -160,6 +160,39 @@ TEST_F(OdometryModule, MapsBesideTrackingWithTheSameResultForAnyNumberOfThreads)
   EXPECT_GE(keyframes[1].taken_s, keyframes[1].made_s + 0.03);
 }
 
+TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
+  // The camera jumps back to where it was 0.2 s before, and looks the other way meanwhile.
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  const auto leap = [](double t_s) { return glide(t_s < 0.35 ? t_s : t_s - 0.2); };
+  const fs::path folder = folder_.path() / "leap";
+  fs::copy(recording_->path() / "corner", folder, fs::copy_options::recursive);
+  std::ofstream events(folder / "events.txt");
+  events.precision(9);
+  events << std::fixed;
+  for (const auto& [from_s, to_s] : {std::pair(0.0, 0.35), std::pair(0.3501, 0.5)})
+    for (const Event& e : world.simulate(leap, from_s, to_s, 1e-3, 0.12))
+      events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0)
+             << '\n';
+  events.close();
+  RunRequest run = request("found");
+  run.dataset = folder;
+  (void)run_odometry(run);
+  EXPECT_THAT(read_file(run.output / "poses.csv"), HasSubstr("relocalised"));
+  const Trajectory found = read_trajectory(run.output / "trajectory.txt");
+  const Rigid3 error = leap(0.49).inverse() * found.at_clamped(0.49);
+  EXPECT_LT(error.translation().norm(), 0.02 * kDepth_m);
+  EXPECT_LT(so3_log(error.rotation()).norm(), 0.02);
+}
+
+TEST_F(OdometryModule, OnlineItSaysHowLateItIsAndWhatItDropped) {
+  const RunSummary summary = run_odometry(
+      request("online", std::string("mode: online\nonline: {max_age_ms: 1000}\n") + kQuick));
+  EXPECT_GT(summary.poses, 20U);
+  const std::string timing = read_file(folder_.path() / "online" / "timing.json");
+  EXPECT_THAT(timing, HasSubstr("\"latency_ms\": {\"median\""));
+  EXPECT_THAT(timing, HasSubstr("\"dropped_events\": "));
+}
+
 TEST_F(OdometryModule, ThesisMakesItsMapFromTheReconstructedGradient) {
   const RunSummary summary = run_odometry(request("thesis", R"(
 start: {truth_s: 0.3, truth_share: 0.6}

@@ -61,9 +61,9 @@ Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
   const RayDepth depth(config.rays, config.limits, recording().world.camera());
   AdjustmentOptions options;
   options.edges = 600;
-  options.events_per_edge = 30;
-  return adjust(window, depth.find_edges(window), recording().world.camera(), kKnown_s, kDepth_m,
-                options);
+  options.node_spacing_s = 0.02;
+  return adjust(window, depth.find_edges(window), recording().world.camera(),
+                {kKnown_s, kDepth_m, {}}, options);
 }
 
 /// From the true path.
@@ -93,7 +93,8 @@ TEST(EdgeAdjustment, DoesNotShrinkThePicture) {
 TEST(EdgeAdjustment, TooFewEdgesChangeNothing) {
   const Trajectory start = trajectory_of(glide);
   const ViewWindow window{recording().events, &start, 0.15};
-  const Adjustment result = adjust(window, {}, recording().world.camera(), kKnown_s, kDepth_m, {});
+  const Adjustment result =
+      adjust(window, {}, recording().world.camera(), {kKnown_s, kDepth_m, {}}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.trajectory.size(), start.size());
 }

@@ -24,7 +24,7 @@ EdgeObservation some_observation() {
   EdgeObservation o;
   o.view_from_camera = Rigid3::exp((Twist() << 0.1, -0.05, 0.02, 0.03, -0.02, 0.05).finished());
   o.ray = {0.21, -0.13, 1};
-  o.polarity = -1;
+  o.lag = -1;
   o.pixel = {165, 62};
   o.normal = Eigen::Vector2d(0.8, 0.6);
   return o;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+
+#include "core/event.h"
+
+namespace saccade {
+
+/// The clock of a recording that is played as it was recorded: an event arrives when as much time
+/// has passed since the clock was started as lies between the first event and it.
+class EventClock {
+ public:
+  /// Starts now, when an event of `first_ns` arrives.
+  explicit EventClock(TimeNs first_ns) : first_ns_(first_ns), start_(Clock::now()) {}
+
+  /// Sleeps until an event of this time has arrived.
+  void wait_for(TimeNs t_ns) const;
+  /// How long ago it arrived [ms]; below 0 for one that is yet to come.
+  [[nodiscard]] double age_ms(TimeNs t_ns) const;
+  /// The time of the events that arrive now.
+  [[nodiscard]] TimeNs now_ns() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] Clock::time_point arrival(TimeNs t_ns) const {
+    return start_ + std::chrono::nanoseconds(t_ns - first_ns_);
+  }
+
+  TimeNs first_ns_;
+  Clock::time_point start_;
+};
+
+}  // namespace saccade

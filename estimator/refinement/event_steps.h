@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/event.h"
+
+namespace saccade {
+
+/// The most that event_steps() counts to: how far a run goes on says nothing of a single edge.
+inline constexpr int kMostSteps = 4;
+
+/// Of every event how many of its polarity its pixel has fired in a row, at most kMostSteps: the
+/// brightness has changed by so many contrasts since it turned, so that of an edge of some width
+/// the first event is where it begins and later ones are further in. 0 in the first run of a pixel,
+/// which may have begun anywhere.
+[[nodiscard]] std::vector<std::uint8_t> event_steps(std::span<const Event> events,
+                                                    const PinholeCamera& camera);
+
+}  // namespace saccade

@@ -1,0 +1,48 @@
+#include "estimator/refinement/landmarks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saccade {
+
+SeenLandmarks::SeenLandmarks(std::span<const Landmark> landmarks, const Rigid3& view_from_world,
+                             const PinholeCamera& camera)
+    : first_(camera.width, camera.height, kNone) {
+  for (const Landmark& landmark : landmarks) {
+    const Eigen::Vector3d point = view_from_world * landmark.in_world;
+    if (!(point.z() > 0)) continue;
+    const Eigen::Vector2d pixel = camera.project(point);
+    if (!camera.contains(pixel)) continue;
+    int& first =
+        first_(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+    next_.push_back(first);
+    first = static_cast<int>(seen_.size());
+    seen_.push_back({pixel, 1 / point.z(), landmark.sigma / point.z()});
+  }
+}
+
+const SeenLandmarks::Seen* SeenLandmarks::near(const RayEdge& edge, double reach_px,
+                                               double tolerance) const {
+  const Eigen::Vector2d at = edge.pixel.cast<double>();
+  const auto inverse_depth = static_cast<double>(edge.inverse_depth);
+  const auto bound = [&](double value, int size) {
+    return std::clamp(static_cast<int>(std::lround(value)), 0, size - 1);
+  };
+  const int right = bound(at.x() + reach_px, first_.width());
+  const int bottom = bound(at.y() + reach_px, first_.height());
+  const Seen* nearest = nullptr;
+  double distance_px = reach_px;
+  for (int y = bound(at.y() - reach_px, first_.height()); y <= bottom; ++y)
+    for (int x = bound(at.x() - reach_px, first_.width()); x <= right; ++x)
+      for (int i = first_(x, y); i != kNone; i = next_[static_cast<std::size_t>(i)]) {
+        const Seen& seen = seen_[static_cast<std::size_t>(i)];
+        if (std::abs(seen.inverse_depth - inverse_depth) > tolerance * inverse_depth) continue;
+        const double away_px = (seen.pixel - at).norm();
+        if (away_px >= distance_px) continue;
+        distance_px = away_px;
+        nearest = &seen;
+      }
+  return nearest;
+}
+
+}  // namespace saccade

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/rigid3.h"
+#include "estimator/depth/ray_gather.h"
+
+namespace saccade {
+
+/// A point on an edge that is known already.
+struct Landmark {
+  Eigen::Vector3d in_world;  ///< [m]
+  double sigma = 0;          ///< of its depth, relative
+};
+
+/// Landmarks as a view sees them, looked up by place.
+class SeenLandmarks {
+ public:
+  struct Seen {
+    Eigen::Vector2d pixel;
+    double inverse_depth = 0;  ///< [1/m]
+    double sigma = 0;          ///< [1/m]
+  };
+
+  /// `camera` is undistorted.
+  SeenLandmarks(std::span<const Landmark> landmarks, const Rigid3& view_from_world,
+                const PinholeCamera& camera);
+
+  /// The one nearest to an edge, within `reach_px` of its place and at its depth but for
+  /// `tolerance`, relative; nullptr for none.
+  [[nodiscard]] const Seen* near(const RayEdge& edge, double reach_px, double tolerance) const;
+
+ private:
+  static constexpr int kNone = -1;
+  Image<int> first_;       ///< of each pixel
+  std::vector<int> next_;  ///< of the same pixel
+  std::vector<Seen> seen_;
+};
+
+}  // namespace saccade

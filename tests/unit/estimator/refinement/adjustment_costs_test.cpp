@@ -1,0 +1,125 @@
+#include "estimator/refinement/adjustment_costs.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "tests/support/jacobian_check.h"
+
+namespace saccade {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+PinholeCamera some_camera() {
+  PinholeCamera camera;
+  camera.width = 240;
+  camera.height = 180;
+  camera.fx = 200;
+  camera.fy = 190;
+  camera.cx = 118;
+  camera.cy = 91;
+  return camera;
+}
+
+EdgeObservation observation(double x) {
+  EdgeObservation o;
+  o.view_from_camera = Rigid3::exp((Twist() << x, -0.05, 0.02, 0.03, -0.02, 0.05).finished());
+  o.ray = {0.21, -0.13, 1};
+  o.lag = -1;
+  o.pixel = {165, 62};
+  o.normal = Eigen::Vector2d(0.8, 0.6);
+  return o;
+}
+
+/// The residuals of a cost whose block `varied` is replaced; with all derivatives by it.
+template <int kRows, int kColumns>
+void expect_derivative(const ceres::CostFunction& cost, std::vector<std::vector<double>> blocks,
+                       std::size_t varied) {
+  using Block = Eigen::Matrix<double, kColumns, 1>;
+  const auto evaluate = [&](const Block& value, double* derivative) {
+    for (int i = 0; i < kColumns; ++i) blocks[varied][static_cast<std::size_t>(i)] = value[i];
+    std::vector<const double*> parameters;
+    for (const auto& block : blocks) parameters.push_back(block.data());
+    std::vector<double*> jacobians(blocks.size(), nullptr);
+    jacobians[varied] = derivative;
+    Eigen::Matrix<double, kRows, 1> residuals;
+    EXPECT_TRUE(cost.Evaluate(parameters.data(), residuals.data(),
+                              derivative != nullptr ? jacobians.data() : nullptr));
+    return residuals;
+  };
+  const Block at = Eigen::Map<const Block>(blocks[varied].data());
+  Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor> derivative;
+  (void)evaluate(at, derivative.data());
+  testing::expect_jacobian<kRows, kColumns>(
+      Eigen::Matrix<double, kRows, kColumns>(derivative),
+      [&](const Block& value) { return evaluate(value, nullptr); }, at);
+}
+
+TEST(AdjustmentCosts, AnEventPairHasItsDerivatives) {
+  const PinholeCamera camera = some_camera();
+  const std::array<WeighedEvent, 2> events = {WeighedEvent{observation(0.1), 0.3, 0.02},
+                                              WeighedEvent{observation(0.12), 0.8, 0.05}};
+  // Of some pixels, so that the residuals are around 1.
+  const EventPairCost cost(events, camera, 50);
+  const std::vector<std::vector<double>> blocks = {{0.02, -0.01, 0.03, 0.01, 0.02, -0.015},
+                                                   {0.01, 0.01, -0.02, 0.03, -0.01, 0.02},
+                                                   {0.4, 0.1, 0.05, 0.2}};
+  expect_derivative<2, 6>(cost, blocks, 0);
+  expect_derivative<2, 6>(cost, blocks, 1);
+  expect_derivative<2, 4>(cost, blocks, 2);
+}
+
+TEST(AdjustmentCosts, AnEventWithoutWeightSaysNothing) {
+  const PinholeCamera camera = some_camera();
+  const EventPairCost cost(
+      {WeighedEvent{observation(0.1), 0.3, 1}, WeighedEvent{observation(0.12), 0.8, 0}}, camera, 2);
+  const std::array<double, 6> node{};
+  const std::array<double, 4> edge = {0.4, 0, 0, 0};
+  const std::array<const double*, 3> parameters = {node.data(), node.data(), edge.data()};
+  std::array<double, 2> residuals{};
+  ASSERT_TRUE(cost.Evaluate(parameters.data(), residuals.data(), nullptr));
+  EXPECT_NE(residuals[0], 0);
+  EXPECT_EQ(residuals[1], 0);
+}
+
+TEST(AdjustmentCosts, PriorsAndStepsHaveTheirDerivatives) {
+  const Matrix6 root = image_motion_root(some_camera(), 1.5, 0.7);
+  const std::vector<double> node = {0.02, -0.01, 0.03, 0.01, 0.02, -0.015};
+  const std::vector<double> other = {0.01, 0.01, -0.02, 0.03, -0.01, 0.02};
+  expect_derivative<6, 6>(NodePriorCost(root), {node}, 0);
+  expect_derivative<6, 6>(NodeStepCost(root), {node, other}, 0);
+  expect_derivative<6, 6>(NodeStepCost(root), {node, other}, 1);
+  expect_derivative<2, 4>(EdgePriorCost(2, {0.1, 0.2}, {0.3, 0.5}), {{0.4, 0.1, 0.05, 0.2}}, 0);
+}
+
+/// A step to the side that a turn makes up for is hardly told; either alone is, to the pixel.
+TEST(AdjustmentCosts, ImageMotionTellsMotionsThatLookAlikeApartByLittle) {
+  const PinholeCamera camera = some_camera();
+  const double depth_m = 2;
+  const Matrix6 root = image_motion_root(camera, depth_m, 1);
+  const double pixel_m = depth_m / camera.fx;
+  const Twist aside = (Twist() << pixel_m, 0, 0, 0, 0, 0).finished();
+  const Twist turn = (Twist() << 0, 0, 0, 0, 1 / camera.fx, 0).finished();
+  EXPECT_NEAR((root * turn).norm(), 1, 0.2);
+  EXPECT_NEAR((root * aside).norm(), std::sqrt((4 + 1 + 0.25) / 3), 1e-9);
+  EXPECT_LT((root * (turn - aside)).norm(), (root * (turn + aside)).norm() / 2);
+}
+
+TEST(AdjustmentCosts, TheSoftResidualIsTheRootOfCauchysLoss) {
+  for (const double residual : {-7.0, -0.4, 0.0, 1e-7, 0.3, 50.0}) {
+    const SoftResidual soft_residual = soft(residual, 2);
+    EXPECT_NEAR(soft_residual.value * soft_residual.value, 4 * std::log1p(residual * residual / 4),
+                1e-9);
+    EXPECT_EQ(std::signbit(soft_residual.value), std::signbit(residual));
+    const double step = 1e-6;
+    EXPECT_NEAR(soft_residual.slope,
+                (soft(residual + step, 2).value - soft(residual - step, 2).value) / (2 * step),
+                1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace saccade
