@@ -70,7 +70,7 @@ void add_render_verb(CLI::App& command) {
   RenderOptions& render = options->render;
   CLI::App* verb = command.add_subcommand("render",
                                           "Draw a dataset (events, frames, depth) or a run (the "
-                                          "map over its events, its views, or what "
+                                          "map over its events, keyframes, views, or what "
                                           "it stabilized)");
   verb->add_option("PATH", options->path, "Dataset or run folder")->required();
   verb->add_option("-o,--output", options->output, "Picture (.png) or video (.mp4, by ffmpeg)")
@@ -102,6 +102,7 @@ void add_render_verb(CLI::App& command) {
       "Examples:\n"
       "  saccade render data/walls -o walls.png\n"
       "  saccade render runs/walls -o walls.mp4 --slow-motion 5\n"
+      "  saccade render runs/dunes -o odometry.mp4 --slow-motion 5\n"
       "  saccade render runs/walls_depth -o walls_depth.png\n"
       "  saccade render runs/walls_image -o growth.mp4 --fps 10\n"
       "  saccade render runs/leaves -o leaves.mp4 --overlay docs/images/logo.png --overlay-truth");

@@ -84,12 +84,16 @@ void add_run_verb(CLI::App& command) {
   add_config_options(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(
-      "Example:\n"
+      "Examples:\n"
       "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
       "  saccade run depth --data data/walls --poses-from runs/walls -c configs/depth/thesis.yaml "
       "-o runs/walls_depth\n"
       "  saccade run reconstruct --data data/walls --depth-from runs/walls_depth "
-      "-c configs/reconstruction/best.yaml -o runs/walls_image");
+      "-c configs/reconstruction/best.yaml -o runs/walls_image\n"
+      "  saccade run odometry --data data/dunes -c configs/odometry/best.yaml -o runs/dunes\n"
+      "  saccade run mosaic --data data/panorama -c configs/mosaic/best.yaml -o runs/mosaic\n"
+      "  saccade run rotation --data data/panorama -c configs/rotation/events.yaml -o "
+      "runs/rotation");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

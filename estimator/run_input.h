@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/config/config.h"
 #include "core/event.h"
 #include "core/io/dataset.h"
 #include "core/io/run_record.h"
@@ -10,6 +11,15 @@ namespace saccade {
 
 /// Throws InputError where no module could do what is asked for.
 void check(const RunRequest& request);
+
+/// A module's configuration with the request's seed, which is checked, too.
+template <class Config>
+[[nodiscard]] Config read_config(const RunRequest& request) {
+  auto config = config::read<Config>(request.config);
+  if (request.seed) config.seed = *request.seed;
+  check(request);
+  return config;
+}
 
 /// The dataset's events in the window that was asked for. Throws InputError where there are none.
 [[nodiscard]] Events load_events(const RunRequest& request, const Dataset& dataset);

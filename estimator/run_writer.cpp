@@ -94,6 +94,15 @@ std::string to_json(const RunTiming& timing) {
   return json;
 }
 
+RunSummary summary_of(const RunTiming& timing, const std::string& found) {
+  RunSummary summary;
+  summary.found = found;
+  summary.events = timing.events;
+  summary.poses = timing.poses.value_or(0);
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
 RunWriter::RunWriter(const RunRequest& request) : folder_(request.output, "run.yaml") {}
 
 void RunWriter::finish(const std::string& module, const RunRequest& request, const Dataset& dataset,

@@ -33,6 +33,9 @@ struct RunTiming {
 /// Median of a list that is not empty.
 [[nodiscard]] double median(std::vector<double> values);
 
+/// What there is to say about a run that found `found`.
+[[nodiscard]] RunSummary summary_of(const RunTiming& timing, const std::string& found);
+
 /// The run folder while it is filled: run.yaml and timing.json are the same for every module.
 class RunWriter {
  public:

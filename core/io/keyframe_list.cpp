@@ -20,12 +20,13 @@ void describe(config::Fields& fields, KeyframeEntry& keyframe) {
   fields.value("t_s", keyframe.t_s, "time of its view").required();
   fields.value("T_world_camera", keyframe.world_from_camera, "pose of its view").required();
   fields.value("made_s", keyframe.made_s, "last event that it was made of").required();
-  fields.value("taken_s", keyframe.taken_s, "first event that was tracked by it").required();
-  fields.value("events", keyframe.events, "that it was made of");
-  fields.value("points", keyframe.points, "with depth");
-  fields.value("edges", keyframe.edges, "that became the map");
+  fields.value("taken_s", keyframe.taken_s, "last event before it came into force").required();
+  fields.value("events", keyframe.events, "that it was made of").at_least(0);
+  fields.value("points", keyframe.points, "with depth").at_least(0);
+  fields.value("edges", keyframe.edges, "that became the map: so many points of map.ply, in order")
+      .at_least(0);
   fields.value("typical_depth_m", keyframe.typical_depth_m, "median of its depths");
-  fields.value("active", keyframe.active, "keyframes that made up the map from taken_s on");
+  fields.value("active", keyframe.active, "keyframes that made up the map from then on, by index");
 }
 
 namespace {
@@ -37,6 +38,11 @@ void describe(config::Fields& fields, KeyframeList& list) {
     fields.expect(list.keyframes[i - 1].t_s < list.keyframes[i].t_s, "keyframes",
                   fmt::format("must be in order of time: {} s stands before {} s",
                               list.keyframes[i - 1].t_s, list.keyframes[i].t_s));
+  const auto count = static_cast<std::int64_t>(list.keyframes.size());
+  for (const KeyframeEntry& keyframe : list.keyframes)
+    for (const std::int64_t i : keyframe.active)
+      fields.expect(i >= 0 && i < count, "keyframes",
+                    fmt::format("active keyframe {} is not among the {} in the list", i, count));
 }
 
 }  // namespace

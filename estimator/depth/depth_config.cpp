@@ -91,7 +91,8 @@ void describe_sweep(config::Fields& fields, SweepDepthOptions& options) {
       .value("threshold", options.threshold,
              "votes above the neighbourhood's mean; the most are 255")
       .range(-255, 255);
-  fields.value("median_side_px", options.median_side, "of the median; 1: none").range(1, 99);
+  fields.value("median_side_px", options.median_side, "of the median, odd; 1: none").range(1, 99);
+  fields.expect(options.median_side % 2 == 1, "median_side_px", "must be odd");
   fields.group(
       "outliers", [&](config::Fields& f) { describe_outliers(f, options.outliers); },
       "radius outlier removal");

@@ -22,9 +22,7 @@ double mean_depth_of(const Dataset& dataset, const DepthLimits& limits) {
 }  // namespace
 
 RunSummary run_depth(const RunRequest& request) {
-  DepthConfig config = config::read<DepthConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<DepthConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -46,11 +44,7 @@ RunSummary run_depth(const RunRequest& request) {
 
   std::size_t points = 0;
   for (const DepthResult& result : results) points += result.points.size();
-  RunSummary summary;
-  summary.found = fmt::format("{} points in {} views", points, windows.size());
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(timing, fmt::format("{} points in {} views", points, windows.size()));
 }
 
 std::string print_depth_config(const config::Document& document) {

@@ -12,14 +12,14 @@ namespace saccade {
 namespace {
 
 constexpr float kTukey = 4.685F;
-constexpr float kMaxSlope = 0.02F;     ///< relative change of inverse depth per pixel at the start
-constexpr float kSameSurface = 0.02F;  ///< relative distance
-constexpr float kBehind = 0.05F;       ///< relative distance of a surface behind, at least
-constexpr float kBehindRadii = 3;      ///< within which one is looked for
-constexpr float kLeastBehind = 2;      ///< points, since one may be wrong
-constexpr float kMoreBehind = 3;       ///< times those on the other side
-constexpr float kOnEdge_px = 1;        ///< nearer than that a point is on neither side
-constexpr float kGoesOn = 0.25F;  ///< share of the weights beyond an edge of what goes on there
+constexpr float kMaxSlope = 0.02F;  ///< relative change of inverse depth per pixel at the start
+constexpr float kOnPlane = 0.02F;   ///< relative distance of a point that belongs to a plane
+constexpr float kBehind = 0.05F;    ///< relative distance of a surface behind, at least
+constexpr float kBehindRadii = 3;   ///< within which one is looked for
+constexpr float kLeastBehind = 2;   ///< points, since one may be wrong
+constexpr float kMoreBehind = 3;    ///< times those on the other side
+constexpr float kOnEdge_px = 1;     ///< nearer than that a point is on neither side
+constexpr float kGoesOn = 0.25F;    ///< share of the weights beyond an edge of what goes on there
 constexpr float kSlopePrior = 0.01F;
 /// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
 constexpr float kWeightedVariance = 1.29F;
@@ -216,7 +216,7 @@ int LocalPlanes::surface_side(const EdgeDepth& start, const LocalPlane& plane) c
 
 float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) const {
   float nearest = std::numeric_limits<float>::infinity(), second = nearest;
-  const float always = kSameSurface * plane.inverse_depth;
+  const float always = kOnPlane * plane.inverse_depth;
   for_near(x_px, y_px, static_cast<float>(options_.radius_px),
            [&](const EdgeDepth& other, float dx, float dy, float) {
              const float gap = std::abs(other.inverse_depth - plane.inverse_depth -

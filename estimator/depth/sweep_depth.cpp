@@ -13,7 +13,7 @@ namespace {
 /// Between the nearest and the farthest plane; with less, all planes look alike.
 constexpr double kMinParallax_px = 2;
 
-/// 1 where the votes stand out of their neighbourhood.
+/// 1 where there are votes that stand out of their neighbourhood.
 ImageU8 standing_out(const ImageF& votes, const SweepDepthOptions& options) {
   const float most = *std::max_element(votes.pixels().begin(), votes.pixels().end());
   ImageU8 mask(votes.width(), votes.height());
@@ -25,6 +25,9 @@ ImageU8 standing_out(const ImageF& votes, const SweepDepthOptions& options) {
   cv::Mat to(votes.height(), votes.width(), CV_8U, mask.data());
   cv::adaptiveThreshold(from, to, 1, cv::ADAPTIVE_THRESH_GAUSSIAN_C, cv::THRESH_BINARY,
                         options.threshold_side, -options.threshold);
+  // A threshold below the neighbourhood's mean is passed by pixels without a ray, too.
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    if (!(votes.pixels()[i] > 0)) mask.pixels()[i] = 0;
   return mask;
 }
 

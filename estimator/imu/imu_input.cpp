@@ -40,6 +40,8 @@ Trajectory levelled(const Trajectory& world_from_camera, const ImuInput& imu) {
   for (const ImuSample& sample : imu.samples)
     force += world_from_camera.at_clamped(seconds_from_ns(sample.t_ns)).rotation() *
              (imu.camera_from_imu * sample.specific_force);
+  // Without an accelerometer, or in free fall, nothing says what is level.
+  if (!(force.norm() > 0)) return world_from_camera;
   const auto level = Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ());
   std::vector<StampedPose> poses(world_from_camera.poses().begin(),
                                  world_from_camera.poses().end());

@@ -112,9 +112,7 @@ void write(const std::filesystem::path& folder, const Dataset& dataset,
 }  // namespace
 
 RunSummary run_stabilization(const RunRequest& request) {
-  StabilizeConfig config = config::read<StabilizeConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<StabilizeConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -134,19 +132,19 @@ RunSummary run_stabilization(const RunRequest& request) {
   }
   const Trajectory& poses = result.camera.world_from_camera;
   timing.sequence_s = poses.end_s() - poses.start_s();
-  const RunRecord::Window window = window_of(request, poses.start_s(), poses.end_s());
+  // A length alone counts from the first event on, as it did when these were loaded.
+  const bool is_from_events = request.duration_s && !input.events.empty();
+  const double first_s =
+      is_from_events ? seconds_from_ns(input.events.front().t_ns) : poses.start_s();
+  const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
     const StageClock clock(timing.io_s);
     write(writer.path(), dataset, config, result, window);
   }
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
-  RunSummary summary;
-  summary.found =
-      fmt::format("{} orientations, {} windows of events", poses.size(), result.stretches.size());
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(timing, fmt::format("{} orientations, {} windows of events", poses.size(),
+                                        result.stretches.size()));
 }
 
 std::string print_stabilization_config(const config::Document& document) {

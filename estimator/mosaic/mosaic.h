@@ -35,6 +35,6 @@ struct MosaicInput {
 /// rotation camera (thesis 3.4.1). It is image reconstruction with directions for places, which
 /// needs no depth. Few events give a poor image, never an error.
 [[nodiscard]] Reconstruction make_mosaic(const MosaicInput& input, const Panorama& panorama,
-                                         const MosaicOptions& options);
+                                         const MosaicOptions& options, const ShareDone& done = {});
 
 }  // namespace saccade

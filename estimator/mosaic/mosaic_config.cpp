@@ -1,5 +1,6 @@
 #include "estimator/mosaic/mosaic_config.h"
 
+#include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 
 namespace saccade {
@@ -46,6 +47,7 @@ void describe(config::Fields& fields, MosaicConfig& config) {
         "equations", [&](config::Fields& f) { describe_equations(f, mosaic.equations); },
         "one linear equation per event, least squares");
   fields.value("growth", config.growth, "numbers of events after which a picture is kept");
+  check_growth(fields, config.growth);
   fields.value("seed", config.seed, "of random numbers; none are drawn");
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
@@ -78,7 +79,7 @@ Trajectory sharpened(const Trajectory& world_from_camera, std::span<const Event>
 
 /// Everything but reading and writing.
 MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Contrasts& thresholds,
-                   const MosaicConfig& config, RunTiming& timing) {
+                   const MosaicConfig& config, RunTiming& timing, const ShareDone& done) {
   double orientation_s = 0, offset_s = 0, wall_s = 0;
   MosaicRun run;
   {
@@ -98,8 +99,8 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Con
       poses = sharpened(poses, run.events, source, dataset.camera(), config);
     }
     run.panorama = panorama_of(dataset.camera(), poses, run.events, config);
-    run.mosaic =
-        make_mosaic({dataset.camera(), run.events, poses, thresholds}, run.panorama, config.mosaic);
+    run.mosaic = make_mosaic({dataset.camera(), run.events, poses, thresholds}, run.panorama,
+                             config.mosaic, done);
   }
   timing.wall_s.push_back(wall_s);
   timing.stages_s = {{"orientation", orientation_s}, {"rate_offset", offset_s}};
@@ -129,9 +130,7 @@ void write(const std::filesystem::path& folder, const MosaicRun& run,
 }  // namespace
 
 RunSummary run_mosaic(const RunRequest& request) {
-  MosaicConfig config = config::read<MosaicConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<MosaicConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -148,8 +147,11 @@ RunSummary run_mosaic(const RunRequest& request) {
   Progress progress("mosaic", source.events.size() * static_cast<std::size_t>(request.repeat),
                     "events");
   for (int i = 0; i < request.repeat; ++i) {
-    run = run_once(source, dataset, thresholds, config, timing);
-    progress.add(source.events.size());
+    std::size_t before = 0;
+    run = run_once(source, dataset, thresholds, config, timing, [&](double share) {
+      const auto now = static_cast<std::size_t>(share * static_cast<double>(source.events.size()));
+      progress.add(now - std::exchange(before, now));
+    });
   }
   const std::span<const Event> events = run.events;
   timing.events = events.size();
@@ -165,11 +167,8 @@ RunSummary run_mosaic(const RunRequest& request) {
   }
   writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);
 
-  RunSummary summary;
-  summary.found = fmt::format("a mosaic of {} x {} px", run.panorama.width, run.panorama.height);
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(timing,
+                    fmt::format("a mosaic of {} x {} px", run.panorama.width, run.panorama.height));
 }
 
 std::string print_mosaic_config(const config::Document& document) {

@@ -10,16 +10,18 @@ namespace saccade {
 
 Reconstruction integrate_gradients(LevelFinder& finder, std::span<const Event> events,
                                    const Trajectory& world_from_camera, const ReferenceGrid& grid,
-                                   const GradientOptions& options) {
+                                   const GradientOptions& options, const ShareDone& done) {
   double filter_s = 0, poisson_s = 0;
   GradientFilter filter(grid, finder.sorts(), options.prior_sigma * options.prior_sigma);
   Reconstruction result;
-  const double levels_s =
-      finder.find_all(events, world_from_camera, [&](std::span<const PlaceLevel> levels) {
-        const StageClock clock(filter_s);
-        filter.add(levels);
-        result.levels += levels.size();
-      });
+  const double levels_s = finder.find_all(events, world_from_camera,
+                                          [&](std::span<const PlaceLevel> part, double share) {
+                                            const StageClock clock(filter_s);
+                                            filter.add(part);
+                                            result.levels += part.size();
+                                            // Poisson's equation takes no time beside this.
+                                            if (done) done(share);
+                                          });
   set_gradient(result, grid, filter.states(), options.observed_sigma);
   {
     const StageClock clock(poisson_s);

@@ -25,7 +25,8 @@ struct GradientOptions {
 [[nodiscard]] Reconstruction integrate_gradients(LevelFinder& finder, std::span<const Event> events,
                                                  const Trajectory& world_from_camera,
                                                  const ReferenceGrid& grid,
-                                                 const GradientOptions& options);
+                                                 const GradientOptions& options,
+                                                 const ShareDone& done = {});
 
 /// ... of a view.
 class GradientReconstruction : public ImageEstimator {

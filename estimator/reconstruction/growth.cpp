@@ -10,13 +10,17 @@
 
 namespace saccade {
 
+void check_growth(config::Fields& fields, const std::vector<std::int64_t>& counts) {
+  for (const std::int64_t count : counts)
+    fields.expect(count > 0, "growth", fmt::format("{} is no number of events above 0", count));
+}
+
 std::vector<GrowthPicture> grow(std::span<const Event> events,
                                 const std::vector<std::int64_t>& counts,
                                 const std::function<ImageF(std::span<const Event>)>& log_image_of) {
   std::vector<GrowthPicture> pictures(counts.size());
   parallel_for(counts.size(), [&](std::size_t i) {
-    const auto count =
-        std::min(events.size(), static_cast<std::size_t>(std::max<std::int64_t>(counts[i], 1)));
+    const std::size_t count = std::min(events.size(), static_cast<std::size_t>(counts[i]));
     pictures[i] = {count, log_image_of(events.first(count))};
   });
   return pictures;

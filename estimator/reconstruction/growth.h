@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/fields.h"
 #include "core/event.h"
 #include "core/image.h"
 
@@ -18,7 +19,10 @@ struct GrowthPicture {
   ImageF log_image;
 };
 
-/// The image from the first `counts[i]` of some events, as in thesis figs. 8.14 and 8.15. In
+/// Says an error of numbers of events, `growth` of a configuration, that are not above 0.
+void check_growth(config::Fields& fields, const std::vector<std::int64_t>& counts);
+
+/// The image from the first `counts[i]` > 0 of some events, as in thesis figs. 8.14 and 8.15. In
 /// parallel.
 [[nodiscard]] std::vector<GrowthPicture> grow(
     std::span<const Event> events, const std::vector<std::int64_t>& counts,

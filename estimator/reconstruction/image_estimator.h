@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,9 @@ struct Reconstruction {
   std::size_t levels = 0;  ///< measurements that were used
   std::vector<std::pair<std::string, double>> stages_s;  ///< the same in all windows
 };
+
+/// Told, now and then, the share of the work that is done; it rises to 1.
+using ShareDone = std::function<void(double share)>;
 
 /// A method that turns events, poses and depth into an image. Few events give a poor image, never
 /// an error.

@@ -153,11 +153,17 @@ ImageF coarser(const ImageF& image, int scale) {
 
 Reconstruction solve_equations(LevelFinder& finder, std::span<const Event> events,
                                const Trajectory& world_from_camera, const ReferenceGrid& view,
-                               const ReferenceGrid& grid, const EquationOptions& options) {
+                               const ReferenceGrid& grid, const EquationOptions& options,
+                               const ShareDone& done) {
+  // Finding the levels takes about as long as what follows.
+  constexpr double kLevelsShare = 0.5;
   double order_s = 0, equations_s = 0, solve_s = 0;
   LevelsByTrack tracks(view, finder.sorts());
-  const double levels_s = finder.find_all(
-      events, world_from_camera, [&](std::span<const PlaceLevel> part) { tracks.add(part); });
+  const double levels_s = finder.find_all(events, world_from_camera,
+                                          [&](std::span<const PlaceLevel> part, double share) {
+                                            tracks.add(part);
+                                            if (done) done(kLevelsShare * share);
+                                          });
   {
     const StageClock clock(order_s);
     tracks.order(static_cast<float>(options.thin_px));
@@ -172,8 +178,11 @@ Reconstruction solve_equations(LevelFinder& finder, std::span<const Event> event
       add_levels(system, grid, tracks, image, options);
       add_smoothness(system, grid, options, image);
     }
-    const StageClock clock(solve_s);
-    image = system.solve(options.iterations, options.tolerance, image).image;
+    {
+      const StageClock clock(solve_s);
+      image = system.solve(options.iterations, options.tolerance, image).image;
+    }
+    if (done) done(kLevelsShare + (1 - kLevelsShare) * (round + 1) / options.rounds);
   }
   Reconstruction result;
   result.log_image = coarser(image, grid.scale());

@@ -19,9 +19,9 @@ struct EquationOptions {
   double across = 20;     ///< the same across the edge of an occluder [log units]
   int rounds = 2;         ///< the second and later ones with robust weights
   double outlier = 3;     ///< deviations beyond which an equation counts less
-  int iterations = 60;    ///< of conjugate gradients, per round
   double bound_sigma = 0.05;     ///< of a silent pixel's bounds, from the second round on [log]
-  double tolerance = 1e-3;       ///< of its residual
+  int iterations = 60;           ///< of conjugate gradients, per round
+  double tolerance = 1e-3;       ///< of their residual, where they end earlier
   double prior_sigma = 0.5;      ///< of a gradient's component, for its covariance [log units/px]
   double observed_sigma = 0.25;  ///< a pixel is observed when its surest direction is this sure
 };
@@ -37,6 +37,7 @@ struct EquationOptions {
 [[nodiscard]] Reconstruction solve_equations(LevelFinder& finder, std::span<const Event> events,
                                              const Trajectory& world_from_camera,
                                              const ReferenceGrid& view, const ReferenceGrid& grid,
-                                             const EquationOptions& options);
+                                             const EquationOptions& options,
+                                             const ShareDone& done = {});
 
 }  // namespace saccade

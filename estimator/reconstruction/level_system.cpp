@@ -85,15 +85,13 @@ LevelSystem::LevelSystem(int width, int height, bool wraps)
       height_(height),
       columns_(wraps ? width + 1 : width),
       rows_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(height)),
-      cells_(rows_.size()),
-      right_side_(rows_.size()) {
+      cells_(rows_.size()) {
   SACCADE_CHECK(width > (wraps ? 2 : 1) && height > 1);
 }
 
 void LevelSystem::clear() {
   std::fill(rows_.begin(), rows_.end(), std::array<float, kNeighbours>{});
   std::fill(cells_.begin(), cells_.end(), Lanes{});
-  std::fill(right_side_.begin(), right_side_.end(), 0.0F);
   entries_.clear();
   tracks_.clear();
 }
@@ -129,12 +127,6 @@ void LevelSystem::add_smooth(int i, int j, float weight) {
   rows_[static_cast<std::size_t>(first)][0] += weight;
   rows_[static_cast<std::size_t>(second)][0] += weight;
   rows_[static_cast<std::size_t>(first)][second == first + 1 ? 1 : 3] -= weight;
-}
-
-void LevelSystem::add_value(int i, float value, float weight) {
-  const auto at = static_cast<std::size_t>(unrolled(i));
-  rows_[at][0] += weight;
-  right_side_[at] += weight * value;
 }
 
 double LevelSystem::track_variance() const {
@@ -247,7 +239,7 @@ void LevelSystem::multiply_unrolled(const Stencil& stencil, const std::vector<fl
 }
 
 GridSolution LevelSystem::solve(int iterations, double tolerance, const ImageF& start) const {
-  std::vector<float> right_side = right_side_;
+  std::vector<float> right_side(rows_.size());
   const Stencil stencil = this->stencil(right_side);
   std::vector<float> r = rolled_up(right_side);
   const std::size_t n = r.size();

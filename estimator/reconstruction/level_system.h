@@ -24,13 +24,14 @@ struct GridLevel {
 };
 
 struct GridSolution {
-  ImageF image;         ///< up to a constant where only differences are known
+  ImageF image;         ///< up to a constant
   int iterations = 0;   ///< of conjugate gradients
   double residual = 0;  ///< |r| / |b| in the preconditioner's norm
 };
 
 /// Weighted linear least squares over the pixels of an image and one offset c per track:
 ///   min over I, c of  sum_k w_k (I(place_k) - c_track(k) - level_k)^2
+/// which leaves a constant of the image open: it stays that of the first guess.
 /// The offsets are eliminated: with m_t the mean of a track's rows, n_t the sum of its weights, the
 /// normal matrix is the pixels' own (a stencil) minus sum_t n_t m_t m_t^T. Solved by conjugate
 /// gradients, preconditioned in the cosine domain: a wave shorter than the tracks is seen by every
@@ -53,8 +54,6 @@ class LevelSystem {
 
   /// w (I(j) - I(i))^2 for two neighbours.
   void add_smooth(int i, int j, float weight);
-  /// w (I(i) - value)^2.
-  void add_value(int i, float value, float weight);
 
   /// Until the residual has fallen to `tolerance`. `start`: first guess, empty: 0.
   [[nodiscard]] GridSolution solve(int iterations, double tolerance,
@@ -95,7 +94,6 @@ class LevelSystem {
   std::vector<Lanes> cells_;  ///< what levels add, by the upper left pixel of their square
   std::vector<Entry> entries_;
   std::vector<Track> tracks_;
-  std::vector<float> right_side_;
 };
 
 }  // namespace saccade

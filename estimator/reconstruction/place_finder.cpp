@@ -10,9 +10,9 @@
 namespace saccade {
 namespace {
 
-constexpr float kSameSurface = 1.1F;   ///< ratio of depths
-constexpr int kTurns = 3;              ///< in which pixels without a place are asked again
-constexpr std::size_t kChunk = 128;    ///< pixels that are followed together
+constexpr float kDepthStep = 1.1F;   ///< ratio of depths from which on neighbours are two surfaces
+constexpr int kTurns = 3;            ///< in which pixels without a place are asked again
+constexpr std::size_t kChunk = 128;  ///< pixels that are followed together
 constexpr double kLargestMargin = 64;  ///< of the drawn view [px]
 
 Rigid3 rigid_of(const CameraPose& pose) {
@@ -100,7 +100,7 @@ void PlaceFinder::set_planes(const ImageF& inverse_depth) {
       const int u = x + sign * dx, v = y + sign * dy;
       if (u < 0 || v < 0 || u >= camera_.width || v >= camera_.height) continue;
       const float there = inverse_depth(u, v);
-      if (!(std::min(here, there) * kSameSurface > std::max(here, there))) continue;
+      if (!(std::min(here, there) * kDepthStep > std::max(here, there))) continue;
       sum += static_cast<float>(sign) * (there - here);
       ++count;
     }
@@ -142,7 +142,7 @@ void PlaceFinder::mark_steps() {
   open_inverse_depth_ = inverse_depth_;
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < high.size(); ++i) {
-    const bool is_step = high.pixels()[i] > kSameSurface * low.pixels()[i];
+    const bool is_step = high.pixels()[i] > kDepthStep * low.pixels()[i];
     if (!is_step) continue;
     if (options_.step_margin_px > 0) open_inverse_depth_.pixels()[i] = 0;
     at.push_back(i);

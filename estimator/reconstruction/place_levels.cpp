@@ -21,17 +21,18 @@ constexpr double kLeastShare = 0.25;
 }  // namespace
 
 double LevelFinder::find_all(std::span<const Event> events, const Trajectory& world_from_camera,
-                             const std::function<void(std::span<const PlaceLevel>)>& use) {
+                             const std::function<void(std::span<const PlaceLevel>, double)>& use) {
   double seconds = 0;
   expect(events);
   std::vector<PlaceLevel> part;
   for (std::size_t begin = 0; begin < events.size(); begin += kBatch) {
     part.clear();
+    const std::size_t count = std::min(kBatch, events.size() - begin);
     {
       const StageClock clock(seconds);
-      find(events.subspan(begin, std::min(kBatch, events.size() - begin)), world_from_camera, part);
+      find(events.subspan(begin, count), world_from_camera, part);
     }
-    use(part);
+    use(part, static_cast<double>(begin + count) / static_cast<double>(events.size()));
   }
   return seconds;
 }

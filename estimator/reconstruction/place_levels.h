@@ -59,9 +59,6 @@ class LevelFinder {
  public:
   virtual ~LevelFinder() = default;
 
-  /// Tracks so far.
-  [[nodiscard]] virtual std::uint32_t tracks() const = 0;
-
   [[nodiscard]] virtual std::span<const LevelSort> sorts() const = 0;
 
   /// Where many of `events` are to come, silent pixels will be asked seldom (still_events).
@@ -71,9 +68,11 @@ class LevelFinder {
   virtual void find(std::span<const Event> events, const Trajectory& world_from_camera,
                     std::vector<PlaceLevel>& levels) = 0;
 
-  /// What all events say, handed to `use` part by part. Returns the seconds that finding it took.
-  double find_all(std::span<const Event> events, const Trajectory& world_from_camera,
-                  const std::function<void(std::span<const PlaceLevel>)>& use);
+  /// What all events say, handed to `use` part by part, with the share of the events that this and
+  /// the parts before it are from. Returns the seconds that finding it took.
+  double find_all(
+      std::span<const Event> events, const Trajectory& world_from_camera,
+      const std::function<void(std::span<const PlaceLevel>, double share_of_events)>& use);
 };
 
 /// Where pixels look is what `Places` says, from one time to the next: SurfacePlaces or
@@ -84,7 +83,6 @@ class PlaceLevels : public LevelFinder {
   PlaceLevels(Places places, const PinholeCamera& camera, double contrast_on, double contrast_off,
               const LevelOptions& options);
 
-  [[nodiscard]] std::uint32_t tracks() const override { return tracks_; }
   [[nodiscard]] std::span<const LevelSort> sorts() const override { return sorts_; }
   void expect(std::span<const Event> events) override;
   void find(std::span<const Event> events, const Trajectory& world_from_camera,

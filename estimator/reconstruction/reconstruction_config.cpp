@@ -1,5 +1,7 @@
 #include "estimator/reconstruction/reconstruction_config.h"
 
+#include "estimator/reconstruction/growth.h"
+
 namespace saccade {
 namespace {
 
@@ -169,6 +171,7 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
       "part of the events that makes one view");
   fields.value("growth", config.growth,
                "numbers of events of the first window after which a picture is kept");
+  check_growth(fields, config.growth);
   fields.value(
       "figures", config.figures,
       "keep what Poisson's equation and the carrying of depth do by themselves (figs. 6.1, "

@@ -33,9 +33,7 @@ std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dat
 }  // namespace
 
 RunSummary run_reconstruction(const RunRequest& request) {
-  ReconstructionConfig config = config::read<ReconstructionConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<ReconstructionConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -65,11 +63,7 @@ RunSummary run_reconstruction(const RunRequest& request) {
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
-  RunSummary summary;
-  summary.found = fmt::format("{} views", windows.size());
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(timing, fmt::format("{} views", windows.size()));
 }
 
 std::string print_reconstruction_config(const config::Document& document) {

@@ -124,9 +124,7 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
 }  // namespace
 
 RunSummary run_rotation(const RunRequest& request) {
-  RotationConfig config = config::read<RotationConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<RotationConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -159,11 +157,7 @@ RunSummary run_rotation(const RunRequest& request) {
   writer.finish("rotation", request, dataset, window_of(request, first_s, last_s), config.seed,
                 config::print(config), timing);
 
-  RunSummary summary;
-  summary.found = fmt::format("{} angular velocities", rates.size());
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(timing, fmt::format("{} angular velocities", rates.size()));
 }
 
 std::string print_rotation_config(const config::Document& document) {

@@ -13,7 +13,7 @@ namespace saccade {
 namespace {
 
 /// A point behind the nearest one of its pixel by more than this factor is hidden by it.
-constexpr float kSameSurface = 1.05F;
+constexpr float kHidden = 1.05F;
 constexpr std::int32_t kInvisible = -1;
 
 /// Means of 2 x 2 pixels, as far as `fine` reaches; the rest stays.
@@ -225,8 +225,7 @@ void TemplateDrawer::splat_nearest() {
 
 void TemplateDrawer::splat_bilinear() {
   const auto stride = static_cast<std::size_t>(mask_.stride);
-  const float same_surface =
-      options_.z_test ? kSameSurface : std::numeric_limits<float>::infinity();
+  const float same_surface = options_.z_test ? kHidden : std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < pixel_.size(); ++i) {
     if (pixel_[i] == kInvisible) continue;
     const float z = z_[i];

@@ -10,6 +10,7 @@
 #include "estimator/tracking/polarity_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/tracker.h"
+#include "estimator/tracking/tracker_config.h"
 
 namespace saccade {
 
@@ -33,9 +34,7 @@ struct TrackConfig {
 
 void describe(config::Fields& fields, TrackConfig& config);
 
-/// Parts of it, of other modules that track: which pixels become map points, and how edges are
-/// tracked.
+/// A part of it, of other modules that track, too: which pixels become map points.
 void describe(config::Fields& fields, MapOptions& options);
-void describe(config::Fields& fields, TrackerOptions& options);
 
 }  // namespace saccade

@@ -182,9 +182,7 @@ TrackOutput track(const TrackConfig& config, const Dataset& dataset, const Track
 }  // namespace
 
 RunSummary run_track(const RunRequest& request) {
-  TrackConfig config = config::read<TrackConfig>(request.config);
-  if (request.seed) config.seed = *request.seed;
-  check(request);
+  const auto config = read_config<TrackConfig>(request);
   RunWriter writer(request);
 
   const auto read_start = Clock::now();

@@ -8,6 +8,7 @@
 
 #include "eval/picture/canvas.h"
 #include "eval/picture/colour_bar.h"
+#include "eval/picture/scale_bar.h"
 
 namespace saccade {
 namespace {
@@ -38,6 +39,13 @@ std::pair<double, double> span_of(std::vector<double> values) {
 }
 
 }  // namespace
+
+DepthRange depth_range(std::span<const DepthPoint> points) {
+  ImageF depths(static_cast<int>(points.size()), 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    depths.pixels()[i] = static_cast<float>(points[i].depth_m);
+  return depth_range(depths);
+}
 
 ImageRgb8 draw_depth_points(std::span<const DepthPoint> points, const PinholeCamera& camera,
                             const DepthRange& range, int upscale, const Theme& theme) {
@@ -84,10 +92,7 @@ ImageRgb8 draw_top_down(std::span<const Eigen::Vector3d> points, int width, int 
       picture(static_cast<int>(u), static_cast<int>(v)) = theme.estimate;
   }
   Canvas canvas(std::move(picture));
-  const double metre = std::pow(10, std::floor(std::log10(extent_x)));
-  const Eigen::Vector2d start(12, height - 12);
-  canvas.line(start, start + Eigen::Vector2d(scale * metre, 0), theme.text);
-  canvas.text(fmt::format("{:.3g} m", metre), start - Eigen::Vector2d(0, 5), theme.text);
+  draw_scale_bar(canvas, scale, theme);
   return canvas.image();
 }
 

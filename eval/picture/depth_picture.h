@@ -12,6 +12,9 @@
 
 namespace saccade {
 
+/// depth_range() of single depths.
+[[nodiscard]] DepthRange depth_range(std::span<const DepthPoint> points);
+
 /// Single depths of a view as squares somewhat larger than a pixel, coloured like draw_depth(),
 /// with a colour bar (thesis figs. 8.9-8.11 a).
 [[nodiscard]] ImageRgb8 draw_depth_points(std::span<const DepthPoint> points,
@@ -28,7 +31,7 @@ namespace saccade {
                                           double max_relative, int upscale, const Theme& theme);
 
 /// The points seen from above (fig. 8.11 b): along the vertical axis of the view, its camera at the
-/// lower edge looking up, square metres. `points` in the camera's frame [m].
+/// lower edge looking up, with a scale bar. `points` in the camera's frame [m].
 [[nodiscard]] ImageRgb8 draw_top_down(std::span<const Eigen::Vector3d> points, int width,
                                       int height, const Theme& theme);
 

@@ -17,4 +17,14 @@ void write_film(const std::filesystem::path& output, std::size_t count, double f
   video.finish();
 }
 
+void write_slow_film(const std::filesystem::path& output, const TimeSpan& span,
+                     const RenderOptions& options, const std::function<ImageRgb8(double)>& frame) {
+  constexpr double kFps = 30;
+  const double fps = options.fps.value_or(kFps);
+  const double step_s = 1 / (fps * options.slow_motion);
+  const auto count = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
+  write_film(output, count, fps,
+             [&](std::size_t i) { return frame(span.start_s + static_cast<double>(i) * step_s); });
+}
+
 }  // namespace saccade

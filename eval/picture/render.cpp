@@ -10,6 +10,7 @@
 #include "eval/metrics/scored_samples.h"
 #include "eval/picture/film.h"
 #include "eval/picture/mosaic_picture.h"
+#include "eval/picture/odometry_view.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/picture/sheet.h"
 #include "eval/picture/stabilized_view.h"
@@ -19,8 +20,6 @@
 
 namespace saccade {
 namespace {
-
-constexpr double kFps = 30;
 
 void check_options(const RenderOptions& options) {
   const auto check = [](bool holds, const char* name, const char* problem) {
@@ -161,16 +160,6 @@ ImageRgb8 moment(const Scene& scene, double t_s) {
   return sheet.draw();
 }
 
-void write_video(const Scene& scene, const TimeSpan& span, const std::filesystem::path& output,
-                 const RenderOptions& options) {
-  const double fps = options.fps.value_or(kFps);
-  const double step_s = 1 / (fps * options.slow_motion);
-  const auto frames = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
-  write_film(output, frames, fps, [&](std::size_t i) {
-    return moment(scene, span.start_s + static_cast<double>(i) * step_s);
-  });
-}
-
 }  // namespace
 
 void render(const std::filesystem::path& path, const std::filesystem::path& output,
@@ -185,6 +174,9 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
     if (const auto mosaic = load_mosaic(*subject.run))
       return render_mosaic(*subject.run, subject.dataset, *mosaic, title_of(subject), output,
                            options);
+    if (const auto history = KeyframeHistory::load(*subject.run); history && subject.has_poses())
+      return render_odometry(*subject.run, subject.dataset, *history, title_of(subject), span,
+                             output, options);
     const ViewPictures views(subject.run->folder, subject.dataset);
     if (!views.times().empty())
       return render_views(*subject.run, subject.dataset, views, title_of(subject), span, output,
@@ -202,7 +194,8 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
                                {options.upscale, options.events.value_or(0),
                                 options.dark ? kDarkTheme : kLightTheme}),
                     std::move(overlay), options.upscale};
-  if (ending == ".mp4") return write_video(scene, span, output, options);
+  if (ending == ".mp4")
+    return write_slow_film(output, span, options, [&](double t_s) { return moment(scene, t_s); });
   write_png(output, single ? moment(scene, *options.time_s) : contact_sheet(scene, span));
 }
 

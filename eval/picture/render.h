@@ -33,6 +33,10 @@ struct RenderOptions {
 ///   .png   contact sheet over the whole time, or the moment `time_s`: grey frame, events and depth
 ///          of a dataset; events, map tracked over events and trajectory of a run
 ///   .mp4   events beside the frame, or events under the tracked map; encoded by the program ffmpeg
+/// Of an odometry run, in four pictures: map over events, depth and image of the keyframe in force,
+/// path from above with the errors so far:
+///   .png   a row per moment, or the moment `time_s`
+///   .mp4   the same over time
 /// Of a run with views (depth, reconstruct):
 ///   .png   a row per view, at most six or the one nearest to `time_s`: events, depth or image,
 ///          truth, error

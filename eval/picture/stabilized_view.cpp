@@ -15,7 +15,6 @@
 namespace saccade {
 namespace {
 
-constexpr double kFps = 30;
 constexpr float kBrightest = 0.99F;  // quantile of the counts
 
 std::filesystem::path folder_of(const RunFolder& run) { return run.folder / "stabilized"; }
@@ -108,12 +107,9 @@ void render_stabilized(const RunFolder& run, const Dataset& dataset, const std::
       sheet.add_row(fmt::format("{:.3f} s", t_s), std::move(events));
   };
   if (output.extension() == ".mp4") {
-    const double fps = options.fps.value_or(kFps);
-    const double step_s = 1 / (fps * options.slow_motion);
-    const auto count = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
-    return write_film(output, count, fps, [&](std::size_t i) {
+    return write_slow_film(output, span, options, [&](double t_s) {
       Sheet sheet(title, theme);
-      add_moment(sheet, span.start_s + static_cast<double>(i) * step_s);
+      add_moment(sheet, t_s);
       return sheet.draw();
     });
   }

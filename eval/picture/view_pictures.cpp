@@ -22,22 +22,7 @@ double largest_depth_error(const Dataset& dataset) {
 }
 
 constexpr float kLargestLogError = 0.5F;
-
-/// What the colours of a view span: its true depths or, where they are unknown, the estimated ones.
-DepthRange range_of(const EstimatedView& view, const std::optional<DepthTruth>& truth) {
-  if (truth) return depth_range(truth->depth);
-  ImageF depths(static_cast<int>(view.points.size()), 1);
-  for (std::size_t i = 0; i < view.points.size(); ++i)
-    depths.pixels()[i] = static_cast<float>(view.points[i].depth_m);
-  return depth_range(depths);
-}
-
-CaptionedPicture unscored_image(const ImageView& view, int factor) {
-  const float low = quantile(view.log_image, view.observed, 0.005);
-  const float high = quantile(view.log_image, view.observed, 0.995);
-  return {"image (unobserved: blue)",
-          upscale(draw_log_image(view.log_image, view.observed, low, high), factor)};
-}
+constexpr const char* kImageCaption = "image (unobserved: blue)";
 
 GrowthStep growth_step(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
@@ -56,7 +41,7 @@ std::vector<CaptionedPicture> depth_pictures(const EstimatedView& view, const Da
                                              int upscale, const Theme& theme) {
   const auto truth = depth_truth_at(dataset, view.t_s);
   const PinholeCamera camera = dataset.camera().undistorted();
-  const DepthRange range = range_of(view, truth);
+  const DepthRange range = truth ? depth_range(truth->depth) : depth_range(view.points);
   std::vector<CaptionedPicture> pictures = {
       {"estimated depth", draw_depth_points(view.points, camera, range, upscale, theme)}};
   if (!truth) return pictures;
@@ -71,18 +56,24 @@ std::vector<CaptionedPicture> image_pictures(const ImageView& view, const Datase
                                              int factor) {
   const auto comparison = compare_image(view, dataset);
   const auto scores = comparison ? score_image(*comparison) : std::nullopt;
-  if (!scores) return {unscored_image(view, factor)};
+  if (!scores) return {{kImageCaption, draw_image_alone(view, factor)}};
   const float low = quantile(comparison->truth, comparison->mask, 0.005);
   const float high = quantile(comparison->truth, comparison->mask, 0.995);
   ImageF error = scores->fitted;
   for (std::size_t i = 0; i < error.size(); ++i)
     error.pixels()[i] = std::abs(error.pixels()[i] - comparison->truth.pixels()[i]);
-  return {{"image (unobserved: blue)",
-           upscale(draw_log_image(scores->fitted, view.observed, low, high), factor)},
-          {"log intensity, the frame's",
-           upscale(draw_log_image(comparison->truth, {}, low, high), factor)},
-          {fmt::format("error, 0 to {:g} log units", kLargestLogError),
-           upscale(draw_amount(error, comparison->mask, kLargestLogError), factor)}};
+  return {
+      {kImageCaption, upscale(draw_log_image(scores->fitted, view.observed, low, high), factor)},
+      {"log intensity, the frame's",
+       upscale(draw_log_image(comparison->truth, {}, low, high), factor)},
+      {fmt::format("error, 0 to {:g} log units", kLargestLogError),
+       upscale(draw_amount(error, comparison->mask, kLargestLogError), factor)}};
+}
+
+ImageRgb8 draw_image_alone(const ImageView& view, int factor) {
+  const float low = quantile(view.log_image, view.observed, 0.005);
+  const float high = quantile(view.log_image, view.observed, 0.995);
+  return upscale(draw_log_image(view.log_image, view.observed, low, high), factor);
 }
 
 std::vector<GrowthStep> growth_steps(const std::filesystem::path& folder) {

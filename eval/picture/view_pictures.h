@@ -23,6 +23,9 @@ namespace saccade {
 [[nodiscard]] std::vector<CaptionedPicture> image_pictures(const ImageView& view,
                                                            const Dataset& dataset, int upscale);
 
+/// The same without the truth, in its own range.
+[[nodiscard]] ImageRgb8 draw_image_alone(const ImageView& view, int upscale);
+
 /// A reconstruction after its first events.
 struct GrowthStep {
   std::filesystem::path file;

@@ -15,6 +15,7 @@ void score(RunData& data) {
   data.samples = scored_samples(data.input);
   data.errors = errors_over_time(data.input);
   data.map = data.run.load_map().positions;
+  data.keyframes = KeyframeHistory::load(data.run);
   data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
   data.metrics = score_run(data.run, *data.data, data.input.mean_depth_m);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/io/dataset.h"
+#include "eval/keyframe_history.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/run_folder.h"
 
@@ -33,6 +34,7 @@ struct RunData {
   ErrorSeries errors;
   ReprojectionSeries reprojection;
   std::vector<Eigen::Vector3f> map;
+  std::optional<KeyframeHistory> keyframes;  ///< of an odometry run
 };
 
 /// Reads and scores the run folder; `index` is its place on the page.

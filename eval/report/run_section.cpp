@@ -116,7 +116,8 @@ std::string map_pictures(const RunData& data) {
   for (const double share : kMoments) {
     const double t_s = start_s + share * length_s;
     const SensorView view(*data.data, t_s, t_s, {});
-    html += figure(view.map_over_events(t_s, data.map, held_pose(data.input.estimate, t_s)),
+    const auto& map = data.keyframes ? data.keyframes->map_at(t_s) : data.map;
+    html += figure(view.map_over_events(t_s, map, held_pose(data.input.estimate, t_s)),
                    fmt::format("{:.3f} s", t_s) + swatch(kDarkTheme.map, "map") +
                        swatch(kDarkTheme.on, "ON") + swatch(kDarkTheme.off, "OFF"),
                    fmt::format("map over events at {:.3f} s", t_s));

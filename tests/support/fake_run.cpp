@@ -8,9 +8,12 @@
 #include "core/io/csv_file.h"
 #include "core/io/dataset.h"
 #include "core/io/dataset_writer.h"
+#include "core/io/exr_file.h"
+#include "core/io/keyframe_list.h"
 #include "core/io/ply_file.h"
 #include "core/io/run_record.h"
 #include "core/io/trajectory_file.h"
+#include "core/io/view_list.h"
 #include "core/random.h"
 #include "tests/support/planar_world.h"
 
@@ -130,6 +133,37 @@ void write_fake_run(const std::filesystem::path& folder, const std::filesystem::
   record.config_yaml = "samples: 500\niterations: 30\nevent_map_ratio: 0.4\n";
   write_run_record(target.path() / "run.yaml", record);
   target.commit();
+}
+
+void add_fake_keyframes(const std::filesystem::path& run, int count) {
+  RunRecord record = read_run_record(run / "run.yaml");
+  const PinholeCamera camera = Dataset::open(record.dataset).camera();
+  const PlanarWorld world = corner_world(camera.width, camera.height);
+  const PointCloud map = read_ply(run / "map.ply");
+  std::vector<KeyframeEntry> keyframes;
+  std::vector<RunView> views;
+  for (int i = 0; i < count; ++i) {
+    RunView view;
+    view.t_s = 0.02 * (i + 1);
+    view.world_from_camera = corner_motion(view.t_s);
+    view.depth = run / ("depth_" + std::to_string(i) + ".exr");
+    view.image = run / ("image_" + std::to_string(i) + ".exr");
+    write_exr(view.depth, world.depth(view.world_from_camera), "Z");
+    write_exr(view.image, world.log_intensity(view.world_from_camera), "L");
+    views.push_back(view);
+    KeyframeEntry keyframe;
+    keyframe.t_s = keyframe.made_s = view.t_s;
+    keyframe.taken_s = view.t_s + 0.01;
+    keyframe.world_from_camera = view.world_from_camera;
+    const auto size = static_cast<std::int64_t>(map.positions.size());
+    keyframe.edges = size * (i + 1) / count - size * i / count;
+    keyframe.active = {i};
+    keyframes.push_back(keyframe);
+  }
+  write_view_list(run / "views.yaml", views);
+  write_keyframe_list(run / "keyframes.yaml", keyframes);
+  record.module = "odometry";
+  write_run_record(run / "run.yaml", record);
 }
 
 }  // namespace saccade::testing

@@ -1,29 +1,21 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <memory>
-
-#include "tests/support/command.h"
 #include "tests/support/fake_run.h"
+#include "tests/support/shared_folder.h"
 
 namespace saccade::testing {
 
-/// A small dataset and a run over it, written once for all tests of a suite and left as they are.
-class FakeFolders : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
+/// A small dataset and a run over it.
+class FakeFolders : public SharedFolder<FakeFolders> {
+ public:
+  static void fill() {
     write_corner_dataset(dataset(), "walls", 0.25, 80);
     write_fake_run(run(), dataset());
   }
-  static void TearDownTestSuite() { folder_.reset(); }
 
-  [[nodiscard]] static std::filesystem::path dataset() { return folder_->path() / "data"; }
-  [[nodiscard]] static std::filesystem::path run() { return folder_->path() / "walls_accurate"; }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
+ protected:
+  [[nodiscard]] static std::filesystem::path dataset() { return path("data"); }
+  [[nodiscard]] static std::filesystem::path run() { return path("walls_accurate"); }
 };
 
 }  // namespace saccade::testing

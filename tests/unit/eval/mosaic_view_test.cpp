@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "core/io/exr_file.h"
@@ -17,6 +16,7 @@
 #include "tests/support/command.h"
 #include "tests/support/direction_world.h"
 #include "tests/support/error_of.h"
+#include "tests/support/shared_folder.h"
 
 namespace saccade {
 namespace {
@@ -25,26 +25,21 @@ namespace fs = std::filesystem;
 using testing::DirectionWorld;
 using testing::error_of;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 
 constexpr double kTurn_s = 0.6;
 
 /// A dataset of the sky and runs that claim to have seen it.
-class MosaicScores : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_sky_dataset(dataset(), turning(), kTurn_s);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
+class MosaicScores : public testing::SharedFolder<MosaicScores> {
+ public:
+  static void fill() { testing::write_sky_dataset(dataset(), turning(), kTurn_s); }
 
+ protected:
   [[nodiscard]] static testing::Turning turning() { return testing::sweep(0.4, 1.5); }
-  [[nodiscard]] static fs::path folder() { return folder_->path(); }
-  [[nodiscard]] static fs::path dataset() { return folder_->path() / "sky"; }
+  [[nodiscard]] static fs::path dataset() { return path("sky"); }
 
   /// The true mosaic in a world whose heading is another one, its orientations drifting.
   [[nodiscard]] static RunFolder write_run(const std::string& name, double heading, double drift) {
-    const fs::path run = folder_->path() / name;
+    const fs::path run = path(name);
     fs::create_directories(run);
     const Eigen::Quaterniond other(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
     std::vector<StampedPose> poses;
@@ -80,9 +75,6 @@ class MosaicScores : public ::testing::Test {
   [[nodiscard]] static Metrics score(const RunFolder& run) {
     return score_mosaic(compare_mosaic(load_mosaic(run).value(), run, Dataset::open(dataset())));
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(MosaicScores, TheTruthInAnotherHeadingIsPerfect) {
@@ -117,14 +109,13 @@ TEST_F(MosaicScores, WithoutATruePanoramaThereAreNone) {
 
 TEST_F(MosaicScores, AreInTheReportAndThePicturesBeneathEachOther) {
   const RunFolder run = write_run("shown", 0.3, 0);
-  write_report({&run.folder, 1}, folder() / "report.html");
-  const std::string html = testing::read_file(folder() / "report.html");
+  write_report({&run.folder, 1}, path("report.html"));
+  const std::string html = testing::read_file(path("report.html"));
   for (const char* text : {"Mosaic", "fields of view", "never in view", "log units"})
     EXPECT_THAT(html, HasSubstr(text));
-  render(run.folder, folder() / "mosaic.png");
-  EXPECT_GT(read_image_grey(folder() / "mosaic.png").height(),
-            3 * load_mosaic(run)->panorama.height);
-  EXPECT_THAT(error_of([&] { render(run.folder, folder() / "film.mp4"); }), HasSubstr("growth"));
+  render(run.folder, path("mosaic.png"));
+  EXPECT_GT(read_image_grey(path("mosaic.png")).height(), 3 * load_mosaic(run)->panorama.height);
+  EXPECT_THAT(error_of([&] { render(run.folder, path("film.mp4")); }), HasSubstr("growth"));
 }
 
 TEST_F(MosaicScores, NamesWhatIsMalformed) {

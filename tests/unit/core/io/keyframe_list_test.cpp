@@ -26,7 +26,7 @@ KeyframeEntry some_keyframe(double t_s) {
   keyframe.points = 678;
   keyframe.edges = 600;
   keyframe.typical_depth_m = 2.5;
-  keyframe.active = {0, 2};
+  keyframe.active = {0, 1};
   return keyframe;
 }
 
@@ -53,6 +53,16 @@ TEST(KeyframeList, RefusesKeyframesOutOfOrder) {
     return read_keyframe_list(file);
   });
   EXPECT_THAT(error, HasSubstr("in order of time"));
+}
+
+TEST(KeyframeList, RefusesActiveKeyframesThatAreNotThere) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "keyframes.yaml";
+  const std::string error = error_of([&] {
+    write_keyframe_list(file, std::vector{some_keyframe(0.5)});
+    return read_keyframe_list(file);
+  });
+  EXPECT_THAT(error, HasSubstr("active keyframe 1 is not among the 1"));
 }
 
 }  // namespace

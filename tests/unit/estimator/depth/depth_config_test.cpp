@@ -62,6 +62,7 @@ TEST(DepthConfig, NamesWhatIsWrong) {
   EXPECT_THAT(error("thesis: {filter: {converged: 0}}"), HasSubstr("converged"));
   EXPECT_THAT(error("thesis: {outliers: {radius: .inf}}"), HasSubstr("radius"));
   EXPECT_THAT(error("thesis: {initial_depth_m: 0}"), HasSubstr("initial_depth_m"));
+  EXPECT_THAT(error("{method: sweep, sweep: {median_side_px: 4}}"), HasSubstr("must be odd"));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 
 #include "core/io/dataset.h"
@@ -20,6 +19,8 @@
 #include "tests/support/error_of.h"
 #include "tests/support/fake_run.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -28,30 +29,17 @@ namespace fs = std::filesystem;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::read_file;
-using testing::TemporaryFolder;
 
-class DepthModule : public ::testing::Test {
+class DepthModule : public testing::SharedFolder<DepthModule> {
+ public:
+  static void fill() { testing::write_corner_dataset(dataset(), "corner", 0.25, 120); }
+
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_corner_dataset(dataset(), "corner", 0.25, 120);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  [[nodiscard]] static fs::path dataset() { return folder_->path() / "corner"; }
-  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
-
+  [[nodiscard]] static fs::path dataset() { return path("corner"); }
   [[nodiscard]] static RunRequest request(const std::string& name,
                                           const std::string& yaml = "window: {duration_s: 0.13}") {
-    RunRequest request;
-    request.dataset = dataset();
-    request.output = path(name);
-    request.config = config::parse(yaml, "t.yaml");
-    return request;
+    return testing::run_request(dataset(), path(name), yaml);
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(DepthModule, WritesACompleteRunFolder) {

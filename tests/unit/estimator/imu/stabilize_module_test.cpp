@@ -3,18 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "core/config/config.h"
 #include "core/io/dataset.h"
 #include "core/io/event_file.h"
+#include "core/io/events_h5.h"
 #include "core/io/file_list.h"
+#include "core/io/run_record.h"
 #include "core/io/stabilized_events.h"
 #include "core/parallel.h"
 #include "estimator/imu/stabilize_config.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
+#include "tests/support/shared_folder.h"
 #include "tests/unit/estimator/imu/turning_dataset.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -23,30 +25,18 @@ namespace fs = std::filesystem;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::read_file;
-using testing::TemporaryFolder;
 
 constexpr double kDuration_s = 0.25;
 
-class StabilizeModule : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_turning_dataset(path("corner"), kDuration_s, 120);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
+class StabilizeModule : public testing::SharedFolder<StabilizeModule> {
+ public:
+  static void fill() { testing::write_turning_dataset(path("corner"), kDuration_s, 120); }
 
-  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
+ protected:
   [[nodiscard]] static RunRequest request(const std::string& name,
                                           const std::string& yaml = "window_s: 0.05") {
-    RunRequest request;
-    request.dataset = path("corner");
-    request.output = path(name);
-    request.config = config::parse(yaml, "t.yaml");
-    return request;
+    return testing::run_request(path("corner"), path(name), yaml);
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(StabilizeModule, FindsTheOrientation) {
@@ -112,6 +102,23 @@ TEST_F(StabilizeModule, TakesThePosesOfAnotherProgram) {
   run_stabilization(with_poses);
   EXPECT_TRUE(fs::exists(path("poses") / "stabilized" / "events.h5"));
   EXPECT_FALSE(fs::exists(path("poses") / "gyro_bias.txt"));
+}
+
+TEST_F(StabilizeModule, ALengthAloneCountsFromTheFirstEvent) {
+  fs::copy(path("corner"), path("late"), fs::copy_options::recursive);
+  const Dataset data = Dataset::open(path("late"));
+  Events events = data.load_events(0.1);
+  const double first_s = seconds_from_ns(events.front().t_ns);
+  EventH5Writer writer(path("late") / "events.h5", TimestampUnit::kNanoseconds);
+  writer.append(events);
+  writer.close();
+  auto shorter = request("shorter");
+  shorter.dataset = path("late");
+  shorter.duration_s = 0.08;
+  run_stabilization(shorter);
+  const RunRecord record = read_run_record(path("shorter") / "run.yaml");
+  EXPECT_NEAR(record.window->start_s, first_s, 1e-6);
+  EXPECT_NEAR(record.window->end_s, first_s + 0.08, 1e-6);
 }
 
 TEST_F(StabilizeModule, WithoutASensorItSaysWhatIsMissing) {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <string>
 
 #include "core/io/exr_file.h"
@@ -14,6 +13,8 @@
 #include "tests/support/command.h"
 #include "tests/support/direction_world.h"
 #include "tests/support/error_of.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -22,29 +23,16 @@ namespace fs = std::filesystem;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::read_file;
-using testing::TemporaryFolder;
 
-class MosaicModule : public ::testing::Test {
+class MosaicModule : public testing::SharedFolder<MosaicModule> {
+ public:
+  static void fill() { testing::write_sky_dataset(dataset(), testing::sweep(0.4, 1.5), 1.0); }
+
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_sky_dataset(dataset(), testing::sweep(0.4, 1.5), 1.0);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  [[nodiscard]] static fs::path dataset() { return folder_->path() / "sky"; }
-  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
-
+  [[nodiscard]] static fs::path dataset() { return path("sky"); }
   [[nodiscard]] static RunRequest request(const std::string& name, const std::string& yaml) {
-    RunRequest request;
-    request.dataset = dataset();
-    request.output = path(name);
-    request.config = config::parse(yaml, "t.yaml");
-    return request;
+    return testing::run_request(dataset(), path(name), yaml);
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(MosaicModule, NeedsNothingButEventsAndTheInertialSensor) {
@@ -116,6 +104,8 @@ TEST_F(MosaicModule, NamesWhatIsMissing) {
   EXPECT_THAT(error_of([&] { return run_mosaic(run); }), HasSubstr("no events within the time"));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "pixels_per_radian: 0")); }),
               HasSubstr("pixels_per_radian"));
+  EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "growth: [5000, 0]")); }),
+              ::testing::AllOf(HasSubstr("growth"), HasSubstr("0 is no number of events")));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "depth: {}")); }),
               HasSubstr("depth"));
 }

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "core/config/document.h"
-#include "core/io/image_file.h"
 #include "core/io/keyframe_list.h"
 #include "core/io/trajectory_file.h"
 #include "core/io/view_list.h"
@@ -19,6 +17,9 @@
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/recording.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -38,29 +39,14 @@ Rigid3 glide(double t_s) {
           {0.8 * t_s, 0.1 * std::sin(6 * t_s), 0.1 * t_s}};
 }
 
-void write_poses_until(const fs::path& folder, double end_s) {
+std::vector<StampedPose> poses_until(double end_s) {
   std::vector<StampedPose> poses;
   for (int i = 0; i * 1e-3 <= end_s + 1e-9; ++i) poses.push_back({i * 1e-3, glide(i * 1e-3)});
-  write_tum_trajectory(folder / "groundtruth.txt", poses);
+  return poses;
 }
 
-/// A recording in the layout of the Event Camera Dataset: events, calibration, poses, and a picture
-/// for the sensor's size.
-void write_recording(const fs::path& folder) {
-  const testing::PlanarWorld world = testing::corner_world(160, 120);
-  fs::create_directories(folder / "images");
-  std::ofstream events(folder / "events.txt");
-  events.precision(9);
-  events << std::fixed;
-  for (const Event& e : world.simulate(glide, 0, kEnd_s, 1e-3, 0.12))
-    events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0 ? 1 : 0)
-           << '\n';
-  const PinholeCamera& camera = world.camera();
-  std::ofstream(folder / "calib.txt")
-      << camera.fx << ' ' << camera.fy << ' ' << camera.cx << ' ' << camera.cy << " 0 0 0 0 0\n";
-  std::ofstream(folder / "images.txt") << "0 images/a.png\n";
-  write_png(folder / "images/a.png", ImageU8(camera.width, camera.height));
-  write_poses_until(folder, kEnd_s);
+void write_poses_until(const fs::path& folder, double end_s) {
+  write_tum_trajectory(folder / "groundtruth.txt", poses_until(end_s));
 }
 
 constexpr const char* kQuick = R"(
@@ -73,30 +59,25 @@ tracking:
   motion: {prediction: constant_velocity}
 )";
 
-class OdometryModule : public ::testing::Test {
+class OdometryModule : public testing::SharedFolder<OdometryModule> {
+ public:
+  static void fill() {
+    const testing::PlanarWorld world = testing::corner_world(160, 120);
+    const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
+    testing::write_recording(dataset(), world.camera(),
+                             world.simulate(glide, 0, kEnd_s, 1e-3, 0.12), std::span(&blank, 1),
+                             poses_until(kEnd_s));
+  }
+
  protected:
-  static void SetUpTestSuite() {
-    recording_ = new TemporaryFolder;
-    write_recording(recording_->path() / "corner");
-  }
-  static void TearDownTestSuite() {
-    delete recording_;
-    recording_ = nullptr;
-  }
+  [[nodiscard]] static fs::path dataset() { return path("corner"); }
 
   [[nodiscard]] RunRequest request(const std::string& name, const std::string& yaml = kQuick) {
-    RunRequest request;
-    request.dataset = recording_->path() / "corner";
-    request.output = folder_.path() / name;
-    request.config = config::parse(yaml, "o.yaml");
-    return request;
+    return testing::run_request(dataset(), folder_.path() / name, yaml);
   }
 
-  static TemporaryFolder* recording_;
   TemporaryFolder folder_;
 };
-
-TemporaryFolder* OdometryModule::recording_ = nullptr;
 
 TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
   const RunSummary summary = run_odometry(request(
@@ -135,9 +116,9 @@ TEST_F(OdometryModule, WritesKeyframesWithTheirViews) {
 
 TEST_F(OdometryModule, LooksAtNoPoseBeyondTheStart) {
   (void)run_odometry(request("all"));
-  write_poses_until(recording_->path() / "corner", 0.2);
+  write_poses_until(dataset(), 0.2);
   (void)run_odometry(request("start"));
-  write_poses_until(recording_->path() / "corner", kEnd_s);
+  write_poses_until(dataset(), kEnd_s);
   for (const char* file : {"trajectory.txt", "poses.csv", "map.ply"})
     EXPECT_EQ(read_file(folder_.path() / "all" / file), read_file(folder_.path() / "start" / file))
         << file;
@@ -209,9 +190,9 @@ reconstruction: {method: gradient}
 }
 
 TEST_F(OdometryModule, SaysWhatIsWrong) {
-  fs::remove(recording_->path() / "corner" / "groundtruth.txt");
+  fs::remove(dataset() / "groundtruth.txt");
   EXPECT_THAT(error_of([&] { return run_odometry(request("none")); }), HasSubstr("start.truth_s"));
-  write_poses_until(recording_->path() / "corner", kEnd_s);
+  write_poses_until(dataset(), kEnd_s);
   EXPECT_THAT(error_of([&] { return run_odometry(request("rays", "adjustment: {rounds: 1}\n")); }),
               HasSubstr("depth.method: rays"));
 }

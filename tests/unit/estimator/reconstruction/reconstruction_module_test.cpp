@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 
 #include "core/io/dataset.h"
@@ -16,6 +15,8 @@
 #include "tests/support/error_of.h"
 #include "tests/support/fake_run.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -24,7 +25,6 @@ namespace fs = std::filesystem;
 using testing::error_of;
 using ::testing::HasSubstr;
 using testing::read_file;
-using testing::TemporaryFolder;
 
 constexpr const char* kBest =
     "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1, still_turns: 2, "
@@ -33,23 +33,14 @@ constexpr const char* kThesis =
     "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
     "levels: {event_sigma: 0.1, still: false}}";
 
-class ReconstructionModule : public ::testing::Test {
+class ReconstructionModule : public testing::SharedFolder<ReconstructionModule> {
+ public:
+  static void fill() { testing::write_corner_dataset(dataset(), "corner", 0.3, 120); }
+
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_corner_dataset(dataset(), "corner", 0.3, 120);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  [[nodiscard]] static fs::path dataset() { return folder_->path() / "corner"; }
-  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
-
+  [[nodiscard]] static fs::path dataset() { return path("corner"); }
   [[nodiscard]] static RunRequest request(const std::string& name, const std::string& yaml) {
-    RunRequest request;
-    request.dataset = dataset();
-    request.output = path(name);
-    request.config = config::parse(yaml, "t.yaml");
-    return request;
+    return testing::run_request(dataset(), path(name), yaml);
   }
 
   /// Correlation of the first view's log intensity with that of the true frame at its time.
@@ -73,9 +64,6 @@ class ReconstructionModule : public ::testing::Test {
     const auto n = static_cast<double>(truth.size());
     return (ab - a * b / n) / std::sqrt((aa - a * a / n) * (bb - b * b / n));
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(ReconstructionModule, EquationsRecoverTheImage) {

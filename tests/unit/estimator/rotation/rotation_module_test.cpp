@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "core/config/config.h"
 #include "estimator/rotation/rotation_config.h"
-#include "tests/support/command.h"
 #include "tests/support/error_of.h"
+#include "tests/support/shared_folder.h"
 #include "tests/unit/estimator/imu/turning_dataset.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -17,25 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 using testing::error_of;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 
-class RotationModule : public ::testing::Test {
+class RotationModule : public testing::SharedFolder<RotationModule> {
+ public:
+  static void fill() { testing::write_turning_dataset(path("corner"), 0.25, 120); }
+
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    testing::write_turning_dataset(path("corner"), 0.25, 120);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  [[nodiscard]] static fs::path path(const std::string& name) { return folder_->path() / name; }
-
   /// RMS error [rad/s].
   static double run(const std::string& name, const std::string& yaml) {
-    RunRequest request;
-    request.dataset = path("corner");
-    request.output = path(name);
-    request.config = config::parse(yaml, "t.yaml");
-    run_rotation(request);
+    run_rotation(testing::run_request(path("corner"), path(name), yaml));
     const auto rates = read_angular_velocities(path(name) / "angular_velocity.txt");
     EXPECT_GT(rates.size(), 2U);
     double squares = 0;
@@ -43,9 +32,6 @@ class RotationModule : public ::testing::Test {
       squares += (rate.angular_velocity - testing::corner_rate(rate.t_s)).squaredNorm();
     return std::sqrt(squares / static_cast<double>(rates.size()));
   }
-
- private:
-  static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(RotationModule, ThePerfectSensorIsRight) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,8 @@
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/recording.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -55,23 +56,14 @@ ImageU8 picture_of(const PlanarWorld& world, const Rigid3& pose) {
   return srgb8_from_linear(radiance);
 }
 
-/// Writes a recording in the layout of the Event Camera Dataset.
-void write_recording(const fs::path& folder) {
+void write_wall(const fs::path& folder) {
   const PlanarWorld world = wall();
-  fs::create_directories(folder / "images");
-  std::ofstream events(folder / "events.txt");
-  events.precision(9);
-  events << std::fixed;
-  for (const Event& e : world.simulate(motion, 0, kEnd_s, 2e-3, 0.12))
-    events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0 ? 1 : 0)
-           << '\n';
-  std::ofstream(folder / "calib.txt") << "66 66 39.5 29.5 0 0 0 0 0\n";
-  std::ofstream(folder / "images.txt") << "0 images/a.png\n0.2 images/b.png\n";
-  write_png(folder / "images/a.png", picture_of(world, motion(0)));
-  write_png(folder / "images/b.png", picture_of(world, motion(0.2)));
   std::vector<StampedPose> poses;
   for (int i = 0; i <= 400; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
-  write_tum_trajectory(folder / "groundtruth.txt", poses);
+  const testing::StampedPicture pictures[] = {{0, picture_of(world, motion(0))},
+                                              {0.2, picture_of(world, motion(0.2))}};
+  testing::write_recording(folder, world.camera(), world.simulate(motion, 0, kEnd_s, 2e-3, 0.12),
+                           pictures, poses);
 }
 
 /// RMS distance of points of the wall all over the view between a pose and the true one [px].
@@ -91,15 +83,11 @@ double error_px(const Rigid3& world_from_camera, double t_s) {
 
 class TrackModule : public ::testing::Test {
  protected:
-  TrackModule() { write_recording(dataset_); }
+  TrackModule() { write_wall(dataset_); }
 
   [[nodiscard]] RunRequest request(const std::string& name,
                                    const std::string& yaml = "reference: {planar_depth_m: 1.5}") {
-    RunRequest request;
-    request.dataset = dataset_;
-    request.output = folder_.path() / name;
-    request.config = config::parse(yaml, "t.yaml");
-    return request;
+    return testing::run_request(dataset_, folder_.path() / name, yaml);
   }
 
   [[nodiscard]] std::string error(const RunRequest& request) {
@@ -306,9 +294,9 @@ TEST_F(TrackModule, AFrameThatIsNotThere) {
   RunRequest late = request("run");
   late.start_s = 0.3;
   EXPECT_THAT(error(late), HasSubstr("no frame at or after the start"));
-  remove("images/a.png");
+  remove("images/0.png");
   EXPECT_THAT(error(request("run", "reference: {planar_depth_m: 1.5, frame: 0}")),
-              HasSubstr("a.png"));
+              HasSubstr("0.png"));
 }
 
 TEST_F(TrackModule, AWindowWithoutEvents) {
@@ -340,14 +328,14 @@ TEST_F(TrackModule, AWindowWithoutFrames) {
   RunRequest late = request("run", "{method: frames, reference: {planar_depth_m: 1.5}}");
   late.start_s = 0.25;
   EXPECT_THAT(error(late), HasSubstr("no frames in the window"));
-  folder_.write("wall/images.txt", "0 images/a.png\n0.2 images/missing.png\n");
+  folder_.write("wall/images.txt", "0 images/0.png\n0.2 images/missing.png\n");
   EXPECT_THAT(error(request("run", "{method: frames, reference: {planar_depth_m: 1.5}}")),
               HasSubstr("missing.png"));
 }
 
 TEST_F(TrackModule, AnEmptyMapIsLostTracking) {
   // A frame without texture is input that can be read: the poses say that it did not work.
-  write_png(dataset_ / "images/a.png", ImageU8(80, 60, 128));
+  write_png(dataset_ / "images/0.png", ImageU8(80, 60, 128));
   const RunSummary summary =
       run_track(request("run", "{reference: {planar_depth_m: 1.5, frame: 0}}"));
   EXPECT_GT(summary.poses, 0U);
