@@ -66,6 +66,8 @@ void evaluate(const EvalOptions& options) {
       static_cast<int>(!options.image.empty());
   if (named != 1)
     throw InputError("eval", "name one of: a run folder, --trajectory, --depth, --cloud, --image");
+  if (options.evaluate.refined && options.run.empty())
+    throw InputError("--refined", "is compared with a run folder");
   if (is_foreign(options)) return evaluate_foreign(options);
   if (options.output)
     throw InputError(
@@ -99,12 +101,17 @@ void add_eval_verb(CLI::App& command) {
   verb->add_option("--mean-depth-m", options->evaluate.mean_depth_m,
                    "d of dt_rel, where the dataset states none")
       ->check(positive_number());
+  verb->add_option("--refined", options->evaluate.refined,
+                   "Run of refine over the same dataset: refined_ratio.* says how many times its "
+                   "errors the run's are")
+      ->type_name("RUN");
   verb->add_option("-o,--output", options->output,
                    "Where the scores of another program's result go (JSON)");
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"
       "  saccade eval runs/walls\n"
+      "  saccade eval runs/walls --refined runs/walls_refined\n"
       "  saccade eval --trajectory mine.txt --data data/walls -o mine.json\n"
       "  saccade eval --depth mine.exr --at-s 0.5 --data data/walls\n"
       "  saccade eval --image mine.png --at-s 0.5 --data data/walls");

@@ -74,6 +74,10 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("--depth-from", request.depth_from,
                    "Depth of this run in place of the dataset's depth maps")
       ->type_name("RUN");
+  verb->add_option(
+          "--from", request.from,
+          "Run of track, depth or odometry over the same dataset, which refine starts from")
+      ->type_name("RUN");
   verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)")
       ->check(finite_number());
   verb->add_option("--duration-s", request.duration_s, "Length of the window")
@@ -93,7 +97,8 @@ void add_run_verb(CLI::App& command) {
       "  saccade run odometry --data data/dunes -c configs/odometry/best.yaml -o runs/dunes\n"
       "  saccade run mosaic --data data/panorama -c configs/mosaic/best.yaml -o runs/mosaic\n"
       "  saccade run rotation --data data/panorama -c configs/rotation/events.yaml -o "
-      "runs/rotation");
+      "runs/rotation\n"
+      "  saccade run refine --data data/walls --from runs/walls -o runs/walls_refined");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

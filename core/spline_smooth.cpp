@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/spline.h"
+#include "core/spline_knots.h"
 #include "core/spline_rotation.h"
 
 namespace saccade {
@@ -29,9 +30,6 @@ class Smoothing {
         spacing_s_((poses.back().t_s - start_s_) / static_cast<double>(segments)),
         evenness_(kEvenness * std::max(1.0, static_cast<double>(poses.size()) /
                                                 static_cast<double>(segments))) {}
-
-  [[nodiscard]] double start_s() const { return start_s_; }
-  [[nodiscard]] double spacing_s() const { return spacing_s_; }
 
   [[nodiscard]] std::vector<Rigid3> solve() const {
     const Eigen::MatrixXd positions = solve_positions();
@@ -165,13 +163,14 @@ class Smoothing {
 
 }  // namespace
 
-Spline Spline::smooth(std::span<const StampedPose> poses, double knot_spacing_s) {
+SplineControls SplineControls::smooth(std::span<const StampedPose> poses, double knot_spacing_s) {
   SACCADE_CHECK(poses.size() >= 2 && knot_spacing_s > 0);
-  const double span = poses.back().t_s - poses.front().t_s;
-  SACCADE_CHECK(span > 0);
-  const Smoothing smoothing(
-      poses, std::max(Index{1}, static_cast<Index>(std::lround(span / knot_spacing_s))));
-  return from_control_poses(smoothing.solve(), smoothing.start_s(), smoothing.spacing_s());
+  const SplineKnots knots = SplineKnots::over(poses.front().t_s, poses.back().t_s, knot_spacing_s);
+  return {knots, Smoothing(poses, static_cast<Index>(knots.segments)).solve()};
+}
+
+Spline Spline::smooth(std::span<const StampedPose> poses, double knot_spacing_s) {
+  return SplineControls::smooth(poses, knot_spacing_s).spline();
 }
 
 }  // namespace saccade

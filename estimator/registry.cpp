@@ -6,6 +6,7 @@
 #include "estimator/mosaic/mosaic_module.h"
 #include "estimator/odometry/odometry_module.h"
 #include "estimator/reconstruction/reconstruction_module.h"
+#include "estimator/refinement/refinement_module.h"
 #include "estimator/rotation/rotation_module.h"
 #include "estimator/tracking/track_module.h"
 
@@ -13,20 +14,22 @@ namespace saccade {
 namespace {
 
 constexpr Module kModules[] = {
-    {"track", "pose of the camera against a known map (thesis chapter 4)", false, false, run_track,
-     print_track_config},
-    {"depth", "depth of the edges from events and poses (thesis chapter 5)", true, false, run_depth,
-     print_depth_config},
+    {"track", "pose of the camera against a known map (thesis chapter 4)", false, false, false,
+     run_track, print_track_config},
+    {"depth", "depth of the edges from events and poses (thesis chapter 5)", true, false, false,
+     run_depth, print_depth_config},
     {"reconstruct", "image of a view from events, poses and depth (thesis chapter 6)", true, true,
-     run_reconstruction, print_reconstruction_config},
+     false, run_reconstruction, print_reconstruction_config},
     {"odometry", "poses and map from events and the poses of a short start (thesis chapter 7)",
-     false, false, run_odometry, print_odometry_config},
+     false, false, false, run_odometry, print_odometry_config},
+    {"refine", "batch optimum beside a run of track, depth or odometry, which --from names", true,
+     false, true, run_refinement, print_refinement_config},
     {"stabilize", "events and frames as of a camera that does not turn (thesis chapter 3)", true,
-     false, run_stabilization, print_stabilization_config},
+     false, false, run_stabilization, print_stabilization_config},
     {"mosaic", "panorama from the events of a camera that only turns (thesis 3.4.1)", true, false,
-     run_mosaic, print_mosaic_config},
+     false, run_mosaic, print_mosaic_config},
     {"rotation", "angular velocity of the camera from events, gyroscope or both", false, false,
-     run_rotation, print_rotation_config},
+     false, run_rotation, print_rotation_config},
 };
 
 }  // namespace
@@ -48,6 +51,8 @@ RunSummary run_module(const std::string& name, const RunRequest& request) {
     throw InputError("--poses-from", std::string(name) + " takes no poses");
   if (request.depth_from && !module.takes_depth)
     throw InputError("--depth-from", std::string(name) + " takes no depth");
+  if (request.from && !module.takes_run)
+    throw InputError("--from", std::string(name) + " refines no run");
   return module.run(request);
 }
 

@@ -14,6 +14,7 @@ struct Module {
   const char* help;  ///< one line
   bool takes_poses;  ///< from the ground truth or RunRequest::poses_from
   bool takes_depth;  ///< from the dataset or RunRequest::depth_from
+  bool takes_run;    ///< RunRequest::from
   /// Runs over a dataset and writes the run folder. Throws InputError for bad input.
   RunSummary (*run)(const RunRequest&);
   /// The resolved configuration, documented, as YAML. Throws InputError for a bad one.

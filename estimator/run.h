@@ -22,6 +22,8 @@ struct RunRequest {
   std::optional<std::filesystem::path> poses_from;
   /// A run folder whose depth stands in for the dataset's; of modules that take depth.
   std::optional<std::filesystem::path> depth_from;
+  /// A run folder that is refined; of modules that take a run.
+  std::optional<std::filesystem::path> from;
   std::optional<std::uint64_t> seed;  ///< in place of the configuration's
   int threads = 1;                    ///< as stated in run.yaml
   int repeat = 1;                     ///< how often the work is done, for timing; >= 1

@@ -35,12 +35,6 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-std::string dataset_hash(const Dataset& dataset) {
-  const std::filesystem::path record = dataset.folder() / "dataset.yaml";
-  if (std::filesystem::exists(record)) return sha256_of_file(record);
-  return dataset.events_file().empty() ? std::string() : sha256_of_file(dataset.events_file());
-}
-
 /// One entry of the JSON object: median, min and max of numerator / wall time.
 std::string rate(std::string_view key, double numerator, const std::vector<double>& wall_s) {
   const auto [low, high] = std::minmax_element(wall_s.begin(), wall_s.end());
@@ -61,6 +55,12 @@ std::string latency(std::vector<double> ms) {
 }
 
 }  // namespace
+
+std::string dataset_hash(const Dataset& dataset) {
+  const std::filesystem::path record = dataset.folder() / "dataset.yaml";
+  if (std::filesystem::exists(record)) return sha256_of_file(record);
+  return dataset.events_file().empty() ? std::string() : sha256_of_file(dataset.events_file());
+}
 
 double median(std::vector<double> values) {
   SACCADE_CHECK(!values.empty());
@@ -116,6 +116,7 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
     record.poses_from = std::filesystem::absolute(*request.poses_from).lexically_normal();
   if (request.depth_from)
     record.depth_from = std::filesystem::absolute(*request.depth_from).lexically_normal();
+  if (request.from) record.from = std::filesystem::absolute(*request.from).lexically_normal();
   record.window = window;
   record.seed = seed;
   record.threads = request.threads;

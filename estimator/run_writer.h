@@ -36,6 +36,10 @@ struct RunTiming {
 /// What there is to say about a run that found `found`.
 [[nodiscard]] RunSummary summary_of(const RunTiming& timing, const std::string& found);
 
+/// What run.yaml calls the dataset's sha256: of its dataset.yaml, or of its events where it has
+/// none.
+[[nodiscard]] std::string dataset_hash(const Dataset& dataset);
+
 /// The run folder while it is filled: run.yaml and timing.json are the same for every module.
 class RunWriter {
  public:

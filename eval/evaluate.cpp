@@ -4,17 +4,20 @@
 
 #include "core/error.h"
 #include "core/io/atomic_file.h"
+#include "core/io/covariance_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/keyframe_list.h"
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
+#include "eval/metrics/consistency.h"
 #include "eval/metrics/keyframe_metrics.h"
 #include "eval/metrics/orientation_metrics.h"
 #include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/mosaic_view.h"
+#include "eval/refined_ratio.h"
 
 namespace saccade {
 namespace {
@@ -71,11 +74,25 @@ Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& d
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;
   merge(metrics, score_trajectory(input), "");
+  metrics.set("trajectory.nees", nees(run.load_covariances(), input));
   if (const auto keyframes = run.folder / "keyframes.yaml"; std::filesystem::exists(keyframes))
     merge(metrics, score_keyframes(read_keyframe_list(keyframes), input), "");
   set_reprojection(metrics, reproject(run.load_map().positions, scored_samples(input),
                                       dataset.camera().undistorted()));
   return metrics;
+}
+
+/// The refined run over the time that `run` is scored over.
+Metrics score_refined(const std::filesystem::path& folder, const RunFolder& run,
+                      const Dataset& dataset, const std::optional<double>& mean_depth_m) {
+  RunFolder refined = RunFolder::open(folder);
+  if (refined.record.module != "refine")
+    throw InputError(folder.string(),
+                     "is a run of " + refined.record.module + ", not of refine (--refined)");
+  if (refined.record.dataset_sha256 != run.record.dataset_sha256)
+    throw InputError(folder.string(), "is a run over another dataset (--refined)");
+  refined.record.window = run.record.window;
+  return score_run(refined, dataset, mean_depth_m);
 }
 
 }  // namespace
@@ -90,9 +107,12 @@ Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOpti
   const RunFolder run = RunFolder::open(run_folder);
   const Dataset dataset = run.open_dataset(options.dataset);
   const ScoredDepth depth(run, dataset);
-  const Metrics metrics =
-      score(run, dataset, depth,
-            options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m);
+  const std::optional<double> mean_depth_m =
+      options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m;
+  Metrics metrics = score(run, dataset, depth, mean_depth_m);
+  if (options.refined)
+    merge(metrics,
+          refined_ratios(metrics, score_refined(*options.refined, run, dataset, mean_depth_m)), "");
   write_atomically(run_folder / "metrics.json", to_json(metrics));
   if (!depth.views.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth.errors);
   return metrics;

@@ -14,6 +14,8 @@ struct EvaluateOptions {
   std::optional<std::filesystem::path> dataset;
   /// d of dt_rel instead of the dataset's mean scene depth [m], > 0.
   std::optional<double> mean_depth_m;
+  /// A run of `refine` over the same dataset: how many times its errors the run's are.
+  std::optional<std::filesystem::path> refined;
 };
 
 /// Scores a run folder against the ground truth of its dataset and writes RUN/metrics.json

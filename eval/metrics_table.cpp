@@ -139,6 +139,18 @@ void add_mosaic(std::string& text, const Metrics& metrics) {
                       fixed(get("span.horizontal"), 2));
 }
 
+void add_ratios(std::string& text, const Metrics& metrics) {
+  const auto get = [&](const char* key) {
+    return fixed(metrics.get(std::string("refined_ratio.") + key), 2);
+  };
+  if (metrics.values().contains("refined_ratio.trajectory.dt_rel_percent.mean"))
+    text += fmt::format("  x refined optimum: dt_rel {}, dtheta {} (means)\n",
+                        get("trajectory.dt_rel_percent.mean"), get("trajectory.dtheta_deg.mean"));
+  if (metrics.values().contains("refined_ratio.depth.rel_median"))
+    text += fmt::format("  x refined optimum: depth {} (median), {} (mean)\n",
+                        get("depth.rel_median"), get("depth.rel_mean"));
+}
+
 void add_speed(std::string& text, const Metrics& metrics) {
   const auto get = [&](const char* key) {
     return speed_value(metrics, std::string("speed.") + key);
@@ -172,6 +184,9 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
   if (metrics.values().contains("mosaic.ssim")) add_mosaic(text, metrics);
   if (metrics.get("orientation.rate_rmse_rad_s")) add_rates(text, metrics);
   if (metrics.get("sharpness.stabilized")) add_sharpness(text, metrics);
+  add_ratios(text, metrics);
+  if (metrics.get("trajectory.nees"))
+    text += fmt::format("  NEES {} of 6\n", fixed(metrics.get("trajectory.nees"), 2));
   if (speed_value(metrics, "speed.wall_s")) add_speed(text, metrics);
   return text;
 }

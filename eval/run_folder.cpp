@@ -59,6 +59,12 @@ PointCloud RunFolder::load_map() const {
   return std::filesystem::exists(file) ? read_ply(file) : PointCloud{};
 }
 
+std::vector<StampedCovariance> RunFolder::load_covariances() const {
+  const std::filesystem::path file = folder / "covariance.txt";
+  if (!std::filesystem::exists(file)) return {};
+  return read_covariances(file);
+}
+
 Dataset RunFolder::open_dataset(const std::optional<std::filesystem::path>& instead) const {
   return Dataset::open(instead.value_or(record.dataset));
 }

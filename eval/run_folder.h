@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/covariance_file.h"
 #include "core/io/dataset.h"
 #include "core/io/ply_file.h"
 #include "core/io/run_record.h"
@@ -42,6 +43,8 @@ struct RunFolder {
   [[nodiscard]] std::string name() const;
   /// Points of map.ply; empty where there is none.
   [[nodiscard]] PointCloud load_map() const;
+  /// Of covariance.txt; none where there is none.
+  [[nodiscard]] std::vector<StampedCovariance> load_covariances() const;
   /// The dataset it ran on, or the one at `instead`.
   [[nodiscard]] Dataset open_dataset(
       const std::optional<std::filesystem::path>& instead = std::nullopt) const;

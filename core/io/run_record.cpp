@@ -27,6 +27,8 @@ void describe(config::Fields& fields, RunRecord& record) {
     fields.value("poses_from", record.poses_from, "whose poses it took in place of the truth's");
   if (fields.has("depth_from") || (!fields.reading() && !record.depth_from.empty()))
     fields.value("depth_from", record.depth_from, "whose depth it took in place of the dataset's");
+  if (fields.has("from") || (!fields.reading() && !record.from.empty()))
+    fields.value("from", record.from, "run that was refined");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);

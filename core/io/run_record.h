@@ -24,6 +24,7 @@ struct RunRecord {
   std::string dataset_sha256;        ///< of its dataset.yaml, or of its events where it has none
   std::filesystem::path poses_from;  ///< run or trajectory file; empty: not in place of the truth's
   std::filesystem::path depth_from;  ///< depth run; empty: not in place of the dataset's
+  std::filesystem::path from;        ///< run that was refined; empty: none
   std::optional<Window> window;      ///< nullopt: the whole dataset
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0: not stated

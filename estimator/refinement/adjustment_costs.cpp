@@ -83,7 +83,7 @@ bool EdgePriorCost::Evaluate(double const* const* parameters, double* residuals,
 
 bool NodePriorCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
-  Eigen::Map<Twist>(residuals, PathCorrection::kSize) =
+  Eigen::Map<Twist>(residuals, NodeCorrection::kSize) =
       root_ * Eigen::Map<const Twist>(parameters[0]);
   if (jacobians != nullptr && jacobians[0] != nullptr) write<6, 6>(jacobians[0], root_);
   return true;
@@ -92,7 +92,7 @@ bool NodePriorCost::Evaluate(double const* const* parameters, double* residuals,
 bool NodeStepCost::Evaluate(double const* const* parameters, double* residuals,
                             double** jacobians) const {
   const Eigen::Map<const Twist> before(parameters[0]), after(parameters[1]);
-  Eigen::Map<Twist>(residuals, PathCorrection::kSize) = root_ * (after - before);
+  Eigen::Map<Twist>(residuals, NodeCorrection::kSize) = root_ * (after - before);
   if (jacobians == nullptr) return true;
   if (jacobians[0] != nullptr) write<6, 6>(jacobians[0], Matrix6(-root_));
   if (jacobians[1] != nullptr) write<6, 6>(jacobians[1], root_);

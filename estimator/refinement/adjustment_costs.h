@@ -9,7 +9,7 @@
 #include "core/camera.h"
 #include "core/rigid3.h"
 #include "estimator/refinement/edge_residual.h"
-#include "estimator/refinement/path_correction.h"
+#include "estimator/refinement/node_correction.h"
 
 namespace saccade {
 
@@ -38,7 +38,7 @@ struct WeighedEvent {
 /// single rows is not. The loss is inside, so that one event of a pair may be an outlier.
 /// Parameters: both nodes, the edge.
 class EventPairCost
-    : public ceres::SizedCostFunction<2, PathCorrection::kSize, PathCorrection::kSize, 4> {
+    : public ceres::SizedCostFunction<2, NodeCorrection::kSize, NodeCorrection::kSize, 4> {
  public:
   EventPairCost(const std::array<WeighedEvent, 2>& events, const PinholeCamera& camera,
                 double outlier)
@@ -69,7 +69,7 @@ class EdgePriorCost : public ceres::SizedCostFunction<2, 4> {
 
 /// W xi of a node, W^T W the information.
 class NodePriorCost
-    : public ceres::SizedCostFunction<PathCorrection::kSize, PathCorrection::kSize> {
+    : public ceres::SizedCostFunction<NodeCorrection::kSize, NodeCorrection::kSize> {
  public:
   explicit NodePriorCost(const Matrix6& root_of_information) : root_(root_of_information) {}
 
@@ -81,8 +81,8 @@ class NodePriorCost
 };
 
 /// W (xi_(j+1) - xi_j) of neighbouring nodes.
-class NodeStepCost : public ceres::SizedCostFunction<PathCorrection::kSize, PathCorrection::kSize,
-                                                     PathCorrection::kSize> {
+class NodeStepCost : public ceres::SizedCostFunction<NodeCorrection::kSize, NodeCorrection::kSize,
+                                                     NodeCorrection::kSize> {
  public:
   explicit NodeStepCost(const Matrix6& root_of_information) : root_(root_of_information) {}
 

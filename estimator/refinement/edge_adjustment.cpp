@@ -14,7 +14,7 @@
 #include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/edge_fit.h"
 #include "estimator/refinement/event_steps.h"
-#include "estimator/refinement/path_correction.h"
+#include "estimator/refinement/node_correction.h"
 
 namespace saccade {
 namespace {
@@ -34,7 +34,7 @@ struct ChosenEvent {
 class ObservedEdges {
  public:
   ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
-                const PathCorrection& correction, int pairs)
+                const NodeCorrection& correction, int pairs)
       : window_(window),
         edges_(edges),
         camera_(camera),
@@ -99,7 +99,7 @@ class ObservedEdges {
   const RayEdges& edges_;
   const PinholeCamera& camera_;
   PinholeCamera undistorted_;
-  const PathCorrection& correction_;
+  const NodeCorrection& correction_;
   std::size_t most_;
   Rigid3 view_from_world_;
   std::vector<std::uint8_t> steps_;
@@ -320,7 +320,7 @@ class WindowProblem {
   AdjustmentOptions options_;
   const KnownScene& known_;
   SeenLandmarks landmarks_;
-  PathCorrection correction_;
+  NodeCorrection correction_;
   ObservedEdges observed_;
   std::vector<ChosenEdge> chosen_;
   ceres::Problem problem_;

@@ -46,7 +46,7 @@ struct Adjustment {
   bool ok = false;  ///< false: too little to adjust; nothing is changed
 };
 
-/// Bundle adjustment over a window (Triggs et al., 2000), events against edges: a PathCorrection,
+/// Bundle adjustment over a window (Triggs et al., 2000), events against edges: a NodeCorrection,
 /// and of every edge the inverse depth, offset, tilt and hysteresis, minimising the residuals of
 /// edge_residual.h robustly, by Ceres with the edges eliminated first (Schur). Scale and place are
 /// held by the poses that are known and by the landmarks that edges lie on. All edges are then

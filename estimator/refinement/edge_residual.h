@@ -8,16 +8,18 @@
 namespace saccade {
 
 /// What an event says of the edge that it saw, in the edge's view (docs/odometry.md):
-///   r = (n . (x(rho) - e) - c - m t . (x(rho) - e) - h p) / g,   g = (1 - rho o_z) / (R q)_z,
+///   r = (n . (x(rho) - e) - c - m t . (x(rho) - e) - h l) / g,   g = (1 - rho o_z) / (R q)_z,
 ///   x(rho) = K (a + rho (o_xy - o_z a)),   a = (R q)_xy / (R q)_z,   (R, o) = view_from_camera.
 /// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
 /// scatter, and a residual in the view would be made small by any motion that shrinks the picture.
 /// With q = K^-1 u the event's ray, rho the edge's inverse depth, c its offset, m its tilt and h
-/// the hysteresis of the thresholds.
+/// the hysteresis of the thresholds, in steps l.
 struct EdgeObservation {
   Rigid3 view_from_camera;  ///< at the event's time, as it is assumed
   Eigen::Vector3d ray;      ///< q, z = 1
-  double lag = 0;           ///< p j, how many contrasts the edge had changed by; see below
+  /// What h is multiplied by: the polarity p, +1 or -1, or p times the contrasts by which the
+  /// brightness had changed (event_steps.h).
+  double lag = 0;
   Eigen::Vector2d pixel;    ///< e, in the view
   Eigen::Vector2d normal;   ///< n, unit
 };

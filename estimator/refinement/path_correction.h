@@ -2,35 +2,45 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
-#include "core/rigid3.h"
+#include "core/spline_knots.h"
+#include "core/trajectory.h"
 
 namespace saccade {
 
-/// A correction of a camera's path: twists (v, w) of the camera's own frame at nodes even in time,
-/// linear between them,
-///   world_from_camera(t) = given(t) exp((1 - s) xi_j + s xi_(j+1)).
+/// A correction of a camera's path, a cubic spline of twists:
+///   world_from_camera(t) = given(t) exp(xi(t)),   xi(t) = sum of weight_k(t) xi_k.
 class PathCorrection {
  public:
   static constexpr int kSize = 6;
 
-  /// No correction, from start_s to end_s; nodes are about `spacing_s` apart, at least two.
-  PathCorrection(double start_s, double end_s, double spacing_s);
+  explicit PathCorrection(const SplineKnots& knots) : knots_(knots), twists_(knots.controls()) {
+    for (auto& twist : twists_) twist.fill(0);
+  }
 
-  [[nodiscard]] int count() const { return static_cast<int>(nodes_.size()); }
-  [[nodiscard]] double time_s(int node) const { return start_s_ + node * spacing_s_; }
-  /// The six numbers of a node.
-  [[nodiscard]] double* data(int node) { return nodes_[static_cast<std::size_t>(node)].data(); }
-  /// The node before a time and the share s of the one after it; times beyond the ends are theirs.
-  [[nodiscard]] std::pair<int, double> before(double t_s) const;
-  [[nodiscard]] Twist at(double t_s) const;
+  [[nodiscard]] const SplineKnots& knots() const { return knots_; }
+  [[nodiscard]] double* data(std::size_t control) { return twists_[control].data(); }
+  [[nodiscard]] Twist control(std::size_t i) const {
+    return Eigen::Map<const Twist>(twists_[i].data());
+  }
+  [[nodiscard]] Twist at(double t_s) const {
+    const SplineKnots::Place place = knots_.at(t_s);
+    Twist twist = Twist::Zero();
+    for (std::size_t k = 0; k < 4; ++k)
+      twist += place.weight[static_cast<Eigen::Index>(k)] * control(place.first + k);
+    return twist;
+  }
+  [[nodiscard]] Trajectory applied(const Trajectory& given) const {
+    std::vector<StampedPose> poses(given.poses().begin(), given.poses().end());
+    for (StampedPose& pose : poses)
+      pose.world_from_camera = pose.world_from_camera * Rigid3::exp(at(pose.t_s));
+    return Trajectory(std::move(poses));
+  }
 
  private:
-  double start_s_;
-  std::vector<std::array<double, kSize>> nodes_;
-  double spacing_s_;
+  SplineKnots knots_;
+  std::vector<std::array<double, kSize>> twists_;
 };
 
 }  // namespace saccade

@@ -65,6 +65,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   std::vector<RunData> runs;
   for (const std::filesystem::path& folder : run_folders)
     runs.push_back(gather_run(folder, runs.size() + 1));
+  compare_with_refined(runs);
   const std::string tables =
       accuracy_table(runs) + depth_table(runs) + dataset_table(runs) + speed_table(runs);
   const std::string page = fill_page(

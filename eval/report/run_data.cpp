@@ -1,8 +1,11 @@
 #include "eval/report/run_data.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/io/event_file.h"
 #include "eval/evaluate.h"
+#include "eval/refined_ratio.h"
 
 namespace saccade {
 namespace {
@@ -55,6 +58,19 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   data.numbers = numbers_of(*data.data);
   score(data);
   return data;
+}
+
+void compare_with_refined(std::vector<RunData>& runs) {
+  std::vector<const RunFolder*> folders;
+  for (const RunData& data : runs) folders.push_back(&data.run);
+  for (RunData& data : runs) {
+    const RunFolder* refined = find_refined(data.run, folders);
+    if (refined == nullptr) continue;
+    const auto at = std::find(folders.begin(), folders.end(), refined);
+    const RunData& optimum = runs[static_cast<std::size_t>(at - folders.begin())];
+    const Metrics ratios = refined_ratios(data.metrics, optimum.metrics);
+    for (const auto& [key, value] : ratios.values()) data.metrics.set(key, value);
+  }
 }
 
 }  // namespace saccade

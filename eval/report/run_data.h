@@ -40,6 +40,9 @@ struct RunData {
 /// Reads and scores the run folder; `index` is its place on the page.
 [[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
 
+/// refined_ratio.* of every run that has a run of refine beside it.
+void compare_with_refined(std::vector<RunData>& runs);
+
 [[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);
 
 }  // namespace saccade

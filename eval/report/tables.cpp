@@ -61,7 +61,18 @@ std::string error_cells(const Metrics& metrics, const std::string& key, int deci
   return cells + factor_cell(ratio(theirs, metrics.get(key + ".mean")));
 }
 
-std::string accuracy_row(const RunData& data) {
+/// How many times the refined optimum's errors are, where a run is compared with one.
+std::string refined_cell(const RunData& data, std::initializer_list<const char*> keys) {
+  std::string text;
+  for (const char* key : keys)
+    text += (text.empty() ? "" : " / ") +
+            significant(data.metrics.get(std::string("refined_ratio.") + key), 2);
+  return fmt::format("<td class=\"space\">{}</td>", text);
+}
+
+constexpr const char* kRefinedHead = "<th class=\"space\">&times; refined optimum</th>";
+
+std::string accuracy_row(const RunData& data, bool with_refined) {
   const thesis::Tracking* thesis = thesis::find_tracking(data.dataset, data.fast);
   const auto errors = [&](const char* key, thesis::Errors thesis::Tracking::*member) {
     return error_cells(data.metrics, std::string("trajectory.") + key, 2,
@@ -71,10 +82,14 @@ std::string accuracy_row(const RunData& data) {
   if (coverage) *coverage *= 100;
   return "<tr>" + name_cell(data) + errors("dt_rel_percent", &thesis::Tracking::dt_rel_percent) +
          errors("dtheta_deg", &thesis::Tracking::dtheta_deg) +
-         fmt::format("<td class=\"space\">{} %</td></tr>\n", fixed(coverage, 1));
+         fmt::format("<td class=\"space\">{} %</td>", fixed(coverage, 1)) +
+         (with_refined
+              ? refined_cell(data, {"trajectory.dt_rel_percent.mean", "trajectory.dtheta_deg.mean"})
+              : "") +
+         "</tr>\n";
 }
 
-std::string depth_row(const RunData& data) {
+std::string depth_row(const RunData& data, bool with_refined) {
   const auto percent = [&](const std::string& key, int decimals) {
     std::optional<double> value = data.metrics.get("depth." + key);
     if (value) *value *= 100;
@@ -92,7 +107,9 @@ std::string depth_row(const RunData& data) {
          with_worst("completeness", 1, true) +
          cell(grouped(data.metrics.get("depth.views.points.median")),
               grouped(data.metrics.get("depth.views.points.worst"))) +
-         alone("within_1_sigma", 1, true) + alone("within_2_sigma", 1, false) + "</tr>\n";
+         alone("within_1_sigma", 1, true) + alone("within_2_sigma", 1, false) +
+         (with_refined ? refined_cell(data, {"depth.rel_median", "depth.rel_mean"}) : "") +
+         "</tr>\n";
 }
 
 std::string deviation_cell(const std::optional<double>& ours, const std::optional<double>& theirs,
@@ -181,9 +198,12 @@ std::string accuracy_table(std::span<const RunData> runs) {
     html +=
         "<th class=\"space\">mean</th><th>&sigma;</th><th>max</th><th>RMSE</th>"
         "<th class=\"space\">better by</th>";
-  html += "<th class=\"space\">coverage</th></tr></thead><tbody>\n";
+  const bool with_refined = has_any(runs, "refined_ratio.trajectory.");
+  html += "<th class=\"space\">coverage</th>";
+  if (with_refined) html += kRefinedHead;
+  html += "</tr></thead><tbody>\n";
   for (const RunData& data : runs)
-    if (data.metrics.get("trajectory.poses")) html += accuracy_row(data);
+    if (data.metrics.get("trajectory.poses")) html += accuracy_row(data, with_refined);
   return html + "</tbody></table></div></section>\n";
 }
 
@@ -198,9 +218,12 @@ std::string depth_table(std::span<const RunData> runs) {
       "<th class=\"space\">median [%]</th><th>mean [%]</th><th>over 5 % [%]</th>"
       "<th class=\"space\">strict median [%]</th><th>strict mean [%]</th>"
       "<th class=\"space\">complete [%]</th><th>points per view</th>"
-      "<th class=\"space\">within 1 &sigma; [%]</th><th>2 &sigma; [%]</th></tr></thead><tbody>\n";
+      "<th class=\"space\">within 1 &sigma; [%]</th><th>2 &sigma; [%]</th>";
+  const bool with_refined = has_any(runs, "refined_ratio.depth.");
+  if (with_refined) html += kRefinedHead;
+  html += "</tr></thead><tbody>\n";
   for (const RunData& data : runs)
-    if (data.metrics.get("depth.points")) html += depth_row(data);
+    if (data.metrics.get("depth.points")) html += depth_row(data, with_refined);
   return html + "</tbody></table></div></section>\n";
 }
 

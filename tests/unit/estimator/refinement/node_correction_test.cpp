@@ -1,20 +1,20 @@
-#include "estimator/refinement/path_correction.h"
+#include "estimator/refinement/node_correction.h"
 
 #include <gtest/gtest.h>
 
 namespace saccade {
 namespace {
 
-TEST(PathCorrection, HasEvenNodesFromStartToEnd) {
-  const PathCorrection correction(1, 1.5, 0.11);
+TEST(NodeCorrection, HasEvenNodesFromStartToEnd) {
+  const NodeCorrection correction(1, 1.5, 0.11);
   EXPECT_EQ(correction.count(), 6);
   EXPECT_DOUBLE_EQ(correction.time_s(0), 1);
   EXPECT_DOUBLE_EQ(correction.time_s(5), 1.5);
-  EXPECT_EQ(PathCorrection(0, 0.01, 1).count(), 2) << "at least";
+  EXPECT_EQ(NodeCorrection(0, 0.01, 1).count(), 2) << "at least";
 }
 
-TEST(PathCorrection, IsLinearBetweenNodesAndHeldBeyond) {
-  PathCorrection correction(0, 1, 0.5);
+TEST(NodeCorrection, IsLinearBetweenNodesAndHeldBeyond) {
+  NodeCorrection correction(0, 1, 0.5);
   EXPECT_EQ(correction.at(0.3).norm(), 0) << "none at first";
   for (int k = 0; k < 6; ++k) {
     correction.data(1)[k] = k + 1;

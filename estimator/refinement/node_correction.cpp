@@ -1,4 +1,4 @@
-#include "estimator/refinement/path_correction.h"
+#include "estimator/refinement/node_correction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +14,18 @@ std::size_t node_count(double duration_s, double spacing_s) {
 
 }  // namespace
 
-PathCorrection::PathCorrection(double start_s, double end_s, double spacing_s)
+NodeCorrection::NodeCorrection(double start_s, double end_s, double spacing_s)
     : start_s_(start_s),
       nodes_(node_count(end_s - start_s, spacing_s), std::array<double, kSize>{}),
       spacing_s_((end_s - start_s) / (count() - 1)) {}
 
-std::pair<int, double> PathCorrection::before(double t_s) const {
+std::pair<int, double> NodeCorrection::before(double t_s) const {
   const double at = std::clamp((t_s - start_s_) / spacing_s_, 0.0, count() - 1.0);
   const int node = std::min(static_cast<int>(at), count() - 2);
   return {node, at - node};
 }
 
-Twist PathCorrection::at(double t_s) const {
+Twist NodeCorrection::at(double t_s) const {
   const auto [node, share] = before(t_s);
   const auto twist = [&](int i) {
     return Eigen::Map<const Twist>(nodes_[static_cast<std::size_t>(i)].data());

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace ceres {
+struct IterationSummary;
+}
+
+namespace saccade {
+
+/// One iteration of a refinement.
+struct CostStep {
+  int round = 0;  ///< costs of different rounds, which see different data, are no sequence
+  int iteration = 0;
+  double cost = 0;
+  double seconds = 0;  ///< since the refinement began, without reading files
+};
+
+/// The costs of a refinement that begins now, iteration by iteration.
+class CostLog {
+ public:
+  /// Since the refinement began [s].
+  [[nodiscard]] double now_s() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+  /// Appends the iterations of a round whose adjustment began at `start_s`.
+  void add_round(std::span<const ceres::IterationSummary> iterations, double start_s);
+  /// Appends what independent problems of one view cost together, before and after; a round.
+  void add_view(double before, double after, double now_s) {
+    steps_.push_back({rounds_, 0, before, 0});
+    steps_.push_back({rounds_++, 1, after, now_s});
+  }
+  [[nodiscard]] const std::vector<CostStep>& steps() const { return steps_; }
+  [[nodiscard]] int rounds() const { return rounds_; }
+  /// cost.csv: round, iteration, cost, seconds.
+  void save(const std::filesystem::path& file) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point begin_ = Clock::now();
+  std::vector<CostStep> steps_;
+  int rounds_ = 0;
+};
+
+}  // namespace saccade

@@ -1,0 +1,248 @@
+#include "estimator/refinement/joint_refinement.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "core/parallel.h"
+#include "estimator/refinement/held_cost.h"
+#include "estimator/refinement/marginal_information.h"
+#include "estimator/refinement/path_costs.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kNormal = 1.4826;  ///< deviation of a Gaussian over its median absolute value
+constexpr double kInlier = 2.4;
+constexpr double kStep_s = 1e-3;  ///< between the poses of a path
+
+/// `most` of `count` indices, evenly.
+std::vector<std::size_t> evenly(std::size_t count, int most) {
+  const std::size_t size = std::min(count, static_cast<std::size_t>(most));
+  std::vector<std::size_t> some(size);
+  for (std::size_t i = 0; i < size; ++i) some[i] = i * count / size;
+  return some;
+}
+
+/// The path as a smooth spline, every millisecond.
+Trajectory smooth_path(const JointStart& start, double knot_spacing_s) {
+  const Spline spline = Spline::smooth(start.path, knot_spacing_s);
+  const double length_s = spline.end_s() - spline.start_s();
+  const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kStep_s)));
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= steps; ++i) {
+    const double t_s = spline.start_s() + length_s * i / steps;
+    poses.push_back({t_s, spline.pose(t_s)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+/// An edge of a keyframe as it is adjusted.
+struct Adjusted {
+  std::size_t keyframe;
+  std::size_t edge;  ///< in the keyframe's RayEdges
+  EdgeUnknowns unknowns;
+};
+
+/// One round: the problem of the path's correction and the edges that were found on the path
+/// before.
+class Problem {
+ public:
+  Problem(const Trajectory& path, const std::vector<ViewWindow>& windows,
+          const std::vector<RayEdges>& found, const JointStart& start, const PinholeCamera& camera,
+          const JointRefinementOptions& options)
+      : path_(path),
+        windows_(windows),
+        found_(found),
+        camera_(camera),
+        undistorted_(camera.undistorted()),
+        options_(options),
+        depth_m_(start.typical_depth_m),
+        correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
+    choose_edges();
+    for (Adjusted& edge : adjusted_) add_edge(edge);
+    hold_path(start.known);
+  }
+
+  void solve(CostLog& costs) {
+    const double start_s = costs.now_s();
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_SCHUR;
+    solver.linear_solver_ordering = ordering_;
+    solver.max_num_iterations = options_.iterations;
+    solver.function_tolerance = 1e-6;
+    solver.num_threads = 1;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem_, &summary);
+    costs.add_round(summary.iterations, start_s);
+  }
+
+  [[nodiscard]] Trajectory path() const { return correction_.applied(path_); }
+
+  void judge(JointResult& result) {
+    result.observations = residuals_.size();
+    result.knots = correction_.knots();
+    if (residuals_.empty()) return;
+    std::vector<double> deviations;
+    double squares = 0;
+    for (const auto& [id, sigma_px] : residuals_) {
+      double value = 0;
+      problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr);
+      deviations.push_back(std::abs(value) * sigma_px);
+      squares += std::min(value * value, kInlier * kInlier);
+    }
+    const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
+    std::nth_element(deviations.begin(), middle, deviations.end());
+    result.residual_px = kNormal * *middle;
+    const double spread = squares / static_cast<double>(residuals_.size());
+    result.covariance = spread / options_.information * inverse_information();
+  }
+
+ private:
+  /// Pixels as a motion (v, w).
+  [[nodiscard]] Twist sigma_of_px(double px) const {
+    const double turn = px / undistorted_.fx;
+    return (Twist() << Eigen::Vector3d::Constant(turn * depth_m_), Eigen::Vector3d::Constant(turn))
+        .finished();
+  }
+
+  void choose_edges() {
+    for (std::size_t k = 0; k < found_.size(); ++k)
+      for (const std::size_t i : evenly(found_[k].edges.size(), options_.edges)) {
+        const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);
+        adjusted_.push_back({k, i, {rho, 0, 0, 0}});
+      }
+  }
+
+  void add_edge(Adjusted& adjusted) {
+    const RayEdges& found = found_[adjusted.keyframe];
+    const FittedEdge& fitted = found.edges[adjusted.edge];
+    std::vector<std::uint32_t> events(found.events.event.begin() + fitted.first,
+                                      found.events.event.begin() + fitted.last);
+    std::sort(events.begin(), events.end());
+    double* unknowns = adjusted.unknowns.data();
+    for (const std::size_t i : evenly(events.size(), options_.events_per_edge))
+      add_event(windows_[adjusted.keyframe], windows_[adjusted.keyframe].events[events[i]], fitted,
+                unknowns);
+    const double rho = adjusted.unknowns[0];
+    // Of the depth hardly any hold: where a window says nothing of an edge.
+    const EdgeUnknowns sigma(rho, options_.offset_px, options_.tilt_sigma, options_.hysteresis_px);
+    problem_.AddResidualBlock(new HeldCost<4>(adjusted.unknowns, sigma), nullptr, unknowns);
+    ordering_->AddElementToGroup(unknowns, 0);
+  }
+
+  void add_event(const ViewWindow& window, const Event& event, const FittedEdge& fitted,
+                 double* unknowns) {
+    const double t_s = seconds_from_ns(event.t_ns);
+    EdgeObservation observation;
+    observation.view_from_camera = window.world_from_reference().inverse() * path_.at_clamped(t_s);
+    observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
+    observation.lag = event.polarity;
+    observation.pixel = fitted.edge.pixel.cast<double>();
+    observation.normal = fitted.edge.normal.cast<double>();
+    const double sigma_px = std::max(options_.noise_px, static_cast<double>(fitted.residual_px));
+    const SplineKnots::Place place = correction_.knots().at(t_s);
+    const auto id = problem_.AddResidualBlock(
+        new PathEdgeCost(observation, undistorted_, place.weight, sigma_px),
+        new ceres::CauchyLoss(options_.outlier), correction_.data(place.first),
+        correction_.data(place.first + 1), correction_.data(place.first + 2),
+        correction_.data(place.first + 3), unknowns);
+    residuals_.emplace_back(id, sigma_px);
+  }
+
+  void hold_path(const Trajectory& known) {
+    for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
+      problem_.AddResidualBlock(
+          new HeldCost<PathCorrection::kSize>(Twist::Zero(), sigma_of_px(options_.hold_px)),
+          nullptr, correction_.data(k));
+      ordering_->AddElementToGroup(correction_.data(k), 1);
+    }
+    const Twist sigma = sigma_of_px(options_.known_sigma_px);
+    for (const StampedPose& pose : known.poses()) {
+      if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
+      const SplineKnots::Place place = correction_.knots().at(pose.t_s);
+      const Twist given = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
+      problem_.AddResidualBlock(new KnownPoseCost(given, place.weight, sigma), nullptr,
+                                correction_.data(place.first), correction_.data(place.first + 1),
+                                correction_.data(place.first + 2),
+                                correction_.data(place.first + 3));
+    }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd inverse_information() {
+    std::vector<double*> controls, edges;
+    for (std::size_t k = 0; k < correction_.knots().controls(); ++k)
+      controls.push_back(correction_.data(k));
+    for (Adjusted& edge : adjusted_) edges.push_back(edge.unknowns.data());
+    const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
+    const Eigen::LLT<Eigen::MatrixXd> factor(information);
+    if (factor.info() != Eigen::Success) return {};
+    return factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  }
+
+  const Trajectory& path_;
+  const std::vector<ViewWindow>& windows_;
+  const std::vector<RayEdges>& found_;
+  const PinholeCamera& camera_;
+  PinholeCamera undistorted_;
+  const JointRefinementOptions& options_;
+  double depth_m_;
+  PathCorrection correction_;
+  std::vector<Adjusted> adjusted_;
+  std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
+  ceres::Problem problem_;
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+};
+
+}  // namespace
+
+std::span<const Event> events_around(std::span<const Event> events, double t_s, double window_s) {
+  const TimeNs from_ns = ns_from_seconds(t_s - window_s / 2);
+  const TimeNs to_ns = ns_from_seconds(t_s + window_s / 2);
+  const auto before = [](TimeNs limit) {
+    return [limit](const Event& e) { return e.t_ns < limit; };
+  };
+  const auto first = std::partition_point(events.begin(), events.end(), before(from_ns));
+  const auto last = std::partition_point(first, events.end(), before(to_ns));
+  return {first, last};
+}
+
+Matrix6 JointResult::covariance_at(double t_s) const {
+  if (covariance.size() == 0) return Matrix6::Zero();
+  const SplineKnots::Place place = knots.at(t_s);
+  Eigen::Matrix<double, 6, 24> by_twists;
+  for (Eigen::Index k = 0; k < 4; ++k)
+    by_twists.middleCols<6>(6 * k) = place.weight[k] * Matrix6::Identity();
+  const auto first = static_cast<Eigen::Index>(PathCorrection::kSize * place.first);
+  return by_twists * covariance.block<24, 24>(first, first) * by_twists.transpose();
+}
+
+JointResult refine_jointly(std::span<const Event> events, const JointStart& start,
+                           const PinholeCamera& camera, const RayDepth& depth,
+                           const JointRefinementOptions& options) {
+  JointResult result;
+  result.path = smooth_path(start, options.knot_spacing_s);
+  for (int i = 0; i < options.rounds; ++i) {
+    const Trajectory before = result.path;
+    std::vector<ViewWindow> windows;
+    for (const double t_s : start.keyframe_s)
+      windows.push_back({events_around(events, t_s, options.window_s), &before, t_s});
+    std::vector<RayEdges> found(windows.size());
+    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });
+    Problem problem(before, windows, found, start, camera, options);
+    problem.solve(result.costs);
+    if (i + 1 == options.rounds) problem.judge(result);
+    result.path = problem.path();
+  }
+  return result;
+}
+
+}  // namespace saccade

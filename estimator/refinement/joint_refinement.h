@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/trajectory.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/refinement/cost_log.h"
+#include "estimator/refinement/path_correction.h"
+
+namespace saccade {
+
+struct JointRefinementOptions {
+  double knot_spacing_s = 0.05;  ///< of the path and of its correction
+  double window_s = 1.2;         ///< events that a keyframe's edges are sought in, around its view
+  int edges = 300;               ///< of a keyframe, at most, evenly chosen
+  int events_per_edge = 30;      ///< at most, evenly in time
+  double noise_px = 0.1;         ///< least deviation of an event from its edge
+  double outlier = 2;            ///< deviations beyond which an event counts less (Cauchy)
+  double tilt_sigma = 0.3;       ///< of an edge's tilt m from 0
+  double hysteresis_px = 0.5;    ///< of h from 0
+  double offset_px = 2;          ///< of c from 0
+  double hold_px = 30;           ///< of the correction from none, as image motion
+  double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
+  int rounds = 1;                ///< of finding the keyframes' edges, and adjusting
+  int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most
+  double information = 0.1;      ///< of that of independent residuals: neighbouring ones err alike
+};
+
+/// The events that a keyframe's edges are sought in.
+[[nodiscard]] std::span<const Event> events_around(std::span<const Event> events, double t_s,
+                                                   double window_s);
+
+/// What is refined.
+struct JointStart {
+  std::vector<StampedPose> path;   ///< spans the events
+  Trajectory known;                ///< poses of the start, which hold scale and place
+  std::vector<double> keyframe_s;  ///< times of the keyframes' views
+  double typical_depth_m = 1;      ///< turns pixels into metres
+};
+
+struct JointResult {
+  Trajectory path;  ///< every millisecond
+  SplineKnots knots;
+  Eigen::MatrixXd covariance;  ///< of the correction's twists; empty where it is not determined
+  CostLog costs;
+  std::size_t observations = 0;  ///< in the last round
+  double residual_px = 0;        ///< robust deviation of the events from their edges
+
+  /// Of the pose at a time: the twist (v, w) in the camera's axes. 0 where it is not determined.
+  [[nodiscard]] Matrix6 covariance_at(double t_s) const;
+};
+
+/// The joint optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
+/// over all keyframes' windows, which overlap and so hold each other, by Ceres with the edges
+/// eliminated first. Scale and place are those of the start's known poses. Deterministic for any
+/// number of threads.
+[[nodiscard]] JointResult refine_jointly(std::span<const Event> events, const JointStart& start,
+                                         const PinholeCamera& camera, const RayDepth& depth,
+                                         const JointRefinementOptions& options);
+
+}  // namespace saccade

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include <ceres/sized_cost_function.h>
+
+#include "core/spline_knots.h"
+#include "estimator/refinement/map_surface.h"
+
+namespace saccade {
+
+/// A control pose of the camera's path is corrected by (e, w): p + e in the map's axes, R Exp(w).
+inline constexpr int kControlSize = 6;
+[[nodiscard]] Rigid3 corrected(const Rigid3& control, const double* correction);
+
+/// One event before the map, by the four control poses of map_from_camera at its time and the
+/// offset of its chain:
+///   r = (L(place) - level - offset) / sigma.
+class LevelCost : public ceres::SizedCostFunction<1, kControlSize, kControlSize, kControlSize,
+                                                  kControlSize, 1> {
+ public:
+  struct Observation {
+    SplineKnots::Place time;
+    std::array<Rigid3, 4> controls;  ///< of map_from_camera, before their corrections
+    Eigen::Vector3d ray;
+    double level = 0;  ///< [log units]
+    double sigma = 1;  ///< [log units]
+    MapSurface::Hit hit;
+  };
+  /// `surface` outlives this.
+  LevelCost(const Observation& observation, const MapSurface& surface)
+      : observation_(observation), surface_(surface) {}
+
+  /// False where the ray leaves the plane or the picture.
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Observation observation_;
+  const MapSurface& surface_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,179 @@
+#include "estimator/refinement/refine_joint.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/io/covariance_file.h"
+#include "core/io/keyframe_list.h"
+#include "core/io/view_list.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "estimator/depth/depth_output.h"
+#include "estimator/odometry/odometry_config.h"
+#include "estimator/run_input.h"
+#include "estimator/stage_clock.h"
+#include "estimator/tracking/pose_output.h"
+
+namespace saccade {
+namespace {
+
+/// The whole run as its refinement needs it.
+struct JointInput {
+  OdometryConfig odometry;
+  std::vector<TrackedPose> poses;
+  std::vector<KeyframeEntry> keyframes;
+  Events events;
+  RunRecord::Window window;
+  JointStart start;
+};
+
+JointInput load(const RunRequest& request, const Dataset& dataset, const SourceRun& run) {
+  JointInput input;
+  input.odometry = run.config<OdometryConfig>();
+  input.poses = run.poses();
+  input.keyframes = read_keyframe_list(run.folder / "keyframes.yaml");
+  if (input.keyframes.empty())
+    throw InputError((run.folder / "keyframes.yaml").string(),
+                     "holds no keyframe: nothing to refine");
+  if (!run.record.window || dataset.groundtruth().empty())
+    throw InputError(run.folder.string(), "does not say where its given start ends");
+  // The run's window begins where the given start ends; the events of the start belong to it.
+  input.events = load_events(request, dataset);
+  input.window = *run.record.window;
+  const double first_s = seconds_from_ns(input.events.front().t_ns);
+  JointStart& start = input.start;
+  std::vector<StampedPose> known;
+  for (const StampedPose& pose : dataset.groundtruth().poses())
+    if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) known.push_back(pose);
+  std::vector<StampedPose> found =
+      known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
+                 run.folder.string());
+  start.path = known;
+  for (const StampedPose& pose : found)
+    if (start.path.empty() || pose.t_s > start.path.back().t_s) start.path.push_back(pose);
+  start.known = Trajectory(std::move(known));
+  std::vector<double> depths;
+  for (const KeyframeEntry& keyframe : input.keyframes) {
+    start.keyframe_s.push_back(keyframe.t_s);
+    depths.push_back(keyframe.typical_depth_m);
+  }
+  start.typical_depth_m = median(std::move(depths));
+  return input;
+}
+
+std::vector<StampedCovariance> take(const JointResult& result, std::vector<TrackedPose>& poses) {
+  std::vector<StampedCovariance> covariances;
+  for (TrackedPose& pose : poses) {
+    const double t_s = seconds_from_ns(pose.t_ns);
+    pose.world_from_camera = result.path.at_clamped(t_s);
+    pose.status = TrackStatus::kOk;
+    pose.iterations = static_cast<int>(result.costs.steps().size());
+    pose.inlier_ratio = 1;
+    pose.residual = result.residual_px;
+    if (result.covariance.size() == 0) continue;
+    covariances.push_back({t_s, result.covariance_at(t_s)});
+    pose.set_sigmas(covariances.back().covariance);
+  }
+  return covariances;
+}
+
+/// Depths of the keyframes on the refined path.
+std::vector<DepthResult> depths_on(const JointInput& input, const Trajectory& path,
+                                   const RayDepth& depth, double window_s) {
+  std::vector<DepthResult> results(input.keyframes.size());
+  parallel_for(results.size(), [&](std::size_t k) {
+    const double t_s = input.keyframes[k].t_s;
+    results[k] = depth.estimate({events_around(input.events, t_s, window_s), &path, t_s});
+  });
+  return results;
+}
+
+void write_keyframes(const std::filesystem::path& folder, const PinholeCamera& camera,
+                     JointInput& input, const Trajectory& path,
+                     const std::vector<DepthResult>& depths, double window_s) {
+  std::filesystem::create_directories(folder / "depth");
+  std::vector<RunView> views;
+  MapPoints map;
+  for (std::size_t k = 0; k < depths.size(); ++k) {
+    KeyframeEntry& keyframe = input.keyframes[k];
+    keyframe.world_from_camera = path.at_clamped(keyframe.t_s);
+    keyframe.points = keyframe.edges = static_cast<std::int64_t>(depths[k].points.size());
+    RunView view;
+    view.t_s = keyframe.t_s;
+    view.world_from_camera = keyframe.world_from_camera;
+    view.start_s = std::max(path.start_s(), keyframe.t_s - window_s / 2);
+    view.end_s = std::min(path.end_s(), keyframe.t_s + window_s / 2);
+    view.depth = folder / "depth" / fmt::format("depth_{:08}.exr", k);
+    write_depth_map(view.depth, camera, depths[k]);
+    views.push_back(view);
+    for (const EdgeDepth& point : depths[k].points) {
+      const Eigen::Vector3d in_world =
+          view.world_from_camera *
+          (camera.ray({point.x_px, point.y_px}) / static_cast<double>(point.inverse_depth));
+      map.x.push_back(static_cast<float>(in_world.x()));
+      map.y.push_back(static_cast<float>(in_world.y()));
+      map.z.push_back(static_cast<float>(in_world.z()));
+    }
+  }
+  write_view_list(folder / "views.yaml", views);
+  write_keyframe_list(folder / "keyframes.yaml", input.keyframes);
+  write_map(folder / "map.ply", map, Rigid3());
+}
+
+}  // namespace
+
+RunSummary refine_joint(const RunRequest& request, const RefinementConfig& config,
+                        const Dataset& dataset, const SourceRun& run, RunWriter& writer) {
+  RunTiming timing;
+  std::optional<StageClock> io(timing.io_s);
+  JointInput input = load(request, dataset, run);
+  io.reset();
+  const DepthConfig& method = input.odometry.odometry.mapping.depth;
+  const RayDepth depth(method.rays, method.limits, dataset.camera());
+  JointResult result;
+  Progress progress("refine", input.events.size() * static_cast<std::size_t>(request.repeat),
+                    "events");
+  for (int i = 0; i < request.repeat; ++i) {
+    double wall_s = 0;
+    {
+      const StageClock clock(wall_s);
+      result = refine_jointly(input.events, input.start, dataset.camera(), depth, config.joint);
+    }
+    progress.add(input.events.size());
+    timing.wall_s.push_back(wall_s);
+  }
+  double depth_s = 0;
+  std::vector<DepthResult> depths;
+  {
+    const StageClock clock(depth_s);
+    depths = depths_on(input, result.path, depth, config.joint.window_s);
+  }
+  timing.stages_s = {{"adjustment", timing.wall_s.back()}, {"depth", depth_s}};
+  timing.events = input.events.size();
+  timing.poses = input.poses.size();
+  timing.sequence_s = input.window.end_s - input.window.start_s;
+
+  io.emplace(timing.io_s);
+  const auto covariances = take(result, input.poses);
+  write_poses(writer.path(), input.poses);
+  if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
+  result.costs.save(writer.path() / "cost.csv");
+  write_keyframes(writer.path(), dataset.camera().undistorted(), input, result.path, depths,
+                  config.joint.window_s);
+  io.reset();
+  writer.finish("refine", request, dataset, input.window, config.seed, config::print(config),
+                timing);
+
+  RunSummary summary;
+  summary.events = input.events.size();
+  summary.poses = input.poses.size();
+  summary.found =
+      fmt::format("{} poses and {} keyframes by {} events, residual {:.3f} px", summary.poses,
+                  input.keyframes.size(), result.observations, result.residual_px);
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+}  // namespace saccade

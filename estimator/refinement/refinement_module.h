@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/document.h"
+#include "estimator/run.h"
+
+namespace saccade {
+
+/// `saccade run refine`: the batch optimum beside a run, as a run folder of the same make with
+/// covariance.txt and cost.csv. One thread. Throws InputError for bad input, a run that cannot be
+/// refined among it.
+RunSummary run_refinement(const RunRequest& request);
+
+/// The resolved configuration, documented, as YAML.
+[[nodiscard]] std::string print_refinement_config(const config::Document& document);
+
+}  // namespace saccade

@@ -1,0 +1,110 @@
+#include "estimator/refinement/joint_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "estimator/depth/depth_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_world;
+
+constexpr double kEnd_s = 0.4;
+constexpr double kKnown_s = 0.15;
+constexpr double kDepth_m = 2.2;
+
+/// Mostly sideways, with a turn.
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
+}
+
+/// The same, drifting away after kKnown_s: 1 % of the depth and 7 mrad in the end.
+Rigid3 drifted(double t_s) {
+  const double away = std::max(0.0, t_s - kKnown_s) / (kEnd_s - kKnown_s);
+  return glide(t_s) *
+         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
+}
+
+struct Recording {
+  testing::PlanarWorld world = corner_world(160, 120);
+  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+};
+
+const Recording& recording() {
+  static const Recording recording;
+  return recording;
+}
+
+JointResult refined(int rounds) {
+  const PinholeCamera& camera = recording().world.camera();
+  JointStart start;
+  std::vector<StampedPose> known;
+  for (double t_s = 0; t_s <= kEnd_s + 1e-9; t_s += 2e-3) {
+    start.path.push_back({t_s, drifted(t_s)});
+    if (t_s <= kKnown_s) known.push_back({t_s, glide(t_s)});
+  }
+  start.known = Trajectory(known);
+  start.keyframe_s = {0.1, 0.2, 0.3};
+  start.typical_depth_m = kDepth_m;
+  JointRefinementOptions options;
+  options.window_s = 0.3;
+  options.edges = 300;
+  options.events_per_edge = 20;
+  options.rounds = rounds;
+  const DepthConfig config;
+  return refine_jointly(recording().events, start, camera,
+                        RayDepth(config.rays, config.limits, camera), options);
+}
+
+TEST(JointRefinement, BringsADriftingPathBack) {
+  const JointResult result = refined(2);
+  for (const double t_s : {0.25, 0.3, 0.35, 0.38}) {
+    const Twist before = (glide(t_s).inverse() * drifted(t_s)).log();
+    const Twist after = (glide(t_s).inverse() * result.path.at_clamped(t_s)).log();
+    EXPECT_LT(after.head<3>().norm(), 0.4 * before.head<3>().norm()) << t_s;
+    EXPECT_LT(after.tail<3>().norm(), 0.4 * before.tail<3>().norm()) << t_s;
+  }
+  const Twist at_start = (glide(0.05).inverse() * result.path.at_clamped(0.05)).log();
+  EXPECT_LT(at_start.head<3>().norm(), 0.001 * kDepth_m);
+  EXPECT_GT(result.observations, 5000U);
+  EXPECT_LT(result.residual_px, 0.4);
+  EXPECT_EQ(result.costs.rounds(), 2);
+  // The start holds; what is far from it is known less.
+  const auto position_m = [&](double t_s) {
+    return std::sqrt(result.covariance_at(t_s).topLeftCorner<3, 3>().trace());
+  };
+  EXPECT_GT(position_m(0.38), 2 * position_m(0.1));
+}
+
+TEST(JointRefinement, IsTheSameForAnyNumberOfThreads) {
+  set_thread_count(1);
+  const JointResult one = refined(1);
+  set_thread_count(3);
+  const JointResult three = refined(1);
+  set_thread_count(0);
+  ASSERT_EQ(one.path.size(), three.path.size());
+  for (std::size_t i = 0; i < one.path.size(); ++i) {
+    EXPECT_EQ(one.path.poses()[i].world_from_camera.translation(),
+              three.path.poses()[i].world_from_camera.translation());
+    EXPECT_EQ(one.path.poses()[i].world_from_camera.rotation().coeffs(),
+              three.path.poses()[i].world_from_camera.rotation().coeffs());
+  }
+  EXPECT_EQ(one.covariance, three.covariance);
+}
+
+TEST(EventsAround, AreThoseOfTheWindow) {
+  Events events;
+  for (int i = 0; i < 10; ++i) events.push_back({ns_from_seconds(0.1 * i), 0, 0, 1});
+  const auto some = events_around(events, 0.5, 0.4);
+  ASSERT_EQ(some.size(), 4U);
+  EXPECT_EQ(some.front().t_ns, ns_from_seconds(0.3));
+  EXPECT_TRUE(events_around(events, 5, 1).empty());
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,66 @@
+#include "estimator/refinement/level_chains.h"
+
+#include <gtest/gtest.h>
+
+namespace saccade {
+namespace {
+
+PinholeCamera small_camera() {
+  PinholeCamera camera;
+  camera.width = 4;
+  camera.height = 3;
+  camera.fx = camera.fy = 4;
+  camera.cx = 1.5;
+  camera.cy = 1;
+  return camera;
+}
+
+/// Pixel (1, 2) goes up five times and down once, pixel (3, 0) fires once.
+Events some_events() {
+  Events events;
+  for (int i = 0; i < 6; ++i)
+    events.push_back({1000000LL * (i + 1), 1, 2, static_cast<std::int8_t>(i < 5 ? 1 : -1)});
+  events.push_back({8000000, 3, 0, 1});
+  return events;
+}
+
+TEST(LevelChains, LevelsAreSumsOfThresholds) {
+  const LevelChains levels = observe_levels(some_events(), small_camera(), {0.2, 0.3}, {});
+  EXPECT_EQ(levels.chains, 1U) << "one event says nothing";
+  ASSERT_EQ(levels.observations.size(), 6U);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_NEAR(levels.observations[i].level, 0.2 * static_cast<double>(i + 1), 1e-12);
+  EXPECT_NEAR(levels.observations[5].level, 1.0 - 0.3, 1e-12);
+  EXPECT_EQ(levels.observations[5].t_s, 0.006);
+  EXPECT_EQ(levels.observations[5].pixel, Eigen::Vector2f(1, 2));
+}
+
+TEST(LevelChains, ChainsOfTwoHoldTheThresholdBetweenThem) {
+  const LevelChains levels =
+      observe_levels(some_events(), small_camera(), {0.2, 0.3}, {.length = 2});
+  EXPECT_EQ(levels.chains, 3U);
+  for (std::size_t i = 0; i < 6; i += 2) {
+    const auto& a = levels.observations[i];
+    const auto& b = levels.observations[i + 1];
+    EXPECT_EQ(a.chain, b.chain);
+    EXPECT_NEAR(b.level - a.level, i < 4 ? 0.2 : -0.3, 1e-12);
+  }
+}
+
+TEST(LevelChains, SomePixelsKeepAllOfTheirEvents) {
+  Events events;
+  for (int i = 0; i < 10; ++i)
+    for (std::uint16_t y = 0; y < 3; ++y)
+      for (std::uint16_t x = 0; x < 4; ++x) events.push_back({1000LL * i, x, y, 1});
+  const LevelChains levels = observe_levels(events, small_camera(), {0.2, 0.3}, {.events = 60});
+  EXPECT_GE(levels.chains, 5U);
+  EXPECT_LE(levels.chains, 7U);
+  EXPECT_EQ(levels.observations.size(), 10 * levels.chains);
+}
+
+TEST(LevelChains, NoEventsGiveNone) {
+  EXPECT_TRUE(observe_levels({}, small_camera(), {}, {}).observations.empty());
+}
+
+}  // namespace
+}  // namespace saccade
