@@ -23,6 +23,21 @@ std::size_t count_until(std::span<const Event> events, double t_s) {
   return static_cast<std::size_t>(at - events.begin());
 }
 
+bool is_settled(const KnownPath& start) { return start.settled_until_s >= start.poses.end_s(); }
+
+/// The poses of a start that are an output: of one that is settled, none.
+std::vector<TrackedPose> found_poses(const KnownPath& start) {
+  std::vector<TrackedPose> poses;
+  if (is_settled(start)) return poses;
+  for (const StampedPose& pose : start.poses.poses()) {
+    TrackedPose tracked;
+    tracked.t_ns = tracked.first_ns = tracked.last_ns = ns_from_seconds(pose.t_s);
+    tracked.world_from_camera = pose.world_from_camera;
+    poses.push_back(tracked);
+  }
+  return poses;
+}
+
 }  // namespace
 
 /// A keyframe in the making.
@@ -41,12 +56,13 @@ Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, 
 
 Odometry::~Odometry() = default;
 
-OdometryResult Odometry::run(std::span<const Event> events, const Trajectory& start,
+OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& start,
                              const std::function<void(std::size_t)>& progress) {
   OdometryResult result;
-  known_.assign(start.poses().begin(), start.poses().end());
-  settled_until_s_ = start.end_s();
-  Stream stream{events, count_until(events, start.end_s())};
+  known_.assign(start.poses.poses().begin(), start.poses.poses().end());
+  settled_until_s_ = start.settled_until_s;
+  result.poses = found_poses(start);
+  Stream stream{events, count_until(events, start.poses.end_s())};
   {
     const StageClock clock(result.mapping_s);
     start_from(events.first(stream.done), start);
@@ -142,17 +158,19 @@ bool Odometry::is_due(double now_s) const {
   return job_->mapping.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
 }
 
-void Odometry::start_from(std::span<const Event> events, const Trajectory& start) {
-  Keyframe first = mapper_.map(events, {start, start.end_s(), std::nullopt, {}}).keyframe;
+void Odometry::start_from(std::span<const Event> events, const KnownPath& start) {
+  Mapping mapping = mapper_.map(events, start);
+  Keyframe& first = mapping.keyframe;
   if (first.edges.size() < kLeastEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there, or start.truth_s must be longer");
   typical_depth_m_ = first.typical_depth_m;
-  last_keyframe_at_ = start.poses().back().world_from_camera;
+  if (!is_settled(start)) take_mapped_poses(mapping);
+  last_keyframe_at_ = known_.back().world_from_camera;
   map_.add(std::move(first), last_keyframe_at_);
   tracker_.set_map(map_.points());
-  tracker_.reset(ns_from_seconds(start.end_s()), last_keyframe_at_);
+  tracker_.reset(ns_from_seconds(start.poses.end_s()), last_keyframe_at_);
 }
 
 bool Odometry::wants_keyframe(const Rigid3& world_from_camera) const {

@@ -92,9 +92,10 @@ class Odometry {
   void set_gyroscope(Gyroscope gyroscope) { tracker_.set_gyroscope(std::move(gyroscope)); }
 
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
-  /// are found from the last of them on. `progress` is called with the number of events done since
-  /// its last call. Throws InputError where the start shows no edges.
-  [[nodiscard]] OdometryResult run(std::span<const Event> events, const Trajectory& start,
+  /// are found from the last of them on; those of a start that is not settled as a whole are
+  /// part of the result, too, as last adjusted. `progress` is called with the number of events done
+  /// since its last call. Throws InputError where the start shows no edges.
+  [[nodiscard]] OdometryResult run(std::span<const Event> events, const KnownPath& start,
                                    const std::function<void(std::size_t)>& progress = {});
 
   [[nodiscard]] const EdgeMap& map() const { return map_; }
@@ -114,7 +115,7 @@ class Odometry {
     [[nodiscard]] std::span<const Event> rest() const { return all.subspan(done); }
   };
 
-  void start_from(std::span<const Event> events, const Trajectory& start);
+  void start_from(std::span<const Event> events, const KnownPath& start);
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void take_pose(TrackedPose pose, OdometryResult& result);
   [[nodiscard]] std::optional<TrackedPose> find_again();

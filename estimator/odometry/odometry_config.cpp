@@ -5,11 +5,28 @@
 namespace saccade {
 namespace {
 
+void describe_found_start(config::Fields& fields, BootstrapOptions& options) {
+  fields
+      .value("depth_m", options.depth_m,
+             "the typical depth of the start is called so: events alone do not say the scale")
+      .above(0);
+  fields
+      .value("motion_px", options.plane.motion_px,
+             "image motion over the first part of it, as before a plane")
+      .range(8, 1000);
+  fields.value("window_s", options.window_s, "of the path that is found, at most").range(0.01, 10);
+}
+
 void describe_start(config::Fields& fields, StartOptions& options) {
   fields
       .value("truth_s", options.truth_s,
-             "the poses are given for so long from the first event on; no later one is read")
-      .range(0.001, 1e3);
+             "the poses are given for so long from the first event on; no later one is read; 0: "
+             "none is, the start is found from events alone")
+      .range(0, 1e3);
+  if (options.truth_s == 0) {
+    describe_found_start(fields, options.found);
+    return;
+  }
   fields
       .value("truth_share", options.truth_share, "... but for no more than this share of the whole")
       .above(0)
@@ -99,6 +116,12 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
   fields.value("step_sigma_px", adjustment.step_sigma_px, "of the correction from node to node")
       .above(0);
   fields.value("known_sigma_px", adjustment.known_sigma_px, "of poses that are settled").above(0);
+  fields
+      .value("surface_sigma", adjustment.surface_sigma,
+             "of the edges from a smooth surface, relative; 0: edges are on their own")
+      .range(0, 10);
+  fields.value("surface_spacing_px", adjustment.surface_spacing_px, "between the surface's nodes")
+      .range(2, 1000);
 }
 
 }  // namespace

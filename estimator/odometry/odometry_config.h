@@ -4,17 +4,21 @@
 
 #include "core/config/fields.h"
 #include "estimator/odometry/odometry.h"
+#include "estimator/odometry/start/bootstrap.h"
 
 namespace saccade {
 
 /// What is known of the camera at the start.
 struct StartOptions {
-  double truth_s = 0.2;      ///< the ground truth is given for so long from the first event on
+  /// The ground truth is given for so long from the first event on; 0: nothing is known.
+  double truth_s = 0.2;
   double truth_share = 0.1;  ///< ... but for no more than this share of the events' time
+  BootstrapOptions found;    ///< of truth_s: 0
 };
 
 /// The configuration of `saccade run odometry`; describe() names the keys, ranges and defaults.
-/// Nothing comes from the dataset but its events, its calibration and the poses of the start.
+/// Nothing comes from the dataset but its events, its calibration and the poses of the start, if
+/// there are any.
 struct OdometryConfig {
   StartOptions start;
   OdometryOptions odometry;

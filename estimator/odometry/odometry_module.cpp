@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
+#include "estimator/odometry/start/start_record.h"
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"
 #include "estimator/stage_clock.h"
@@ -46,6 +47,43 @@ Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
   return Trajectory(std::move(start));
 }
 
+/// The path at the start from events alone.
+Bootstrap found_start(const Dataset& dataset, std::span<const Event> events,
+                      const StartOptions& options) {
+  Bootstrap start = find_start(events, dataset.camera(), options.found);
+  if (start.status == Bootstrap::Status::kNoMotion)
+    throw InputError(dataset.folder().string(),
+                     "the events show no motion that odometry could start from");
+  if (start.status == Bootstrap::Status::kNoParallax)
+    throw InputError(dataset.folder().string(),
+                     "the events show no parallax that odometry could start from: the camera must "
+                     "move sideways; of a camera that only turns see saccade run rotation");
+  return start;
+}
+
+/// What is known at the start, and how it came to be known.
+struct Start {
+  KnownPath path;
+  std::optional<Bootstrap> found;  ///< from events alone
+  double from_s = 0;               ///< what is scored begins there
+  double seconds = 0;              ///< of work
+};
+
+Start start_of(const Dataset& dataset, std::span<const Event> events, const StartOptions& options) {
+  Start start;
+  if (options.truth_s > 0) {
+    start.path.poses = start_poses(dataset, events, options);
+    start.path.settled_until_s = start.from_s = start.path.poses.end_s();
+    return start;
+  }
+  const StageClock clock(start.seconds);
+  start.found = found_start(dataset, events, options);
+  start.from_s = start.found->path.start_s();
+  // All but the first pose may change.
+  start.path = {start.found->path, start.from_s, options.found.depth_m, {}};
+  return start;
+}
+
 }  // namespace
 
 RunSummary run_odometry(const RunRequest& request) {
@@ -58,14 +96,14 @@ RunSummary run_odometry(const RunRequest& request) {
   std::optional<StageClock> io(timing.io_s);
   const Dataset dataset = Dataset::open(request.dataset);
   const Events events = load_events(request, dataset);
-  const Trajectory start = start_poses(dataset, events, config.start);
   const Gyroscope gyroscope = load_gyroscope(config.odometry.tracker.motion, dataset);
   io.reset();
+  const Start start = start_of(dataset, events, config.start);
 
-  // What is scored begins where the given poses end.
+  // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
-  window.start_s = start.end_s();
+  window.start_s = start.from_s;
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
@@ -75,10 +113,10 @@ RunSummary run_odometry(const RunRequest& request) {
   for (int i = 0; i < request.repeat; ++i) {
     odometry.emplace(config.odometry, dataset.camera(), config.seed);
     odometry->set_gyroscope(gyroscope);
-    double wall_s = 0;
+    double wall_s = start.seconds;
     {
       const StageClock clock(wall_s);
-      result = odometry->run(events, start, [&](std::size_t n) { progress.add(n); });
+      result = odometry->run(events, start.path, [&](std::size_t n) { progress.add(n); });
     }
     timing.wall_s.push_back(wall_s);
   }
@@ -88,14 +126,18 @@ RunSummary run_odometry(const RunRequest& request) {
     Progress images("images", odometry->map().keyframes().size(), "keyframes");
     odometry->add_images(events, [&](std::size_t n) { images.add(n); });
   }
-  timing.stages_s = {
-      {"tracking", result.tracking_s}, {"mapping", result.mapping_s}, {"images", images_s}};
+  timing.stages_s = {{"start", start.seconds},
+                     {"tracking", result.tracking_s},
+                     {"mapping", result.mapping_s},
+                     {"images", images_s}};
   timing.poses = result.poses.size();
   timing.latency_ms = std::move(result.latency_ms);
   if (config.odometry.mode == OdometryMode::kOnline) timing.dropped_events = result.dropped_events;
 
   io.emplace(timing.io_s);
   write_odometry(writer.path(), dataset.camera(), result, odometry->map());
+  if (start.found)
+    write_start(writer.path() / "start.yaml", *start.found, config.start.found.depth_m);
   io.reset();
   writer.finish("odometry", request, dataset, window, config.seed, config::print(config), timing);
 

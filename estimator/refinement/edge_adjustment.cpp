@@ -12,6 +12,7 @@
 #include <ceres/ceres.h>
 
 #include "estimator/refinement/adjustment_costs.h"
+#include "estimator/refinement/coarse_surface.h"
 #include "estimator/refinement/edge_fit.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/node_correction.h"
@@ -151,7 +152,8 @@ class WindowProblem {
         landmarks_(known.landmarks, window.world_from_reference().inverse(), camera.undistorted()),
         correction_(seconds_from_ns(window.events.front().t_ns),
                     seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
-        observed_(window, edges, camera, correction_, options.pairs) {}
+        observed_(window, edges, camera, correction_, options.pairs),
+        surface_(observed_.camera(), options.surface_spacing_px, 1 / known.typical_depth_m) {}
 
   Adjustment solve() {
     Adjustment result;
@@ -160,6 +162,7 @@ class WindowProblem {
     if (edges_.edges.size() < kLeastEdges) return result;
     add_edges();
     add_nodes();
+    if (options_.surface_sigma > 0) add_surface();
     result.residual_before_px = deviation_px();
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_SCHUR;
@@ -196,6 +199,7 @@ class WindowProblem {
     for (std::size_t k = 0; k < count; ++k) {
       const FittedEdge& fitted = edges_.edges[k * all / count];
       ChosenEdge& edge = chosen_[k];
+      edge.pixel = fitted.edge.pixel.cast<double>();
       edge.unknowns = unknowns_of(fitted);
       edge.events = observed_.of(fitted);
       const double weight = 1 / noise_px(fitted);
@@ -212,6 +216,7 @@ class WindowProblem {
   }
 
   struct ChosenEdge {
+    Eigen::Vector2d pixel;
     EdgeUnknowns unknowns;
     std::vector<ChosenEvent> events;
   };
@@ -281,6 +286,14 @@ class WindowProblem {
     return observation;
   }
 
+  void add_surface() {
+    std::vector<SurfaceEdge> edges;
+    for (ChosenEdge& edge : chosen_) edges.push_back({edge.pixel, edge.unknowns.data()});
+    surface_.add_to(problem_, edges, options_.surface_sigma);
+    // A group of its own: within one Ceres orders by address, which differs from run to run.
+    for (double& node : surface_.nodes()) ordering_->AddElementToGroup(&node, 2);
+  }
+
   /// Median of the absolute residuals, as a Gaussian's deviation [px].
   [[nodiscard]] double deviation_px() {
     std::vector<double> residuals;
@@ -323,6 +336,7 @@ class WindowProblem {
   NodeCorrection correction_;
   ObservedEdges observed_;
   std::vector<ChosenEdge> chosen_;
+  CoarseSurface surface_;
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();

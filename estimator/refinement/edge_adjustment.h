@@ -28,6 +28,10 @@ struct AdjustmentOptions {
   double pose_sigma_px = 3;      ///< as image motion
   double step_sigma_px = 0.3;    ///< between neighbouring nodes
   double known_sigma_px = 0.05;  ///< of poses that are known already
+  /// Of the edges from a smooth surface (CoarseSurface), relative to the typical inverse depth; 0:
+  /// edges are on their own.
+  double surface_sigma = 0;
+  double surface_spacing_px = 15;  ///< of the surface's nodes
 };
 
 /// What is known beside the window.

@@ -20,8 +20,8 @@ struct EdgeObservation {
   /// What h is multiplied by: the polarity p, +1 or -1, or p times the contrasts by which the
   /// brightness had changed (event_steps.h).
   double lag = 0;
-  Eigen::Vector2d pixel;    ///< e, in the view
-  Eigen::Vector2d normal;   ///< n, unit
+  Eigen::Vector2d pixel;   ///< e, in the view
+  Eigen::Vector2d normal;  ///< n, unit
 };
 
 /// The unknowns of an edge in the order rho [1/m], c [px], m, h [px].

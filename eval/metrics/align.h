@@ -33,10 +33,11 @@ struct Similarity {
 /// with U D V^T the singular value decomposition of the covariance of truth and estimate,
 ///   R = U diag(1, 1, det U det V) V^T,  s = tr(R^T covariance) / variance(estimate) (1 for SE(3)).
 ///
-/// Where the positions leave the rotation open (one pose, a standstill, a straight line: the second
-/// singular value is below 1e-6 of the first) the orientations decide the rest: their chordal mean
-/// sum R_truth R_estimate^T enters the covariance with a weight of 1e-6, or alone at a standstill.
-/// An estimate that stands still, or that makes the best scale zero, keeps scale 1.
+/// Where the positions leave the rotation open, the orientations decide the rest by their chordal
+/// mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a standstill, the roll
+/// about the main direction on a path that is straight (one singular value) or bends by less than
+/// ten times what the positions are off by, so that they would say the roll to no better than a
+/// tenth radian. An estimate that stands still, or that makes the best scale zero, keeps scale 1.
 /// No pairs, or Alignment::kNone: the identity.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
 

@@ -189,6 +189,23 @@ reconstruction: {method: gradient}
   EXPECT_TRUE(fs::is_regular_file(views.front().image));
 }
 
+TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
+  std::string yaml =
+      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  yaml.replace(yaml.find("truth_s: 0.2, truth_share: 0.4"), 30, "truth_s: 0, depth_m: 2.2");
+  const RunSummary summary = run_odometry(request("with", yaml));
+  EXPECT_EQ(summary.lost_poses, 0U);
+  fs::remove(recording_->path() / "corner" / "groundtruth.txt");
+  (void)run_odometry(request("without", yaml));
+  write_poses_until(recording_->path() / "corner", kEnd_s);
+  for (const char* file : {"trajectory.txt", "poses.csv", "map.ply", "start.yaml"})
+    EXPECT_EQ(read_file(folder_.path() / "with" / file),
+              read_file(folder_.path() / "without" / file))
+        << file;
+  const Trajectory found = read_trajectory(folder_.path() / "with" / "trajectory.txt");
+  EXPECT_LT(found.poses().front().world_from_camera.log().norm(), 0.01);
+}
+
 TEST_F(OdometryModule, SaysWhatIsWrong) {
   fs::remove(dataset() / "groundtruth.txt");
   EXPECT_THAT(error_of([&] { return run_odometry(request("none")); }), HasSubstr("start.truth_s"));

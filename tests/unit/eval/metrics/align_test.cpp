@@ -1,5 +1,6 @@
 #include "eval/metrics/align.h"
 
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -54,7 +55,31 @@ TEST(Align, PositionsInAPlaneAreEnough) {
 
 TEST(Align, OnALineTheOrientationsDecideTheRoll) {
   const std::vector<Vector3d> line{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}};
-  expect_same(align(transformed(line, kTurnedAndScaled), Alignment::kSim3), kTurnedAndScaled, 1e-5);
+  expect_same(align(transformed(line, kTurnedAndScaled), Alignment::kSim3), kTurnedAndScaled);
+}
+
+TEST(Align, OnANearlyStraightPathTheOrientationsDecideTheRoll) {
+  // A path that bends by less than its positions are off by, in other directions.
+  std::vector<PosePair> pairs;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 0.1 * i - 1;
+    const Rigid3 pose(about({1, 0.5, -2}, 0.05 * i), {x, 0.003 * x * x, 0});
+    Rigid3 truth = kTurnedAndScaled * pose;
+    truth = Rigid3(truth.rotation(),
+                   kTurnedAndScaled * Vector3d(x, 0.001 * std::sin(7 * x), 0.003 * x * x));
+    pairs.push_back({pose, truth});
+  }
+  const Similarity found = align(pairs, Alignment::kSim3);
+  EXPECT_LT(angle_between(found.rigid.rotation(), kTurnedAndScaled.rigid.rotation()), 0.01);
+  EXPECT_NEAR(found.scale, kTurnedAndScaled.scale, 1e-3);
+}
+
+TEST(Align, WhereThePathBendsThePositionsDecideAlone) {
+  std::vector<PosePair> pairs = transformed(kSpread, kTurnedAndScaled);
+  for (PosePair& pair : pairs)
+    pair.estimated =
+        Rigid3(about({0, 1, 0}, 0.5) * pair.estimated.rotation(), pair.estimated.translation());
+  expect_same(align(pairs, Alignment::kSim3), kTurnedAndScaled);
 }
 
 TEST(Align, AtAStandstillTheOrientationsDecideAlone) {

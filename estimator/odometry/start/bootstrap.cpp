@@ -1,0 +1,153 @@
+#include "estimator/odometry/start/bootstrap.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace saccade {
+namespace {
+
+constexpr double kPoseSpacing_s = 1e-3;
+
+std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
+  const auto at = [&](double t_s) {
+    return std::partition_point(events.begin(), events.end(),
+                                [t_s](const Event& e) { return seconds_from_ns(e.t_ns) < t_s; });
+  };
+  const auto first = at(from_s);
+  return {first, std::max(first, at(to_s))};
+}
+
+Trajectory path_of(const PlaneFit& fit) {
+  std::vector<StampedPose> poses;
+  const double duration_s = fit.end_s - fit.start_s;
+  const int steps = std::max(1, static_cast<int>(duration_s / kPoseSpacing_s));
+  for (int i = 0; i <= steps; ++i) {
+    const double t_s = fit.start_s + i * duration_s / steps;
+    poses.push_back({t_s, fit.motion.reference_from_camera(t_s - fit.middle_s)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+/// The path goes on at its velocity of the last 20 ms.
+Trajectory carried_on(const Trajectory& path, double until_s) {
+  constexpr double kLast_s = 0.02;
+  const double end_s = path.end_s();
+  const Rigid3 last = path.poses().back().world_from_camera;
+  const Twist step = (path.at_clamped(end_s - kLast_s).inverse() * last).log();
+  std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
+  for (double t_s = end_s + kPoseSpacing_s; t_s < until_s + kPoseSpacing_s; t_s += kPoseSpacing_s)
+    poses.push_back({t_s, last * Rigid3::exp((t_s - end_s) / kLast_s * step)});
+  return Trajectory(std::move(poses));
+}
+
+/// Largest distance from the first pose, seen at depth 1 [px].
+double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
+  const Eigen::Vector3d first = path.poses().front().world_from_camera.translation();
+  double most = 0;
+  for (const StampedPose& pose : path.poses())
+    most = std::max(most, (pose.world_from_camera.translation() - first).norm());
+  return camera.fx * most;
+}
+
+/// From the first pose on, in the unit asked for.
+Trajectory in_world(const Trajectory& path, double depth_m) {
+  const Rigid3 world_from_path = path.poses().front().world_from_camera.inverse();
+  std::vector<StampedPose> poses;
+  for (const StampedPose& pose : path.poses()) {
+    const Rigid3 moved = world_from_path * pose.world_from_camera;
+    poses.push_back({pose.t_s, {moved.rotation(), depth_m * moved.translation()}});
+  }
+  return Trajectory(std::move(poses));
+}
+
+class StartFinder {
+ public:
+  StartFinder(const PinholeCamera& camera, const BootstrapOptions& options)
+      : camera_(camera),
+        options_(options),
+        search_(options.plane, camera),
+        refinement_(options.refinement, camera) {}
+
+  Bootstrap from(std::span<const Event> events) {
+    Bootstrap start;
+    const std::vector<PlaneFit> fits = search_.find(events);
+    if (fits.empty() || fits.front().gain < options_.min_gain) return start;
+    start.status = Bootstrap::Status::kNoParallax;
+    const FreePath path = grown(events, best_of(events, fits));
+    start.edges = path.edges;
+    start.residual_px = path.residual_px;
+    start.parallax_px = parallax_px(path.poses, camera_);
+    if (path.is_clear && start.parallax_px >= options_.min_parallax_px) {
+      start.status = Bootstrap::Status::kFound;
+      start.path = in_world(path.poses, options_.depth_m);
+    }
+    return start;
+  }
+
+ private:
+  [[nodiscard]] FreePath best_of(std::span<const Event> events,
+                                 const std::vector<PlaneFit>& fits) const {
+    FreePath best;
+    for (const PlaneFit& fit : fits) {
+      FreePath path = refined(events, path_of(fit), options_.first_rounds);
+      if (best.poses.empty() || path.events > best.events) best = std::move(path);
+    }
+    return refined(events, best.poses, options_.rounds);
+  }
+
+  [[nodiscard]] FreePath grown(std::span<const Event> events, FreePath path) const {
+    const double start_s = path.poses.start_s();
+    const double longest_s =
+        std::min(options_.window_s, seconds_from_ns(events.back().t_ns) - start_s);
+    while (path.is_clear && path.poses.end_s() - start_s < longest_s - kPoseSpacing_s) {
+      const double window_s = std::min(options_.growth * (path.poses.end_s() - start_s), longest_s);
+      path = refined(events, carried_on(path.poses, start_s + window_s), 1);
+    }
+    return path;
+  }
+
+  [[nodiscard]] FreePath refined(std::span<const Event> events, const Trajectory& path,
+                                 int rounds) const {
+    return refinement_.refine(between(events, path.start_s(), path.end_s()), path, rounds);
+  }
+
+  PinholeCamera camera_;
+  BootstrapOptions options_;
+  PlaneSearch search_;
+  PathRefinement refinement_;
+};
+
+}  // namespace
+
+PathRefinementOptions start_refinement() {
+  PathRefinementOptions options;
+  options.adjustment.edges = 800;
+  options.adjustment.node_spacing_s = 0.02;
+  options.adjustment.pose_sigma_px = 20;
+  options.adjustment.step_sigma_px = 0.3;
+  options.adjustment.surface_sigma = 0.02;
+  options.adjustment.iterations = 20;
+  return options;
+}
+
+Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
+                     const BootstrapOptions& options) {
+  Bootstrap start;
+  if (events.empty()) return start;
+  StartFinder finder(camera, options);
+  const double end_s = seconds_from_ns(events.back().t_ns);
+  double from_s = seconds_from_ns(events.front().t_ns);
+  while (!events.empty()) {
+    const Bootstrap found = finder.from(events);
+    // Where the camera moved at some time, that is what there is to say.
+    if (found.status != Bootstrap::Status::kNoMotion) start = found;
+    if (found.status == Bootstrap::Status::kFound) break;
+    from_s += options.retry_s;
+    if (from_s >= end_s) break;
+    events = between(events, from_s, end_s);
+  }
+  return start;
+}
+
+}  // namespace saccade

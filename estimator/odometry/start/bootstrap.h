@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "core/trajectory.h"
+#include "estimator/odometry/start/path_refinement.h"
+#include "estimator/odometry/start/plane_search.h"
+
+namespace saccade {
+
+/// What the refinement of a start is by default: loose where there is nothing to hold on to.
+[[nodiscard]] PathRefinementOptions start_refinement();
+
+struct BootstrapOptions {
+  double depth_m = 1;      ///< the scale is free: the typical depth is called so
+  double window_s = 0.25;  ///< of the path that is found, at most
+  PlaneSearchOptions plane;
+  PathRefinementOptions refinement = start_refinement();
+  int first_rounds = 1;        ///< of every hypothesis, before the best goes on
+  int rounds = 3;              ///< of the best
+  double growth = 1.15;        ///< of its window, from round to round after these
+  double min_gain = 1.1;       ///< of contrast: less is noise
+  double min_parallax_px = 5;  ///< of the path at the typical depth: less is a turn
+  double retry_s = 0.1;        ///< where a window gives no start the next begins so much later
+};
+
+/// A start without any pose given.
+struct Bootstrap {
+  enum class Status {
+    kFound,
+    kNoMotion,    ///< nothing but noise in all of the events
+    kNoParallax,  ///< the camera only turned, or its motion was never clear
+  };
+  Status status = Status::kNoMotion;
+  Trajectory path;         ///< world_from_camera, the identity at its first pose
+  std::size_t edges = 0;   ///< found with it
+  double residual_px = 0;  ///< robust deviation of their events
+  double parallax_px = 0;  ///< of the typical depth, between the ends of the path
+};
+
+/// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
+/// by contrast (PlaneSearch), then path and edges adjusted together (PathRefinement); the one by
+/// which most events lie on edges is taken, and carried on at its last velocity: the longer the
+/// path, the better it tells a turn from a step, but no steady motion explains a long one. Where
+/// the camera rests, or only turns, it begins later. `events` in order of time; `camera` with its
+/// lens. Deterministic.
+[[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
+                                   const BootstrapOptions& options);
+
+}  // namespace saccade

@@ -1,0 +1,57 @@
+#include "estimator/odometry/start/path_refinement.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace saccade {
+namespace {
+
+double median_depth(const RayEdges& edges) {
+  std::vector<float> inverse;
+  inverse.reserve(edges.edges.size());
+  for (const FittedEdge& edge : edges.edges) inverse.push_back(edge.edge.inverse_depth);
+  const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
+  std::nth_element(inverse.begin(), middle, inverse.end());
+  return 1 / static_cast<double>(*middle);
+}
+
+Trajectory scaled(const Trajectory& path, double scale) {
+  std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
+  for (StampedPose& pose : poses)
+    pose.world_from_camera = {pose.world_from_camera.rotation(),
+                              scale * pose.world_from_camera.translation()};
+  return Trajectory(std::move(poses));
+}
+
+}  // namespace
+
+PathRefinement::PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera)
+    : options_(options), camera_(camera), depth_(options.rays, options.limits, camera) {}
+
+FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path,
+                                int rounds) const {
+  FreePath result;
+  result.poses = path;
+  const double reference_s =
+      (seconds_from_ns(events.front().t_ns) + seconds_from_ns(events.back().t_ns)) / 2;
+  for (int i = 0; i < rounds; ++i) {
+    const ViewWindow window{events, &result.poses, reference_s};
+    const RayEdges edges = depth_.find_edges(window);
+    result.edges = edges.edges.size();
+    result.events = 0;
+    for (const FittedEdge& edge : edges.edges) result.events += edge.last - edge.first;
+    if (edges.edges.size() < options_.min_edges) return result;
+    const Adjustment adjustment = adjust(
+        window, edges, camera_, {-std::numeric_limits<double>::infinity(), median_depth(edges), {}},
+        options_.adjustment);
+    if (!adjustment.ok) return result;
+    result.residual_px = adjustment.residual_after_px;
+    result.poses = scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges));
+  }
+  result.is_clear = true;
+  return result;
+}
+
+}  // namespace saccade

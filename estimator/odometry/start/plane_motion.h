@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/rigid3.h"
+
+namespace saccade {
+
+/// A camera that moves steadily before a plane. In the frame of the camera at time 0,
+///   reference_from_camera(t) = (exp(t w), t v),   1 / z = 1 + slope . (x, y) for the ray (x, y,
+///   1):
+/// the plane's depth in the viewing direction is the unit of length.
+struct PlaneMotion {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< v [depths/s]
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();      ///< w [rad/s]
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();     ///< [-]
+
+  /// m with m . X = 1 on the plane.
+  [[nodiscard]] Eigen::Vector3d plane() const { return {slope.x(), slope.y(), 1}; }
+  [[nodiscard]] Rigid3 reference_from_camera(double t_s) const {
+    return {so3_exp(t_s * rate), t_s * velocity};
+  }
+  /// The same, seen from the camera at another time; the unit of length is the depth from there.
+  [[nodiscard]] PlaneMotion seen_at(double t_s) const {
+    const Rigid3 camera = reference_from_camera(t_s);
+    const Eigen::Vector3d m =
+        (camera.rotation().inverse() * plane()) / (1 - plane().dot(camera.translation()));
+    return {m.z() * (camera.rotation().inverse() * velocity), rate, m.head<2>() / m.z()};
+  }
+  /// The other motion with the same image motion (Longuet-Higgins, Proc. R. Soc. B 227, 1986):
+  /// plane and velocity change parts,
+  ///   v' = v_z m,  m' = v / v_z,  w' = w + m x v.
+  /// v_z is not 0.
+  [[nodiscard]] PlaneMotion dual() const {
+    return {velocity.z() * plane(), rate + plane().cross(velocity),
+            velocity.head<2>() / velocity.z()};
+  }
+  /// The same image motion in the viewing direction with `share` of what a turn and a step across
+  /// it have in common given to the step.
+  [[nodiscard]] PlaneMotion with_step_share(double share) const {
+    const Eigen::Vector2d across(velocity.x() + rate.y(), velocity.y() - rate.x());
+    PlaneMotion motion = *this;
+    motion.velocity.head<2>() = share * across;
+    motion.rate.y() = (1 - share) * across.x();
+    motion.rate.x() = -(1 - share) * across.y();
+    return motion;
+  }
+};
+
+}  // namespace saccade

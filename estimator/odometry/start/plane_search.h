@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "estimator/odometry/start/plane_contrast.h"
+#include "estimator/odometry/start/plane_motion.h"
+
+namespace saccade {
+
+struct PlaneSearchOptions {
+  double motion_px = 20;       ///< of the image over the window that is looked for
+  double max_window_s = 0.25;  ///< a slower motion ends here
+  double events_per_px = 0.5;  ///< of the first window
+  int samples = 20000;         ///< at most so many events of a window are used
+  double blur_px = 1;          ///< of the image of events
+  double burst_share = 0.15;   ///< of the window's length, see BurstFilter
+  double slope_sigma = 3;      ///< of the plane's slope from 0, where the events hardly say
+  int iterations = 40;         ///< of quasi-Newton steps, at most
+};
+
+/// A motion before a plane that explains a window.
+struct PlaneFit {
+  PlaneMotion motion;
+  double start_s = 0, middle_s = 0, end_s = 0;  ///< of the window; `motion` is of the middle
+  double motion_px = 0;                         ///< of the image over the window, RMS
+  double gain = 0;                              ///< contrast over that of events where they fired
+};
+
+/// Explains the first events by motions before a plane. The window grows: first a turn, which
+/// hardly any window is too short for; then, at several px, turn and step in several proportions,
+/// because a short window does not tell them apart. Deterministic.
+class PlaneSearch {
+ public:
+  PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera);
+
+  /// From the first of `events` on; the sharpest first, none where nothing moves.
+  [[nodiscard]] std::vector<PlaneFit> find(std::span<const Event> events);
+
+ private:
+  [[nodiscard]] std::span<const Event> window(std::span<const Event> events,
+                                              double duration_s) const;
+  [[nodiscard]] PlaneFit first_turn(std::span<const Event> events) const;
+  [[nodiscard]] PlaneFit climbed(std::span<const Event> events, const PlaneFit& guess);
+  [[nodiscard]] double image_motion_px(const PlaneFit& fit) const;
+
+  PlaneSearchOptions options_;
+  PinholeCamera camera_;
+  PlaneContrast contrast_;
+};
+
+}  // namespace saccade

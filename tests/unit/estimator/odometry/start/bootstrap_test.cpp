@@ -1,0 +1,113 @@
+#include "estimator/odometry/start/bootstrap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "core/random.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kEnd_s = 0.2;
+
+/// Sideways with a turn, in front of a corner.
+Rigid3 glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.25 * t_s, 0.3 * t_s}), {1.2 * t_s, 0.3 * t_s, 0.1 * t_s}};
+}
+
+const testing::PlanarWorld& world() {
+  static const testing::PlanarWorld world = testing::corner_world(160, 120);
+  return world;
+}
+
+Events recorded(const testing::Motion& motion, double end_s) {
+  return world().simulate(motion, 0, end_s, 1e-3, 0.15);
+}
+
+BootstrapOptions quick() {
+  BootstrapOptions options;
+  options.window_s = kEnd_s;
+  options.growth = 1.4;
+  options.refinement.adjustment.edges = 500;
+  return options;
+}
+
+/// Of the found path, scaled to fit, from the true one's part: at the most, relative to the depth.
+struct Errors {
+  double position = 0, turn_rad = 0;
+};
+
+Errors errors_of(const Trajectory& path, const testing::Motion& truth) {
+  const Rigid3 start_from_world = truth(path.start_s()).inverse();
+  double product = 0, squares = 0;
+  for (const StampedPose& pose : path.poses()) {
+    const Rigid3 at = start_from_world * truth(pose.t_s);
+    product += at.translation().dot(pose.world_from_camera.translation());
+    squares += pose.world_from_camera.translation().squaredNorm();
+  }
+  const double scale = product / squares;
+  Errors errors;
+  for (const StampedPose& pose : path.poses()) {
+    const Rigid3 at = start_from_world * truth(pose.t_s);
+    const double off =
+        (scale * pose.world_from_camera.translation() - at.translation()).norm() / scale;
+    errors.position = std::max(errors.position, off);
+    errors.turn_rad =
+        std::max(errors.turn_rad, angle_between(pose.world_from_camera.rotation(), at.rotation()));
+  }
+  return errors;
+}
+
+TEST(Bootstrap, FindsThePathUpToScale) {
+  BootstrapOptions options = quick();
+  options.depth_m = 2;
+  const Bootstrap start = find_start(recorded(glide, kEnd_s), world().camera(), options);
+  ASSERT_EQ(start.status, Bootstrap::Status::kFound);
+  EXPECT_LT(start.path.start_s(), 0.01);
+  EXPECT_GT(start.path.end_s(), 0.15);
+  EXPECT_GT(start.edges, 200U);
+  EXPECT_LT(start.path.poses().front().world_from_camera.log().norm(), 1e-12);
+  const Errors errors = errors_of(start.path, glide);
+  EXPECT_LT(errors.position, 0.01 * options.depth_m);
+  // The camera moved by a tenth of the depth, 15 px of a small picture, and turned by 0.08 rad: a
+  // turn and a step are told apart to a few pixels.
+  EXPECT_LT(errors.turn_rad, 0.05);
+  const double way = start.path.poses().back().world_from_camera.translation().norm();
+  EXPECT_NEAR(start.parallax_px, world().camera().fx * way / options.depth_m, 0.2)
+      << "the typical depth is the unit";
+}
+
+TEST(Bootstrap, WaitsUntilTheCameraMoves) {
+  constexpr double kRest_s = 0.15;
+  const auto motion = [](double t_s) { return glide(std::max(0.0, t_s - kRest_s)); };
+  const Bootstrap start = find_start(recorded(motion, kRest_s + kEnd_s), world().camera(), quick());
+  ASSERT_EQ(start.status, Bootstrap::Status::kFound);
+  EXPECT_LT(start.path.start_s(), kRest_s + 0.05);
+  EXPECT_LT(errors_of(start.path, motion).position, 0.02);
+}
+
+TEST(Bootstrap, AMotionOfAFewPixelsEnds) {
+  const auto slow = [](double t_s) { return glide(0.1 * t_s); };
+  BootstrapOptions options = quick();
+  options.plane.max_window_s = 0.15;
+  EXPECT_NE(find_start(recorded(slow, kEnd_s), world().camera(), options).status,
+            Bootstrap::Status::kFound);
+}
+
+TEST(Bootstrap, NoiseIsNoMotion) {
+  const Random random(3);
+  Events events;
+  for (std::uint64_t i = 0; i < 4000; ++i)
+    events.push_back({static_cast<TimeNs>(i) * 50000,
+                      static_cast<std::uint16_t>(160 * random.uniform(i, 0)),
+                      static_cast<std::uint16_t>(120 * random.uniform(i, 1)),
+                      random.uniform(i, 2) < 0.5 ? std::int8_t{-1} : std::int8_t{1}});
+  EXPECT_EQ(find_start(events, world().camera(), quick()).status, Bootstrap::Status::kNoMotion);
+  EXPECT_EQ(find_start({}, world().camera(), quick()).status, Bootstrap::Status::kNoMotion);
+}
+
+}  // namespace
+}  // namespace saccade
