@@ -1,6 +1,6 @@
 #include "estimator/refinement/edge_fit.h"
 
-#include <cmath>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -14,20 +14,23 @@ constexpr int kIterations = 4;
 std::optional<EdgeUnknowns> fit_edge(std::span<const EdgeObservation> events,
                                      const PinholeCamera& camera, const EdgeUnknowns& start,
                                      const EdgePrior& prior, double noise_px, double outlier) {
+  std::vector<EdgeLine> lines;
+  lines.reserve(events.size());
+  for (const EdgeObservation& event : events) lines.push_back(line_of(event, camera));
   EdgeUnknowns edge = start;
   const Eigen::Vector4d precision = prior.sigma.cwiseInverse().cwiseAbs2();
   for (int i = 0; i < kIterations; ++i) {
     Eigen::Matrix4d information = precision.asDiagonal();
     Eigen::Vector4d gradient = precision.cwiseProduct(edge - prior.mean);
-    for (const EdgeObservation& event : events) {
-      EdgeDerivatives derivatives;
-      const double residual = edge_residual(event, camera, Twist::Zero(), edge, &derivatives);
-      if (!std::isfinite(residual)) return std::nullopt;
-      const double deviations = residual / noise_px;
+    for (const EdgeLine& line : lines) {
+      const double larger = line.larger(edge[0]);
+      if (!(line.forward > 0 && larger > 0)) return std::nullopt;
+      const double deviations = line.in_view(edge) / larger / noise_px;
       const double weight =
           1 / (noise_px * noise_px * (1 + deviations * deviations / (outlier * outlier)));
-      information += weight * derivatives.edge.transpose() * derivatives.edge;
-      gradient += weight * residual * derivatives.edge.transpose();
+      const Eigen::Matrix<double, 1, 4> by_edge = line.by_edge(edge);
+      information += weight * by_edge.transpose() * by_edge;
+      gradient += weight * deviations * noise_px * by_edge.transpose();
     }
     edge -= information.ldlt().solve(gradient);
     if (!(edge[0] > 0)) return std::nullopt;

@@ -27,6 +27,28 @@ struct EdgeObservation {
 /// The unknowns of an edge in the order rho [1/m], c [px], m, h [px].
 using EdgeUnknowns = Eigen::Vector4d;
 
+/// What an event says of an edge while the camera stays where it is: numerator and g are linear in
+/// the unknowns.
+struct EdgeLine {
+  double across_px = 0, across_by_rho = 0;  ///< n . (x(rho) - e) at rho = 0, and its change
+  double along_px = 0, along_by_rho = 0;    ///< t . (x(rho) - e)
+  double origin_z = 0;                      ///< o_z [m]
+  double forward = 0;                       ///< (R q)_z; not above 0: the ray leads away
+  double lag = 0;
+
+  /// g; not above 0: the edge is behind the camera.
+  [[nodiscard]] double larger(double rho) const { return (1 - rho * origin_z) / forward; }
+  /// n . (x - e) - c - m t . (x - e) - h l.
+  [[nodiscard]] double in_view(const EdgeUnknowns& edge) const {
+    return across_px + edge[0] * across_by_rho - edge[1] -
+           edge[2] * (along_px + edge[0] * along_by_rho) - edge[3] * lag;
+  }
+  /// The derivative of in_view / larger by the unknowns.
+  [[nodiscard]] Eigen::Matrix<double, 1, 4> by_edge(const EdgeUnknowns& edge) const;
+};
+
+[[nodiscard]] EdgeLine line_of(const EdgeObservation& observation, const PinholeCamera& camera);
+
 /// The residual's derivatives by the unknowns and by a small motion of the camera,
 /// view_from_camera exp(xi).
 struct EdgeDerivatives {

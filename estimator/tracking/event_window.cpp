@@ -37,6 +37,11 @@ std::span<const Event> EventWindow::events() const {
   return stream_.subspan(begin_, end_ - begin_);
 }
 
+std::span<const Event> EventWindow::newest(std::size_t count) const {
+  count = std::min(count, end_);
+  return stream_.subspan(end_ - count, count);
+}
+
 std::span<const Event> EventWindow::entered() const {
   return stream_.subspan(last_end_, end_ - last_end_);
 }

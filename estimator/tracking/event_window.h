@@ -23,6 +23,8 @@ class EventWindow {
   [[nodiscard]] bool advance(std::size_t count);
 
   [[nodiscard]] std::span<const Event> events() const;
+  /// The newest `count` events of the stream until the frame's end, as many as there are.
+  [[nodiscard]] std::span<const Event> newest(std::size_t count) const;
   /// What the last advance() added and took away.
   [[nodiscard]] std::span<const Event> entered() const;
   [[nodiscard]] std::span<const Event> left() const;

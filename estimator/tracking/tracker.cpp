@@ -187,7 +187,8 @@ void Tracker::write_evidence(const AlignResult& aligned, TrackedPose& pose) cons
 
 TrackStatus Tracker::judge(const AlignResult& aligned) {
   if (aligned.status != AlignStatus::kOk) return TrackStatus::kLost;
-  const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio;
+  const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio ||
+                          agreement(aligned) < options_.lost.min_agreement * usual_agreement_;
   suspicious_frames_ = suspicious ? suspicious_frames_ + 1 : 0;
   if (!suspicious) {
     constexpr double kMemory = 0.05;
@@ -206,24 +207,34 @@ std::optional<TrackedPose> Tracker::relocate(std::span<const Rigid3> world_from_
   std::optional<AlignResult> best;
   double best_agreement = kShare * usual_agreement_;
   MotionModel best_motion = motion_;
+  TrackedPose pose = last_;
   for (const Rigid3& place : world_from_camera) {
-    motion_.reset(last_.t_ns, world_from_map_.inverse() * place, kPlace_px);
+    const Rigid3 map_from_place = world_from_map_.inverse() * place;
     points_ = {};
+    prepare_template(map_from_place);
+    // As many events as this template wants: of that from astray there may be next to none.
+    const std::span<const Event> events = window_.newest(events_per_frame());
+    frame_.clear();
+    const TimeNs t_ns = frame_.draw(events);
+    motion_.reset(t_ns, map_from_place, kPlace_px);
     is_brightness_known_ = false;
-    prepare_template(motion_.pose());
-    const AlignResult aligned = align(last_.t_ns);
+    const AlignResult aligned = align(t_ns);
     if (aligned.status != AlignStatus::kOk || agreement(aligned) <= best_agreement) continue;
     best_agreement = agreement(aligned);
     take(aligned);
     best = aligned;
     best_motion = motion_;
+    pose.t_ns = t_ns;
+    pose.first_ns = events.front().t_ns;
   }
+  frame_.clear();
+  if (options_.event_frame.window == EventFrameOptions::Window::kSliding)
+    frame_.add(window_.events());
   motion_ = best ? best_motion : before;
   points_ = {};
   is_brightness_known_ = false;
   if (!best) return std::nullopt;
   suspicious_frames_ = 0;
-  TrackedPose pose = last_;
   pose.status = TrackStatus::kRelocalised;
   write_evidence(*best, pose);
   return pose;

@@ -23,7 +23,10 @@ namespace saccade {
 /// When a pose is called lost.
 struct LostOptions {
   double min_inlier_ratio = 0.55;  ///< 0.5 is what an unrelated template reaches
-  int frames = 3;                  ///< that many frames in a row below it
+  /// The same of gain^2 / variance of a frame, as a share of its running mean; 0: not asked. It
+  /// tells a place where the map fits a little from where the camera is.
+  double min_agreement = 0;
+  int frames = 3;  ///< that many frames in a row below one of them
 };
 
 /// Everything of the tracker that does not depend on where its input comes from.
@@ -94,9 +97,9 @@ class Tracker {
   /// Moves pose and motion within the map: what was tracked so far stands elsewhere.
   void correct(const Rigid3& map_from_before) { motion_.correct(map_from_before); }
 
-  /// Looks for the camera where it may be, with the frame of the last next(): starts anew from the
-  /// place at which map and frame agree best, if they agree there nearly as well as usual. nullopt,
-  /// and nothing is changed, where they do not.
+  /// Looks for the camera where it may be, with the newest events before the end of the last
+  /// next(): starts anew from the place at which map and frame agree best, if they agree there
+  /// nearly as well as usual. nullopt, and nothing is changed, where they do not.
   [[nodiscard]] std::optional<TrackedPose> relocate(std::span<const Rigid3> world_from_camera);
 
   /// Begins with a stream in order of time, which outlives its poses.

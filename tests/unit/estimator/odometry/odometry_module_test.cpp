@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/config/document.h"
@@ -57,6 +58,7 @@ depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_si
 tracking:
   event_frame: {ratio: 0.2}
   motion: {prediction: constant_velocity}
+  lost: {min_agreement: 0.25}
 )";
 
 class OdometryModule : public testing::SharedFolder<OdometryModule> {
@@ -142,21 +144,20 @@ TEST_F(OdometryModule, MapsBesideTrackingWithTheSameResultForAnyNumberOfThreads)
 }
 
 TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
-  // The camera jumps back to where it was 0.2 s before, and looks the other way meanwhile.
+  // It jumps to where it was a third of a second before: 25 px of image motion at once.
   const testing::PlanarWorld world = testing::corner_world(160, 120);
-  const auto leap = [](double t_s) { return glide(t_s < 0.35 ? t_s : t_s - 0.2); };
-  const fs::path folder = folder_.path() / "leap";
-  fs::copy(recording_->path() / "corner", folder, fs::copy_options::recursive);
-  std::ofstream events(folder / "events.txt");
-  events.precision(9);
-  events << std::fixed;
-  for (const auto& [from_s, to_s] : {std::pair(0.0, 0.35), std::pair(0.3501, 0.5)})
-    for (const Event& e : world.simulate(leap, from_s, to_s, 1e-3, 0.12))
-      events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0)
-             << '\n';
-  events.close();
+  constexpr double kLeap_s = 0.38, kBack_s = 0.33;
+  const auto leap = [](double t_s) { return glide(t_s < kLeap_s ? t_s : t_s - kBack_s); };
+  Events events;
+  for (const auto& [from_s, to_s] : {std::pair(0.0, kLeap_s - 1e-6), std::pair(kLeap_s, kEnd_s)}) {
+    const Events some = world.simulate(leap, from_s, to_s, 1e-3, 0.12);
+    events.insert(events.end(), some.begin(), some.end());
+  }
+  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
   RunRequest run = request("found");
-  run.dataset = folder;
+  run.dataset = folder_.path() / "leap";
+  testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
+                           poses_until(kEnd_s));
   (void)run_odometry(run);
   EXPECT_THAT(read_file(run.output / "poses.csv"), HasSubstr("relocalised"));
   const Trajectory found = read_trajectory(run.output / "trajectory.txt");
@@ -195,9 +196,9 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   yaml.replace(yaml.find("truth_s: 0.2, truth_share: 0.4"), 30, "truth_s: 0, depth_m: 2.2");
   const RunSummary summary = run_odometry(request("with", yaml));
   EXPECT_EQ(summary.lost_poses, 0U);
-  fs::remove(recording_->path() / "corner" / "groundtruth.txt");
+  fs::remove(dataset() / "groundtruth.txt");
   (void)run_odometry(request("without", yaml));
-  write_poses_until(recording_->path() / "corner", kEnd_s);
+  write_poses_until(dataset(), kEnd_s);
   for (const char* file : {"trajectory.txt", "poses.csv", "map.ply", "start.yaml"})
     EXPECT_EQ(read_file(folder_.path() / "with" / file),
               read_file(folder_.path() / "without" / file))
