@@ -111,14 +111,11 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
 
 void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
-  if (pose.status == TrackStatus::kLost) {
-    const bool is_search_due = options_.relocation.every_s > 0 &&
-                               (!is_lost_ || now_s >= last_search_s_ + options_.relocation.every_s);
-    is_lost_ = true;
-    if (is_search_due) {
-      last_search_s_ = now_s;
-      pose = find_again().value_or(pose);
-    }
+  const bool may_be_lost = pose.status == TrackStatus::kLost || !tracker_.fits();
+  if (may_be_lost && options_.relocation.every_s > 0 &&
+      now_s >= last_search_s_ + options_.relocation.every_s) {
+    last_search_s_ = now_s;
+    pose = find_again().value_or(pose);
   }
   if (pose.status == TrackStatus::kRelocalised) {
     // What is being mapped was seen on the way astray.
@@ -127,8 +124,8 @@ void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
     settled_until_s_ = std::max(settled_until_s_, seconds_from_ns(pose.t_ns));
   }
   result.poses.push_back(pose);
-  if (pose.status == TrackStatus::kLost) return;
-  is_lost_ = false;
+  is_lost_ = pose.status == TrackStatus::kLost;
+  if (is_lost_) return;
   if (const double t_s = seconds_from_ns(pose.t_ns); t_s > known_.back().t_s)
     known_.push_back({t_s, pose.world_from_camera});
 }

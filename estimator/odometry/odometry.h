@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -135,7 +136,7 @@ class Odometry {
   double settled_until_s_ = 0;
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
-  double last_search_s_ = 0;
+  double last_search_s_ = -std::numeric_limits<double>::infinity();
   Rigid3 last_keyframe_at_;  ///< where the camera was when the last one was begun
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;

@@ -112,6 +112,10 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
       .range(0.1, 1e6);
   fields.value("iterations", adjustment.iterations, "of Levenberg-Marquardt, at most")
       .range(1, 1000);
+  using Deviations = AdjustmentOptions::Deviations;
+  fields.choice("deviations", adjustment.deviations,
+                {{"picture", Deviations::kPicture}, {"pose", Deviations::kPose}},
+                "whether poses may be off by more in what hardly moves the picture");
   fields.value("pose_sigma_px", adjustment.pose_sigma_px, "of poses, as image motion").above(0);
   fields.value("step_sigma_px", adjustment.step_sigma_px, "of the correction from node to node")
       .above(0);

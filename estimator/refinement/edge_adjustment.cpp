@@ -188,6 +188,13 @@ class WindowProblem {
     return sigma;
   }
 
+  /// A root of the information on a node that is off by so much.
+  [[nodiscard]] Matrix6 root_of_px(double px) const {
+    if (options_.deviations == AdjustmentOptions::Deviations::kPicture)
+      return image_motion_root(observed_.camera(), known_.typical_depth_m, px);
+    return sigma_of_px(px).cwiseInverse().asDiagonal();
+  }
+
   [[nodiscard]] double noise_px(const FittedEdge& edge) const {
     return std::max(options_.noise_px, static_cast<double>(edge.residual_px));
   }
@@ -259,11 +266,8 @@ class WindowProblem {
   }
 
   void add_nodes() {
-    const PinholeCamera& camera = observed_.camera();
-    const auto root = [&](double sigma_px) {
-      return image_motion_root(camera, known_.typical_depth_m, sigma_px);
-    };
-    const Matrix6 step = root(options_.step_sigma_px), assumed = root(options_.pose_sigma_px);
+    const Matrix6 step = root_of_px(options_.step_sigma_px);
+    const Matrix6 assumed = root_of_px(options_.pose_sigma_px);
     const Matrix6 held = sigma_of_px(options_.known_sigma_px).cwiseInverse().asDiagonal();
     for (int i = 0; i < correction_.count(); ++i) {
       const bool is_known = correction_.time_s(i) <= known_.until_s;

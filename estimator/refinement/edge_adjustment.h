@@ -11,6 +11,10 @@
 namespace saccade {
 
 struct AdjustmentOptions {
+  /// What the deviations of nodes are about: the picture's motion, so that a step and the turn that
+  /// looks like it may go together, or each step and turn by itself.
+  enum class Deviations { kPicture, kPose };
+
   double node_spacing_s = 0.04;  ///< the correction of the poses is linear between nodes
   int edges = 1000;              ///< at most so many, evenly chosen
   int pairs = 1;                 ///< of an edge's events between two nodes, at most, evenly in time
@@ -25,6 +29,7 @@ struct AdjustmentOptions {
   double landmark_px = 0.3;      ///< across the edge
   double landmark_depth = 0.01;  ///< relative, beside the landmark's own
   /// What the poses are off by: of a node from what was assumed and, looser, between neighbours.
+  Deviations deviations = Deviations::kPicture;
   double pose_sigma_px = 3;      ///< as image motion
   double step_sigma_px = 0.3;    ///< between neighbouring nodes
   double known_sigma_px = 0.05;  ///< of poses that are known already

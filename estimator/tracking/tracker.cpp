@@ -51,7 +51,8 @@ void Tracker::reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviati
   templates_drawn_ = 0;
   timing_ = {};
   suspicious_frames_ = 0;
-  usual_agreement_ = 0;
+  usual_agreement_ = last_agreement_ = 0;
+  unlike_frames_ = 0;
 }
 
 void Tracker::set_map(const MapPoints& map) {
@@ -166,6 +167,7 @@ TrackedPose Tracker::track_frame() {
   else
     motion_.stop();
   pose.status = judge(aligned);
+  compare_to_usual(aligned);
   write_evidence(aligned, pose);
   last_ = pose;
   return pose;
@@ -187,25 +189,27 @@ void Tracker::write_evidence(const AlignResult& aligned, TrackedPose& pose) cons
 
 TrackStatus Tracker::judge(const AlignResult& aligned) {
   if (aligned.status != AlignStatus::kOk) return TrackStatus::kLost;
-  const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio ||
-                          agreement(aligned) < options_.lost.min_agreement * usual_agreement_;
+  const bool suspicious = aligned.inlier_ratio < options_.lost.min_inlier_ratio;
   suspicious_frames_ = suspicious ? suspicious_frames_ + 1 : 0;
-  if (!suspicious) {
-    constexpr double kMemory = 0.05;
-    usual_agreement_ = usual_agreement_ == 0
-                           ? agreement(aligned)
-                           : std::lerp(usual_agreement_, agreement(aligned), kMemory);
-  }
   return suspicious_frames_ >= options_.lost.frames ? TrackStatus::kLost : TrackStatus::kOk;
 }
 
+void Tracker::compare_to_usual(const AlignResult& aligned) {
+  constexpr double kUnlike = 0.25, kMemory = 0.05;
+  last_agreement_ = aligned.status == AlignStatus::kOk ? agreement(aligned) : 0;
+  unlike_frames_ = last_agreement_ < kUnlike * usual_agreement_ ? unlike_frames_ + 1 : 0;
+  usual_agreement_ = usual_agreement_ == 0 ? last_agreement_
+                                           : std::lerp(usual_agreement_, last_agreement_, kMemory);
+}
+
 std::optional<TrackedPose> Tracker::relocate(std::span<const Rigid3> world_from_camera) {
-  // What a place is off by, and the share of the usual agreement that it must reach.
+  // What a place is off by, the share of the usual agreement that it must reach, and how much
+  // better than that of the last frame it must be.
   constexpr double kPlace_px = 6;
-  constexpr double kShare = 0.5;
+  constexpr double kShare = 0.5, kGain = 2;
   const MotionModel before = motion_;
   std::optional<AlignResult> best;
-  double best_agreement = kShare * usual_agreement_;
+  double best_agreement = std::max(kShare * usual_agreement_, kGain * last_agreement_);
   MotionModel best_motion = motion_;
   TrackedPose pose = last_;
   for (const Rigid3& place : world_from_camera) {
@@ -234,7 +238,7 @@ std::optional<TrackedPose> Tracker::relocate(std::span<const Rigid3> world_from_
   points_ = {};
   is_brightness_known_ = false;
   if (!best) return std::nullopt;
-  suspicious_frames_ = 0;
+  suspicious_frames_ = unlike_frames_ = 0;
   pose.status = TrackStatus::kRelocalised;
   write_evidence(*best, pose);
   return pose;

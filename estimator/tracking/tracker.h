@@ -23,10 +23,7 @@ namespace saccade {
 /// When a pose is called lost.
 struct LostOptions {
   double min_inlier_ratio = 0.55;  ///< 0.5 is what an unrelated template reaches
-  /// The same of gain^2 / variance of a frame, as a share of its running mean; 0: not asked. It
-  /// tells a place where the map fits a little from where the camera is.
-  double min_agreement = 0;
-  int frames = 3;  ///< that many frames in a row below one of them
+  int frames = 3;                  ///< that many frames in a row below it
 };
 
 /// Everything of the tracker that does not depend on where its input comes from.
@@ -97,9 +94,14 @@ class Tracker {
   /// Moves pose and motion within the map: what was tracked so far stands elsewhere.
   void correct(const Rigid3& map_from_before) { motion_.correct(map_from_before); }
 
+  /// Whether the map explains of the last frames as much as it usually does. Where it does not, the
+  /// camera may be elsewhere, at a place that looks a little like this one, or the map at its end.
+  [[nodiscard]] bool fits() const { return unlike_frames_ < options_.lost.frames; }
+
   /// Looks for the camera where it may be, with the newest events before the end of the last
   /// next(): starts anew from the place at which map and frame agree best, if they agree there
-  /// nearly as well as usual. nullopt, and nothing is changed, where they do not.
+  /// nearly as well as usual and much better than where it was tracked. nullopt, and nothing is
+  /// changed, where they do not.
   [[nodiscard]] std::optional<TrackedPose> relocate(std::span<const Rigid3> world_from_camera);
 
   /// Begins with a stream in order of time, which outlives its poses.
@@ -134,6 +136,7 @@ class Tracker {
   [[nodiscard]] TrackStatus judge(const AlignResult& aligned);
   [[nodiscard]] TrackedPose track_frame();
   void take(const AlignResult& aligned);
+  void compare_to_usual(const AlignResult& aligned);
   void write_evidence(const AlignResult& aligned, TrackedPose& pose) const;
 
   TrackerOptions options_;
@@ -154,7 +157,9 @@ class Tracker {
   std::uint64_t frame_index_ = 0;
   std::size_t templates_drawn_ = 0;
   int suspicious_frames_ = 0;
-  double usual_agreement_ = 0;  ///< running mean over the frames that were not suspicious
+  double last_agreement_ = 0;   ///< of the last next()
+  double usual_agreement_ = 0;  ///< running mean
+  int unlike_frames_ = 0;       ///< in a row, with much less than the usual
   TrackedPose last_;            ///< of the last next()
   TrackTiming timing_;
 };

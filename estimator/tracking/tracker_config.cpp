@@ -148,12 +148,6 @@ void describe_lost(config::Fields& fields, LostOptions& options) {
       .value("min_inlier_ratio", options.min_inlier_ratio,
              "below it a frame is suspicious; 0.5 is chance")
       .range(0, 1);
-  fields
-      .value(
-          "min_agreement", options.min_agreement,
-          "it is suspicious, too, where the map explains less of it than this share of the usual; "
-          "0: not asked")
-      .range(0, 1);
   fields.value("frames", options.frames, "suspicious frames in a row that make a loss")
       .range(1, 1e6);
 }

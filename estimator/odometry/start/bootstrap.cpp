@@ -124,6 +124,7 @@ PathRefinementOptions start_refinement() {
   PathRefinementOptions options;
   options.adjustment.edges = 800;
   options.adjustment.node_spacing_s = 0.02;
+  options.adjustment.deviations = AdjustmentOptions::Deviations::kPose;
   options.adjustment.pose_sigma_px = 20;
   options.adjustment.step_sigma_px = 0.3;
   options.adjustment.surface_sigma = 0.02;

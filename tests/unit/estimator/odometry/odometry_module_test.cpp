@@ -58,7 +58,6 @@ depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_si
 tracking:
   event_frame: {ratio: 0.2}
   motion: {prediction: constant_velocity}
-  lost: {min_agreement: 0.25}
 )";
 
 class OdometryModule : public testing::SharedFolder<OdometryModule> {
