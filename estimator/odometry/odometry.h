@@ -49,6 +49,9 @@ struct OnlineOptions {
 struct RelocationOptions {
   double every_s = 0.01;       ///< it is looked for so often, in the events' time; 0: never
   double looks_back_s = 0.05;  ///< first where it was so long before it was lost
+  /// It is looked for, too, where the map explains much less of the frames than usual, though not
+  /// so little that the camera is lost (Tracker::fits).
+  bool when_unlike = false;
 };
 
 struct OdometryOptions {

@@ -160,6 +160,8 @@ void describe(config::Fields& fields, OdometryConfig& config) {
         f.value("looks_back_s", odometry.relocation.looks_back_s,
                 "and first where it was so long before")
             .range(0, 1e3);
+        f.value("when_unlike", odometry.relocation.when_unlike,
+                "it is looked for, too, where the map explains much less of the frames than usual");
       },
       "what happens after the camera was lost");
   fields.group(

@@ -153,7 +153,7 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
     events.insert(events.end(), some.begin(), some.end());
   }
   const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  RunRequest run = request("found");
+  RunRequest run = request("found", std::string(kQuick) + "relocation: {when_unlike: true}\n");
   run.dataset = folder_.path() / "leap";
   testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
                            poses_until(kEnd_s));
