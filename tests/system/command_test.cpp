@@ -81,6 +81,7 @@ std::vector<std::string> print_call(const fs::path& config) {
   if (folder == "reconstruction")
     return {"run", "reconstruct", "-c", config.string(), "--print-config"};
   if (folder == "odometry") return {"run", "odometry", "-c", config.string(), "--print-config"};
+  if (folder == "refinement") return {"run", "refine", "-c", config.string(), "--print-config"};
   if (folder == "rotation") return {"run", "rotation", "-c", config.string(), "--print-config"};
   if (folder == "stabilization")
     return {"run", "stabilize", "-c", config.string(), "--print-config"};
