@@ -1,9 +1,9 @@
 #include "estimator/refinement/edge_adjustment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,97 +14,13 @@
 #include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/coarse_surface.h"
 #include "estimator/refinement/edge_fit.h"
-#include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/node_correction.h"
+#include "estimator/refinement/observed_edges.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kLeastEdges = 30;
-/// Steps that an event lags behind the level between its own and the one before, on average.
-constexpr double kFirstLag = 0.25;
-
-/// An event of an edge between two nodes of the correction.
-struct ChosenEvent {
-  EdgeObservation observation;
-  int node;      ///< the earlier
-  double share;  ///< of the later
-};
-
-/// The edges of a window with the events that speak for them.
-class ObservedEdges {
- public:
-  ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
-                const NodeCorrection& correction, int pairs)
-      : window_(window),
-        edges_(edges),
-        camera_(camera),
-        undistorted_(camera.undistorted()),
-        correction_(correction),
-        most_(2 * static_cast<std::size_t>(pairs)),
-        view_from_world_(window.world_from_reference().inverse()),
-        steps_(event_steps(window.events, camera)) {}
-
-  /// In order of time, at most so many between two nodes.
-  [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdge& edge) const {
-    std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
-                                      edges_.events.event.begin() + edge.last);
-    std::sort(events.begin(), events.end());
-    const double mean_step = mean_of(events);
-    const auto node_of = [&](std::uint32_t e) { return correction_.before(time_s(e)).first; };
-    std::vector<ChosenEvent> chosen;
-    for (auto first = events.begin(); first != events.end();) {
-      const auto last = std::partition_point(
-          first, events.end(),
-          [&, node = node_of(*first)](std::uint32_t e) { return node_of(e) == node; });
-      const auto count = static_cast<std::size_t>(last - first);
-      const std::size_t taken = std::min(most_, count);
-      for (std::size_t i = 0; i < taken; ++i)
-        chosen.push_back(
-            observed(edge, mean_step,
-                     *(first + static_cast<std::ptrdiff_t>((2 * i + 1) * count / (2 * taken)))));
-      first = last;
-    }
-    return chosen;
-  }
-
-  [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
-
- private:
-  [[nodiscard]] double time_s(std::uint32_t event) const {
-    return seconds_from_ns(window_.events[event].t_ns);
-  }
-  [[nodiscard]] double mean_of(const std::vector<std::uint32_t>& events) const {
-    double sum = 0;
-    double count = 0;
-    for (const std::uint32_t e : events)
-      if (steps_[e] > 0) sum += steps_[e], ++count;
-    return count > 0 ? sum / count : 0;
-  }
-  [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
-                                     std::uint32_t index) const {
-    const Event& event = window_.events[index];
-    const double t_s = time_s(index);
-    EdgeObservation observation;
-    observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
-    observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
-    const double lag = steps_[index] > 0 ? steps_[index] - mean_step : 0;
-    observation.lag = event.polarity * (lag + kFirstLag);
-    observation.pixel = edge.edge.pixel.cast<double>();
-    observation.normal = edge.edge.normal.cast<double>();
-    const auto [node, share] = correction_.before(t_s);
-    return {observation, node, share};
-  }
-
-  const ViewWindow& window_;
-  const RayEdges& edges_;
-  const PinholeCamera& camera_;
-  PinholeCamera undistorted_;
-  const NodeCorrection& correction_;
-  std::size_t most_;
-  Rigid3 view_from_world_;
-  std::vector<std::uint8_t> steps_;
-};
 
 EdgeUnknowns unknowns_of(const FittedEdge& edge) {
   return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};

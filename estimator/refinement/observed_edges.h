@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/refinement/edge_residual.h"
+#include "estimator/refinement/node_correction.h"
+#include "estimator/view_windows.h"
+
+namespace saccade {
+
+/// An event of an edge between two nodes of a correction.
+struct ChosenEvent {
+  EdgeObservation observation;
+  int node;      ///< the earlier
+  double share;  ///< of the later
+};
+
+/// The edges of a window with the events that speak for them.
+class ObservedEdges {
+ public:
+  /// All but `camera`, which may have a lens, outlive it. `pairs` >= 1 of an edge's events count
+  /// between two nodes, at most.
+  ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+                const NodeCorrection& correction, int pairs);
+
+  /// In order of time, evenly spread.
+  [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdge& edge) const;
+  /// Undistorted.
+  [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
+
+ private:
+  [[nodiscard]] double time_s(std::uint32_t event) const;
+  [[nodiscard]] double mean_step(const std::vector<std::uint32_t>& events) const;
+  [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
+                                     std::uint32_t index) const;
+
+  const ViewWindow& window_;
+  const RayEdges& edges_;
+  PinholeCamera camera_;
+  PinholeCamera undistorted_;
+  const NodeCorrection& correction_;
+  std::size_t most_;
+  Rigid3 view_from_world_;
+  std::vector<std::uint8_t> steps_;  ///< of every event of the window
+};
+
+}  // namespace saccade
