@@ -42,6 +42,18 @@ TEST(EventWindow, DisjointFramesTakeOneRunAfterAnother) {
   EXPECT_TRUE(window.advance(10));
 }
 
+TEST(EventWindow, TheNewestEventsReachBackBeyondTheFrame) {
+  const Events stream = stream_of(100);
+  EventWindow window({});
+  window.start(stream);
+  ASSERT_TRUE(window.advance(30));
+  ASSERT_TRUE(window.advance(20));
+  EXPECT_EQ(window.newest(35).data(), stream.data() + 15);
+  EXPECT_EQ(window.newest(35).size(), 35U);
+  EXPECT_EQ(window.newest(80).size(), 50U) << "as many as there are";
+  EXPECT_EQ(window.events().size(), 20U) << "the frame stays";
+}
+
 TEST(EventWindow, SlidingFramesHoldTheNewestEvents) {
   const Events stream = stream_of(100);
   EventWindow window(sliding(0.25));
