@@ -68,11 +68,10 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
     start_from(events.first(stream.done), start);
   }
   if (progress) progress(stream.done);
-  if (stream.rest().empty()) return result;
   tracker_.start(stream.rest());
-  const EventClock clock(stream.rest().front().t_ns);
-  while (true) {
-    std::size_t before = stream.done;
+  const EventClock clock(stream.rest().empty() ? 0 : stream.rest().front().t_ns);
+  while (!stream.rest().empty()) {
+    const std::size_t before = stream.done;
     if (options_.mode == OdometryMode::kOnline) await_frame(clock, stream, result);
     std::optional<TrackedPose> pose;
     {
@@ -118,17 +117,22 @@ void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
     last_search_s_ = now_s;
     pose = find_again().value_or(pose);
   }
-  if (pose.status == TrackStatus::kRelocalised) {
-    // What is being mapped was seen on the way astray.
-    job_.reset();
-    mapped_from_s_ = now_s;
-    settled_until_s_ = std::max(settled_until_s_, seconds_from_ns(pose.t_ns));
-  }
+  if (pose.status == TrackStatus::kRelocalised) forget_astray(pose, result);
   result.poses.push_back(pose);
   is_lost_ = pose.status == TrackStatus::kLost;
   if (is_lost_) return;
   if (const double t_s = seconds_from_ns(pose.t_ns); t_s > known_.back().t_s)
     known_.push_back({t_s, pose.world_from_camera});
+}
+
+void Odometry::forget_astray(const TrackedPose& found, OdometryResult& result) {
+  const double t_s = seconds_from_ns(found.t_ns);
+  // What is being mapped was seen on the way astray, and poses at the same time were of that way.
+  job_.reset();
+  while (!result.poses.empty() && result.poses.back().t_ns >= found.t_ns) result.poses.pop_back();
+  while (known_.size() > 1 && known_.back().t_s >= t_s) known_.pop_back();
+  mapped_from_s_ = seconds_from_ns(found.last_ns);
+  settled_until_s_ = std::max(settled_until_s_, t_s);
 }
 
 std::optional<TrackedPose> Odometry::find_again() {

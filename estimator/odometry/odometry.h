@@ -122,6 +122,7 @@ class Odometry {
   void start_from(std::span<const Event> events, const KnownPath& start);
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void take_pose(TrackedPose pose, OdometryResult& result);
+  void forget_astray(const TrackedPose& found, OdometryResult& result);
   [[nodiscard]] std::optional<TrackedPose> find_again();
   [[nodiscard]] bool wants_keyframe(const Rigid3& world_from_camera) const;
   [[nodiscard]] bool is_due(double now_s) const;

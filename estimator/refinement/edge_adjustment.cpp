@@ -16,6 +16,7 @@
 #include "estimator/refinement/edge_fit.h"
 #include "estimator/refinement/node_correction.h"
 #include "estimator/refinement/observed_edges.h"
+#include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
 namespace {
@@ -80,15 +81,7 @@ class WindowProblem {
     add_nodes();
     if (options_.surface_sigma > 0) add_surface();
     result.residual_before_px = deviation_px();
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_SCHUR;
-    solver.linear_solver_ordering = ordering_;
-    solver.max_num_iterations = options_.iterations;
-    solver.function_tolerance = 1e-5;
-    solver.num_threads = 1;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem_, &summary);
+    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-5);
     result.residual_after_px = deviation_px();
     result.ok = summary.IsSolutionUsable();
     if (result.ok) take(result);

@@ -11,6 +11,7 @@
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/level_cost.h"
 #include "estimator/refinement/marginal_information.h"
+#include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
 namespace {
@@ -54,15 +55,7 @@ class Round {
 
   void solve(CostLog& costs) {
     const double start_s = costs.now_s();
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_SCHUR;
-    solver.linear_solver_ordering = ordering_;
-    solver.max_num_iterations = options_.iterations;
-    solver.function_tolerance = 1e-6;
-    solver.num_threads = 1;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem_, &summary);
+    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-6);
     costs.add_round(summary.iterations, start_s);
   }
 

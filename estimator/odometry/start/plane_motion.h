@@ -27,14 +27,6 @@ struct PlaneMotion {
         (camera.rotation().inverse() * plane()) / (1 - plane().dot(camera.translation()));
     return {m.z() * (camera.rotation().inverse() * velocity), rate, m.head<2>() / m.z()};
   }
-  /// The other motion with the same image motion (Longuet-Higgins, Proc. R. Soc. B 227, 1986):
-  /// plane and velocity change parts,
-  ///   v' = v_z m,  m' = v / v_z,  w' = w + m x v.
-  /// v_z is not 0.
-  [[nodiscard]] PlaneMotion dual() const {
-    return {velocity.z() * plane(), rate + plane().cross(velocity),
-            velocity.head<2>() / velocity.z()};
-  }
   /// The same image motion in the viewing direction with `share` of what a turn and a step across
   /// it have in common given to the step.
   [[nodiscard]] PlaneMotion with_step_share(double share) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/config/document.h"
+#include "core/io/csv_reader.h"
 #include "core/io/keyframe_list.h"
 #include "core/io/trajectory_file.h"
 #include "core/io/view_list.h"
@@ -159,6 +160,10 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
                            poses_until(kEnd_s));
   (void)run_odometry(run);
   EXPECT_THAT(read_file(run.output / "poses.csv"), HasSubstr("relocalised"));
+  const CsvColumns poses(run.output / "poses.csv");
+  const std::size_t t_s = poses.require("t_s");
+  for (std::size_t row = 1; row < poses.rows(); ++row)
+    EXPECT_GT(poses.number(row, t_s), poses.number(row - 1, t_s)) << "what was astray is forgotten";
   const Trajectory found = read_trajectory(run.output / "trajectory.txt");
   const Rigid3 error = leap(0.49).inverse() * found.at_clamped(0.49);
   EXPECT_LT(error.translation().norm(), 0.02 * kDepth_m);

@@ -13,22 +13,6 @@ Eigen::Vector2d seen(const PlaneMotion& motion, const Eigen::Vector3d& ray, doub
   return (motion.reference_from_camera(t_s).inverse() * point).hnormalized();
 }
 
-TEST(PlaneMotion, DualHasTheSameImageMotion) {
-  constexpr double kStep_s = 1e-4;
-  const PlaneMotion dual = kMotion.dual();
-  EXPECT_GT((dual.velocity - kMotion.velocity).norm(), 0.1);
-  for (const Eigen::Vector3d& ray :
-       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0.5, -0.3, 1), Eigen::Vector3d(-0.4, 0.4, 1)}) {
-    const Eigen::Vector2d a = seen(kMotion, ray, kStep_s) - seen(kMotion, ray, -kStep_s);
-    const Eigen::Vector2d b = seen(dual, ray, kStep_s) - seen(dual, ray, -kStep_s);
-    EXPECT_LT((a - b).norm(), 1e-6 * a.norm());
-  }
-  const PlaneMotion back = dual.dual();
-  EXPECT_LT((back.velocity - kMotion.velocity).norm(), 1e-12);
-  EXPECT_LT((back.rate - kMotion.rate).norm(), 1e-12);
-  EXPECT_LT((back.slope - kMotion.slope).norm(), 1e-12);
-}
-
 TEST(PlaneMotion, IsTheSameSeenFromAnotherTime) {
   const PlaneMotion later = kMotion.seen_at(0.2);
   const Eigen::Vector3d ray(0.3, 0.2, 1);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+
+#include <ceres/ceres.h>
+
+namespace saccade {
+
+/// Solves by Levenberg-Marquardt with the unknowns of the first group eliminated (dense Schur
+/// complement), on one thread: the same result everywhere, as long as the unknowns of a group lie
+/// in one array, since within a group Ceres orders by address. Ends after `iterations` or where the
+/// cost changes by less than `tolerance`, relative.
+[[nodiscard]] ceres::Solver::Summary solve_by_schur(
+    ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering,
+    int iterations, double tolerance);
+
+}  // namespace saccade
