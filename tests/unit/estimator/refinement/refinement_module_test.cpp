@@ -21,6 +21,9 @@
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/recording.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
 namespace {
@@ -30,7 +33,6 @@ using testing::error_of;
 using ::testing::HasSubstr;
 using testing::PlanarWorld;
 using testing::read_file;
-using testing::TemporaryFolder;
 
 constexpr double kDepth_m = 1.5;
 constexpr double kEnd_s = 0.4;
@@ -59,26 +61,15 @@ Rigid3 glide(double t_s) {
           {0.8 * t_s, 0.1 * std::sin(6 * t_s), 0.1 * t_s}};
 }
 
-/// A recording in the layout of the Event Camera Dataset.
-void write_recording(const fs::path& folder, const PlanarWorld& world,
-                     const testing::Motion& motion, double end_s) {
-  fs::create_directories(folder / "images");
-  std::ofstream events(folder / "events.txt");
-  events.precision(9);
-  events << std::fixed;
-  for (const Event& e : world.simulate(motion, 0, end_s, 1e-3, 0.12))
-    events << seconds_from_ns(e.t_ns) << ' ' << e.x << ' ' << e.y << ' ' << (e.polarity > 0 ? 1 : 0)
-           << '\n';
-  const PinholeCamera& camera = world.camera();
-  std::ofstream(folder / "calib.txt")
-      << camera.fx << ' ' << camera.fy << ' ' << camera.cx << ' ' << camera.cy << " 0 0 0 0 0\n";
-  std::ofstream(folder / "images.txt") << "0 images/a.png\n";
+void record(const fs::path& folder, const PlanarWorld& world, const testing::Motion& motion,
+            double end_s) {
   ImageF radiance = world.log_intensity(motion(0));
   for (float& value : radiance.pixels()) value = std::exp(value) - 1e-3F;
-  write_png(folder / "images/a.png", srgb8_from_linear(radiance));
+  const testing::StampedPicture picture{0, srgb8_from_linear(radiance)};
   std::vector<StampedPose> poses;
   for (int i = 0; i * 1e-3 <= end_s + 1e-9; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
-  write_tum_trajectory(folder / "groundtruth.txt", poses);
+  testing::write_recording(folder, world.camera(), world.simulate(motion, 0, end_s, 1e-3, 0.12),
+                           std::span(&picture, 1), poses);
 }
 
 struct Errors {
@@ -98,36 +89,24 @@ Errors errors_of(const fs::path& run, const testing::Motion& motion) {
   return {std::sqrt(errors.position_m), std::sqrt(errors.rotation_rad)};
 }
 
-class RefinementModule : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    write_recording(dataset(), wall(), sweep, kEnd_s);
+class RefinementModule : public testing::SharedFolder<RefinementModule> {
+ public:
+  static void fill() {
+    record(dataset(), wall(), sweep, kEnd_s);
     RunRequest track = request("track", "reference: {frame: 0, planar_depth_m: 1.5}");
     track.from.reset();
     (void)run_track(track);
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
 
-  static fs::path dataset() { return folder_->path() / "wall"; }
-  static fs::path path(const std::string& name) { return folder_->path() / name; }
+ protected:
+  static fs::path dataset() { return path("wall"); }
 
   static RunRequest request(const std::string& name, const std::string& yaml) {
-    RunRequest request;
-    request.dataset = dataset();
-    request.output = path(name);
+    RunRequest request = testing::run_request(dataset(), path(name), yaml);
     request.from = path("track");
-    request.config = config::parse(yaml, "r.yaml");
     return request;
   }
-
-  static TemporaryFolder* folder_;
 };
-
-TemporaryFolder* RefinementModule::folder_ = nullptr;
 
 constexpr const char* kPoses = "{map: {contrast: 0.12}, poses: {events: 20000}}";
 
@@ -151,7 +130,7 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
 }
 
 TEST_F(RefinementModule, PathAndMapOfARunOfOdometryGoTogether) {
-  write_recording(path("corner"), testing::corner_world(160, 120), glide, 0.5);
+  record(path("corner"), testing::corner_world(160, 120), glide, 0.5);
   RunRequest odometry = request("odometry", R"(
 start: {truth_s: 0.2, truth_share: 0.4}
 keyframe: {distance: 0.05, active: 3}

@@ -91,7 +91,8 @@ TEST(Align, AtAStandstillTheOrientationsDecideAlone) {
 TEST(Align, NeverReturnsAReflection) {
   std::vector<PosePair> pairs;
   for (const Vector3d& p : kSpread)
-    pairs.push_back({Rigid3({}, p), Rigid3({}, Vector3d(p.x(), p.y(), -p.z()))});
+    pairs.push_back({Rigid3(Quaterniond::Identity(), p),
+                     Rigid3(Quaterniond::Identity(), Vector3d(p.x(), p.y(), -p.z()))});
   for (PosePair& pair : pairs)
     pair.truth = Rigid3(Quaterniond::Identity(), pair.truth.translation());
   const Similarity s = align(pairs, Alignment::kSe3);
