@@ -43,6 +43,18 @@ ImageF observed(ImageF component, const ImageU8& observed) {
   return component;
 }
 
+/// The events that the keyframe was made from.
+ViewWindow window_of(std::span<const Event> events, const Trajectory& poses,
+                     const Keyframe& keyframe) {
+  ViewWindow window{within(events, poses), &poses, keyframe.t_s};
+  const auto first = std::partition_point(
+      window.events.begin(), window.events.end(),
+      [&](const Event& e) { return seconds_from_ns(e.t_ns) < keyframe.start_s; });
+  window.events = window.events.subspan(static_cast<std::size_t>(first - window.events.begin()));
+  window.events = window.events.first(std::min(window.events.size(), keyframe.events));
+  return window;
+}
+
 void append(MapPoints& points, const Eigen::Vector3d& point) {
   points.x.push_back(static_cast<float>(point.x()));
   points.y.push_back(static_cast<float>(point.y()));
@@ -92,16 +104,19 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   return mapping;
 }
 
+void Mapper::renew(std::span<const Event> events, const Trajectory& poses,
+                   Keyframe& keyframe) const {
+  keyframe.world_from_camera = poses.at_clamped(keyframe.t_s);
+  keyframe.depth = rays().estimate(window_of(events, poses, keyframe));
+  keyframe.typical_depth_m = median_depth(keyframe.depth, keyframe.typical_depth_m);
+  keyframe.edges = {};
+  add_points(keyframe);
+}
+
 void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
                        Keyframe& keyframe) const {
   if (!keyframe.image.log_image.empty() || keyframe.depth.points.empty()) return;
-  ViewWindow window{within(events, poses), &poses, keyframe.t_s};
-  const auto first = std::partition_point(
-      window.events.begin(), window.events.end(),
-      [&](const Event& e) { return seconds_from_ns(e.t_ns) < keyframe.start_s; });
-  window.events = window.events.subspan(static_cast<std::size_t>(first - window.events.begin()));
-  window.events = window.events.first(std::min(window.events.size(), keyframe.events));
-  reconstruct(window, dense_depth(keyframe), keyframe);
+  reconstruct(window_of(events, poses, keyframe), dense_depth(keyframe), keyframe);
 }
 
 RayDepth Mapper::rays() const {

@@ -69,6 +69,12 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
 
+  /// Depth and edges of a keyframe anew, by poses that have become better; `events` hold its own.
+  /// Of depth.method: rays and Edges::kDepth.
+  void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
+
+  [[nodiscard]] RayDepth rays() const;
+
   /// The image of a keyframe that was tracked without one; `events` hold its own.
   void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
@@ -76,7 +82,6 @@ class Mapper {
   [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
-  [[nodiscard]] RayDepth rays() const;
   /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.
   [[nodiscard]] std::optional<RayEdges> adjust_path(ViewWindow& window, Trajectory& path,
                                                     const KnownPath& known,

@@ -8,7 +8,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "estimator/refinement/joint_poses.h"
 #include "estimator/stage_clock.h"
+#include "estimator/tracking/pose_output.h"
 
 namespace saccade {
 namespace {
@@ -223,6 +225,30 @@ void Odometry::take_mapped_poses(const Mapping& mapping) {
                                  : mapping.world_from_before * pose.world_from_camera;
   }
   tracker_.correct(mapping.world_from_before);
+}
+
+bool Odometry::wants_refinement(const OdometryResult& result) const {
+  return options_.last.use && options_.mode == OdometryMode::kOffline &&
+         count_lost(result.poses) == 0;
+}
+
+std::vector<StampedCovariance> Odometry::refine(std::span<const Event> events,
+                                                const KnownPath& start, OdometryResult& result,
+                                                const std::function<void(std::size_t)>& progress) {
+  JointStart joint;
+  joint.path = known_;
+  joint.known.push_back(start.poses.poses().front());
+  if (is_settled(start)) joint.known.assign(start.poses.poses().begin(), start.poses.poses().end());
+  for (const Keyframe& keyframe : map_.keyframes()) joint.keyframe_s.push_back(keyframe.t_s);
+  joint.typical_depth_m = typical_depth_m_;
+  const JointResult refined = refine_jointly(within(events, Trajectory(known_)), joint, camera_,
+                                             mapper_.rays(), options_.last.joint, progress);
+  for (StampedPose& pose : known_) pose.world_from_camera = refined.path.at_clamped(pose.t_s);
+  std::vector<Keyframe>& keyframes = map_.keyframes();
+  parallel_for(keyframes.size(),
+               [&](std::size_t i) { mapper_.renew(events, refined.path, keyframes[i]); });
+  output(result);
+  return take_sigmas(refined, result.poses);
 }
 
 void Odometry::add_images(std::span<const Event> events,

@@ -12,10 +12,12 @@
 
 #include "core/camera.h"
 #include "core/event.h"
+#include "core/io/covariance_file.h"
 #include "core/trajectory.h"
 #include "estimator/odometry/edge_map.h"
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
+#include "estimator/refinement/joint_refinement.h"
 #include "estimator/tracking/tracker.h"
 
 namespace saccade {
@@ -54,6 +56,12 @@ struct RelocationOptions {
   bool when_unlike = false;
 };
 
+/// The whole path and the edges of all keyframes, adjusted together after the last event.
+struct LastAdjustment {
+  bool use = false;  ///< of kOffline, where no pose was lost
+  JointRefinementOptions joint;
+};
+
 struct OdometryOptions {
   OdometryMode mode = OdometryMode::kOffline;
   OnlineOptions online;
@@ -62,6 +70,7 @@ struct OdometryOptions {
   EdgeMapOptions map;
   MappingOptions mapping;
   TrackerOptions tracker;
+  LastAdjustment last;
 };
 
 /// A keyframe coming into force.
@@ -103,6 +112,16 @@ class Odometry {
                                    const std::function<void(std::size_t)>& progress = {});
 
   [[nodiscard]] const EdgeMap& map() const { return map_; }
+
+  /// Whether options.last is to be made of what run() found.
+  [[nodiscard]] bool wants_refinement(const OdometryResult& result) const;
+
+  /// The last adjustment, of what run() found of the same events and start: poses with their
+  /// sigmas, and keyframes on the refined path. `progress`: as of refine_jointly(). The covariance
+  /// of every pose of the result; none where it is not determined.
+  [[nodiscard]] std::vector<StampedCovariance> refine(
+      std::span<const Event> events, const KnownPath& start, OdometryResult& result,
+      const std::function<void(std::size_t)>& progress = {});
 
   /// Images for people, after run(): of every keyframe that has none, with the poses as last
   /// adjusted; in parallel. `progress` is called, by any thread, with the number of keyframes done

@@ -1,5 +1,6 @@
 #include "estimator/odometry/odometry_config.h"
 
+#include "estimator/refinement/joint_config.h"
 #include "estimator/tracking/track_config.h"
 
 namespace saccade {
@@ -128,6 +129,11 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
       .range(2, 1000);
 }
 
+void describe_last(config::Fields& fields, LastAdjustment& last) {
+  fields.value("use", last.use, "it is made");
+  if (last.use) describe(fields, last.joint);
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, OdometryConfig& config) {
@@ -184,6 +190,14 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   fields.expect(odometry.mapping.adjust_rounds == 0 ||
                     odometry.mapping.depth.method == DepthConfig::Method::kRays,
                 "adjustment", "rounds need depth.method: rays");
+  fields.group(
+      "last", [&](Fields& f) { describe_last(f, odometry.last); },
+      "adjustment of the whole path and the edges of all keyframes, after the last event; of mode: "
+      "offline, where no pose was lost");
+  fields.expect(
+      !odometry.last.use || (odometry.mapping.depth.method == DepthConfig::Method::kRays &&
+                             odometry.mapping.edges == MappingOptions::Edges::kDepth),
+      "last", "needs depth.method: rays and mapping.edges: depth");
   const ReconstructionConfig& reconstruction = odometry.mapping.reconstruction;
   fields.expect(reconstruction.contrast_on && reconstruction.contrast_off, "reconstruction",
                 "contrast_on and contrast_off must be stated: nothing comes from the dataset");

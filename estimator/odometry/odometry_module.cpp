@@ -108,17 +108,26 @@ RunSummary run_odometry(const RunRequest& request) {
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
   OdometryResult result;
+  double refine_s = 0;
+  std::vector<StampedCovariance> covariances;
   std::optional<Odometry> odometry;
   Progress progress("odometry", events.size() * static_cast<std::size_t>(request.repeat), "events");
   for (int i = 0; i < request.repeat; ++i) {
     odometry.emplace(config.odometry, dataset.camera(), config.seed);
     odometry->set_gyroscope(gyroscope);
     double wall_s = start.seconds;
+    refine_s = 0;
     {
       const StageClock clock(wall_s);
       result = odometry->run(events, start.path, [&](std::size_t n) { progress.add(n); });
     }
-    timing.wall_s.push_back(wall_s);
+    if (odometry->wants_refinement(result)) {
+      const StageClock clock(refine_s);
+      Progress refinement("refine", config.odometry.last.joint.steps(), "steps");
+      covariances =
+          odometry->refine(events, start.path, result, [&](std::size_t n) { refinement.add(n); });
+    }
+    timing.wall_s.push_back(wall_s + refine_s);
   }
   double images_s = 0;
   if (config.odometry.mapping.image) {
@@ -129,6 +138,7 @@ RunSummary run_odometry(const RunRequest& request) {
   timing.stages_s = {{"start", start.seconds},
                      {"tracking", result.tracking_s},
                      {"mapping", result.mapping_s},
+                     {"refinement", refine_s},
                      {"images", images_s}};
   timing.poses = result.poses.size();
   timing.latency_ms = std::move(result.latency_ms);
@@ -136,6 +146,7 @@ RunSummary run_odometry(const RunRequest& request) {
 
   io.emplace(timing.io_s);
   write_odometry(writer.path(), dataset.camera(), result, odometry->map());
+  if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
   if (start.found)
     write_start(writer.path() / "start.yaml", *start.found, config.start.found.depth_m);
   io.reset();

@@ -27,4 +27,11 @@ std::vector<std::uint8_t> event_steps(std::span<const Event> events, const Pinho
   return steps;
 }
 
+double mean_step(std::span<const std::uint8_t> steps, std::span<const std::uint32_t> events) {
+  double sum = 0, count = 0;
+  for (const std::uint32_t e : events)
+    if (steps[e] > 0) sum += steps[e], ++count;
+  return count > 0 ? sum / count : 0;
+}
+
 }  // namespace saccade

@@ -19,4 +19,8 @@ inline constexpr int kMostSteps = 4;
 [[nodiscard]] std::vector<std::uint8_t> event_steps(std::span<const Event> events,
                                                     const PinholeCamera& camera);
 
+/// The mean of the steps of some events, those of a pixel's first run left out; 0 for none.
+[[nodiscard]] double mean_step(std::span<const std::uint8_t> steps,
+                               std::span<const std::uint32_t> events);
+
 }  // namespace saccade

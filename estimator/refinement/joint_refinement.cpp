@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/marginal_information.h"
 #include "estimator/refinement/path_costs.h"
@@ -48,7 +49,7 @@ Trajectory smooth_path(const JointStart& start, double knot_spacing_s) {
 struct Adjusted {
   std::size_t keyframe;
   std::size_t edge;  ///< in the keyframe's RayEdges
-  EdgeUnknowns unknowns;
+  SteppedEdge unknowns;
 };
 
 /// One round: the problem of the path's correction and the edges that were found on the path
@@ -66,14 +67,17 @@ class Problem {
         options_(options),
         depth_m_(start.typical_depth_m),
         correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
+    steps_.resize(windows.size());
+    parallel_for(windows.size(),
+                 [&](std::size_t k) { steps_[k] = event_steps(windows[k].events, camera); });
     choose_edges();
     for (Adjusted& edge : adjusted_) add_edge(edge);
     hold_path(start.known);
   }
 
-  void solve(CostLog& costs) {
+  void solve(CostLog& costs, const std::function<void()>& each) {
     const double start_s = costs.now_s();
-    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-6);
+    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-6, each);
     costs.add_round(summary.iterations, start_s);
   }
 
@@ -110,7 +114,7 @@ class Problem {
     for (std::size_t k = 0; k < found_.size(); ++k)
       for (const std::size_t i : evenly(found_[k].edges.size(), options_.edges)) {
         const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);
-        adjusted_.push_back({k, i, {rho, 0, 0, 0}});
+        adjusted_.push_back({k, i, {rho, 0, 0, 0, 0}});
       }
   }
 
@@ -121,18 +125,25 @@ class Problem {
                                       found.events.event.begin() + fitted.last);
     std::sort(events.begin(), events.end());
     double* unknowns = adjusted.unknowns.data();
-    for (const std::size_t i : evenly(events.size(), options_.events_per_edge))
-      add_event(windows_[adjusted.keyframe], windows_[adjusted.keyframe].events[events[i]], fitted,
+    const std::vector<std::uint8_t>& steps = steps_[adjusted.keyframe];
+    const double mean = mean_step(steps, events);
+    for (const std::size_t i : evenly(events.size(), options_.events_per_edge)) {
+      const std::uint32_t e = events[i];
+      add_event(windows_[adjusted.keyframe], e, steps[e] > 0 ? steps[e] - mean : 0, fitted,
                 unknowns);
+    }
     const double rho = adjusted.unknowns[0];
     // Of the depth hardly any hold: where a window says nothing of an edge.
-    const EdgeUnknowns sigma(rho, options_.offset_px, options_.tilt_sigma, options_.hysteresis_px);
-    problem_.AddResidualBlock(new HeldCost<4>(adjusted.unknowns, sigma), nullptr, unknowns);
+    const SteppedEdge sigma(rho, options_.offset_px, options_.tilt_sigma, options_.hysteresis_px,
+                            options_.step_px);
+    problem_.AddResidualBlock(new HeldCost<5>(adjusted.unknowns, sigma), nullptr, unknowns);
     ordering_->AddElementToGroup(unknowns, 0);
   }
 
-  void add_event(const ViewWindow& window, const Event& event, const FittedEdge& fitted,
-                 double* unknowns) {
+  /// `step`: by which its step of a run is above the mean of the edge.
+  void add_event(const ViewWindow& window, std::uint32_t index, double step,
+                 const FittedEdge& fitted, double* unknowns) {
+    const Event& event = window.events[index];
     const double t_s = seconds_from_ns(event.t_ns);
     EdgeObservation observation;
     observation.view_from_camera = window.world_from_reference().inverse() * path_.at_clamped(t_s);
@@ -143,14 +154,14 @@ class Problem {
     const double sigma_px = std::max(options_.noise_px, static_cast<double>(fitted.residual_px));
     const SplineKnots::Place place = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
-        new PathEdgeCost(observation, undistorted_, place.weight, sigma_px),
+        new PathEdgeCost(observation, event.polarity * step, undistorted_, place.weight, sigma_px),
         new ceres::CauchyLoss(options_.outlier), correction_.data(place.first),
         correction_.data(place.first + 1), correction_.data(place.first + 2),
         correction_.data(place.first + 3), unknowns);
     residuals_.emplace_back(id, sigma_px);
   }
 
-  void hold_path(const Trajectory& known) {
+  void hold_path(const std::vector<StampedPose>& known) {
     for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
       problem_.AddResidualBlock(
           new HeldCost<PathCorrection::kSize>(Twist::Zero(), sigma_of_px(options_.hold_px)),
@@ -158,7 +169,7 @@ class Problem {
       ordering_->AddElementToGroup(correction_.data(k), 1);
     }
     const Twist sigma = sigma_of_px(options_.known_sigma_px);
-    for (const StampedPose& pose : known.poses()) {
+    for (const StampedPose& pose : known) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
       const SplineKnots::Place place = correction_.knots().at(pose.t_s);
       const Twist given = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
@@ -188,6 +199,7 @@ class Problem {
   const JointRefinementOptions& options_;
   double depth_m_;
   PathCorrection correction_;
+  std::vector<std::vector<std::uint8_t>> steps_;  ///< of the windows' events
   std::vector<Adjusted> adjusted_;
   std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
   ceres::Problem problem_;
@@ -220,8 +232,14 @@ Matrix6 JointResult::covariance_at(double t_s) const {
 
 JointResult refine_jointly(std::span<const Event> events, const JointStart& start,
                            const PinholeCamera& camera, const RayDepth& depth,
-                           const JointRefinementOptions& options) {
+                           const JointRefinementOptions& options,
+                           const std::function<void(std::size_t)>& progress) {
   JointResult result;
+  std::size_t done = 0;
+  const auto advance_to = [&](std::size_t step) {
+    if (progress && step > done) progress(step - done);
+    done = std::max(done, step);
+  };
   result.path = smooth_path(start, options.knot_spacing_s);
   for (int i = 0; i < options.rounds; ++i) {
     const Trajectory before = result.path;
@@ -231,9 +249,11 @@ JointResult refine_jointly(std::span<const Event> events, const JointStart& star
     std::vector<RayEdges> found(windows.size());
     parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });
     Problem problem(before, windows, found, start, camera, options);
-    problem.solve(result.costs);
+    problem.solve(result.costs, [&] { advance_to(done + 1); });
     if (i + 1 == options.rounds) problem.judge(result);
     result.path = problem.path();
+    advance_to(options.steps() * static_cast<std::size_t>(i + 1) /
+               static_cast<std::size_t>(options.rounds));
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,19 +15,25 @@ namespace saccade {
 
 struct JointRefinementOptions {
   double knot_spacing_s = 0.05;  ///< of the path and of its correction
-  double window_s = 1.2;         ///< events that a keyframe's edges are sought in, around its view
-  int edges = 300;               ///< of a keyframe, at most, evenly chosen
+  double window_s = 1.6;         ///< events that a keyframe's edges are sought in, around its view
+  int edges = 600;               ///< of a keyframe, at most, evenly chosen
   int events_per_edge = 30;      ///< at most, evenly in time
   double noise_px = 0.1;         ///< least deviation of an event from its edge
   double outlier = 2;            ///< deviations beyond which an event counts less (Cauchy)
   double tilt_sigma = 0.3;       ///< of an edge's tilt m from 0
   double hysteresis_px = 0.5;    ///< of h from 0
+  double step_px = 0.5;          ///< of k from 0
   double offset_px = 2;          ///< of c from 0
   double hold_px = 30;           ///< of the correction from none, as image motion
   double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
-  int rounds = 1;                ///< of finding the keyframes' edges, and adjusting
+  int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most
   double information = 0.1;      ///< of that of independent residuals: neighbouring ones err alike
+
+  /// Steps of work, as far as progress goes.
+  [[nodiscard]] std::size_t steps() const {
+    return static_cast<std::size_t>(rounds) * static_cast<std::size_t>(iterations + 1);
+  }
 };
 
 /// The events that a keyframe's edges are sought in.
@@ -35,8 +42,9 @@ struct JointRefinementOptions {
 
 /// What is refined.
 struct JointStart {
-  std::vector<StampedPose> path;   ///< spans the events
-  Trajectory known;                ///< poses of the start, which hold scale and place
+  std::vector<StampedPose> path;  ///< spans the events
+  /// Poses that hold the place and, where there is more than one, the scale.
+  std::vector<StampedPose> known;
   std::vector<double> keyframe_s;  ///< times of the keyframes' views
   double typical_depth_m = 1;      ///< turns pixels into metres
 };
@@ -56,9 +64,11 @@ struct JointResult {
 /// The joint optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
 /// over all keyframes' windows, which overlap and so hold each other, by Ceres with the edges
 /// eliminated first. Scale and place are those of the start's known poses. Deterministic for any
-/// number of threads.
+/// number of threads. `progress` is called with the steps done since its last call, of
+/// options.steps() in all.
 [[nodiscard]] JointResult refine_jointly(std::span<const Event> events, const JointStart& start,
                                          const PinholeCamera& camera, const RayDepth& depth,
-                                         const JointRefinementOptions& options);
+                                         const JointRefinementOptions& options,
+                                         const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace saccade

@@ -28,7 +28,7 @@ std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
   std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
                                     edges_.events.event.begin() + edge.last);
   std::sort(events.begin(), events.end());
-  const double mean = mean_step(events);
+  const double mean = mean_step(steps_, events);
   const auto node_of = [&](std::uint32_t e) { return correction_.before(time_s(e)).first; };
   std::vector<ChosenEvent> chosen;
   for (auto first = events.begin(); first != events.end();) {
@@ -48,13 +48,6 @@ std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
 
 double ObservedEdges::time_s(std::uint32_t event) const {
   return seconds_from_ns(window_.events[event].t_ns);
-}
-
-double ObservedEdges::mean_step(const std::vector<std::uint32_t>& events) const {
-  double sum = 0, count = 0;
-  for (const std::uint32_t e : events)
-    if (steps_[e] > 0) sum += steps_[e], ++count;
-  return count > 0 ? sum / count : 0;
 }
 
 ChosenEvent ObservedEdges::observed(const FittedEdge& edge, double mean_step,

@@ -35,7 +35,6 @@ class ObservedEdges {
 
  private:
   [[nodiscard]] double time_s(std::uint32_t event) const;
-  [[nodiscard]] double mean_step(const std::vector<std::uint32_t>& events) const;
   [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
                                      std::uint32_t index) const;
 

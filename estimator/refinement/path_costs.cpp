@@ -17,7 +17,9 @@ Twist blended(double const* const* parameters, const Eigen::Vector4d& weight) {
 
 bool PathEdgeCost::Evaluate(double const* const* parameters, double* residuals,
                             double** jacobians) const {
-  const Eigen::Map<const EdgeUnknowns> edge(parameters[4]);
+  const Eigen::Map<const SteppedEdge> stepped(parameters[4]);
+  EdgeUnknowns edge = stepped.head<4>();
+  edge[1] += step_ * stepped[4];
   EdgeDerivatives by;
   residuals[0] = edge_residual(observation_, camera_, blended(parameters, weight_), edge,
                                jacobians != nullptr ? &by : nullptr) /
@@ -25,7 +27,9 @@ bool PathEdgeCost::Evaluate(double const* const* parameters, double* residuals,
   if (!std::isfinite(residuals[0])) return false;
   if (jacobians == nullptr) return true;
   for (int k = 0; k < 4; ++k) write_block(jacobians[k], weight_[k] / sigma_px_ * by.motion);
-  write_block(jacobians[4], by.edge / sigma_px_);
+  Eigen::Matrix<double, 1, 5> by_stepped;
+  by_stepped << by.edge, step_ * by.edge[1];
+  write_block(jacobians[4], by_stepped / sigma_px_);
   return true;
 }
 

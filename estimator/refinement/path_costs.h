@@ -8,15 +8,23 @@
 
 namespace saccade {
 
+/// The unknowns of an edge (edge_residual.h) and, last, k [px]: how far further in each event of a
+/// run (event_steps.h) lies than the one before. h is of the polarity alone.
+using SteppedEdge = Eigen::Matrix<double, 5, 1>;
+
 /// One event against an edge of a keyframe (edge_residual.h), by the four twists of the path's
-/// correction at its time and the edge's unknowns.
+/// correction at its time and the edge's unknowns: the offset is c + k `step`.
 class PathEdgeCost
     : public ceres::SizedCostFunction<1, PathCorrection::kSize, PathCorrection::kSize,
-                                      PathCorrection::kSize, PathCorrection::kSize, 4> {
+                                      PathCorrection::kSize, PathCorrection::kSize, 5> {
  public:
-  PathEdgeCost(const EdgeObservation& observation, const PinholeCamera& camera,
+  PathEdgeCost(const EdgeObservation& observation, double step, const PinholeCamera& camera,
                const Eigen::Vector4d& weight, double sigma_px)
-      : observation_(observation), camera_(camera), weight_(weight), sigma_px_(sigma_px) {}
+      : observation_(observation),
+        step_(step),
+        camera_(camera),
+        weight_(weight),
+        sigma_px_(sigma_px) {}
 
   /// False where the ray leads away from the keyframe's view.
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -24,6 +32,7 @@ class PathEdgeCost
 
  private:
   EdgeObservation observation_;
+  double step_;
   PinholeCamera camera_;
   Eigen::Vector4d weight_;
   double sigma_px_;

@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/odometry/odometry_config.h"
+#include "estimator/refinement/joint_poses.h"
 #include "estimator/run_input.h"
 #include "estimator/stage_clock.h"
 #include "estimator/tracking/pose_output.h"
@@ -53,7 +54,7 @@ JointInput load(const RunRequest& request, const Dataset& dataset, const SourceR
   start.path = known;
   for (const StampedPose& pose : found)
     if (start.path.empty() || pose.t_s > start.path.back().t_s) start.path.push_back(pose);
-  start.known = Trajectory(std::move(known));
+  start.known = std::move(known);
   std::vector<double> depths;
   for (const KeyframeEntry& keyframe : input.keyframes) {
     start.keyframe_s.push_back(keyframe.t_s);
@@ -64,19 +65,14 @@ JointInput load(const RunRequest& request, const Dataset& dataset, const SourceR
 }
 
 std::vector<StampedCovariance> take(const JointResult& result, std::vector<TrackedPose>& poses) {
-  std::vector<StampedCovariance> covariances;
   for (TrackedPose& pose : poses) {
-    const double t_s = seconds_from_ns(pose.t_ns);
-    pose.world_from_camera = result.path.at_clamped(t_s);
+    pose.world_from_camera = result.path.at_clamped(seconds_from_ns(pose.t_ns));
     pose.status = TrackStatus::kOk;
     pose.iterations = static_cast<int>(result.costs.steps().size());
     pose.inlier_ratio = 1;
     pose.residual = result.residual_px;
-    if (result.covariance.size() == 0) continue;
-    covariances.push_back({t_s, result.covariance_at(t_s)});
-    pose.set_sigmas(covariances.back().covariance);
   }
-  return covariances;
+  return take_sigmas(result, poses);
 }
 
 /// Depths of the keyframes on the refined path.
@@ -133,15 +129,15 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   const DepthConfig& method = input.odometry.odometry.mapping.depth;
   const RayDepth depth(method.rays, method.limits, dataset.camera());
   JointResult result;
-  Progress progress("refine", input.events.size() * static_cast<std::size_t>(request.repeat),
-                    "events");
+  Progress progress("refine", config.joint.steps() * static_cast<std::size_t>(request.repeat),
+                    "steps");
   for (int i = 0; i < request.repeat; ++i) {
     double wall_s = 0;
     {
       const StageClock clock(wall_s);
-      result = refine_jointly(input.events, input.start, dataset.camera(), depth, config.joint);
+      result = refine_jointly(input.events, input.start, dataset.camera(), depth, config.joint,
+                              [&](std::size_t n) { progress.add(n); });
     }
-    progress.add(input.events.size());
     timing.wall_s.push_back(wall_s);
   }
   double depth_s = 0;

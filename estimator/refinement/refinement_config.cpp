@@ -1,5 +1,7 @@
 #include "estimator/refinement/refinement_config.h"
 
+#include "estimator/refinement/joint_config.h"
+
 namespace saccade {
 namespace {
 
@@ -66,31 +68,6 @@ void describe_depth(config::Fields& fields, DepthRefinementOptions& options) {
       .at_most(1);
 }
 
-void describe_joint(config::Fields& fields, JointRefinementOptions& options) {
-  fields.value("knot_spacing_s", options.knot_spacing_s, "of the path and its correction")
-      .range(1e-3, 10);
-  fields.value("window_s", options.window_s, "of the events in which a keyframe's edges are sought")
-      .range(1e-3, 100);
-  fields.value("edges", options.edges, "of a keyframe, at most").range(30, 1e7);
-  fields.value("events_per_edge", options.events_per_edge, "at most").range(5, 1e6);
-  fields.value("noise_px", options.noise_px, "least deviation of an event from its edge")
-      .range(1e-3, 10);
-  fields.value("outlier", options.outlier, "deviations beyond which an event counts less")
-      .range(0.1, 1e6);
-  fields.value("hold_px", options.hold_px, "of the correction from none, as image motion").above(0);
-  fields.value("known_sigma_px", options.known_sigma_px, "of the given poses of the start")
-      .above(0);
-  fields.value("rounds", options.rounds, "of finding edges, and adjusting them with the path")
-      .range(1, 100);
-  fields.value("iterations", options.iterations, "of Levenberg-Marquardt in a round, at most")
-      .range(1, 1000);
-  fields
-      .value("information", options.information,
-             "of that of independent residuals: neighbouring ones err alike")
-      .above(0)
-      .at_most(1);
-}
-
 }  // namespace
 
 void describe(config::Fields& fields, RefinementConfig& config) {
@@ -115,7 +92,7 @@ void describe(config::Fields& fields, RefinementConfig& config) {
         "depth", [&](Fields& f) { describe_depth(f, config.depth); }, "of a run of depth");
   if (is_open || config.kind == Kind::kJoint)
     fields.group(
-        "joint", [&](Fields& f) { describe_joint(f, config.joint); },
+        "joint", [&](Fields& f) { describe(f, config.joint); },
         "path and edges of a run of odometry");
   fields.value("seed", config.seed, "unused: nothing is drawn at random");
 }

@@ -1,10 +1,25 @@
 #include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
+namespace {
+
+class CallEach : public ceres::IterationCallback {
+ public:
+  explicit CallEach(const std::function<void()>& each) : each_(each) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    each_();
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::function<void()>& each_;
+};
+
+}  // namespace
 
 ceres::Solver::Summary solve_by_schur(
     ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering,
-    int iterations, double tolerance) {
+    int iterations, double tolerance, const std::function<void()>& each) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
@@ -12,6 +27,8 @@ ceres::Solver::Summary solve_by_schur(
   options.function_tolerance = tolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
+  CallEach call_each(each);
+  if (each) options.callbacks.push_back(&call_each);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return summary;

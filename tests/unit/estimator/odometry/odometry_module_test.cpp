@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/config/document.h"
+#include "core/io/covariance_file.h"
 #include "core/io/csv_reader.h"
 #include "core/io/keyframe_list.h"
 #include "core/io/trajectory_file.h"
@@ -97,6 +98,30 @@ TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
   // Of 0.35 m and 0.16 rad that it moved.
   EXPECT_LT(most_m, 0.015 * kDepth_m);
   EXPECT_LT(most_rad, 0.015);
+}
+
+TEST_F(OdometryModule, AtLastTheWholePathAndAllKeyframesAreAdjustedTogether) {
+  (void)run_odometry(request("before"));
+  (void)run_odometry(request(
+      "after",
+      std::string(kQuick) +
+          "last: {use: true, window_s: 0.5, edges: 200, events_per_edge: 15, rounds: 1}\n"));
+  const Trajectory before = read_trajectory(folder_.path() / "before" / "trajectory.txt");
+  const Trajectory after = read_trajectory(folder_.path() / "after" / "trajectory.txt");
+  ASSERT_EQ(after.size(), before.size());
+  const auto squares_m2 = [](const Trajectory& path) {
+    double sum = 0;
+    for (const StampedPose& pose : path.poses())
+      sum += (pose.world_from_camera.translation() - glide(pose.t_s).translation()).squaredNorm();
+    return sum;
+  };
+  EXPECT_LT(squares_m2(after), squares_m2(before));
+  EXPECT_EQ(read_covariances(folder_.path() / "after" / "covariance.txt").size(), after.size());
+  for (const RunView& view : read_view_list(folder_.path() / "after" / "views.yaml")) {
+    if (view.t_s < after.start_s()) continue;
+    const Rigid3 off = after.at_clamped(view.t_s).inverse() * view.world_from_camera;
+    EXPECT_LT(off.translation().norm(), 1e-3) << view.t_s;
+  }
 }
 
 TEST_F(OdometryModule, WritesKeyframesWithTheirViews) {
@@ -217,6 +242,8 @@ TEST_F(OdometryModule, SaysWhatIsWrong) {
   write_poses_until(dataset(), kEnd_s);
   EXPECT_THAT(error_of([&] { return run_odometry(request("rays", "adjustment: {rounds: 1}\n")); }),
               HasSubstr("depth.method: rays"));
+  EXPECT_THAT(error_of([&] { return run_odometry(request("last", "last: {use: true}\n")); }),
+              HasSubstr("last needs depth.method: rays"));
 }
 
 }  // namespace

@@ -46,5 +46,11 @@ TEST(EventSteps, StopsCountingAtTheMost) {
 
 TEST(EventSteps, NoEventsHaveNone) { EXPECT_THAT(event_steps({}, small_camera()), IsEmpty()); }
 
+TEST(EventSteps, TheirMeanLeavesOutFirstRuns) {
+  const std::vector<std::uint8_t> steps = {0, 1, 4, 0, 3};
+  EXPECT_EQ(mean_step(steps, std::vector<std::uint32_t>{0, 1, 3, 4}), 2);
+  EXPECT_EQ(mean_step(steps, std::vector<std::uint32_t>{0, 3}), 0);
+}
+
 }  // namespace
 }  // namespace saccade

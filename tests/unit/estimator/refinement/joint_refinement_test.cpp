@@ -40,15 +40,13 @@ const Recording& recording() {
   return recording;
 }
 
-JointResult refined(int rounds) {
+JointResult refined(int rounds, const std::function<void(std::size_t)>& progress = {}) {
   const PinholeCamera& camera = recording().world.camera();
   JointStart start;
-  std::vector<StampedPose> known;
   for (double t_s = 0; t_s <= kEnd_s + 1e-9; t_s += 2e-3) {
     start.path.push_back({t_s, drifted(t_s)});
-    if (t_s <= kKnown_s) known.push_back({t_s, glide(t_s)});
+    if (t_s <= kKnown_s) start.known.push_back({t_s, glide(t_s)});
   }
-  start.known = Trajectory(known);
   start.keyframe_s = {0.1, 0.2, 0.3};
   start.typical_depth_m = kDepth_m;
   JointRefinementOptions options;
@@ -58,11 +56,12 @@ JointResult refined(int rounds) {
   options.rounds = rounds;
   const DepthConfig config;
   return refine_jointly(recording().events, start, camera,
-                        RayDepth(config.rays, config.limits, camera), options);
+                        RayDepth(config.rays, config.limits, camera), options, progress);
 }
 
 TEST(JointRefinement, BringsADriftingPathBack) {
-  const JointResult result = refined(2);
+  std::size_t steps = 0;
+  const JointResult result = refined(2, [&](std::size_t n) { steps += n; });
   for (const double t_s : {0.25, 0.3, 0.35, 0.38}) {
     const Twist before = (glide(t_s).inverse() * drifted(t_s)).log();
     const Twist after = (glide(t_s).inverse() * result.path.at_clamped(t_s)).log();
@@ -74,6 +73,7 @@ TEST(JointRefinement, BringsADriftingPathBack) {
   EXPECT_GT(result.observations, 5000U);
   EXPECT_LT(result.residual_px, 0.4);
   EXPECT_EQ(result.costs.rounds(), 2);
+  EXPECT_EQ(steps, 22U) << "two rounds of ten iterations and finding the edges";
   // The start holds; what is far from it is known less.
   const auto position_m = [&](double t_s) {
     return std::sqrt(result.covariance_at(t_s).topLeftCorner<3, 3>().trace());

@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-using EdgeColumns = Eigen::Matrix<double, 28, 1>;
+using EdgeColumns = Eigen::Matrix<double, 29, 1>;
 using PoseColumns = Eigen::Matrix<double, 24, 1>;
 
 const Eigen::Vector4d kWeight(0.1, 0.5, 0.35, 0.05);
@@ -35,7 +35,7 @@ PathEdgeCost some_cost(const Eigen::Vector3d& ray = {0.21, -0.13, 1}) {
   o.lag = -1;
   o.pixel = {165, 62};
   o.normal = Eigen::Vector2d(0.8, 0.6);
-  return {o, camera, kWeight, 0.3};
+  return {o, 1.5, camera, kWeight, 0.3};
 }
 
 TEST(PathEdgeCost, HasItsDerivatives) {
@@ -51,7 +51,7 @@ TEST(PathEdgeCost, HasItsDerivatives) {
   EdgeColumns by;
   double* jacobians[] = {&by[0], &by[6], &by[12], &by[18], &by[24]};
   evaluate(at, jacobians);
-  testing::expect_jacobian<1, 28>(
+  testing::expect_jacobian<1, 29>(
       by.transpose(), [&](const EdgeColumns& x) { return evaluate(x, nullptr); }, at);
 }
 
