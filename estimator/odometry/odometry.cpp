@@ -168,7 +168,7 @@ void Odometry::start_from(std::span<const Event> events, const KnownPath& start)
   if (first.edges.size() < kLeastEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
-                     "move sideways there, or start.truth_s must be longer");
+                     "move sideways there: begin later (--start-s), or make start.truth_s longer");
   typical_depth_m_ = first.typical_depth_m;
   if (!is_settled(start)) take_mapped_poses(mapping);
   last_keyframe_at_ = known_.back().world_from_camera;
