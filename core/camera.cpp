@@ -34,6 +34,12 @@ Distorted distort_normalised(const std::array<double, 5>& k, const Eigen::Vector
 
 }  // namespace
 
+Eigen::Matrix3d PinholeCamera::matrix() const {
+  Eigen::Matrix3d k;
+  k << fx, 0, cx, 0, fy, cy, 0, 0, 1;
+  return k;
+}
+
 Eigen::Matrix<double, 2, 3> PinholeCamera::project_jacobian(const Eigen::Vector3d& point) const {
   const double iz = 1 / point.z();
   Eigen::Matrix<double, 2, 3> j;

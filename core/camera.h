@@ -21,6 +21,9 @@ struct PinholeCamera {
 
   [[nodiscard]] bool is_distorted() const { return distortion != std::array<double, 5>{}; }
 
+  /// K: pi without distortion as a matrix, on homogeneous coordinates.
+  [[nodiscard]] Eigen::Matrix3d matrix() const;
+
   /// pi (thesis 4.9) without distortion; `point` in the camera frame [m], z != 0.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& point) const {
     return {fx * point.x() / point.z() + cx, fy * point.y() / point.z() + cy};

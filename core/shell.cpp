@@ -15,7 +15,7 @@ bool needs_quotes(std::string_view word) {
   return word.empty();
 }
 
-std::string quoted(std::string_view word) {
+std::string shell_word(std::string_view word) {
   if (!needs_quotes(word)) return std::string(word);
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -26,7 +26,7 @@ std::string quoted(std::string_view word) {
 
 std::string shell_line(std::span<const std::string> words) {
   std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
   return line;
 }
 

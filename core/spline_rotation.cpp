@@ -5,15 +5,15 @@
 namespace saccade {
 namespace {
 
-using Block = Eigen::Matrix3d;
+using Jacobian = Eigen::Matrix3d;
 
 /// Exp((w + d)^) = Exp(w^) Exp((J d)^) to first order; J is the left Jacobian of -w.
-Block right_jacobian(const Eigen::Vector3d& w) { return so3_left_jacobian(-w); }
+Jacobian right_jacobian(const Eigen::Vector3d& w) { return so3_left_jacobian(-w); }
 
 /// Log(a^-1 b) and its derivatives by right perturbations of a and b.
 struct Increment {
   Eigen::Vector3d value;
-  Block by_a, by_b;
+  Jacobian by_a, by_b;
 
   Increment(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b)
       : value(so3_log(a.conjugate() * b)),
@@ -31,7 +31,7 @@ RotationWithJacobian<9> turn_over_segment(const CumulativeBasis& basis,
   const int parameter[4] = {1, 0, 1, 2};
 
   RotationWithJacobian<9> turn{Eigen::Quaterniond::Identity(), Eigen::Matrix<double, 3, 9>::Zero()};
-  Block after = Block::Identity();  // transpose of the product of the factors behind this one
+  Jacobian after = Jacobian::Identity();  // transpose of the product of the factors behind this one
   for (int f = 3; f >= 0; --f) {
     const Eigen::Vector3d angle = scale[f] * increments.col(parameter[f]);
     const Eigen::Quaterniond factor = so3_exp(angle);
@@ -46,13 +46,13 @@ RotationWithJacobian<12> rotation_between(const Eigen::Array4d& basis_value,
                                           const std::array<Eigen::Quaterniond, 4>& controls) {
   RotationWithJacobian<12> result{Eigen::Quaterniond::Identity(),
                                   Eigen::Matrix<double, 3, 12>::Zero()};
-  Block after = Block::Identity();
+  Jacobian after = Jacobian::Identity();
   for (int j = 3; j >= 1; --j) {
     const auto k = static_cast<std::size_t>(j);
     const Increment increment(controls[k - 1], controls[k]);
     const double b = basis_value[j - 1];
     const Eigen::Vector3d angle = b * increment.value;
-    const Block by_increment = after * right_jacobian(angle) * b;
+    const Jacobian by_increment = after * right_jacobian(angle) * b;
     result.jacobian.middleCols<3>(3 * (j - 1)) += by_increment * increment.by_a;
     result.jacobian.middleCols<3>(3 * j) += by_increment * increment.by_b;
     result.rotation = so3_exp(angle) * result.rotation;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
 
 /// Before every block.
-struct Header {
+struct BlockHeader {
   std::uint32_t size = 0;  ///< of the block [bytes]
   std::uint32_t checksum = 0;
 };
@@ -40,7 +40,7 @@ BlockJournal::BlockJournal(const std::filesystem::path& file, std::uint64_t leng
     throw InputError(file_.string(), "is shorter than it was");
   }
   length_ = length;
-  block_.resize(sizeof(Header));
+  block_.resize(sizeof(BlockHeader));
 }
 
 BlockJournal::~BlockJournal() { ::close(descriptor_); }
@@ -51,9 +51,9 @@ void BlockJournal::append(std::span<const std::byte> bytes) {
 }
 
 void BlockJournal::flush() {
-  const std::span<const std::byte> content = std::span(block_).subspan(sizeof(Header));
+  const std::span<const std::byte> content = std::span(block_).subspan(sizeof(BlockHeader));
   if (content.empty()) return;
-  const Header header{static_cast<std::uint32_t>(content.size()), checksum_of(content)};
+  const BlockHeader header{static_cast<std::uint32_t>(content.size()), checksum_of(content)};
   std::memcpy(block_.data(), &header, sizeof header);
   for (std::size_t done = 0; done < block_.size();) {
     const ssize_t n = ::pwrite(descriptor_, block_.data() + done, block_.size() - done,
@@ -63,7 +63,7 @@ void BlockJournal::flush() {
     done += static_cast<std::size_t>(n);
   }
   length_ += block_.size();
-  block_.resize(sizeof(Header));
+  block_.resize(sizeof(BlockHeader));
 }
 
 void BlockJournal::read(const std::function<void(std::span<const std::byte>)>& use) const {
@@ -83,7 +83,7 @@ void BlockJournal::read(const std::function<void(std::span<const std::byte>)>& u
     }
   };
   while (position < length_) {
-    Header header;
+    BlockHeader header;
     if (length_ - position < sizeof header) fail();
     read_at(position, std::as_writable_bytes(std::span(&header, 1)));
     if (header.size > length_ - position - sizeof header) fail();

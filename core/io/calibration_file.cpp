@@ -18,7 +18,7 @@
 namespace saccade {
 namespace {
 
-constexpr const char* kColumns = "fx fy cx cy k1 k2 p1 p2 k3";
+constexpr const char* kCalibrationColumns = "fx fy cx cy k1 k2 p1 p2 k3";
 
 /// The value of a key that must be there.
 const config::Node& require(const config::Node& map, const std::string& key) {
@@ -103,7 +103,7 @@ PinholeCamera read_calib_txt(const std::filesystem::path& file) {
   PinholeCamera camera;
   bool found = false;
   for_each_row(file, [&](TextRow& row) {
-    if (found) row.fail(std::string("only one line is expected: `") + kColumns + "`");
+    if (found) row.fail(std::string("only one line is expected: `") + kCalibrationColumns + "`");
     found = true;
     camera.fx = row.number("fx");
     camera.fy = row.number("fy");
@@ -112,10 +112,12 @@ PinholeCamera read_calib_txt(const std::filesystem::path& file) {
     if (row.at_end()) return true;
     for (const std::size_t i : {0U, 1U, 2U, 3U, 4U})
       camera.distortion[i] = row.number(std::array{"k1", "k2", "p1", "p2", "k3"}[i]);
-    row.expect_end(kColumns);
+    row.expect_end(kCalibrationColumns);
     return true;
   });
-  if (!found) throw InputError(file.string(), std::string("is empty; expected `") + kColumns + "`");
+  if (!found)
+    throw InputError(file.string(),
+                     std::string("is empty; expected `") + kCalibrationColumns + "`");
   return camera;
 }
 

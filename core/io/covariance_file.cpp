@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-constexpr const char* kColumns =
+constexpr const char* kCovarianceColumns =
     "t vx_vx vx_vy vx_vz vx_wx vx_wy vx_wz vy_vy vy_vz vy_wx vy_wy vy_wz vz_vz vz_wx vz_wy vz_wz "
     "wx_wx wx_wy wx_wz wy_wy wy_wz wz_wz";
 
@@ -20,7 +20,7 @@ constexpr const char* kColumns =
 
 void write_covariances(const std::filesystem::path& file,
                        std::span<const StampedCovariance> covariances) {
-  std::string text = fmt::format("# {}\n", kColumns);
+  std::string text = fmt::format("# {}\n", kCovarianceColumns);
   for (const StampedCovariance& entry : covariances) {
     append_decimal_seconds(ns_from_seconds(entry.t_s), text);
     for (int row = 0; row < 6; ++row)
@@ -32,7 +32,7 @@ void write_covariances(const std::filesystem::path& file,
 }
 
 std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file) {
-  const NumberTable table = read_number_table(file, kColumns);
+  const NumberTable table = read_number_table(file, kCovarianceColumns);
   std::vector<StampedCovariance> covariances;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     StampedCovariance entry;

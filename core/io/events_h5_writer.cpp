@@ -13,8 +13,6 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kChunk = kH5ChunkValues;  // events
-constexpr std::size_t kBatch = 16 * kChunk;     // compressed together, in parallel
 constexpr std::int64_t kMaxIndexMs = std::int64_t{1} << 31;
 
 struct PackedChunk {
@@ -25,10 +23,10 @@ struct PackedChunk {
 std::int64_t in_ticks(TimeNs t_ns, TimeNs unit) { return unit == 1 ? t_ns : t_ns / 1000; }
 
 PackedChunk pack(std::span<const Event> events, TimeNs unit, TimeNs offset) {
-  std::vector<std::uint16_t> x(kChunk);
-  std::vector<std::uint16_t> y(kChunk);
-  std::vector<std::uint8_t> p(kChunk);
-  std::vector<std::int64_t> t(kChunk);
+  std::vector<std::uint16_t> x(kH5ChunkValues);
+  std::vector<std::uint16_t> y(kH5ChunkValues);
+  std::vector<std::uint8_t> p(kH5ChunkValues);
+  std::vector<std::int64_t> t(kH5ChunkValues);
   for (std::size_t i = 0; i < events.size(); ++i) {
     x[i] = events[i].x;
     y[i] = events[i].y;
@@ -98,7 +96,7 @@ void EventH5Writer::State::add(std::span<const Event> events) {
     if (pending.empty() || pending.back().t_ns != event.t_ns) {
       sort_ties(std::span(pending).subspan(open_ties));
       // Only complete runs of ties are written: a later event may still belong before the others.
-      if (pending.size() >= kBatch) write_chunks(pending.size());
+      if (pending.size() >= kH5BatchValues) write_chunks(pending.size());
       open_ties = pending.size();
     }
     pending.push_back(event);
@@ -107,12 +105,12 @@ void EventH5Writer::State::add(std::span<const Event> events) {
 
 /// Writes the whole chunks among the first `end` pending events.
 void EventH5Writer::State::write_chunks(std::size_t end) {
-  const std::size_t count = end / kChunk * kChunk;
+  const std::size_t count = end / kH5ChunkValues * kH5ChunkValues;
   const std::span<const Event> events = std::span(pending).first(count);
   index(events);
-  std::vector<PackedChunk> packed(count / kChunk);
+  std::vector<PackedChunk> packed(count / kH5ChunkValues);
   parallel_for(packed.size(), [&](std::size_t i) {
-    packed[i] = pack(events.subspan(i * kChunk, kChunk), unit, offset);
+    packed[i] = pack(events.subspan(i * kH5ChunkValues, kH5ChunkValues), unit, offset);
   });
   const H5Lock lock;
   for (std::size_t c = 0; c < columns.size(); ++c) {

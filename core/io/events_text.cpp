@@ -16,7 +16,7 @@
 namespace saccade {
 namespace {
 
-constexpr const char* kColumns = "t x y p";
+constexpr const char* kEventColumns = "t x y p";
 constexpr std::size_t kTypicalLineBytes = 20;
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 
@@ -68,7 +68,7 @@ Events read_events_text(const std::filesystem::path& file, SensorSize size, Time
     event.x = read_coordinate(row, "x", size.width);
     event.y = read_coordinate(row, "y", size.height);
     event.polarity = read_polarity(row);
-    row.expect_end(kColumns);
+    row.expect_end(kEventColumns);
     events.push_back(event);
     return true;
   });

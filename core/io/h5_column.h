@@ -12,6 +12,9 @@ namespace saccade {
 /// Values in a chunk; also the grain of windowed reading.
 constexpr std::size_t kH5ChunkValues = std::size_t{1} << 16;
 
+/// Values that are gathered before their chunks are compressed, together in parallel.
+constexpr std::size_t kH5BatchValues = 16 * kH5ChunkValues;
+
 /// InputError for `file` with HDF5's own reason, unless `success`.
 void check_h5_write(bool success, const std::filesystem::path& file);
 

@@ -11,9 +11,6 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kChunk = kH5ChunkValues;
-constexpr std::size_t kBatch = 16 * kChunk;  // rows, compressed together in parallel
-
 std::size_t bytes_of(H5Type type) {
   switch (type) {
     case H5Type::kFloat32:
@@ -95,10 +92,10 @@ struct H5TableWriter::State {
 
     /// The chunk from row `begin` on, padded to its whole size with zeros.
     [[nodiscard]] H5Chunk pack(std::size_t begin) const {
-      const std::size_t count = std::min(kChunk, rows() - begin);
+      const std::size_t count = std::min(kH5ChunkValues, rows() - begin);
       const auto from = pending.begin() + static_cast<std::ptrdiff_t>(begin * value_bytes);
       std::vector<std::byte> values(from, from + static_cast<std::ptrdiff_t>(count * value_bytes));
-      values.resize(kChunk * value_bytes);
+      values.resize(kH5ChunkValues * value_bytes);
       return pack_h5_chunk(values, value_bytes);
     }
   };
@@ -118,10 +115,11 @@ struct H5TableWriter::State {
 
   /// Writes the first `count` pending rows: whole chunks, or everything at the end.
   void write(std::size_t count) {
-    const std::size_t chunks = (count + kChunk - 1) / kChunk;
+    const std::size_t chunks = (count + kH5ChunkValues - 1) / kH5ChunkValues;
     std::vector<H5Chunk> packed(chunks * columns.size());
-    parallel_for(packed.size(),
-                 [&](std::size_t i) { packed[i] = columns[i / chunks].pack(i % chunks * kChunk); });
+    parallel_for(packed.size(), [&](std::size_t i) {
+      packed[i] = columns[i / chunks].pack(i % chunks * kH5ChunkValues);
+    });
     const H5Lock lock;
     written += count;
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -153,7 +151,7 @@ void H5TableWriter::append(std::span<const H5Source> columns) {
     SACCADE_CHECK(state_->columns[c].rows() == state_->columns[0].rows());
   }
   const std::size_t rows = state_->columns[0].rows();
-  if (rows >= kBatch) state_->write(rows / kChunk * kChunk);
+  if (rows >= kH5BatchValues) state_->write(rows / kH5ChunkValues * kH5ChunkValues);
 }
 
 void H5TableWriter::close() {

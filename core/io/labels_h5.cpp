@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-constexpr const char* kGroup = "labels";
+constexpr const char* kLabelsGroup = "labels";
 
 std::array<H5Source, 5> columns_of(const EventLabels& labels) {
   return {h5_source("depth", labels.depth), h5_source("flow_x", labels.flow_x),
@@ -26,7 +26,7 @@ void EventLabels::resize(std::size_t count) {
 }
 
 LabelsH5Writer::LabelsH5Writer(const std::filesystem::path& file)
-    : table_(file, kGroup, columns_of({})) {}
+    : table_(file, kLabelsGroup, columns_of({})) {}
 
 void LabelsH5Writer::append(const EventLabels& labels) { table_.append(columns_of(labels)); }
 
@@ -39,7 +39,7 @@ EventLabels read_labels_h5(const std::filesystem::path& file, std::uint64_t coun
       h5_target("depth", labels.depth), h5_target("flow_x", labels.flow_x),
       h5_target("flow_y", labels.flow_y), h5_target("object", labels.object),
       h5_target("origin", labels.origin)};
-  read_h5_table(file, kGroup, count, begin, columns);
+  read_h5_table(file, kLabelsGroup, count, begin, columns);
   return labels;
 }
 

@@ -29,7 +29,7 @@ struct Property {
   PlyType type;
 };
 
-struct Header {
+struct PlyHeader {
   bool ascii = false;
   std::size_t vertices = 0;
   std::vector<Property> properties;
@@ -89,7 +89,7 @@ class HeaderParser {
  public:
   HeaderParser(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
-  Header parse() {
+  PlyHeader parse() {
     if (next_line() != "ply") fail("a PLY file starts with a line 'ply'");
     for (std::string line = next_line(); line != "end_header"; line = next_line()) take(line);
     if (!has_vertices_) fail("there is no element 'vertex'");
@@ -157,7 +157,7 @@ class HeaderParser {
   std::size_t line_ = 0;
   bool in_vertices_ = false;
   bool has_vertices_ = false;
-  Header header_;
+  PlyHeader header_;
 };
 
 using Store = std::function<void(std::size_t vertex, double value)>;
@@ -193,7 +193,7 @@ Store store_for(const std::string& name, std::size_t vertices, PointCloud& cloud
   };
 }
 
-void read_binary(std::string_view body, const Header& header, const std::vector<Store>& stores,
+void read_binary(std::string_view body, const PlyHeader& header, const std::vector<Store>& stores,
                  const std::string& file) {
   std::size_t stride = 0;
   for (const Property& property : header.properties) stride += size_of(property.type);
@@ -209,7 +209,7 @@ void read_binary(std::string_view body, const Header& header, const std::vector<
     }
 }
 
-void read_ascii(std::string_view body, const Header& header, const std::vector<Store>& stores,
+void read_ascii(std::string_view body, const PlyHeader& header, const std::vector<Store>& stores,
                 const std::string& file) {
   std::size_t line = header.lines;
   for (std::size_t v = 0; v < header.vertices; ++v) {
@@ -230,7 +230,7 @@ void read_ascii(std::string_view body, const Header& header, const std::vector<S
 PointCloud read_ply(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = read_file_bytes(file);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const Header header = HeaderParser(text, file.string()).parse();
+  const PlyHeader header = HeaderParser(text, file.string()).parse();
   std::size_t axes = 0;
   for (const Property& p : header.properties)
     axes += p.name == "x" || p.name == "y" || p.name == "z";

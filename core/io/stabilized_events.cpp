@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr const char* kGroup = "places";
+constexpr const char* kPlacesGroup = "places";
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void write_stabilized_places(const std::filesystem::path& file, const Stabilized
   const std::array columns{h5_source("x", places.x), h5_source("y", places.y),
                            h5_source("source_x", places.source_x),
                            h5_source("source_y", places.source_y)};
-  H5TableWriter writer(file, kGroup, columns);
+  H5TableWriter writer(file, kPlacesGroup, columns);
   writer.append(columns);
   writer.close();
 }
@@ -32,7 +32,7 @@ StabilizedPlaces read_stabilized_places(const std::filesystem::path& file, std::
   const std::array columns{h5_target("x", places.x), h5_target("y", places.y),
                            h5_target("source_x", places.source_x),
                            h5_target("source_y", places.source_y)};
-  read_h5_table(file, kGroup, count, 0, columns);
+  read_h5_table(file, kPlacesGroup, count, 0, columns);
   return places;
 }
 

@@ -16,7 +16,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
+constexpr std::size_t kReadBytes = std::size_t{1} << 20;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -162,7 +162,7 @@ TextReader::TextReader(const std::filesystem::path& file) : name_(file.string())
   if (!stream_)
     throw InputError(name_, std::filesystem::exists(file) ? "cannot be opened" : "no such file");
   InputLog::note(file);
-  block_.resize(kBlockBytes);
+  block_.resize(kReadBytes);
 }
 
 bool TextReader::refill() {

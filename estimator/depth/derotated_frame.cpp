@@ -12,12 +12,6 @@ namespace {
 constexpr TimeNs kChunkNs = 1'000'000;
 constexpr std::size_t kChunkEvents = 256;
 
-Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
-  Eigen::Matrix3d k;
-  k << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-  return k;
-}
-
 }  // namespace
 
 Derotation::Derotation(const PinholeCamera& camera, const UndistortionTable& undistortion,
@@ -30,7 +24,7 @@ Derotation::Derotation(const PinholeCamera& camera, const UndistortionTable& und
 Eigen::Matrix3d Derotation::homography(double t_s) const {
   const Eigen::Quaterniond reference_from_camera =
       reference_from_world_ * trajectory_.at_clamped(t_s).rotation();
-  const Eigen::Matrix3d k = intrinsics(camera_);
+  const Eigen::Matrix3d k = camera_.matrix();
   return k * reference_from_camera.toRotationMatrix() * k.inverse();
 }
 

@@ -12,12 +12,6 @@ namespace {
 /// 0.003 px for f = 250 px.
 constexpr TimeNs kPieceNs = 1'000'000;
 
-Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
-  Eigen::Matrix3d k;
-  k << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-  return k;
-}
-
 /// The camera at one instant: the homography K R K^-1 and the centre o, reference frame.
 struct View {
   Eigen::Matrix3d homography;
@@ -29,7 +23,7 @@ class Views {
   Views(const ViewWindow& window, const PinholeCamera& camera)
       : trajectory_(*window.trajectory),
         reference_from_world_(window.world_from_reference().inverse()),
-        k_(intrinsics(camera)),
+        k_(camera.matrix()),
         k_inverse_(k_.inverse()) {}
 
   [[nodiscard]] Rigid3 pose(double t_s) const {

@@ -6,12 +6,12 @@
 
 #include <Eigen/LU>
 
+#include "estimator/depth/biweight.h"
 #include "estimator/lanes.h"
 
 namespace saccade {
 namespace {
 
-constexpr float kTukey = 4.685F;
 constexpr float kMaxSlope = 0.02F;  ///< relative change of inverse depth per pixel at the start
 constexpr float kOnPlane = 0.02F;   ///< relative distance of a point that belongs to a plane
 constexpr float kBehind = 0.05F;    ///< relative distance of a surface behind, at least
@@ -21,8 +21,6 @@ constexpr float kMoreBehind = 3;    ///< times those on the other side
 constexpr float kOnEdge_px = 1;     ///< nearer than that a point is on neither side
 constexpr float kGoesOn = 0.25F;    ///< share of the weights beyond an edge of what goes on there
 constexpr float kSlopePrior = 0.01F;
-/// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
-constexpr float kWeightedVariance = 1.29F;
 
 }  // namespace
 
@@ -109,7 +107,7 @@ float LocalPlanes::spread_around_start() {
 }
 
 LocalPlanes::Sums LocalPlanes::weighted_sums(const Eigen::Vector3f& plane, float spread) const {
-  const float per_cut = 1 / (kTukey * spread);
+  const float per_cut = 1 / (kBiweightReach * spread);
   Lanes weights{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
   for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
     const Lanes px = load_lanes(&dx_[k]), py = load_lanes(&dy_[k]),
@@ -150,7 +148,8 @@ LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
   float squares = 0;
   for (int i = 0; i < options_.iterations; ++i) {
     if (i > 0)
-      result.spread = std::max(1.F, std::sqrt(kWeightedVariance * squares / result.weights));
+      result.spread = std::max(
+          1.F, std::sqrt(static_cast<float>(kBiweightVariance) * squares / result.weights));
     Sums sums = weighted_sums(plane, result.spread);
     result.weights = sums.weights;
     squares = sums.squares;
@@ -169,7 +168,7 @@ LocalPlane LocalPlanes::fit(const EdgeDepth& start) {
 LocalPlanes::Sides LocalPlanes::plane_sides(const LocalPlane& plane,
                                             const Eigen::Vector2f& normal) const {
   const float change = plane.inverse_depth - start_inverse_depth_;
-  const float per_cut = 1 / (kTukey * plane.spread);
+  const float per_cut = 1 / (kBiweightReach * plane.spread);
   Sides sides;
   for (std::size_t k = 0; k < count_; ++k) {
     const float across = dx_[k] * normal.x() + dy_[k] * normal.y();
@@ -221,7 +220,8 @@ float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) c
            [&](const EdgeDepth& other, float dx, float dy, float) {
              const float gap = std::abs(other.inverse_depth - plane.inverse_depth -
                                         plane.slope.x() * dx - plane.slope.y() * dy);
-             if (gap < always + kTukey * plane.spread * other.sigma || gap >= second) return;
+             if (gap < always + kBiweightReach * plane.spread * other.sigma || gap >= second)
+               return;
              second = gap >= nearest ? gap : nearest;
              nearest = std::min(nearest, gap);
            });

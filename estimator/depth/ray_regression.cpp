@@ -6,16 +6,14 @@
 #include <cstddef>
 #include <cstring>
 
+#include "estimator/depth/biweight.h"
+
 namespace saccade {
 namespace {
 
 constexpr std::size_t kUnknowns = 4;  ///< c, m, h, rho; rho last
 constexpr std::size_t kMinEvents = 10;
-constexpr float kTukey = 4.685F;  ///< 95 % efficient on Gaussian residuals
 constexpr float kMinScale_px = 0.1F;
-/// sigma^2 / (sum w r^2 / sum w) of Gaussian residuals under the biweight at kTukey sigma.
-constexpr double kWeightedVariance = 1.29;
-
 constexpr double kSettled = 0.01;  ///< change of the residuals' sum, in variances, that ends it
 
 using HalfLanes = float __attribute__((vector_size(kLanes / 2 * sizeof(float))));
@@ -74,7 +72,7 @@ Normal accumulate(const RayNeighbourhood& n, const Parameters& p, float cut) {
 
 /// Robust scale from the weighted residuals of the iteration before, without sorting.
 float scale_of(const Normal& normal) {
-  const double variance = kWeightedVariance * normal.squares / std::max(normal.weights, 1.0);
+  const double variance = kBiweightVariance * normal.squares / std::max(normal.weights, 1.0);
   return std::max(kMinScale_px, static_cast<float>(std::sqrt(variance)));
 }
 
@@ -145,8 +143,8 @@ RegressionResult regress(const RayNeighbourhood& near, const RegressionOptions& 
   Normal normal;
   Solution step;
   for (int i = 0; i < options.iterations; ++i) {
-    const float scale = i == 0 ? widest / kTukey : scale_of(normal);
-    result.cut_px = std::min(kTukey * scale, widest);
+    const float scale = i == 0 ? widest / kBiweightReach : scale_of(normal);
+    result.cut_px = std::min(kBiweightReach * scale, widest);
     const double variance = static_cast<double>(scale) * static_cast<double>(scale);
     const double noise = i == 0 ? variance : variance_of(normal);
     normal = accumulate(near, p, result.cut_px);

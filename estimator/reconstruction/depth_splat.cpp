@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr float kDepthStep =
+constexpr float kBehindRatio =
     1.1F;  ///< ratio of depths from which on a point is behind another surface
 
 /// A point as the camera sees it.
@@ -73,7 +73,7 @@ void DepthSplat::draw(const Rigid3& camera_from_points, const PinholeCamera& cam
     });
   for (const SeenPoint& point : seen)
     for_kernel(point, radius_, kernel_, camera.width, camera.height, [&](std::size_t i, float k) {
-      if (point.depth > kDepthStep * nearest.pixels()[i]) return;
+      if (point.depth > kBehindRatio * nearest.pixels()[i]) return;
       sum.pixels()[i] += k * point.depth;
       weight.pixels()[i] += k;
     });

@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace saccade {
-namespace {
-
-/// In between poses are linear, see PoseTable.
-constexpr TimeNs kStepNs = 200'000;
-
-}  // namespace
 
 DirectionPlaces::DirectionPlaces(const PinholeCamera& camera, const Panorama& panorama)
     : finder_(camera, panorama), columns_(camera.width, camera.height, finder_.middle()) {}
@@ -19,7 +13,7 @@ void DirectionPlaces::start(const Trajectory& world_from_camera, TimeNs t_ns) {
 
 void DirectionPlaces::advance(const Trajectory& world_from_camera, TimeNs last_ns) {
   begin_ = end_;
-  start(world_from_camera, std::max(begin_.t_ns + 1, std::min(begin_.t_ns + kStepNs, last_ns)));
+  start(world_from_camera, std::max(begin_.t_ns + 1, std::min(begin_.t_ns + kPoseStepNs, last_ns)));
 }
 
 std::optional<Place> DirectionPlaces::of(const Event& event) {

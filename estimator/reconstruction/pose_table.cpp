@@ -5,11 +5,6 @@
 #include "core/check.h"
 
 namespace saccade {
-namespace {
-
-constexpr TimeNs kStepNs = 200'000;
-
-}  // namespace
 
 CameraPose pose_at(const Trajectory& world_from_camera, const Rigid3& target_from_world,
                    TimeNs t_ns) {
@@ -21,15 +16,15 @@ PoseTable::PoseTable(const Trajectory& world_from_camera, const Rigid3& target_f
                      TimeNs start_ns, TimeNs end_ns)
     : start_ns_(start_ns) {
   SACCADE_CHECK(!world_from_camera.empty() && start_ns <= end_ns);
-  const TimeNs count = (end_ns - start_ns) / kStepNs + 2;
+  const TimeNs count = (end_ns - start_ns) / kPoseStepNs + 2;
   for (TimeNs i = 0; i < count; ++i)
-    poses_.push_back(pose_at(world_from_camera, target_from_world, start_ns + i * kStepNs));
+    poses_.push_back(pose_at(world_from_camera, target_from_world, start_ns + i * kPoseStepNs));
 }
 
 CameraPose PoseTable::at(TimeNs t_ns) const {
   const TimeNs since = t_ns - start_ns_;
-  const auto i = static_cast<std::size_t>(since / kStepNs);
-  const float share = static_cast<float>(since % kStepNs) / static_cast<float>(kStepNs);
+  const auto i = static_cast<std::size_t>(since / kPoseStepNs);
+  const float share = static_cast<float>(since % kPoseStepNs) / static_cast<float>(kPoseStepNs);
   return between(poses_[i], poses_[i + 1], share);
 }
 

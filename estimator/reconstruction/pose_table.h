@@ -25,8 +25,10 @@ struct CameraPose {
   return {from.r + share * (to.r - from.r), from.t + share * (to.t - from.t)};
 }
 
-/// target_from_camera at the time of any event: exact every 0.2 ms and linear in between, where at
-/// 10 rad/s the rotation is 5e-7 off a true one.
+/// Between exact poses, where at 10 rad/s a linear one's rotation is 5e-7 off a true one.
+inline constexpr TimeNs kPoseStepNs = 200'000;
+
+/// target_from_camera at the time of any event: exact every kPoseStepNs and linear in between.
 class PoseTable {
  public:
   /// From `start_ns` to `end_ns`, held beyond the trajectory's ends.

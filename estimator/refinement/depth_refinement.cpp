@@ -14,12 +14,12 @@
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/jacobian_block.h"
 #include "estimator/refinement/marginal_information.h"
+#include "estimator/refinement/robust_spread.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kFewestEvents = 8;
-constexpr double kInlier = 2.4;
 
 /// One event against the edge alone.
 class EdgeCost : public ceres::SizedCostFunction<1, 4> {
@@ -113,7 +113,7 @@ class EdgeOptimizer {
     for (const ceres::ResidualBlockId id : residuals) {
       double value = 0;
       problem.EvaluateResidualBlock(id, false, nullptr, &value, nullptr);
-      squares += std::min(value * value, kInlier * kInlier);
+      squares += bounded_square(value);
     }
     const double spread = squares / static_cast<double>(residuals.size());
     const Eigen::Vector4d of_depth = factor.solve(Eigen::Vector4d::UnitX());

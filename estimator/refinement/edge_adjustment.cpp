@@ -16,6 +16,7 @@
 #include "estimator/refinement/edge_fit.h"
 #include "estimator/refinement/node_correction.h"
 #include "estimator/refinement/observed_edges.h"
+#include "estimator/refinement/robust_spread.h"
 #include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
@@ -214,9 +215,7 @@ class WindowProblem {
       for (const ChosenEvent& event : edge.events)
         residuals.push_back(std::abs(edge_residual(moved(event), observed_.camera(), Twist::Zero(),
                                                    edge.unknowns, nullptr)));
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return 1.4826 * *middle;
+    return gaussian_deviation(residuals);
   }
 
   void take(Adjustment& result) {

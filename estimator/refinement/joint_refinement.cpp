@@ -15,14 +15,13 @@
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/marginal_information.h"
 #include "estimator/refinement/path_costs.h"
+#include "estimator/refinement/robust_spread.h"
 #include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kNormal = 1.4826;  ///< deviation of a Gaussian over its median absolute value
-constexpr double kInlier = 2.4;
-constexpr double kStep_s = 1e-3;  ///< between the poses of a path
+constexpr double kPathStep_s = 1e-3;  ///< between the poses of a path
 
 /// `most` of `count` indices, evenly.
 std::vector<std::size_t> evenly(std::size_t count, int most) {
@@ -36,7 +35,7 @@ std::vector<std::size_t> evenly(std::size_t count, int most) {
 Trajectory smooth_path(const JointStart& start, double knot_spacing_s) {
   const Spline spline = Spline::smooth(start.path, knot_spacing_s);
   const double length_s = spline.end_s() - spline.start_s();
-  const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kStep_s)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kPathStep_s)));
   std::vector<StampedPose> poses;
   for (int i = 0; i <= steps; ++i) {
     const double t_s = spline.start_s() + length_s * i / steps;
@@ -93,11 +92,9 @@ class Problem {
       double value = 0;
       problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr);
       deviations.push_back(std::abs(value) * sigma_px);
-      squares += std::min(value * value, kInlier * kInlier);
+      squares += bounded_square(value);
     }
-    const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-    std::nth_element(deviations.begin(), middle, deviations.end());
-    result.residual_px = kNormal * *middle;
+    result.residual_px = gaussian_deviation(deviations);
     const double spread = squares / static_cast<double>(residuals_.size());
     result.covariance = spread / options_.information * inverse_information();
   }

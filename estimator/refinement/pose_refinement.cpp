@@ -11,20 +11,11 @@
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/level_cost.h"
 #include "estimator/refinement/marginal_information.h"
+#include "estimator/refinement/robust_spread.h"
 #include "estimator/refinement/schur_solver.h"
 
 namespace saccade {
 namespace {
-
-constexpr double kNormal = 1.4826;  ///< deviation of a Gaussian over its median absolute value
-constexpr double kInlier = 2.4;
-
-/// Median of some values, which are reordered.
-double middle(std::vector<double>& values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// An observation with what it saw of the map.
 struct Seen {
@@ -74,11 +65,11 @@ class Round {
       problem_.EvaluateResidualBlock(residual.id, false, nullptr, &value, nullptr);
       deviations.push_back(std::abs(value) * residual.sigma);
       if (std::abs(value) < kInlier) ++result.inliers;
-      squares_ += std::min(value * value, kInlier * kInlier);
+      squares_ += bounded_square(value);
     }
     result.observations = residuals_.size();
     if (residuals_.empty()) return;
-    result.residual = kNormal * middle(deviations);
+    result.residual = gaussian_deviation(deviations);
     result.covariance = covariance();
   }
 
@@ -122,7 +113,7 @@ class Round {
     for (const Seen& seen : seen_)
       excess[seen.observation->chain].push_back(seen.level - seen.observation->level);
     for (std::size_t i = 0; i < offsets_.size(); ++i)
-      if (!excess[i].empty()) offsets_[i] = middle(excess[i]);
+      if (!excess[i].empty()) offsets_[i] = median_of(excess[i]);
   }
 
   void add_events() {

@@ -5,14 +5,13 @@
 #include <limits>
 
 #include "core/check.h"
+#include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
 namespace {
 
 /// Further than this from the place that was looked up the map is not taken to go on evenly [px].
 constexpr float kReach_px = 3;
-/// Residuals beyond this many deviations weigh less than half.
-constexpr float kTail = 2.4F;
 constexpr float kNearest_m = 1e-6F;
 
 }  // namespace
@@ -125,6 +124,7 @@ void EventChunk::read(const ImageF& atlas) {
 void EventChunk::weigh(const Noise& noise) {
   const float level = noise.level * noise.level;
   const float place = noise.place_px * noise.place_px;
+  constexpr auto kTail = static_cast<float>(kCauchyScale);
   constexpr float kScale = 1 / (kTail * kTail);
   for (std::size_t i = 0; i < padded(); ++i) {
     const float gx = slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i];

@@ -13,7 +13,7 @@ namespace {
 /// Behind each row: two bytes right of it, two left of the next one, and one that nobody reads.
 constexpr int kRowPadding = 5;
 /// Events are fetched so far ahead, two kilobytes: the processor does it itself only within a page.
-constexpr std::ptrdiff_t kAhead = 128;
+constexpr std::ptrdiff_t kEventsAhead = 128;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ TimeNs EventFrame::draw_nearest(std::span<const Event> events) {
   if (target_.empty()) {
     const int stride = stride_;  // the bytes that are written may alias anything but a local
     for (const Event& e : events) {
-      __builtin_prefetch(&e + kAhead);
+      __builtin_prefetch(&e + kEventsAhead);
       pixels[e.y * stride + e.x] = kFull;
       sum += e.t_ns - first;
     }

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/check.h"
 #include "estimator/stage_clock.h"
 #include "estimator/tracking/posterior_pose.h"
+#include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-/// Residuals beyond this many deviations weigh less than half.
-constexpr double kTail = 2.4;
 /// What less of the picture shows the map has been left behind.
 constexpr double kLeastSeen = 0.02;
 
@@ -110,14 +107,15 @@ void FrameTracker::draw(const Rigid3& map_from_camera) {
       const SeenPlace& seen = view_(x, y);
       const bool is_seen =
           seen.inverse_depth > 0 && is_inside(map_.atlas(), seen.place.x(), seen.place.y());
-      shown_(x, y) = is_seen ? sample(map_.atlas(), seen.place.x(), seen.place.y()) : kUnknown;
+      shown_(x, y) = is_seen ? sample(map_.atlas(), seen.place.x(), seen.place.y()) : kUnknownLevel;
     }
 }
 
 void FrameTracker::average(const ImageF& frame, int square_px) {
   const int width = frame.width() / square_px;
   const int height = frame.height() / square_px;
-  pictures_ = {square_px, ImageF(width, height, kUnknown), ImageF(width, height, kUnknown)};
+  pictures_ = {square_px, ImageF(width, height, kUnknownLevel),
+               ImageF(width, height, kUnknownLevel)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       float in_frame = 0;
@@ -168,7 +166,7 @@ void FrameTracker::add_pixel(int x, int y, Sums& sums) const {
   if (!(seen.inverse_depth > 0)) return;
   const double variance =
       options_.noise * options_.noise + options_.place_px * options_.place_px * slope.squaredNorm();
-  const double relative = residual * residual / (variance * kTail * kTail);
+  const double relative = residual * residual / (variance * kCauchyScale * kCauchyScale);
   const double weight = options_.noise * options_.noise / (variance * (1 + relative));
   const PinholeCamera& camera = map_.camera();
   const Twist row = (slope * interaction_matrix(camera, camera.ray(pixel),

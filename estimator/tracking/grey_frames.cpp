@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/config/document.h"
@@ -14,7 +13,6 @@
 namespace saccade {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 /// Stamps are rounded: a frame this much before the window belongs to it.
 constexpr double kRounding_s = 1e-6;
 
@@ -64,7 +62,7 @@ ImageF log_intensity_of_codes(const ImageU8& codes, const ToneCurve& tone, doubl
   std::array<float, 256> levels = linear_of_codes(tone);
   for (float& level : levels)
     level = static_cast<float>(std::log(static_cast<double>(level) + log_eps));
-  levels.front() = levels.back() = kUnknown;
+  levels.front() = levels.back() = kUnknownLevel;
   ImageF image(codes.width(), codes.height());
   for (std::size_t i = 0; i < codes.size(); ++i) image.pixels()[i] = levels[codes.pixels()[i]];
   return image;
@@ -78,7 +76,7 @@ std::vector<GreyFrame> load_grey_frames(const Dataset& dataset, double start_s, 
     const ImageF levels =
         log_intensity_of_codes(read_codes(frame, dataset.camera()), tone, dataset.facts().log_eps);
     frames.push_back(
-        {ns_from_seconds(frame.t_s), undistort_bilinear(levels, dataset.camera(), kUnknown)});
+        {ns_from_seconds(frame.t_s), undistort_bilinear(levels, dataset.camera(), kUnknownLevel)});
   }
   if (frames.empty())
     throw InputError(dataset.folder().string(), "holds no frames in the window to be tracked");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/event.h"
@@ -9,14 +10,17 @@
 
 namespace saccade {
 
+/// Log intensity of a pixel that shows nothing.
+inline constexpr float kUnknownLevel = std::numeric_limits<float>::quiet_NaN();
+
 /// What a frame camera delivered at one time, on the undistorted sensor.
 struct GreyFrame {
   TimeNs t_ns = 0;       ///< the middle of the exposure
-  ImageF log_intensity;  ///< ln(eps + I); NaN where the pixel or the lens shows nothing
+  ImageF log_intensity;  ///< ln(eps + I); kUnknownLevel where the pixel or the lens shows nothing
 };
 
 /// Log intensity of 8-bit codes; what is black or white (0, 255) was outside of the camera's range
-/// and says nothing: NaN.
+/// and says nothing: kUnknownLevel.
 [[nodiscard]] ImageF log_intensity_of_codes(const ImageU8& codes, const ToneCurve& tone,
                                             double log_eps);
 

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "estimator/tracking/robust_weight.h"
 
 namespace saccade {
 namespace {
 
-/// Residuals beyond this many deviations weigh less than half.
-constexpr float kTail = 2.4F;
 static_assert(IncrementPoints::kSpare >= kLanes);
 
 }  // namespace
@@ -29,6 +28,7 @@ void IncrementChunk::evaluate(const PinholeCamera& camera, const ImageF& frame,
   const auto k = static_cast<float>(gain);
   const float count = noise.count * noise.count;
   const float place = noise.place_px * noise.place_px * k * k;
+  constexpr auto kTail = static_cast<float>(kCauchyScale);
   constexpr float kScale = 1 / (kTail * kTail);
   const float* expected = columns_[6];
   const float* slope = points.slope.data() + first;

@@ -12,7 +12,7 @@ namespace {
 constexpr int kSpareNodes = 4;
 
 /// Events go to random places: those of a later one are fetched that many events before.
-constexpr std::size_t kAhead = 16;
+constexpr std::size_t kPlacesAhead = 16;
 
 /// In place of the pixel whose level an alignment corrects.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
@@ -100,7 +100,7 @@ void LevelMeasurements::load(std::span<const Event> events, TimeNs t_ns,
       load_pixels(pixels, motion);
       has_pixels = true;
     }
-    const std::size_t ahead = std::min(i + kAhead, events.size() - 1);
+    const std::size_t ahead = std::min(i + kPlacesAhead, events.size() - 1);
     prefetch(events[ahead], ahead % every == 0);
     const std::size_t pixel = levels_.index(event);
     EventMeasurement measurement;

@@ -13,7 +13,7 @@ namespace saccade {
 namespace {
 
 /// What the last pose is off by when the edges take over, as image motion.
-constexpr double kUncertain_px = 4;
+constexpr double kLost_px = 4;
 
 }  // namespace
 
@@ -107,7 +107,7 @@ bool PolarityTracker::track_frame(std::span<const Event> events, Poses& poses) {
   const IncrementChunk::Sums& sums = estimate.sums;
   pose.inlier_ratio = sums.agreement();
   if (!estimate.is_valid || pose.inlier_ratio < options_.min_agreement) {
-    edges_.reset(pose.first_ns, map_.world_from_map() * last, kUncertain_px);
+    edges_.reset(pose.first_ns, map_.world_from_map() * last, kLost_px);
     return false;
   }
   motion_.update(estimate.map_from_camera, estimate.information);

@@ -5,6 +5,10 @@
 
 namespace saccade {
 
+/// Cauchy's weight 1 / (1 + (x / c)^2) of a normalised residual: those beyond this c weigh less
+/// than half. 95 % efficient on Gaussian residuals.
+inline constexpr double kCauchyScale = 2.4;
+
 /// Weights of an M-estimator over residuals r of scale sigma.
 enum class RobustWeight { kNone, kHuber, kTukey };
 

@@ -14,8 +14,8 @@ using Vector = TemplateAligner::Vector;
 using Matrix = TemplateAligner::Matrix;
 using Means = TemplateAligner::Means;
 
-constexpr int kGain = 6;
-constexpr int kOffset = 7;
+constexpr int kGainIndex = 6;
+constexpr int kOffsetIndex = 7;
 /// Enough for means over the whole template within a few percent.
 constexpr int kManySamples = 2048;
 constexpr double kMinGain = 0.05;
@@ -78,7 +78,7 @@ void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
     add_normal(chunk, template_normal_);
   });
   template_normal_ /= total;
-  mean_value_ = static_cast<float>(template_normal_(kGain, kOffset));
+  mean_value_ = static_cast<float>(template_normal_(kGainIndex, kOffsetIndex));
   if (is_fixed()) gradient_px_ = root_mean_squared_gradient();
   eliminate_brightness();
 }
@@ -86,8 +86,8 @@ void TemplateAligner::set_template(std::span<const TemplatePoint> points) {
 void TemplateAligner::eliminate_brightness() {
   // Schur complement; with gain or offset fixed the pose would be known a little better.
   const Eigen::Matrix<double, 6, 2> mixed = template_normal_.topRightCorner<6, 2>();
-  const double tt = template_normal_(kGain, kGain);
-  const double t1 = template_normal_(kGain, kOffset);
+  const double tt = template_normal_(kGainIndex, kGainIndex);
+  const double t1 = template_normal_(kGainIndex, kOffsetIndex);
   const double determinant = tt - t1 * t1;
   pose_normal_ = template_normal_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
   if (!(determinant > 0)) return;
@@ -157,8 +157,8 @@ Means TemplateAligner::draw_means(const EventFrame& frame, const State& state, i
 
 bool TemplateAligner::factor(Matrix normal, State& state) const {
   normal.topLeftCorner<6, 6>() += state.prior;
-  if (options_.brightness != AlignOptions::Brightness::kAffine) fix_unknown(kOffset, normal);
-  if (options_.brightness == AlignOptions::Brightness::kNone) fix_unknown(kGain, normal);
+  if (options_.brightness != AlignOptions::Brightness::kAffine) fix_unknown(kOffsetIndex, normal);
+  if (options_.brightness == AlignOptions::Brightness::kNone) fix_unknown(kGainIndex, normal);
   return state.factors.factor(normal);
 }
 
@@ -167,16 +167,16 @@ bool TemplateAligner::step(const Means& means, double step_length, State& state)
     return false;
   Vector rhs = means.rhs;
   rhs.head<6>() -= state.step_gain * (state.prior * state.deviation);
-  if (options_.brightness != AlignOptions::Brightness::kAffine) rhs(kOffset) = 0;
-  if (options_.brightness == AlignOptions::Brightness::kNone) rhs(kGain) = 0;
+  if (options_.brightness != AlignOptions::Brightness::kAffine) rhs(kOffsetIndex) = 0;
+  if (options_.brightness == AlignOptions::Brightness::kNone) rhs(kGainIndex) = 0;
   const Vector solution = state.factors.solve(rhs) * step_length;
   const Twist xi = solution.head<6>() / state.step_gain;
   if (!xi.allFinite()) return false;
   state.current_from_template = state.current_from_template * Rigid3::exp(-xi);
   state.deviation += xi;
   if (is_fixed()) state.step_px = std::sqrt(xi.dot(pose_normal_ * xi)) / gradient_px_;
-  state.brightness.gain += solution(kGain);
-  state.brightness.offset += solution(kOffset);
+  state.brightness.gain += solution(kGainIndex);
+  state.brightness.offset += solution(kOffsetIndex);
   return true;
 }
 
@@ -186,12 +186,12 @@ BrightnessModel TemplateAligner::measure_brightness(const EventFrame& frame,
   state.current_from_template = current_from_template;
   state.brightness = {0, 0, 0};  // the residual is the frame itself
   const Means means = draw_means(frame, state, kManySamples, 0);
-  const double mean_t = template_normal_(kGain, kOffset);
-  const double mean_i = means.rhs(kOffset);
-  const double variance_t = template_normal_(kGain, kGain) - mean_t * mean_t;
+  const double mean_t = template_normal_(kGainIndex, kOffsetIndex);
+  const double mean_i = means.rhs(kOffsetIndex);
+  const double variance_t = template_normal_(kGainIndex, kGainIndex) - mean_t * mean_t;
   BrightnessModel model;
   if (!(variance_t > 0) || !(means.visible > 0)) return model;
-  const double covariance = means.rhs(kGain) - mean_t * mean_i;
+  const double covariance = means.rhs(kGainIndex) - mean_t * mean_i;
   model.gain = std::max(covariance / variance_t, kMinGain);
   model.offset = mean_i - model.gain * mean_t;
   model.variance =

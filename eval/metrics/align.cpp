@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-struct Moments {
+struct PairMoments {
   Eigen::Vector3d mean_estimate = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_truth = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();     ///< truth x estimate
@@ -16,8 +16,8 @@ struct Moments {
   double variance_estimate = 0, variance_truth = 0;
 };
 
-Moments moments_of(std::span<const PosePair> pairs) {
-  Moments m;
+PairMoments moments_of(std::span<const PosePair> pairs) {
+  PairMoments m;
   const double n = static_cast<double>(pairs.size());
   for (const PosePair& pair : pairs) {
     m.mean_estimate += pair.estimated.translation() / n;
@@ -44,13 +44,13 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
 }
 
 /// Mean square of what the rotation, with its best scale or 1, leaves of the positions [m^2].
-double left_over_m2(const Moments& m, const Eigen::Matrix3d& rotation, double scale) {
+double left_over_m2(const PairMoments& m, const Eigen::Matrix3d& rotation, double scale) {
   const double product = (rotation.transpose() * m.covariance).trace();
   return std::max(0.0,
                   m.variance_truth - 2 * scale * product + scale * scale * m.variance_estimate);
 }
 
-double best_scale(const Moments& m, const Eigen::Matrix3d& rotation) {
+double best_scale(const PairMoments& m, const Eigen::Matrix3d& rotation) {
   const double product = (rotation.transpose() * m.covariance).trace();
   return m.variance_estimate > 0 && product > 0 ? product / m.variance_estimate : 1;
 }
@@ -65,7 +65,7 @@ Eigen::Matrix3d rolled(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& a
   return Eigen::AngleAxisd(std::atan2(sine, cosine), axis) * rotation;
 }
 
-Eigen::Matrix3d best_rotation(const Moments& m, Alignment alignment) {
+Eigen::Matrix3d best_rotation(const PairMoments& m, Alignment alignment) {
   constexpr double kStandstill_m2 = 1e-18;
   constexpr double kRankTolerance = 1e-6;
   constexpr double kClear = 10;  // deviations of the positions
@@ -86,7 +86,7 @@ Eigen::Matrix3d best_rotation(const Moments& m, Alignment alignment) {
 
 Similarity align(std::span<const PosePair> pairs, Alignment alignment) {
   if (alignment == Alignment::kNone || pairs.empty()) return {};
-  const Moments m = moments_of(pairs);
+  const PairMoments m = moments_of(pairs);
   const Eigen::Matrix3d rotation = best_rotation(m, alignment);
   Similarity result;
   if (alignment == Alignment::kSim3) result.scale = best_scale(m, rotation);

@@ -17,7 +17,7 @@ constexpr int kRadius = 5;
 constexpr double kSigma = 1.5;
 
 /// First and second moments of two series.
-struct Moments {
+struct SeriesMoments {
   double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0;
 
   void add(double x, double y, double weight = 1) {
@@ -39,8 +39,8 @@ struct Moments {
   }
 };
 
-Moments moments_of(const ImageF& a, const ImageF& b, const ImageU8& mask) {
-  Moments moments;
+SeriesMoments moments_of(const ImageF& a, const ImageF& b, const ImageU8& mask) {
+  SeriesMoments moments;
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask.pixels()[i] != 0)
       moments.add(static_cast<double>(a.pixels()[i]), static_cast<double>(b.pixels()[i]));
@@ -65,9 +65,9 @@ std::array<double, kRadius + 1> window_weights() {
   return weights;
 }
 
-Moments window_around(const ImageF& a, const ImageF& b, const ImageU8& mask, int x, int y) {
+SeriesMoments window_around(const ImageF& a, const ImageF& b, const ImageU8& mask, int x, int y) {
   static const auto weights = window_weights();
-  Moments moments;
+  SeriesMoments moments;
   for (int v = std::max(y - kRadius, 0); v <= std::min(y + kRadius, a.height() - 1); ++v)
     for (int u = std::max(x - kRadius, 0); u <= std::min(x + kRadius, a.width() - 1); ++u)
       if (mask(u, v) != 0)
@@ -110,7 +110,7 @@ double structural_similarity(const ImageF& a, const ImageF& b, const ImageU8& ma
   for (int y = 0; y < a.height(); ++y)
     for (int x = 0; x < a.width(); ++x) {
       if (mask(x, y) == 0) continue;
-      const Moments m = window_around(a, b, mask, x, y);
+      const SeriesMoments m = window_around(a, b, mask, x, y);
       sum +=
           (2 * m.mean_a() * m.mean_b() + c1) * (2 * m.covariance() + c2) /
           ((m.mean_a() * m.mean_a() + m.mean_b() * m.mean_b() + c1) * (m.var_a() + m.var_b() + c2));
@@ -121,7 +121,7 @@ double structural_similarity(const ImageF& a, const ImageF& b, const ImageU8& ma
 
 std::optional<ImageScores> score_image(const ImageComparison& c) {
   SACCADE_CHECK(c.estimate.size() == c.truth.size() && c.truth.size() == c.mask.size());
-  const Moments m = moments_of(c.estimate, c.truth, c.mask);
+  const SeriesMoments m = moments_of(c.estimate, c.truth, c.mask);
   if (m.n < kFewest || !(m.var_b() > 0)) return std::nullopt;
   ImageScores scores;
   scores.observed = c.observed;

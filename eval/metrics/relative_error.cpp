@@ -1,14 +1,12 @@
 #include "eval/metrics/relative_error.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "eval/metrics/statistics.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 /// Below this a path is noise, and an error relative to it means nothing.
 constexpr double kMinPathM = 1e-6;
 
@@ -22,7 +20,7 @@ struct PairErrors {
   std::vector<double> trans_m, trans_percent, rot_deg, rot_deg_per_m;
 
   void add(const Rigid3& error, double path_m) {
-    const double angle = kDegrees * so3_log(error.rotation()).norm();
+    const double angle = kDegreesPerRadian * so3_log(error.rotation()).norm();
     trans_m.push_back(error.translation().norm());
     rot_deg.push_back(angle);
     if (path_m <= 0) return;

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <numbers>
+
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/scored_samples.h"
 
 namespace saccade {
+
+/// Errors of rotation are stated in degrees.
+inline constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// Relative pose errors over sub-trajectories: with A_ij = A_i^-1 A_j the motion from sample i to
 /// j,

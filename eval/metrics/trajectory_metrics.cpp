@@ -1,7 +1,6 @@
 #include "eval/metrics/trajectory_metrics.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "eval/metrics/relative_error.h"
 #include "eval/metrics/statistics.h"
@@ -9,7 +8,6 @@
 namespace saccade {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 /// True error from which tracking counts as lost.
 constexpr double kLostDepthPercent = 5;
 constexpr double kLostDeg = 5;
@@ -23,7 +21,8 @@ ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>&
     const double error_m = (estimated.translation() - truth.translation()).norm();
     series.dt_m.push_back(error_m);
     if (mean_depth_m) series.dt_rel_percent.push_back(100 * error_m / *mean_depth_m);
-    series.dtheta_deg.push_back(kDegrees * angle_between(estimated.rotation(), truth.rotation()));
+    series.dtheta_deg.push_back(kDegreesPerRadian *
+                                angle_between(estimated.rotation(), truth.rotation()));
   }
   return series;
 }
@@ -35,7 +34,7 @@ void set_aligned(Metrics& metrics, const std::string& key, std::span<const PoseP
   for (const PosePair& pair : pairs) {
     const Rigid3 aligned = truth_from_estimate * pair.estimated;
     trans_m.push_back((aligned.translation() - pair.truth.translation()).norm());
-    rot_deg.push_back(kDegrees * angle_between(aligned.rotation(), pair.truth.rotation()));
+    rot_deg.push_back(kDegreesPerRadian * angle_between(aligned.rotation(), pair.truth.rotation()));
   }
   std::optional<double> ate, rot, scale;
   if (!pairs.empty()) {

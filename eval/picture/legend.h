@@ -8,6 +8,9 @@
 
 namespace saccade {
 
+/// Size of the letters in charts, for Canvas::text().
+inline constexpr double kChartLetters = 9;
+
 /// Height of the names of a chart's lines or bars in a picture of this width [px].
 [[nodiscard]] int legend_height(const std::vector<std::string>& names, int width);
 

@@ -14,13 +14,12 @@ constexpr int kPanelWidth = 400;
 constexpr int kPanelHeight = 330;
 /// From the panel's edges to the frame of its plot.
 constexpr double kLeft = 62, kRight = 18, kTop = 34, kBottom = 46;
-constexpr double kLetters = 9;
 
 /// One panel with its two axes.
-class Plot {
+class LinePlot {
  public:
-  Plot(Canvas& canvas, const LineChart& chart, const LineChart::Panel& panel, double left,
-       const Theme& theme)
+  LinePlot(Canvas& canvas, const LineChart& chart, const LineChart::Panel& panel, double left,
+           const Theme& theme)
       : canvas_(canvas),
         panel_(panel),
         left_(left + kLeft),
@@ -55,21 +54,21 @@ class Plot {
     for (const double tick : y_.ticks()) {
       canvas_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
       const std::string text = Axis::text(tick);
-      canvas_.text(text, {left_ - 6 - Canvas::text_width(text, kLetters), row(tick) + 4}, grey,
-                   kLetters);
+      canvas_.text(text, {left_ - 6 - Canvas::text_width(text, kChartLetters), row(tick) + 4}, grey,
+                   kChartLetters);
     }
     double free_from = 0;
     for (const double tick : x_.ticks()) {
       canvas_.line({column(tick), kTop}, {column(tick), bottom}, theme_.faint);
       const std::string text = Axis::text(tick);
-      const double half = Canvas::text_width(text, kLetters) / 2.0;
+      const double half = Canvas::text_width(text, kChartLetters) / 2.0;
       if (column(tick) - half < free_from) continue;
-      canvas_.text(text, {column(tick) - half, bottom + 16}, grey, kLetters);
+      canvas_.text(text, {column(tick) - half, bottom + 16}, grey, kChartLetters);
       free_from = column(tick) + half + 6;
     }
-    canvas_.text(panel_.title, {left_, kTop - 13}, theme_.text, kLetters + 1);
-    const double middle = left_ + width() / 2 - Canvas::text_width(x_label, kLetters) / 2.0;
-    canvas_.text(x_label, {middle, bottom + 36}, theme_.text, kLetters);
+    canvas_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
+    const double middle = left_ + width() / 2 - Canvas::text_width(x_label, kChartLetters) / 2.0;
+    canvas_.text(x_label, {middle, bottom + 36}, theme_.text, kChartLetters);
   }
 
   void draw_line(std::size_t index) {
@@ -99,7 +98,8 @@ ImageRgb8 draw(const LineChart& chart, const Theme& theme) {
   const int plots = chart.panels.empty() ? 0 : kPanelHeight;
   Canvas canvas(width, plots + legend_height(chart.names, width), theme.background);
   for (std::size_t i = 0; i < chart.panels.size(); ++i)
-    const Plot plot(canvas, chart, chart.panels[i], static_cast<double>(i) * kPanelWidth, theme);
+    const LinePlot plot(canvas, chart, chart.panels[i], static_cast<double>(i) * kPanelWidth,
+                        theme);
   draw_legend(canvas, chart.names, plots, theme);
   return canvas.image();
 }

@@ -9,6 +9,9 @@ namespace saccade {
 [[nodiscard]] ImageRgb8 draw_log_image(const ImageF& log_image, const ImageU8& observed, float low,
                                        float high);
 
+/// The error of log intensity that pictures of it draw as bright as they can.
+inline constexpr float kBrightestLogError = 0.5F;
+
 /// A quantity from 0 (dark) to `max` (bright) in the ordered colours, where `mask` is not 0.
 [[nodiscard]] ImageRgb8 draw_amount(const ImageF& image, const ImageU8& mask, float max);
 

@@ -11,11 +11,7 @@
 #include "eval/picture/view_render.h"
 
 namespace saccade {
-namespace {
-
-constexpr float kLargestLogError = 0.5F;
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<CaptionedPicture> mosaic_pictures(const MosaicView& view, const RunFolder& run,
                                               const Dataset& dataset) {
@@ -34,8 +30,8 @@ std::vector<CaptionedPicture> mosaic_pictures(const MosaicView& view, const RunF
     error.pixels()[i] = std::abs(error.pixels()[i] - scale.pixels()[i]);
   pictures.push_back({"true log intensity (never in view: blue)",
                       draw_log_image(scale, comparison->swept, low, high)});
-  pictures.push_back({fmt::format("error, 0 to {:g} log units", kLargestLogError),
-                      draw_amount(error, comparison->image.mask, kLargestLogError)});
+  pictures.push_back({fmt::format("error, 0 to {:g} log units", kBrightestLogError),
+                      draw_amount(error, comparison->image.mask, kBrightestLogError)});
   return pictures;
 }
 

@@ -9,12 +9,11 @@
 #include "core/io/image_file.h"
 #include "eval/picture/depth_picture.h"
 #include "eval/picture/film.h"
+#include "eval/picture/sheet.h"
 #include "eval/picture/view_pictures.h"
 
 namespace saccade {
 namespace {
-
-constexpr double kMoments[] = {0.08, 0.36, 0.64, 0.92};  // shares of a sheet's time
 
 DepthRange range_of(const KeyframeHistory& history) {
   std::vector<DepthPoint> points;
@@ -108,7 +107,7 @@ void render_odometry(const RunFolder& run, const Dataset& dataset, const Keyfram
                            [&](double t_s) { return square(view, title, theme, t_s); });
   if (options.time_s) return write_png(output, square(view, title, theme, *options.time_s));
   Sheet sheet(title, theme);
-  for (const double share : kMoments) {
+  for (const double share : kSheetMoments) {
     const double t_s = span.start_s + share * (span.end_s - span.start_s);
     sheet.add_row(fmt::format("{:.3f} s", t_s), view.pictures(t_s));
   }

@@ -101,11 +101,9 @@ std::optional<std::array<Eigen::Vector2d, 2>> project_segment(Eigen::Vector3d a,
 }  // namespace
 
 Eigen::Matrix3d pixel_from_plane(const PinholeCamera& camera, const Rigid3& camera_from_plane) {
-  Eigen::Matrix3d intrinsics;
-  intrinsics << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
   Eigen::Matrix3d ray_from_plane = camera_from_plane.rotation_matrix();
   ray_from_plane.col(2) = camera_from_plane.translation();
-  return intrinsics * ray_from_plane;
+  return camera.matrix() * ray_from_plane;
 }
 
 std::array<Eigen::Vector3d, 4> PlacedPicture::corners() const {

@@ -136,11 +136,10 @@ std::string title_of(const Subject& subject) {
 }
 
 ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
-  constexpr double kMoments[] = {0.08, 0.36, 0.64, 0.92};
   const Subject& subject = scene.subject;
   const SensorView& view = scene.view;
   Sheet sheet(title_of(subject), view.theme());
-  for (const double share : kMoments) {
+  for (const double share : kSheetMoments) {
     const double t_s = span.start_s + share * (span.end_s - span.start_s);
     sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(scene, t_s));
   }

@@ -7,9 +7,9 @@
 namespace saccade {
 namespace {
 
-constexpr int kMargin = 16;
+constexpr int kSheetMargin = 16;
 constexpr int kTitleHeight = 40;
-constexpr int kCaptionHeight = 22;
+constexpr int kRowCaptionHeight = 22;
 constexpr double kTitleText = 13;
 constexpr double kCaptionText = 8;
 
@@ -20,34 +20,34 @@ void Sheet::add_row(std::string label, std::vector<CaptionedPicture> pictures) {
 }
 
 ImageRgb8 Sheet::draw() const {
-  int width = Canvas::text_width(title_, kTitleText) + 2 * kMargin;
+  int width = Canvas::text_width(title_, kTitleText) + 2 * kSheetMargin;
   int height = kTitleHeight;
   for (const Row& row : rows_) {
-    int row_width = kMargin;
+    int row_width = kSheetMargin;
     int row_height = 0;
     for (const CaptionedPicture& picture : row.pictures) {
-      row_width += picture.image.width() + kMargin;
+      row_width += picture.image.width() + kSheetMargin;
       row_height = std::max(row_height, picture.image.height());
     }
     width = std::max(width, row_width);
-    height += kCaptionHeight + row_height + kMargin;
+    height += kRowCaptionHeight + row_height + kSheetMargin;
   }
   Canvas canvas(width, height, theme_.background);
-  canvas.text(title_, {kMargin, 26}, theme_.text, kTitleText);
+  canvas.text(title_, {kSheetMargin, 26}, theme_.text, kTitleText);
   int y = kTitleHeight;
   for (const Row& row : rows_) {
-    int x = kMargin;
+    int x = kSheetMargin;
     int row_height = 0;
     for (const CaptionedPicture& picture : row.pictures) {
       const std::string caption =
           row.label.empty() ? picture.caption : row.label + "  " + picture.caption;
       canvas.text(caption, Eigen::Vector2d(x, y + 14), mix(theme_.faint, theme_.text, 0.75),
                   kCaptionText);
-      canvas.paste(picture.image, x, y + kCaptionHeight);
-      x += picture.image.width() + kMargin;
+      canvas.paste(picture.image, x, y + kRowCaptionHeight);
+      x += picture.image.width() + kSheetMargin;
       row_height = std::max(row_height, picture.image.height());
     }
-    y += kCaptionHeight + row_height + kMargin;
+    y += kRowCaptionHeight + row_height + kSheetMargin;
   }
   return canvas.image();
 }

@@ -8,6 +8,9 @@
 
 namespace saccade {
 
+/// The moments that a sheet shows, as shares of the time.
+inline constexpr double kSheetMoments[] = {0.08, 0.36, 0.64, 0.92};
+
 struct CaptionedPicture {
   std::string caption;
   ImageRgb8 image;

@@ -21,7 +21,6 @@ double largest_depth_error(const Dataset& dataset) {
   return dataset.facts().name == "dunes" ? 0.045 : 0.07;
 }
 
-constexpr float kLargestLogError = 0.5F;
 constexpr const char* kImageCaption = "image (unobserved: blue)";
 
 GrowthStep growth_step(const std::filesystem::path& file) {
@@ -66,8 +65,8 @@ std::vector<CaptionedPicture> image_pictures(const ImageView& view, const Datase
       {kImageCaption, upscale(draw_log_image(scores->fitted, view.observed, low, high), factor)},
       {"log intensity, the frame's",
        upscale(draw_log_image(comparison->truth, {}, low, high), factor)},
-      {fmt::format("error, 0 to {:g} log units", kLargestLogError),
-       upscale(draw_amount(error, comparison->mask, kLargestLogError), factor)}};
+      {fmt::format("error, 0 to {:g} log units", kBrightestLogError),
+       upscale(draw_amount(error, comparison->mask, kBrightestLogError), factor)}};
 }
 
 ImageRgb8 draw_image_alone(const ImageView& view, int factor) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostRows = 6;
 /// Views and growth are looked at one by one.
-constexpr double kFps = 3;
+constexpr double kViewFps = 3;
 /// A view at the very end of a run's window is part of it, however its time was rounded.
 constexpr double kRoundingS = 1e-6;
 
@@ -65,7 +65,7 @@ void write_growth_film(const std::vector<GrowthStep>& steps,
                        const std::filesystem::path& output, const RenderOptions& options) {
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
   const int factor = truth ? options.upscale : 1;
-  write_film(output, steps.size(), options.fps.value_or(kFps), [&](std::size_t i) {
+  write_film(output, steps.size(), options.fps.value_or(kViewFps), [&](std::size_t i) {
     std::vector<CaptionedPicture> pictures = {
         {grouped(steps[i].events) + " events", upscale(read_image_rgb(steps[i].file), factor)}};
     if (truth) pictures.push_back(*truth);
@@ -77,7 +77,7 @@ void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictur
                   const std::string& title, const TimeSpan& span,
                   const std::filesystem::path& output, const RenderOptions& options) {
   const bool film = output.extension() == ".mp4";
-  const double fps = options.fps.value_or(kFps);
+  const double fps = options.fps.value_or(kViewFps);
   if (film)
     if (const auto steps = growth_steps(run.folder); !steps.empty()) {
       const auto whole =

@@ -22,7 +22,6 @@
 namespace saccade {
 namespace {
 
-constexpr int kUpscale = 2;
 constexpr double kDerotationReachS = 0.2;
 
 std::string percent(const Metrics& metrics, const char* key, int decimals = 2) {
@@ -90,11 +89,11 @@ std::string derotation_pictures(const RunData& data, const EstimatedView& view) 
       "{} events of {:.0f} ms around {:.3f} s", grouped(static_cast<double>(events.size())),
       1e3 * seconds_from_ns(events.back().t_ns - events.front().t_ns), view.t_s);
   return "<div class=\"grid three\">" +
-         figure(upscale(draw_amount(plain, {}, top), kUpscale), what + ", as they came",
-                "events as they came") +
-         figure(upscale(draw_amount(turned, {}, top), kUpscale),
-                what + ", turned into the view's orientation by the true poses",
-                "derotated events") +
+         upscaled_figure(draw_amount(plain, {}, top), what + ", as they came",
+                         "events as they came") +
+         upscaled_figure(draw_amount(turned, {}, top),
+                         what + ", turned into the view's orientation by the true poses",
+                         "derotated events") +
          "</div>\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "core/io/image_file.h"
+#include "eval/picture/canvas.h"
 
 namespace saccade {
 std::string escape_html(std::string_view text) {
@@ -52,6 +53,11 @@ std::string figure(const ImageRgb8& picture, std::string_view caption, std::stri
       "<figure><img src=\"data:image/png;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
       "<figcaption>{}</figcaption></figure>\n",
       base64(encode_png(picture)), picture.width(), picture.height(), escape_html(alt), caption);
+}
+
+std::string upscaled_figure(const ImageRgb8& picture, std::string_view caption,
+                            std::string_view alt) {
+  return figure(upscale(picture, kUpscale), caption, alt);
 }
 
 std::string fill_page(std::string_view page, const std::map<std::string, std::string>& values) {

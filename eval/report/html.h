@@ -19,6 +19,13 @@ namespace saccade {
 [[nodiscard]] std::string figure(const ImageRgb8& picture, std::string_view caption,
                                  std::string_view alt);
 
+/// Side of the square that an upscaled figure draws for a pixel: sensors are small [px].
+inline constexpr int kUpscale = 2;
+
+/// As figure(), upscaled.
+[[nodiscard]] std::string upscaled_figure(const ImageRgb8& picture, std::string_view caption,
+                                          std::string_view alt);
+
 /// Replaces every {{name}} of the page once; values are not searched again. All names must be given
 /// (contract).
 [[nodiscard]] std::string fill_page(std::string_view page,

@@ -19,12 +19,6 @@
 namespace saccade {
 namespace {
 
-constexpr int kUpscale = 2;
-
-std::string picture(const ImageRgb8& image, const std::string& caption, const char* alt) {
-  return figure(upscale(image, kUpscale), caption, alt);
-}
-
 std::string scores_row(double t_s, const std::optional<ImageScores>& s) {
   if (!s) return fmt::format("<tr><td>{:.3f}</td><td colspan=\"6\">no truth</td></tr>\n", t_s);
   return fmt::format(
@@ -56,20 +50,20 @@ std::string view_pictures(const ImageView& view, const Dataset& dataset, const I
       magnitude.pixels()[i] = std::hypot(view.gradient_x.pixels()[i], view.gradient_y.pixels()[i]);
     const ImageF truth = gradient_size(c.truth);
     const float top = quantile(truth, c.mask, 0.99);
-    html += picture(draw_amount(truth, {}, top), at + "size of the gradient, truth",
-                    "true gradient magnitude") +
-            picture(draw_amount(magnitude, {}, quantile(magnitude, c.mask, 0.99)),
-                    at + "size of the gradient, reconstructed", "gradient magnitude");
+    html += upscaled_figure(draw_amount(truth, {}, top), at + "size of the gradient, truth",
+                            "true gradient magnitude") +
+            upscaled_figure(draw_amount(magnitude, {}, quantile(magnitude, c.mask, 0.99)),
+                            at + "size of the gradient, reconstructed", "gradient magnitude");
   }
   if (!view.covariance_xx.empty()) {
     const ImageF sigma = gradient_sigma(view);
     const float top = quantile(sigma, {}, 0.99);
-    html +=
-        picture(draw_amount(sigma, {}, top),
-                at + fmt::format("deviation of the gradient where it is least sure, 0 to {:.2g} "
-                                 "per px",
-                                 top),
-                "deviation of the gradient");
+    html += upscaled_figure(
+        draw_amount(sigma, {}, top),
+        at + fmt::format("deviation of the gradient where it is least sure, 0 to {:.2g} "
+                         "per px",
+                         top),
+        "deviation of the gradient");
   }
   return html + "</div>\n";
 }

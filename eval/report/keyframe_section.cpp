@@ -65,7 +65,6 @@ std::string path_figure(const RunData& data, std::span<const KeyframeEntry> keyf
 
 /// Depth in the colours of its own range.
 std::string depth_figure(const RunData& data, const EstimatedView& view, std::size_t keyframe) {
-  constexpr int kUpscale = 2;
   const DepthRange range = depth_range(view.points);
   return figure(draw_depth_points(view.points, data.data->camera(), range, kUpscale, kDarkTheme),
                 fmt::format("{}: depth at {:.3f} s, {} m (bright) to {} m (dark)", keyframe,

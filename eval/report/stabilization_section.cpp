@@ -18,33 +18,29 @@
 namespace saccade {
 namespace {
 
-constexpr int kUpscale = 2;
-constexpr double kMoments[] = {0.15, 0.5, 0.85};
+constexpr double kStabilizedMoments[] = {0.15, 0.5, 0.85};
 
 std::size_t index_at(double share, std::size_t count) {
   return static_cast<std::size_t>(share * static_cast<double>(count - 1) + 0.5);
-}
-
-std::string picture(const ImageRgb8& image, const std::string& caption, const char* alt) {
-  return figure(upscale(image, kUpscale), caption, alt);
 }
 
 std::string event_pictures(const std::filesystem::path& folder, const Dataset& dataset) {
   const StabilizedRun run = load_stabilized(folder);
   if (run.windows.empty()) return "";
   std::string html = "<h4>Events before and after stabilization</h4><div class=\"grid\">";
-  for (const double share : kMoments) {
+  for (const double share : kStabilizedMoments) {
     const std::size_t i = index_at(share, run.windows.size());
     const StabilizedWindow& window = run.windows[i];
     const WindowImages images = images_of(run, i, dataset);
     const float most = quantile(images.stabilized, {}, 0.99F);
     const std::string at = fmt::format("{:.3f} .. {:.3f} s: ", window.start_s, window.end_s);
-    html += picture(draw_counts(images.raw, most),
-                    at + fmt::format("as fired, sharpness {:.1f}", sharpness(images.raw)),
-                    "events before stabilization") +
-            picture(draw_counts(images.stabilized, most),
-                    at + fmt::format("stabilized, sharpness {:.1f}", sharpness(images.stabilized)),
-                    "events after stabilization");
+    html += upscaled_figure(draw_counts(images.raw, most),
+                            at + fmt::format("as fired, sharpness {:.1f}", sharpness(images.raw)),
+                            "events before stabilization") +
+            upscaled_figure(
+                draw_counts(images.stabilized, most),
+                at + fmt::format("stabilized, sharpness {:.1f}", sharpness(images.stabilized)),
+                "events after stabilization");
   }
   return html + "</div>\n";
 }
@@ -53,14 +49,15 @@ std::string frame_pictures(const std::filesystem::path& folder, const Dataset& d
   const std::vector<StampedFile> files = read_file_list(folder / "images.txt");
   if (files.empty()) return "";
   std::string html = "<h4>Frames before and after stabilization</h4><div class=\"grid\">";
-  for (const double share : kMoments) {
+  for (const double share : kStabilizedMoments) {
     const StampedFile& file = files[index_at(share, files.size())];
     for (std::size_t i = 0; i < dataset.frames().size(); ++i) {
       if (std::abs(dataset.frames()[i].t_s - file.t_s) > 1e-6) continue;
       const std::string at = fmt::format("{:.3f} s: ", file.t_s);
-      html +=
-          picture(draw_frame(dataset.load_frame(i)), at + "frame", "frame before stabilization") +
-          picture(read_image_rgb(file.file), at + "stabilized", "frame after stabilization");
+      html += upscaled_figure(draw_frame(dataset.load_frame(i)), at + "frame",
+                              "frame before stabilization") +
+              upscaled_figure(read_image_rgb(file.file), at + "stabilized",
+                              "frame after stabilization");
     }
   }
   return html + "</div>\n";

@@ -8,8 +8,6 @@
 namespace saccade {
 namespace {
 
-constexpr int kUpscale = 2;
-
 std::string group(const std::string& title, const std::vector<CaptionedPicture>& pictures) {
   if (pictures.empty()) return "";
   std::string html = "<h4>" + title + "</h4><div class=\"grid three\">";

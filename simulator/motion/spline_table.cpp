@@ -5,7 +5,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kTolerance = 1e-9;
+constexpr double kTableTolerance = 1e-9;
 constexpr std::size_t kFewestPieces = 4;
 constexpr double kShortestPiece_s = 5e-6;
 
@@ -30,7 +30,7 @@ SplineTable::SplineTable(const Spline& world_from_body, double from_s, double to
   SACCADE_CHECK(to_s > from_s);
   std::size_t count = kFewestPieces;
   fill(world_from_body, count);
-  while (largest_error(world_from_body) > kTolerance &&
+  while (largest_error(world_from_body) > kTableTolerance &&
          length_s_ > kShortestPiece_s * static_cast<double>(2 * count))
     fill(world_from_body, count *= 2);
 }

@@ -19,7 +19,7 @@ constexpr double kRounding = 1e-6;
 /// Three times the centre.
 Eigen::Vector3f centre_of(const Corners& corners) { return corners[0] + corners[1] + corners[2]; }
 
-struct Extent {
+struct Interval {
   double low, high;
 };
 
@@ -93,7 +93,7 @@ class Region {
   template <class Range>
   [[nodiscard]] bool excludes(const Range& range, std::uint32_t& sides) const {
     if ((sides & kFront) != 0) {
-      const Extent values = range(front_);
+      const Interval values = range(front_);
       if (values.high <= 0) return true;
       if (values.low > 0) sides &= ~kFront;
     }
@@ -102,7 +102,7 @@ class Region {
       if ((sides & bit) == 0) continue;
       bool outside = true;
       for (std::size_t m = 0; m < count_ && outside; ++m) {
-        const Extent values = range(sides_[k][m]);
+        const Interval values = range(sides_[k][m]);
         outside = values.high < 0;
         if (values.low >= 0) sides &= ~bit;
       }
@@ -218,14 +218,14 @@ void OccluderTree::visit(std::span<const SightPyramid> sweep, const AffineForm& 
   const auto over_box = [](const Eigen::AlignedBox3f& box) {
     const Eigen::Vector3d middle = box.center().cast<double>();
     const Eigen::Vector3d half = box.sizes().cast<double>() * (0.5 + kRounding);
-    return [middle, half](const AffineForm& form) -> Extent {
+    return [middle, half](const AffineForm& form) -> Interval {
       const double at_middle = form.at(middle);
       const double reach = form.gradient.cwiseAbs().dot(half);
       return {at_middle - reach, at_middle + reach};
     };
   };
   const auto over_triangle = [](const Corners& corners) {
-    return [&corners](const AffineForm& form) -> Extent {
+    return [&corners](const AffineForm& form) -> Interval {
       const auto [low, high] =
           std::minmax({form.at(corners[0].cast<double>()), form.at(corners[1].cast<double>()),
                        form.at(corners[2].cast<double>())});

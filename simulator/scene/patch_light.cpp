@@ -14,9 +14,9 @@ namespace saccade {
 namespace {
 
 /// Neighbours in a mesh must leave no light between them, whatever the rounding.
-constexpr double kEdgeTolerance = 1e-10;
+constexpr double kLightTolerance = 1e-10;
 /// How much wider than a patch the pyramid from a lamp is, for what is seen by a hair beside it.
-constexpr double kRoom = 0.01;
+constexpr double kPyramidRoom = 0.01;
 /// A lamp without a place is taken to be this many sizes of the scene away where its triangles are
 /// searched for: less than the room off its parallel light.
 constexpr double kFar = 1e4;
@@ -87,7 +87,7 @@ std::optional<SightPyramid> pyramid_around(const Eigen::Vector3d& eye,
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& point : on_plane)
     box.extend(Eigen::Vector2d(point.dot(right), point.dot(down)));
-  const double room = kRoom * box.sizes().maxCoeff() + 1e-12;
+  const double room = kPyramidRoom * box.sizes().maxCoeff() + 1e-12;
   const auto corner = [&](double x, double y) -> Eigen::Vector3d {
     return axis + x * right + y * down;
   };
@@ -111,13 +111,13 @@ Ball ball_around(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d&
   ball.centre /= static_cast<double>(points.size());
   for (const Eigen::Vector3d& point : points)
     ball.radius = std::max(ball.radius, (point + lift - ball.centre).norm());
-  ball.radius *= 1 + 2 * kRoom;
+  ball.radius *= 1 + 2 * kPyramidRoom;
   return ball;
 }
 
 /// Adds room for the rounding between neighbours to the edges.
 ShadowCaster with_tolerance(ShadowCaster caster, double scale) {
-  for (std::size_t k = 0; k < 3; ++k) caster.forms[k].offset += kEdgeTolerance * scale;
+  for (std::size_t k = 0; k < 3; ++k) caster.forms[k].offset += kLightTolerance * scale;
   return caster;
 }
 
@@ -267,7 +267,7 @@ bool Scene::State::keep_casters(const LightOptions& lamp, const Patch& patch,
             low = std::min(low, value);
             high = std::max(high, value);
           }
-          const double room = kRoom * (high - low);
+          const double room = kPyramidRoom * (high - low);
           covers = covers && low > room;
           return high + room <= 0;
         });

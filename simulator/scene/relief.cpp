@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// Who draws random numbers; the octaves of the swell follow from kSwell on.
-enum Stream : std::uint64_t { kBend, kCrest, kSwell = 16 };
+enum ReliefStream : std::uint64_t { kBend, kCrest, kSwell = 16 };
 
 /// A function of one variable and its derivative.
 struct Slope {

@@ -21,7 +21,7 @@ constexpr float kShortestVeined = 7;
 constexpr double kThinnestVein = 1;
 
 /// Who draws random numbers; lattices of noise follow from kNoise on, one per octave.
-enum Stream : std::uint64_t { kBackground, kShapes, kLines, kText, kLetters, kNoise = 16 };
+enum TextureStream : std::uint64_t { kBackground, kShapes, kLines, kText, kLetters, kNoise = 16 };
 
 /// Draws in a row that belong to one item of a stream.
 class Dice {

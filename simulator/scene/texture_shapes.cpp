@@ -12,11 +12,11 @@ namespace {
 constexpr int kBandRows = 32;
 
 /// Rows and columns that a shape may touch, cut to the image.
-struct Extent {
+struct TexelArea {
   int x0, x1, y0, y1;  ///< the last ones included
 };
 
-Extent extent(const TextureShape& shape, float edge, const ImageF& image) {
+TexelArea touched_area(const TextureShape& shape, float edge, const ImageF& image) {
   const auto reach = static_cast<double>(shape.reach + edge);
   const auto cut = [](double x, int last) {
     return static_cast<int>(std::clamp(std::floor(x), -1.0, static_cast<double>(last + 1)));
@@ -56,7 +56,7 @@ float distance_to_leaf(const TextureShape& shape, const Eigen::Vector2f& texel) 
 template <class Distance>
 void draw(ImageF& image, const TextureShape& shape, const Distance& distance, float edge,
           int first_row, int last_row) {
-  const Extent area = extent(shape, edge, image);
+  const TexelArea area = touched_area(shape, edge, image);
   for (int y = std::max(area.y0, first_row); y <= std::min(area.y1, last_row); ++y) {
     float* row = &image(0, y);
     for (int x = area.x0; x <= area.x1; ++x) {
@@ -83,7 +83,7 @@ void draw_shapes(ImageF& image, const std::vector<TextureShape>& shapes, float e
   const int bands = (image.height() + kBandRows - 1) / kBandRows;
   std::vector<std::vector<std::uint32_t>> shapes_of_band(static_cast<std::size_t>(bands));
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
-    const Extent area = extent(shapes[i], edge, image);
+    const TexelArea area = touched_area(shapes[i], edge, image);
     if (area.x0 > area.x1 || area.y0 > area.y1) continue;
     for (int band = area.y0 / kBandRows; band <= area.y1 / kBandRows; ++band)
       shapes_of_band[static_cast<std::size_t>(band)].push_back(i);

@@ -24,7 +24,6 @@ constexpr double kSlabMotion_px = kRings * kTileSize;
 /// less than a step behind another's edge; the steps there are shorter.
 constexpr double kOccluding = 0.15;
 constexpr double kOccludedRefinement = 2;
-constexpr std::size_t kTilesPerTask = 16;
 /// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
 constexpr double kTileRadius_px = 2.83;
 /// To the corners of the tiles around.

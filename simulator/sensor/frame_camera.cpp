@@ -16,7 +16,6 @@ namespace {
 
 /// Of two frames before a scene that hardly moves.
 constexpr double kLongestInterval_s = 0.010;
-constexpr std::size_t kTilesPerTask = 16;
 
 }  // namespace
 

@@ -14,6 +14,8 @@ namespace saccade {
 /// Side of the square of pixels that is traced as one packet [px].
 constexpr int kTileSize = 4;
 constexpr std::size_t kTilePixels = 16;
+/// A task of parallel_for() takes so many tiles.
+constexpr std::size_t kTilesPerTask = 16;
 
 /// A block of at most 4 x 4 pixels; smaller at the right and lower border.
 struct Tile {

@@ -9,11 +9,7 @@
 #include "simulator/sensor/tile_trace.h"
 
 namespace saccade {
-namespace {
-
-constexpr std::size_t kTilesPerTask = 16;
-
-}  // namespace
+namespace {}  // namespace
 
 ViewRenderer::ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
                            TextureFilter filter)
