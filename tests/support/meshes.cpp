@@ -69,6 +69,8 @@ Mesh rectangle(const Point& corner, const Point& right, const Point& down, Image
   return mesh;
 }
 
+Mesh slanted_wall() { return rectangle({-6, -5, 4}, {12, 0, 1}, {0, 10, 0}, patches(128, 128, 1)); }
+
 Mesh ball(const Point& centre, double radius, std::uint32_t rings, ImageF texture) {
   return grid(2 * rings, rings, std::move(texture), [&](double u, double v) -> Point {
     const double latitude = std::numbers::pi * (v - 0.5);

@@ -16,6 +16,9 @@ namespace saccade::testing {
 [[nodiscard]] Mesh rectangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& right,
                              const Eigen::Vector3d& down, ImageF texture);
 
+/// A large textured wall 4 m before the camera, a little slanted.
+[[nodiscard]] Mesh slanted_wall();
+
 /// A ball of 4 * `rings` * `rings` triangles, its texture wrapped around it once.
 [[nodiscard]] Mesh ball(const Eigen::Vector3d& centre, double radius, std::uint32_t rings,
                         ImageF texture);

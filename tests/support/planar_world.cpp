@@ -139,6 +139,10 @@ PlanarWorld corner_world(int width, int height) {
        {{-0.5, -0.2, 1.5}, {0.7, 0, 0.1}, {0, 0.6, 0}, patch_texture(texels / 3, texels / 3, 3)}});
 }
 
+Rigid3 corner_glide(double t_s) {
+  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
+}
+
 Rigid3 corner_motion(double t_s) {
   const double a = 2 * 3.14159265358979 * t_s;
   const Eigen::Vector3d position(0.20 * std::sin(1.3 * a), 0.15 * std::sin(0.9 * a + 0.4) - 0.058,
@@ -146,6 +150,13 @@ Rigid3 corner_motion(double t_s) {
   const Eigen::Vector3d rotation(0.05 * std::sin(1.2 * a), 0.06 * std::sin(0.8 * a),
                                  0.08 * std::sin(a));
   return {so3_exp(rotation), position};
+}
+
+Trajectory trajectory_of(const Motion& world_from_camera, double end_s) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i * 1e-3 <= end_s + 1e-9; ++i)
+    poses.push_back({i * 1e-3, world_from_camera(i * 1e-3)});
+  return Trajectory(poses);
 }
 
 }  // namespace saccade::testing

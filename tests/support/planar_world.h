@@ -10,6 +10,7 @@
 #include "core/event.h"
 #include "core/image.h"
 #include "core/rigid3.h"
+#include "core/trajectory.h"
 
 namespace saccade::testing {
 
@@ -58,7 +59,17 @@ class PlanarWorld {
 /// focal length = 0.83 width.
 [[nodiscard]] PlanarWorld corner_world(int width, int height);
 
+/// What corner_world() shows from the origin is typically this far away [m].
+constexpr double kCornerDepth_m = 2.2;
+
+/// Mostly sideways, 12 px of parallax in a tenth of a second at 160 x 120 px, with a turn that
+/// derotation must take out; for corner_world().
+[[nodiscard]] Rigid3 corner_glide(double t_s);
+
 /// Smooth six-degree motion of decimetres and a few degrees within a second, for corner_world().
 [[nodiscard]] Rigid3 corner_motion(double t_s);
+
+/// A pose every millisecond from 0 to `end_s`.
+[[nodiscard]] Trajectory trajectory_of(const Motion& world_from_camera, double end_s);
 
 }  // namespace saccade::testing

@@ -19,7 +19,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr const char* kFurniture = "/usr/share/sweethome3d/furniture/Scopia.sh3f";
+constexpr const char* kFurnitureFile = "/usr/share/sweethome3d/furniture/Scopia.sh3f";
 
 class MeshImport : public testing::MeshFiles {
  protected:
@@ -174,10 +174,10 @@ TEST_F(MeshImport, ReadsFromWithinAnArchive) {
 }
 
 TEST_F(MeshImport, ReadsFurnitureInPlace) {
-  if (!std::filesystem::exists(kFurniture))
-    GTEST_SKIP() << kFurniture << " is missing: apt-get install sweethome3d-furniture";
+  if (!std::filesystem::exists(kFurnitureFile))
+    GTEST_SKIP() << kFurnitureFile << " is missing: apt-get install sweethome3d-furniture";
   const Mesh mesh =
-      MeshImporter().read(std::string(kFurniture) + "!/scopia/wardrobe1/wardrobe1.obj");
+      MeshImporter().read(std::string(kFurnitureFile) + "!/scopia/wardrobe1/wardrobe1.obj");
   EXPECT_GT(mesh.triangles.size(), 500U);
   EXPECT_TRUE(
       std::ranges::any_of(mesh.materials, [](const Material& m) { return m.texture != nullptr; }));

@@ -18,6 +18,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing::see;
 
 const Eigen::Vector3d kDown = -Eigen::Vector3d::UnitZ();
 
@@ -50,12 +51,6 @@ LightOptions sun_from_above() {
   sun.type = LightType::kDirectional;
   sun.direction = kDown;
   return sun;
-}
-
-Shade see(const Scene& scene, const Ray& ray) {
-  TriangleId triangle = kNothing;
-  scene.visible({&ray, 1}, {&triangle, 1});
-  return scene.shade(ray, triangle);
 }
 
 TEST(MovingObject, IsWhereItsSplineIsAndRestsBeyondItsEnds) {

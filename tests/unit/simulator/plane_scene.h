@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "simulator/scene/scene_builder.h"
+#include "simulator/sensor/event_options.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/support/meshes.h"
 
@@ -20,5 +21,20 @@ inline Scene scene_of(const ClosedFormPlane& plane) {
   return scene_of({rectangle({-0.5 * size.x(), -0.5 * size.y(), plane.distance_m}, {size.x(), 0, 0},
                              {0, size.y(), 0}, plane.texture)});
 }
+
+inline EventOptions in_nanoseconds() {
+  EventOptions options;
+  options.timestamp_unit = TimestampUnit::kNanoseconds;
+  return options;
+}
+
+/// The triangle that a ray meets first.
+inline TriangleId look(const Scene& scene, const Ray& ray) {
+  TriangleId triangle = 0;
+  scene.visible({&ray, 1}, {&triangle, 1});
+  return triangle;
+}
+
+inline Shade see(const Scene& scene, const Ray& ray) { return scene.shade(ray, look(scene, ray)); }
 
 }  // namespace saccade::testing

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using testing::MeshFiles;
 using ::testing::ThrowsMessage;
 
-ReliefOptions small() {
+ReliefOptions small_relief() {
   ReliefOptions options;
   options.size_m = {6, 4};
   options.triangles = 2400;
@@ -26,7 +26,7 @@ ReliefOptions small() {
 }
 
 TEST(Relief, SlopeIsTheDerivativeOfTheHeight) {
-  const Relief relief(small());
+  const Relief relief(small_relief());
   constexpr double kStep = 1e-5;
   for (double x = -2.9; x < 3; x += 0.173)
     for (double y = -1.9; y < 2; y += 0.191) {
@@ -38,7 +38,7 @@ TEST(Relief, SlopeIsTheDerivativeOfTheHeight) {
 }
 
 TEST(Relief, SlopeNeverJumps) {
-  const Relief relief(small());
+  const Relief relief(small_relief());
   constexpr double kStep = 1e-4;
   double largest = 0;
   Eigen::Vector2d last = relief.at({-3, 0.3}).slope;
@@ -51,7 +51,7 @@ TEST(Relief, SlopeNeverJumps) {
 }
 
 TEST(Relief, HeightStaysWithinItsOptions) {
-  ReliefOptions options = small();
+  ReliefOptions options = small_relief();
   options.dunes.height_m = 0.5;
   options.swell.height_m = 0.2;
   double low = 1;
@@ -66,7 +66,7 @@ TEST(Relief, HeightStaysWithinItsOptions) {
 }
 
 TEST(Relief, TrianglesShareVerticesFaceUpAndCoverTheWhole) {
-  const Mesh mesh = generate_relief(small());
+  const Mesh mesh = generate_relief(small_relief());
   EXPECT_NEAR(static_cast<double>(mesh.triangles.size()), 2400, 0.03 * 2400);
   EXPECT_LT(mesh.vertices.size(), 0.6 * static_cast<double>(mesh.triangles.size()));
   double area = 0;
@@ -82,9 +82,9 @@ TEST(Relief, TrianglesShareVerticesFaceUpAndCoverTheWhole) {
 }
 
 TEST(Relief, SurfaceDoesNotDependOnTheFineness) {
-  ReliefOptions fine = small();
+  ReliefOptions fine = small_relief();
   fine.triangles = 4 * fine.triangles;
-  const Mesh coarse = generate_relief(small());
+  const Mesh coarse = generate_relief(small_relief());
   const Mesh finer = generate_relief(fine);
   const auto corner = [](const Mesh& mesh) { return mesh.vertices.back(); };
   EXPECT_EQ(corner(coarse), corner(finer));
@@ -92,21 +92,21 @@ TEST(Relief, SurfaceDoesNotDependOnTheFineness) {
 }
 
 TEST(Relief, RepeatsItselfAndFollowsItsSeed) {
-  ReliefOptions other = small();
+  ReliefOptions other = small_relief();
   other.seed = 2;
-  EXPECT_EQ(generate_relief(small()).vertices, generate_relief(small()).vertices);
-  EXPECT_NE(generate_relief(small()).vertices, generate_relief(other).vertices);
+  EXPECT_EQ(generate_relief(small_relief()).vertices, generate_relief(small_relief()).vertices);
+  EXPECT_NE(generate_relief(small_relief()).vertices, generate_relief(other).vertices);
 }
 
 TEST(Relief, WithoutHeightsItIsFlat) {
-  ReliefOptions options = small();
+  ReliefOptions options = small_relief();
   options.dunes.height_m = 0;
   options.swell.height_m = 0;
   for (const Eigen::Vector3d& vertex : generate_relief(options).vertices) EXPECT_EQ(vertex.z(), 0);
 }
 
 TEST(Relief, OptionsPrintWhatTheyRead) {
-  const std::string printed = config::print(small());
+  const std::string printed = config::print(small_relief());
   const auto again = config::read<ReliefOptions>(config::parse(printed, "printed.relief.yaml"));
   EXPECT_EQ(config::print(again), printed);
 }

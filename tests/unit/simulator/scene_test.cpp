@@ -9,9 +9,13 @@
 
 #include "core/random.h"
 #include "simulator/scene/scene_builder.h"
+#include "tests/unit/simulator/plane_scene.h"
 
 namespace saccade {
 namespace {
+
+using testing::look;
+using testing::see;
 
 /// The square [-1, 1]^2 at z = 0 with u, v in [0, 1].
 Mesh square(double albedo = 0.5) {
@@ -53,14 +57,6 @@ Scene single(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, double ba
   builder.add(mesh, world_from_mesh);
   return std::move(builder).build(Background(background));
 }
-
-TriangleId look(const Scene& scene, const Ray& ray) {
-  TriangleId triangle = 0;
-  scene.visible({&ray, 1}, {&triangle, 1});
-  return triangle;
-}
-
-Shade see(const Scene& scene, const Ray& ray) { return scene.shade(ray, look(scene, ray)); }
 
 TEST(Scene, DistanceToAPlaneIsExactInDouble) {
   const Scene scene = single(square(), at(0.3, 0.2, 2.5));

@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kPacket = 16;
+constexpr std::size_t kColumns = 16;
 constexpr int kRows = 32;
 
 /// What a camera sees of a scene at a coarse grid of pixels and a few times.
@@ -28,17 +28,17 @@ struct Survey {
 };
 
 /// A row of 16 pixels across the whole width.
-std::array<Shade, kPacket> look(const Scene& scene, const PinholeCamera& camera, const Rigid3& pose,
-                                double y) {
-  std::array<Ray, kPacket> rays;
-  std::array<TriangleId, kPacket> triangles;
-  for (std::size_t i = 0; i < kPacket; ++i) {
-    const double x = (static_cast<double>(i) + 0.5) * camera.width / kPacket;
+std::array<Shade, kColumns> look(const Scene& scene, const PinholeCamera& camera,
+                                 const Rigid3& pose, double y) {
+  std::array<Ray, kColumns> rays;
+  std::array<TriangleId, kColumns> triangles;
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    const double x = (static_cast<double>(i) + 0.5) * camera.width / kColumns;
     rays[i] = {pose.translation(), pose.rotation() * camera.ray({x, y})};
   }
   scene.visible(rays, triangles);
-  std::array<Shade, kPacket> seen;
-  for (std::size_t i = 0; i < kPacket; ++i) seen[i] = scene.shade(rays[i], triangles[i]);
+  std::array<Shade, kColumns> seen;
+  for (std::size_t i = 0; i < kColumns; ++i) seen[i] = scene.shade(rays[i], triangles[i]);
   return seen;
 }
 

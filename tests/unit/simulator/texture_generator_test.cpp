@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-TextureOptions small() {
+TextureOptions small_texture() {
   TextureOptions options;
   options.size_m = {1.2, 0.8};
   return options;
@@ -28,7 +28,7 @@ double mean_difference(const ImageF& image, int dx, int dy) {
 }
 
 TEST(TextureGenerator, HasTheStatedSizeAndRange) {
-  const ImageF image = generate_texture(small());
+  const ImageF image = generate_texture(small_texture());
   EXPECT_EQ(image.width(), 300);
   EXPECT_EQ(image.height(), 200);
   const auto [low, high] = std::ranges::minmax_element(image.pixels());
@@ -39,21 +39,21 @@ TEST(TextureGenerator, HasTheStatedSizeAndRange) {
 
 TEST(TextureGenerator, IsTheSameForAnyNumberOfThreads) {
   set_thread_count(1);
-  const ImageF one = generate_texture(small());
+  const ImageF one = generate_texture(small_texture());
   set_thread_count(4);
-  const ImageF four = generate_texture(small());
+  const ImageF four = generate_texture(small_texture());
   set_thread_count(0);
   EXPECT_EQ(one, four);
 }
 
 TEST(TextureGenerator, SeedsGiveDifferentTextures) {
-  TextureOptions other = small();
+  TextureOptions other = small_texture();
   other.seed = 2;
-  EXPECT_NE(generate_texture(small()), generate_texture(other));
+  EXPECT_NE(generate_texture(small_texture()), generate_texture(other));
 }
 
 TEST(TextureGenerator, HasStructureAtEveryScaleAndDoesNotRepeat) {
-  const ImageF image = generate_texture(small());
+  const ImageF image = generate_texture(small_texture());
   double last = 0;
   for (const int step : {1, 4, 16, 64}) {
     const double difference = mean_difference(image, step, 0);
@@ -64,7 +64,7 @@ TEST(TextureGenerator, HasStructureAtEveryScaleAndDoesNotRepeat) {
 }
 
 TEST(TextureGenerator, EdgesBlendOverMoreThanATexel) {
-  TextureOptions options = small();
+  TextureOptions options = small_texture();
   options.noise.strength = 0;
   const ImageF image = generate_texture(options);
   double largest = 0;
@@ -76,15 +76,15 @@ TEST(TextureGenerator, EdgesBlendOverMoreThanATexel) {
 }
 
 TEST(TextureGenerator, LeavesAreAnotherTextureOfTheSameKind) {
-  TextureOptions leaves = small();
+  TextureOptions leaves = small_texture();
   leaves.shapes.leaves = 1;
   const ImageF image = generate_texture(leaves);
-  EXPECT_NE(image, generate_texture(small()));
+  EXPECT_NE(image, generate_texture(small_texture()));
   EXPECT_GT(mean_difference(image, 16, 0), 1.15 * mean_difference(image, 1, 0));
 }
 
 TEST(TextureGenerator, EmptyLayersLeaveAnEvenSurface) {
-  TextureOptions options = small();
+  TextureOptions options = small_texture();
   options.shapes.coverage = 0;
   options.lines.per_m2 = 0;
   options.text.per_m2 = 0;
@@ -94,16 +94,16 @@ TEST(TextureGenerator, EmptyLayersLeaveAnEvenSurface) {
 }
 
 TEST(TextureGenerator, OptionsOutOfRangeAreErrors) {
-  TextureOptions options = small();
+  TextureOptions options = small_texture();
   options.albedo = {0.9, 0.1};
   EXPECT_THROW(static_cast<void>(generate_texture(options)), InputError);
-  options = small();
+  options = small_texture();
   options.texels_per_m = 1e6;
   EXPECT_THROW(static_cast<void>(generate_texture(options)), InputError);
 }
 
 TEST(TextureGenerator, OptionsPrintWhatTheyRead) {
-  const std::string printed = config::print(small());
+  const std::string printed = config::print(small_texture());
   const auto again = config::read<TextureOptions>(config::parse(printed, "printed.texture.yaml"));
   EXPECT_EQ(config::print(again), printed);
 }

@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 using ::testing::ContainsRegex;
 using testing::error_of;
 using ::testing::HasSubstr;
+using testing::kSensor;
 using testing::random_events;
 using testing::read_file;
 using testing::TemporaryFolder;
 
-constexpr SensorSize kSize{240, 180};
 constexpr auto kUs = TimestampUnit::kMicroseconds;
 constexpr auto kNs = TimestampUnit::kNanoseconds;
 
@@ -57,7 +57,7 @@ Events within(const Events& events, TimeWindow window) {
 class EventsH5 : public ::testing::Test {
  protected:
   /// Writes a small valid file, lets `damage` change it through HDF5, and reads it.
-  std::string error_after(const std::function<void(hid_t)>& damage, SensorSize size = kSize) {
+  std::string error_after(const std::function<void(hid_t)>& damage, SensorSize size = kSensor) {
     write(file_, events_, kUs);
     const hid_t file = H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     damage(file);
@@ -102,20 +102,20 @@ void replace(hid_t file, const char* path, hid_t type, hsize_t length) {
 TEST_F(EventsH5, NanosecondsRoundTripExactly) {
   const Events events = random_events(300'000);
   write(file_, events, kNs);
-  EXPECT_EQ(EventH5Reader(file_).read(kSize), sorted(events));
+  EXPECT_EQ(EventH5Reader(file_).read(kSensor), sorted(events));
 }
 
 TEST_F(EventsH5, MicrosecondsRoundToTheNearest) {
   const Events events = random_events(1'200'000, 0, 300);  // more than one batch of chunks
   write(file_, events, kUs);
-  EXPECT_EQ(EventH5Reader(file_).read(kSize), rounded_to_us(events));
+  EXPECT_EQ(EventH5Reader(file_).read(kSensor), rounded_to_us(events));
 }
 
 TEST_F(EventsH5, TimesFarFromZeroKeepTheirValue) {
   for (const TimeNs start : {1'468'939'993'123'456'000L, -2'500'000'000L}) {
     const Events events = random_events(1000, start);
     write(file_, events, kNs);
-    EXPECT_EQ(EventH5Reader(file_).read(kSize), sorted(events));
+    EXPECT_EQ(EventH5Reader(file_).read(kSensor), sorted(events));
     EXPECT_LT(fs::file_size(file_), 100'000U);  // the index of milliseconds stays short
   }
 }
@@ -141,13 +141,13 @@ TEST_F(EventsH5, WindowsSelectExactlyTheirEvents) {
                                   {kMax - 1, kMax},
                                   {-5, last + 1},
                                   {200, 100}})
-    EXPECT_EQ(reader.read(kSize, window), within(all, window))
+    EXPECT_EQ(reader.read(kSensor, window), within(all, window))
         << window.start_ns << " " << window.end_ns;
 }
 
 TEST_F(EventsH5, EmptyStream) {
   write(file_, {}, kUs);
-  EXPECT_TRUE(EventH5Reader(file_).read(kSize).empty());
+  EXPECT_TRUE(EventH5Reader(file_).read(kSensor).empty());
   EXPECT_EQ(EventH5Reader(file_).info().count, 0U);
 }
 
@@ -209,9 +209,9 @@ TEST_F(EventsH5, FilesWithoutUnitOrIndexAreDsecs) {
   H5Ldelete(file, "/ms_to_idx", H5P_DEFAULT);
   H5Ldelete(file, "/t_offset", H5P_DEFAULT);
   H5Fclose(file);
-  EXPECT_EQ(EventH5Reader(file_).read(kSize), rounded_to_us(events_));
+  EXPECT_EQ(EventH5Reader(file_).read(kSensor), rounded_to_us(events_));
   const TimeWindow window{1'000'000, 2'000'000};
-  EXPECT_EQ(EventH5Reader(file_).read(kSize, window), within(rounded_to_us(events_), window));
+  EXPECT_EQ(EventH5Reader(file_).read(kSensor, window), within(rounded_to_us(events_), window));
 }
 
 TEST_F(EventsH5, OffsetIsAddedToTheTimes) {
@@ -275,7 +275,7 @@ TEST_F(EventsH5, ChecksTheIndex) {
   for (hsize_t ms = 1; ms <= last_ms; ++ms) set(file, "/ms_to_idx", ms, 999);
   H5Fclose(file);
   EXPECT_THAT(error_of([&] {
-                return EventH5Reader(file_).read(kSize, {2'000'000, 3'000'000});
+                return EventH5Reader(file_).read(kSensor, {2'000'000, 3'000'000});
               }),
               HasSubstr("events.h5:/ms_to_idx: contradicts"));
 }
@@ -285,7 +285,7 @@ TEST_F(EventsH5, TruncatedAndForeignFiles) {
   for (const double share : {0.9, 0.5, 0.01}) {
     const auto size = static_cast<double>(fs::file_size(file_));
     fs::resize_file(file_, static_cast<std::uintmax_t>(size * share));
-    EXPECT_THAT(error_of([&] { return EventH5Reader(file_).read(kSize); }),
+    EXPECT_THAT(error_of([&] { return EventH5Reader(file_).read(kSensor); }),
                 ContainsRegex("events.h5: is no HDF5 file, or is truncated or damaged "
                               "\\(HDF5: truncated file: eof = [0-9]+"));
   }
@@ -303,7 +303,7 @@ TEST_F(EventsH5, DamagedChunkNamesTheDataset) {
   stream.seekp(static_cast<std::streamoff>(fs::file_size(file_) / 2));
   stream << std::string(2000, '\x55');
   stream.close();
-  EXPECT_THAT(error_of([&] { return EventH5Reader(file_).read(kSize); }),
+  EXPECT_THAT(error_of([&] { return EventH5Reader(file_).read(kSensor); }),
               HasSubstr("events.h5:/events/"));
 }
 
@@ -320,7 +320,7 @@ TEST_F(EventsH5, EndingChoosesTheFormat) {
     const std::unique_ptr<EventWriter> writer = make_event_writer(folder_.path() / name, kNs);
     writer->append(events_);
     writer->close();
-    EXPECT_EQ(read_events(folder_.path() / name, kSize), sorted(events_)) << name;
+    EXPECT_EQ(read_events(folder_.path() / name, kSensor), sorted(events_)) << name;
     EXPECT_EQ(read_event_file_info(folder_.path() / name).count, events_.size());
   }
 }

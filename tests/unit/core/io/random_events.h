@@ -4,11 +4,15 @@
 #include <cstdint>
 
 #include "core/event.h"
+#include "core/io/event_file.h"
 #include "core/random.h"
 
 namespace saccade::testing {
 
-/// Events of a sensor of 240 x 180 px in EventOrder, on average `step_ns` apart, some at equal
+/// The sensor of random_events().
+constexpr SensorSize kSensor{240, 180};
+
+/// Events of kSensor in EventOrder, on average `step_ns` apart, some at equal
 /// times.
 inline Events random_events(std::size_t count, TimeNs start_ns = 0, TimeNs step_ns = 700) {
   const Random random(11);

@@ -15,17 +15,18 @@ using testing::error_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
-Trajectory parse(const std::string& text) {
+Trajectory parse_poses(const std::string& text) {
   const TemporaryFolder folder;
   return read_trajectory(folder.write("poses.txt", text));
 }
 
 std::string error(const std::string& text) {
-  return error_of([&] { return parse(text); });
+  return error_of([&] { return parse_poses(text); });
 }
 
 TEST(TrajectoryFile, ReadsTum) {
-  const Trajectory t = parse("# t tx ty tz qx qy qz qw\n0.5 1 2 3 0 0 0 1\n1.5 4 5 6 1 0 0 0\n");
+  const Trajectory t =
+      parse_poses("# t tx ty tz qx qy qz qw\n0.5 1 2 3 0 0 0 1\n1.5 4 5 6 1 0 0 0\n");
   ASSERT_EQ(t.size(), 2U);
   EXPECT_EQ(t.start_s(), 0.5);
   EXPECT_EQ(t.poses()[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, 6));
@@ -34,7 +35,7 @@ TEST(TrajectoryFile, ReadsTum) {
 
 TEST(TrajectoryFile, ReadsEsimCsvWithAnyHeader) {
   for (const char* header : {"", "# timestamp, x, y, z, qx, qy, qz, qw\n", "timestamp,x,y,z\n"}) {
-    const Trajectory t = parse(std::string(header) + "500000000, 1,2, 3,0,0,0,1\n");
+    const Trajectory t = parse_poses(std::string(header) + "500000000, 1,2, 3,0,0,0,1\n");
     ASSERT_EQ(t.size(), 1U);
     EXPECT_EQ(t.start_s(), 0.5);
     EXPECT_EQ(t.poses()[0].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
@@ -62,7 +63,7 @@ TEST(TrajectoryFile, OrientationsAreExactAndHaveNoPosition) {
 }
 
 TEST(TrajectoryFile, NormalisesSlightlyWrongQuaternions) {
-  const Trajectory t = parse("0 0 0 0 0 0 0 1.0009\n");
+  const Trajectory t = parse_poses("0 0 0 0 0 0 0 1.0009\n");
   EXPECT_DOUBLE_EQ(t.poses()[0].world_from_camera.rotation().w(), 1);
 }
 

@@ -12,26 +12,17 @@
 namespace saccade {
 namespace {
 
+using testing::corner_glide;
 using testing::corner_world;
 using testing::PlanarWorld;
+using testing::trajectory_of;
 
 constexpr double kEnd_s = 0.3;
 
-/// Mostly sideways, some 35 px of parallax, with a turn that derotation must take out.
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
-}
-
-Trajectory trajectory_of(const testing::Motion& motion) {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
-  return Trajectory(poses);
-}
-
 struct Recording {
   PlanarWorld world = corner_world(160, 120);
-  Trajectory trajectory = trajectory_of(glide);
-  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+  Trajectory trajectory = trajectory_of(corner_glide, kEnd_s);
+  Events events = world.simulate(corner_glide, 0, kEnd_s, 1e-3, 0.15);
 
   [[nodiscard]] ViewWindow window(double reference_s) const {
     return {events, &trajectory, reference_s};
@@ -74,7 +65,7 @@ class EveryDepthMethod : public ::testing::TestWithParam<DepthConfig::Method> {
 
 /// Relative errors against the best of the 3 x 3 pixels around each point.
 std::vector<double> relative_errors(const DepthResult& result, double t_s) {
-  const ImageF truth = recording().world.depth(glide(t_s));
+  const ImageF truth = recording().world.depth(corner_glide(t_s));
   std::vector<double> errors;
   for (const EdgeDepth& point : result.points) {
     const auto x = static_cast<int>(std::lround(point.x_px));
@@ -131,7 +122,8 @@ TEST_P(EveryDepthMethod, TooFewEventsGiveNoPoints) {
 TEST_P(EveryDepthMethod, PureRotationGivesNoPoints) {
   // The same events, but the poses claim that the camera only turned.
   const Trajectory turning = trajectory_of(
-      [](double t_s) { return Rigid3(glide(t_s).rotation(), Eigen::Vector3d::Zero()); });
+      [](double t_s) { return Rigid3(corner_glide(t_s).rotation(), Eigen::Vector3d::Zero()); },
+      kEnd_s);
   ViewWindow window = recording().window(0);
   window.trajectory = &turning;
   EXPECT_TRUE(estimate(window).points.empty());
@@ -163,7 +155,7 @@ TEST(RayDepth, ForwardMotionServesAsWell) {
   };
   const PlanarWorld& world = recording().world;
   const Events events = world.simulate(forward, 0, kEnd_s, 1e-3, 0.15);
-  const Trajectory trajectory = trajectory_of(forward);
+  const Trajectory trajectory = trajectory_of(forward, kEnd_s);
   DepthConfig config;
   config.method = DepthConfig::Method::kRays;
   const DepthResult result = make_depth_estimator(config, world.camera(), kMeanDepth_m)

@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-PinholeCamera camera(double k1 = 0) {
+PinholeCamera lens_camera(double k1 = 0) {
   PinholeCamera camera;
   camera.width = 120;
   camera.height = 90;
@@ -43,7 +43,7 @@ Eigen::Vector2d centre_of_mass(const ImageF& image) {
 
 TEST(Derotation, HoldsADirectionStill) {
   for (const double k1 : {0.0, -0.2}) {
-    const PinholeCamera sensor = camera(k1);
+    const PinholeCamera sensor = lens_camera(k1);
     const UndistortionTable undistortion(sensor);
     const Trajectory trajectory = turning();
     const Rigid3 reference = trajectory.at_clamped(0.05);
@@ -72,7 +72,7 @@ TEST(Derotation, HoldsADirectionStill) {
 }
 
 TEST(Derotation, LeavesOutWhatLeavesTheView) {
-  const PinholeCamera sensor = camera();
+  const PinholeCamera sensor = lens_camera();
   const UndistortionTable undistortion(sensor);
   const Trajectory trajectory = turning();
   const Derotation derotation(sensor, undistortion, trajectory, so3_exp({0, 3, 0}));

@@ -12,27 +12,19 @@
 namespace saccade {
 namespace {
 
+using testing::corner_glide;
 using testing::corner_world;
 using testing::PlanarWorld;
+using testing::trajectory_of;
 
-constexpr double kEnd_s = 0.3;
-constexpr double kReference_s = kEnd_s / 2;
+constexpr double kRefinedEnd_s = 0.3;
+constexpr double kMiddle_s = kRefinedEnd_s / 2;
 
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
-}
-
-Trajectory trajectory() {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, glide(i * 1e-3)});
-  return Trajectory(poses);
-}
-
-struct Recording {
+struct GlideRecording {
   PlanarWorld world = corner_world(160, 120);
-  Trajectory poses = trajectory();
-  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
-  ImageF depth = world.depth(glide(kReference_s));
+  Trajectory poses = trajectory_of(corner_glide, kRefinedEnd_s);
+  Events events = world.simulate(corner_glide, 0, kRefinedEnd_s, 1e-3, 0.15);
+  ImageF depth = world.depth(corner_glide(kMiddle_s));
   UndistortionTable undistortion{world.camera()};
 
   /// The smallest relative error within the 3 x 3 pixels.
@@ -50,8 +42,8 @@ struct Recording {
   }
 };
 
-const Recording& recording() {
-  static const Recording recording;
+const GlideRecording& glide_recording() {
+  static const GlideRecording recording;
   return recording;
 }
 
@@ -64,10 +56,10 @@ struct Refined {
   EdgeEvents events;
 
   explicit Refined(std::span<const Event> of, const RefinerOptions& options = kOptions)
-      : rays({of, &recording().poses, kReference_s}, recording().world.camera(),
-             recording().undistortion, 32),
-        refiner(rays, options, {}, recording().world.camera()),
-        seeds(find_seeds(rays, recording().world.camera(), {}, {})) {
+      : rays({of, &glide_recording().poses, kMiddle_s}, glide_recording().world.camera(),
+             glide_recording().undistortion, 32),
+        refiner(rays, options, {}, glide_recording().world.camera()),
+        seeds(find_seeds(rays, glide_recording().world.camera(), {}, {})) {
     for (const EdgeSeed& seed : seeds)
       if (const auto edge = refiner.refine(seed, events)) edges.push_back(*edge);
   }
@@ -81,12 +73,13 @@ double median(std::vector<double> values) {
 }
 
 TEST(EdgeRefiner, SeedsLeadToTheTrueDepth) {
-  const Refined refined(recording().events);
+  const Refined refined(glide_recording().events);
   ASSERT_GT(refined.edges.size(), 300U);
   std::vector<double> seeds, edges;
   for (const EdgeSeed& seed : refined.seeds)
-    seeds.push_back(recording().error_of({seed.pixel, seed.normal, seed.inverse_depth}));
-  for (const FittedEdge& fitted : refined.edges) edges.push_back(recording().error_of(fitted.edge));
+    seeds.push_back(glide_recording().error_of({seed.pixel, seed.normal, seed.inverse_depth}));
+  for (const FittedEdge& fitted : refined.edges)
+    edges.push_back(glide_recording().error_of(fitted.edge));
   EXPECT_LT(median(edges), 0.005);
   EXPECT_LT(median(edges), median(seeds) / 5);
 }
@@ -94,7 +87,7 @@ TEST(EdgeRefiner, SeedsLeadToTheTrueDepth) {
 TEST(EdgeRefiner, EdgesKeepTheirDistance) {
   RefinerOptions options;
   options.spacing_px = 3;
-  const Refined refined(recording().events, options);
+  const Refined refined(glide_recording().events, options);
   ASSERT_GT(refined.edges.size(), 100U);
   for (std::size_t i = 0; i < refined.edges.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -107,19 +100,19 @@ TEST(EdgeRefiner, EdgesKeepTheirDistance) {
 
 TEST(EdgeRefiner, WhatGaveNoEventsAroundTheViewWasNotSeen) {
   std::vector<Event> without;
-  for (const Event& event : recording().events)
-    if (std::abs(seconds_from_ns(event.t_ns) - kReference_s) > 0.075) without.push_back(event);
+  for (const Event& event : glide_recording().events)
+    if (std::abs(seconds_from_ns(event.t_ns) - kMiddle_s) > 0.075) without.push_back(event);
   const auto unseen = [](const Refined& refined) {
     std::vector<double> px;
     for (const FittedEdge& edge : refined.edges) px.push_back(static_cast<double>(edge.unseen_px));
     return median(px);
   };
-  EXPECT_LT(unseen(Refined(recording().events)), 1.5);
+  EXPECT_LT(unseen(Refined(glide_recording().events)), 1.5);
   EXPECT_GT(unseen(Refined(without)), 2.5);
 }
 
 TEST(EdgeRefiner, ConfirmsAnExpectedDepthButNoOther) {
-  Refined refined(recording().events);
+  Refined refined(glide_recording().events);
   const std::vector<FittedEdge> edges = refined.edges;
   const auto confirmed = [&](float factor, float gap_share) {
     refined.refiner.restart({}, 0);

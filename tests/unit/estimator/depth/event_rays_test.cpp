@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/support/planar_world.h"
+
 namespace saccade {
 namespace {
 
@@ -13,11 +15,7 @@ Rigid3 motion(double t_s) {
   return {so3_exp({0.3 * t_s, -0.4 * t_s, 0.5 * t_s}), {0.8 * t_s, -0.3 * t_s, 0.4 * t_s}};
 }
 
-Trajectory trajectory() {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i <= 200; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
-  return Trajectory(poses);
-}
+Trajectory trajectory() { return testing::trajectory_of(motion, 0.2); }
 
 constexpr double kReference_s = 0.1;
 

@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-float plane(int x, int y) {
+float slanted(int x, int y) {
   return 0.5F + 0.002F * static_cast<float>(x) - 0.001F * static_cast<float>(y);
 }
 
@@ -22,13 +22,13 @@ std::vector<EdgeDepth> grid_of_points(double noise) {
   for (int y = 0; y < 40; y += 2)
     for (int x = 0; x < 40; x += 2)
       points.push_back({static_cast<float>(x), static_cast<float>(y),
-                        plane(x, y) + static_cast<float>(noise * random.normal(0, points.size())),
+                        slanted(x, y) + static_cast<float>(noise * random.normal(0, points.size())),
                         static_cast<float>(noise)});
   return points;
 }
 
 float error_of(const EdgeDepth& p) {
-  return p.inverse_depth - plane(static_cast<int>(p.x_px), static_cast<int>(p.y_px));
+  return p.inverse_depth - slanted(static_cast<int>(p.x_px), static_cast<int>(p.y_px));
 }
 
 TEST(PlanarFusion, ReducesNoiseOnASlantedPlane) {

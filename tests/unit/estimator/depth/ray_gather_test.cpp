@@ -15,22 +15,16 @@ using testing::corner_motion;
 using testing::corner_world;
 using testing::PlanarWorld;
 
-constexpr double kReference_s = 0.15;
+constexpr double kView_s = 0.15;
 constexpr int kSlabs = 24;
-
-Trajectory trajectory() {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, corner_motion(i * 1e-3)});
-  return Trajectory(poses);
-}
 
 class RayGather : public ::testing::Test {
  protected:
   PlanarWorld world_ = corner_world(120, 90);
-  Trajectory trajectory_ = trajectory();
+  Trajectory trajectory_ = testing::trajectory_of(corner_motion, 0.3);
   Events events_ = world_.simulate(corner_motion, 0, 0.3, 1e-3, 0.15);
   UndistortionTable undistortion_{world_.camera()};
-  EventRays rays_{{events_, &trajectory_, kReference_s}, world_.camera(), undistortion_, kSlabs};
+  EventRays rays_{{events_, &trajectory_, kView_s}, world_.camera(), undistortion_, kSlabs};
   GatherReach reach_;
 
   /// Every ray of every slab, its polarity against its own footprint's motion.
@@ -110,10 +104,10 @@ TEST_F(RayGather, TheCrossingIsTheMotionAcrossTheEdge) {
   const double length_s = static_cast<double>(rays_.slab_length_s());
   for (const int k : {0, kSlabs / 2, kSlabs - 1}) {
     const double t_s =
-        kReference_s + static_cast<double>(rays_.slabs()[static_cast<std::size_t>(k)].middle_s);
+        kView_s + static_cast<double>(rays_.slabs()[static_cast<std::size_t>(k)].middle_s);
     const auto seen = [&](const Eigen::Vector3d& p, double at_s) {
       return world_.camera().project(trajectory_.at_clamped(at_s).inverse() *
-                                     corner_motion(kReference_s) * p);
+                                     corner_motion(kView_s) * p);
     };
     const Eigen::Vector2d motion =
         seen(point, t_s + length_s / 2) - seen(point, t_s - length_s / 2);

@@ -9,12 +9,13 @@
 #include "core/random.h"
 #include "core/rigid3.h"
 #include "estimator/imu/tilt.h"
+#include "tests/unit/estimator/imu/upright.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-const Eigen::Vector3d kUp(0, 0, 9.81);
+using testing::kDegree;
+using testing::kUp;
 
 Eigen::Vector3d normal3(std::uint64_t seed, std::uint64_t index) {
   const Random random(seed);

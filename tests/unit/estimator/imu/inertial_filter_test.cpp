@@ -9,13 +9,15 @@
 #include "core/random.h"
 #include "core/rigid3.h"
 #include "estimator/imu/complementary_filter.h"
+#include "tests/unit/estimator/imu/upright.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+using testing::kDegree;
+using testing::kUp;
+
 constexpr double kStep_s = 1e-3;
-const Eigen::Vector3d kUp(0, 0, 9.81);
 
 /// A thing in a hand: some 3 m/s^2, 0.5 m/s, turning to and fro.
 Eigen::Quaterniond orientation(double t_s) {

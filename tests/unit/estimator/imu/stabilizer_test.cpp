@@ -13,7 +13,7 @@ namespace {
 
 const PinholeCamera kCamera{240, 180, 200, 210, 118, 91, {-0.2, 0.05, 1e-3, -5e-4, 0}};
 
-Eigen::Quaterniond shaken(double t_s) {
+Eigen::Quaterniond trembling(double t_s) {
   return so3_exp(
       {0.1 * std::sin(60 * t_s), 0.12 * std::sin(45 * t_s + 1), 0.2 * std::sin(30 * t_s)});
 }
@@ -21,7 +21,7 @@ Eigen::Quaterniond shaken(double t_s) {
 Trajectory shaking(double duration_s) {
   std::vector<StampedPose> poses;
   for (int i = 0; i <= static_cast<int>(1000 * duration_s); ++i)
-    poses.push_back({1e-3 * i, {shaken(1e-3 * i), {1, 2, 3}}});
+    poses.push_back({1e-3 * i, {trembling(1e-3 * i), {1, 2, 3}}});
   return Trajectory(std::move(poses));
 }
 

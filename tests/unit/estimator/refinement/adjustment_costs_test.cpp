@@ -7,22 +7,13 @@
 #include <vector>
 
 #include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
 
+using testing::uneven_camera;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-PinholeCamera some_camera() {
-  PinholeCamera camera;
-  camera.width = 240;
-  camera.height = 180;
-  camera.fx = 200;
-  camera.fy = 190;
-  camera.cx = 118;
-  camera.cy = 91;
-  return camera;
-}
 
 EdgeObservation observation(double x) {
   EdgeObservation o;
@@ -59,7 +50,7 @@ void expect_derivative(const ceres::CostFunction& cost, std::vector<std::vector<
 }
 
 TEST(AdjustmentCosts, AnEventPairHasItsDerivatives) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = uneven_camera();
   const std::array<WeighedEvent, 2> events = {WeighedEvent{observation(0.1), 0.3, 0.02},
                                               WeighedEvent{observation(0.12), 0.8, 0.05}};
   // Of some pixels, so that the residuals are around 1.
@@ -73,7 +64,7 @@ TEST(AdjustmentCosts, AnEventPairHasItsDerivatives) {
 }
 
 TEST(AdjustmentCosts, AnEventWithoutWeightSaysNothing) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = uneven_camera();
   const EventPairCost cost(
       {WeighedEvent{observation(0.1), 0.3, 1}, WeighedEvent{observation(0.12), 0.8, 0}}, camera, 2);
   const std::array<double, 6> node{};
@@ -86,7 +77,7 @@ TEST(AdjustmentCosts, AnEventWithoutWeightSaysNothing) {
 }
 
 TEST(AdjustmentCosts, PriorsAndStepsHaveTheirDerivatives) {
-  const Matrix6 root = image_motion_root(some_camera(), 1.5, 0.7);
+  const Matrix6 root = image_motion_root(uneven_camera(), 1.5, 0.7);
   const std::vector<double> node = {0.02, -0.01, 0.03, 0.01, 0.02, -0.015};
   const std::vector<double> other = {0.01, 0.01, -0.02, 0.03, -0.01, 0.02};
   expect_derivative<6, 6>(NodePriorCost(root), {node}, 0);
@@ -97,7 +88,7 @@ TEST(AdjustmentCosts, PriorsAndStepsHaveTheirDerivatives) {
 
 /// A step to the side that a turn makes up for is hardly told; either alone is, to the pixel.
 TEST(AdjustmentCosts, ImageMotionTellsMotionsThatLookAlikeApartByLittle) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = uneven_camera();
   const double depth_m = 2;
   const Matrix6 root = image_motion_root(camera, depth_m, 1);
   const double pixel_m = depth_m / camera.fx;

@@ -47,4 +47,10 @@ struct CornerView {
   }
 };
 
+/// Made once.
+inline const CornerView& corner_view() {
+  static const CornerView view;
+  return view;
+}
+
 }  // namespace saccade::testing

@@ -11,34 +11,25 @@
 namespace saccade {
 namespace {
 
-constexpr double kEnd_s = 0.2;
+constexpr double kDepthEnd_s = 0.2;
 
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
-}
-
-struct Recording {
+struct DepthRecording {
   testing::PlanarWorld world = testing::corner_world(160, 120);
-  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.2);
-  Trajectory path;
+  Events events = world.simulate(testing::corner_glide, 0, kDepthEnd_s, 1e-3, 0.2);
+  Trajectory path = testing::trajectory_of(testing::corner_glide, kDepthEnd_s);
   RayDepth depth{DepthConfig{}.rays, DepthConfig{}.limits, world.camera()};
 
-  Recording() {
-    std::vector<StampedPose> poses;
-    for (int i = 0; i <= 200; ++i) poses.push_back({i * 1e-3, glide(i * 1e-3)});
-    path = Trajectory(poses);
-  }
-  [[nodiscard]] ViewWindow window() const { return {events, &path, kEnd_s / 2}; }
+  [[nodiscard]] ViewWindow window() const { return {events, &path, kDepthEnd_s / 2}; }
 };
 
-const Recording& recording() {
-  static const Recording recording;
+const DepthRecording& depth_recording() {
+  static const DepthRecording recording;
   return recording;
 }
 
 /// Median of the relative errors, the true depth taken from the nearest pixel.
 double median_error(const std::vector<EdgeDepth>& points) {
-  const ImageF truth = recording().world.depth(glide(kEnd_s / 2));
+  const ImageF truth = depth_recording().world.depth(testing::corner_glide(kDepthEnd_s / 2));
   std::vector<double> errors;
   for (const EdgeDepth& point : points) {
     const float depth =
@@ -52,13 +43,14 @@ double median_error(const std::vector<EdgeDepth>& points) {
 }
 
 RefinedDepth refined(const std::vector<EdgeDepth>& start) {
-  const Recording& r = recording();
+  const DepthRecording& r = depth_recording();
   return refine_depth_of(r.window(), start, r.world.camera(), r.depth, DepthConfig{}.rays.slabs,
                          {});
 }
 
 TEST(DepthRefinement, BringsDisturbedDepthsBack) {
-  std::vector<EdgeDepth> points = recording().depth.estimate(recording().window()).points;
+  std::vector<EdgeDepth> points =
+      depth_recording().depth.estimate(depth_recording().window()).points;
   ASSERT_GT(points.size(), 200U);
   const double before = median_error(points);
   for (std::size_t i = 0; i < points.size(); ++i)

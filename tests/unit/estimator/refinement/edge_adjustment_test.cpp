@@ -11,70 +11,61 @@
 namespace saccade {
 namespace {
 
+using testing::corner_glide;
 using testing::corner_world;
+using testing::kCornerDepth_m;
 using testing::PlanarWorld;
+using testing::trajectory_of;
 
-constexpr double kEnd_s = 0.3;
+constexpr double kAdjustedEnd_s = 0.3;
 constexpr double kKnown_s = 0.15;
-constexpr double kDepth_m = 2.2;
 
-/// Mostly sideways, some 35 px of parallax, with a turn.
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
-}
-
-/// The same, drifting away after kKnown_s.
+/// corner_glide(), drifting away after kKnown_s.
 Rigid3 drifted(double t_s, double share) {
-  const double away = share * std::max(0.0, t_s - kKnown_s) / (kEnd_s - kKnown_s);
-  return glide(t_s) *
+  const double away = share * std::max(0.0, t_s - kKnown_s) / (kAdjustedEnd_s - kKnown_s);
+  return corner_glide(t_s) *
          Rigid3::exp(away * (Twist() << 0.01, -0.008, 0.012, 0.002, 0.003, -0.004).finished());
 }
 
-Trajectory trajectory_of(const testing::Motion& motion) {
-  std::vector<StampedPose> poses;
-  for (int i = 0; i <= 300; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
-  return Trajectory(poses);
-}
-
-struct Recording {
+struct KeyframeRecording {
   PlanarWorld world = corner_world(160, 120);
-  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+  Events events = world.simulate(corner_glide, 0, kAdjustedEnd_s, 1e-3, 0.15);
 };
 
-const Recording& recording() {
-  static const Recording recording;
+const KeyframeRecording& keyframe_recording() {
+  static const KeyframeRecording recording;
   return recording;
 }
 
 /// How far the picture of a scene at the typical depth is off, root mean square [px]: what events
 /// tell. A step and the turn that looks like it are told apart by much less.
 double error_px(const Trajectory& trajectory, double t_s) {
-  const PinholeCamera& camera = recording().world.camera();
-  const Rigid3 found_from_true = trajectory.at_clamped(t_s).inverse() * glide(t_s);
+  const PinholeCamera& camera = keyframe_recording().world.camera();
+  const Rigid3 found_from_true = trajectory.at_clamped(t_s).inverse() * corner_glide(t_s);
   double squared = 0, count = 0;
   for (int x = 0; x < camera.width; x += 20)
     for (int y = 0; y < camera.height; y += 20, ++count) {
       const Eigen::Vector2d pixel(x, y);
-      const Eigen::Vector3d point = kDepth_m * camera.ray(pixel);
+      const Eigen::Vector3d point = kCornerDepth_m * camera.ray(pixel);
       squared += (camera.project(found_from_true * point) - pixel).squaredNorm();
     }
   return std::sqrt(squared / count);
 }
 
 Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
-  const ViewWindow window{recording().events, &start, reference_s};
+  const ViewWindow window{keyframe_recording().events, &start, reference_s};
   const DepthConfig config;
-  const RayDepth depth(config.rays, config.limits, recording().world.camera());
+  const RayDepth depth(config.rays, config.limits, keyframe_recording().world.camera());
   AdjustmentOptions options;
   options.edges = 600;
   options.node_spacing_s = 0.02;
-  return adjust(window, depth.find_edges(window), recording().world.camera(),
-                {kKnown_s, kDepth_m, {}}, options);
+  return adjust(window, depth.find_edges(window), keyframe_recording().world.camera(),
+                {kKnown_s, kCornerDepth_m, {}}, options);
 }
 
 /// From the true path.
 const Adjustment& from_truth() {
-  static const Adjustment result = adjusted(trajectory_of(glide));
+  static const Adjustment result = adjusted(trajectory_of(corner_glide, kAdjustedEnd_s));
   return result;
 }
 
@@ -90,28 +81,30 @@ TEST(EdgeAdjustment, LeavesTheTruthWhereItIs) {
 TEST(EdgeAdjustment, DoesNotShrinkThePicture) {
   const Adjustment& result = from_truth();
   ASSERT_TRUE(result.ok);
-  const Rigid3 error = glide(kEnd_s).inverse() * result.trajectory.at_clamped(kEnd_s);
-  EXPECT_LT(std::abs(error.translation().z()), 1e-3 * kDepth_m);
+  const Rigid3 error =
+      corner_glide(kAdjustedEnd_s).inverse() * result.trajectory.at_clamped(kAdjustedEnd_s);
+  EXPECT_LT(std::abs(error.translation().z()), 1e-3 * kCornerDepth_m);
 }
 
 TEST(EdgeAdjustment, TooFewEdgesChangeNothing) {
-  const Trajectory start = trajectory_of(glide);
-  const ViewWindow window{recording().events, &start, 0.15};
+  const Trajectory start = trajectory_of(corner_glide, kAdjustedEnd_s);
+  const ViewWindow window{keyframe_recording().events, &start, 0.15};
   const Adjustment result =
-      adjust(window, {}, recording().world.camera(), {kKnown_s, kDepth_m, {}}, {});
+      adjust(window, {}, keyframe_recording().world.camera(), {kKnown_s, kCornerDepth_m, {}}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.trajectory.size(), start.size());
 }
 
 TEST(EdgeAdjustment, BringsADriftingPathBack) {
-  const Trajectory start = trajectory_of([](double t_s) { return drifted(t_s, 1); });
+  const Trajectory start =
+      trajectory_of([](double t_s) { return drifted(t_s, 1); }, kAdjustedEnd_s);
   const Adjustment first = adjusted(start);
   ASSERT_TRUE(first.ok);
   EXPECT_LT(first.residual_after_px, first.residual_before_px);
   // Better poses find better edges.
   const Adjustment result = adjusted(first.trajectory);
   ASSERT_TRUE(result.ok);
-  EXPECT_LT(error_px(result.trajectory, kEnd_s), 0.25 * error_px(start, kEnd_s));
+  EXPECT_LT(error_px(result.trajectory, kAdjustedEnd_s), 0.25 * error_px(start, kAdjustedEnd_s));
 }
 
 }  // namespace

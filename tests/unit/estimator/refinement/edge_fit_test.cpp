@@ -12,7 +12,7 @@ constexpr double kInverse = 0.4;
 constexpr double kOffset_px = 0.3;
 constexpr double kLag_px = 0.2;
 
-PinholeCamera some_camera() {
+PinholeCamera davis_camera() {
   PinholeCamera camera;
   camera.width = 240;
   camera.height = 180;
@@ -24,7 +24,7 @@ PinholeCamera some_camera() {
 
 /// Events of an upright edge by a camera that glides sideways: those rays that pass it exactly.
 std::vector<EdgeObservation> observations(int count) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = davis_camera();
   std::vector<EdgeObservation> events;
   for (int i = 0; i < count; ++i) {
     EdgeObservation event;
@@ -44,7 +44,7 @@ std::vector<EdgeObservation> observations(int count) {
 const EdgePrior kPrior{{0.5, 0, 0, 0}, {0.5, 2, 0.3, 0.5}};
 
 TEST(EdgeFit, FindsTheEdgeThatItsEventsSaw) {
-  const auto edge = fit_edge(observations(40), some_camera(), kPrior.mean, kPrior, 0.01, 2);
+  const auto edge = fit_edge(observations(40), davis_camera(), kPrior.mean, kPrior, 0.01, 2);
   ASSERT_TRUE(edge);
   EXPECT_NEAR((*edge)[0], kInverse, 1e-3);
   EXPECT_NEAR((*edge)[1], kOffset_px, 1e-2);
@@ -54,7 +54,7 @@ TEST(EdgeFit, FindsTheEdgeThatItsEventsSaw) {
 TEST(EdgeFit, AFewOutliersChangeLittle) {
   std::vector<EdgeObservation> events = observations(40);
   for (const std::size_t i : {3U, 17U, 30U}) events[i].ray.x() += 0.01;
-  const auto edge = fit_edge(events, some_camera(), {0.42, 0.2, 0, 0.1}, kPrior, 0.05, 2);
+  const auto edge = fit_edge(events, davis_camera(), {0.42, 0.2, 0, 0.1}, kPrior, 0.05, 2);
   ASSERT_TRUE(edge);
   EXPECT_NEAR((*edge)[0], kInverse, 4e-3);
 }
@@ -64,7 +64,7 @@ TEST(EdgeFit, ThePriorHoldsWhatTheEventsDoNotTell) {
   std::vector<EdgeObservation> events = observations(40);
   for (EdgeObservation& event : events) event.view_from_camera = Rigid3();
   const EdgePrior prior{{0.37, 0, 0, 0}, {0.01, 2, 0.3, 0.5}};
-  const auto edge = fit_edge(events, some_camera(), {0.4, 0, 0, 0}, prior, 0.01, 2);
+  const auto edge = fit_edge(events, davis_camera(), {0.4, 0, 0, 0}, prior, 0.01, 2);
   ASSERT_TRUE(edge);
   EXPECT_NEAR((*edge)[0], 0.37, 1e-9);
 }
@@ -75,7 +75,7 @@ TEST(EdgeFit, AnEdgeBehindTheViewIsNone) {
   for (EdgeObservation& event : events)
     event.view_from_camera = {Eigen::Quaterniond::Identity(),
                               -event.view_from_camera.translation()};
-  EXPECT_FALSE(fit_edge(events, some_camera(), kPrior.mean, kPrior, 0.01, 2));
+  EXPECT_FALSE(fit_edge(events, davis_camera(), kPrior.mean, kPrior, 0.01, 2));
 }
 
 }  // namespace

@@ -5,20 +5,12 @@
 #include <cmath>
 
 #include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
 
-PinholeCamera some_camera() {
-  PinholeCamera camera;
-  camera.width = 240;
-  camera.height = 180;
-  camera.fx = 200;
-  camera.fy = 190;
-  camera.cx = 118;
-  camera.cy = 91;
-  return camera;
-}
+using testing::uneven_camera;
 
 EdgeObservation some_observation() {
   EdgeObservation o;
@@ -31,7 +23,7 @@ EdgeObservation some_observation() {
 }
 
 TEST(EdgeResidual, IsTheDistanceOfThePointOnTheRayFromTheEdge) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = uneven_camera();
   EdgeObservation o = some_observation();
   // A point on the ray, wherever: its projection into the view is x(rho).
   const Eigen::Vector3d point = o.view_from_camera * (2.3 * o.ray);
@@ -44,7 +36,7 @@ TEST(EdgeResidual, IsTheDistanceOfThePointOnTheRayFromTheEdge) {
 }
 
 TEST(EdgeResidual, HasItsDerivativesAlsoAwayFromZero) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = uneven_camera();
   const EdgeObservation o = some_observation();
   const Twist motion = (Twist() << 0.02, -0.01, 0.03, 0.01, 0.02, -0.015).finished();
   const EdgeUnknowns edge(0.4, 0.1, 0.05, 0.2);
@@ -67,7 +59,8 @@ TEST(EdgeResidual, HasItsDerivativesAlsoAwayFromZero) {
 TEST(EdgeResidual, ARayThatLeadsAwayFromTheViewIsNoResidual) {
   EdgeObservation o = some_observation();
   o.view_from_camera = {so3_exp({0, 3, 0}), Eigen::Vector3d::Zero()};
-  EXPECT_TRUE(std::isnan(edge_residual(o, some_camera(), Twist::Zero(), {0.4, 0, 0, 0}, nullptr)));
+  EXPECT_TRUE(
+      std::isnan(edge_residual(o, uneven_camera(), Twist::Zero(), {0.4, 0, 0, 0}, nullptr)));
 }
 
 }  // namespace

@@ -12,50 +12,46 @@
 namespace saccade {
 namespace {
 
+using testing::corner_glide;
 using testing::corner_world;
+using testing::kCornerDepth_m;
 
-constexpr double kEnd_s = 0.4;
-constexpr double kKnown_s = 0.15;
-constexpr double kDepth_m = 2.2;
+constexpr double kJointEnd_s = 0.4;
+constexpr double kJointKnown_s = 0.15;
 
-/// Mostly sideways, with a turn.
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
-}
-
-/// The same, drifting away after kKnown_s: 1 % of the depth and 7 mrad in the end.
+/// corner_glide(), drifting away after kJointKnown_s: 1 % of the depth and 7 mrad in the end.
 Rigid3 drifted(double t_s) {
-  const double away = std::max(0.0, t_s - kKnown_s) / (kEnd_s - kKnown_s);
-  return glide(t_s) *
+  const double away = std::max(0.0, t_s - kJointKnown_s) / (kJointEnd_s - kJointKnown_s);
+  return corner_glide(t_s) *
          Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
 }
 
-struct Recording {
+struct JointRecording {
   testing::PlanarWorld world = corner_world(160, 120);
-  Events events = world.simulate(glide, 0, kEnd_s, 1e-3, 0.15);
+  Events events = world.simulate(corner_glide, 0, kJointEnd_s, 1e-3, 0.15);
 };
 
-const Recording& recording() {
-  static const Recording recording;
+const JointRecording& joint_recording() {
+  static const JointRecording recording;
   return recording;
 }
 
 JointResult refined(int rounds, const std::function<void(std::size_t)>& progress = {}) {
-  const PinholeCamera& camera = recording().world.camera();
+  const PinholeCamera& camera = joint_recording().world.camera();
   JointStart start;
-  for (double t_s = 0; t_s <= kEnd_s + 1e-9; t_s += 2e-3) {
+  for (double t_s = 0; t_s <= kJointEnd_s + 1e-9; t_s += 2e-3) {
     start.path.push_back({t_s, drifted(t_s)});
-    if (t_s <= kKnown_s) start.known.push_back({t_s, glide(t_s)});
+    if (t_s <= kJointKnown_s) start.known.push_back({t_s, corner_glide(t_s)});
   }
   start.keyframe_s = {0.1, 0.2, 0.3};
-  start.typical_depth_m = kDepth_m;
+  start.typical_depth_m = kCornerDepth_m;
   JointRefinementOptions options;
   options.window_s = 0.3;
   options.edges = 300;
   options.events_per_edge = 20;
   options.rounds = rounds;
   const DepthConfig config;
-  return refine_jointly(recording().events, start, camera,
+  return refine_jointly(joint_recording().events, start, camera,
                         RayDepth(config.rays, config.limits, camera), options, progress);
 }
 
@@ -63,13 +59,13 @@ TEST(JointRefinement, BringsADriftingPathBack) {
   std::size_t steps = 0;
   const JointResult result = refined(2, [&](std::size_t n) { steps += n; });
   for (const double t_s : {0.25, 0.3, 0.35, 0.38}) {
-    const Twist before = (glide(t_s).inverse() * drifted(t_s)).log();
-    const Twist after = (glide(t_s).inverse() * result.path.at_clamped(t_s)).log();
+    const Twist before = (corner_glide(t_s).inverse() * drifted(t_s)).log();
+    const Twist after = (corner_glide(t_s).inverse() * result.path.at_clamped(t_s)).log();
     EXPECT_LT(after.head<3>().norm(), 0.4 * before.head<3>().norm()) << t_s;
     EXPECT_LT(after.tail<3>().norm(), 0.4 * before.tail<3>().norm()) << t_s;
   }
-  const Twist at_start = (glide(0.05).inverse() * result.path.at_clamped(0.05)).log();
-  EXPECT_LT(at_start.head<3>().norm(), 0.001 * kDepth_m);
+  const Twist at_start = (corner_glide(0.05).inverse() * result.path.at_clamped(0.05)).log();
+  EXPECT_LT(at_start.head<3>().norm(), 0.001 * kCornerDepth_m);
   EXPECT_GT(result.observations, 5000U);
   EXPECT_LT(result.residual_px, 0.4);
   EXPECT_EQ(result.costs.rounds(), 2);

@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-PinholeCamera some_camera() {
+PinholeCamera narrow_camera() {
   PinholeCamera camera;
   camera.width = 64;
   camera.height = 48;
@@ -19,7 +19,7 @@ PinholeCamera some_camera() {
 
 /// A landmark that a camera at the origin sees at a pixel.
 Landmark seen_at(double x_px, double y_px, double depth_m) {
-  return {depth_m * some_camera().ray({x_px, y_px}), 0.01};
+  return {depth_m * narrow_camera().ray({x_px, y_px}), 0.01};
 }
 
 RayEdge edge_at(float x_px, float y_px, float depth_m) {
@@ -29,7 +29,7 @@ RayEdge edge_at(float x_px, float y_px, float depth_m) {
 TEST(SeenLandmarks, FindsTheNearestAtTheEdgesDepth) {
   const std::vector<Landmark> landmarks = {seen_at(20.8, 10, 2), seen_at(20.3, 10.2, 2),
                                            seen_at(20.1, 10, 3)};
-  const SeenLandmarks seen(landmarks, Rigid3(), some_camera());
+  const SeenLandmarks seen(landmarks, Rigid3(), narrow_camera());
   const auto* near = seen.near(edge_at(20, 10, 2.02F), 1.5, 0.1);
   ASSERT_NE(near, nullptr);
   EXPECT_NEAR(near->pixel.x(), 20.3, 1e-9);
@@ -39,7 +39,7 @@ TEST(SeenLandmarks, FindsTheNearestAtTheEdgesDepth) {
 
 TEST(SeenLandmarks, FindsNoneOutOfReach) {
   const std::vector<Landmark> landmarks = {seen_at(20, 10, 2)};
-  const SeenLandmarks seen(landmarks, Rigid3(), some_camera());
+  const SeenLandmarks seen(landmarks, Rigid3(), narrow_camera());
   EXPECT_EQ(seen.near(edge_at(22, 10, 2), 1.5, 0.1), nullptr);
   EXPECT_EQ(seen.near(edge_at(20, 10, 2.5F), 1.5, 0.1), nullptr);
 }
@@ -49,7 +49,7 @@ TEST(SeenLandmarks, AreSeenByTheView) {
   const Rigid3 view_from_world(Eigen::Quaterniond::Identity(), {-0.2, 0, 0});
   const std::vector<Landmark> landmarks = {
       seen_at(30, 20, 2), seen_at(2, 20, 2), {{0, 0, -1}, 0.01}};
-  const SeenLandmarks seen(landmarks, view_from_world, some_camera());
+  const SeenLandmarks seen(landmarks, view_from_world, narrow_camera());
   const auto* near = seen.near(edge_at(25, 20, 2), 1.5, 0.1);
   ASSERT_NE(near, nullptr);
   EXPECT_NEAR(near->pixel.x(), 25, 1e-9);
@@ -59,7 +59,7 @@ TEST(SeenLandmarks, AreSeenByTheView) {
 
 TEST(SeenLandmarks, EdgesAtTheBorderLookNoFarther) {
   const std::vector<Landmark> landmarks = {seen_at(63, 47, 2)};
-  const SeenLandmarks seen(landmarks, Rigid3(), some_camera());
+  const SeenLandmarks seen(landmarks, Rigid3(), narrow_camera());
   EXPECT_NE(seen.near(edge_at(63.4F, 47.4F, 2), 1.5, 0.1), nullptr);
   EXPECT_EQ(seen.near(edge_at(-30, 90, 2), 1.5, 0.1), nullptr);
 }

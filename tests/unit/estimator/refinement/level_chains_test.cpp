@@ -5,7 +5,7 @@
 namespace saccade {
 namespace {
 
-PinholeCamera small_camera() {
+PinholeCamera tiny_camera() {
   PinholeCamera camera;
   camera.width = 4;
   camera.height = 3;
@@ -25,7 +25,7 @@ Events some_events() {
 }
 
 TEST(LevelChains, LevelsAreSumsOfThresholds) {
-  const LevelChains levels = observe_levels(some_events(), small_camera(), {0.2, 0.3}, {});
+  const LevelChains levels = observe_levels(some_events(), tiny_camera(), {0.2, 0.3}, {});
   EXPECT_EQ(levels.chains, 1U) << "one event says nothing";
   ASSERT_EQ(levels.observations.size(), 6U);
   for (std::size_t i = 0; i < 5; ++i)
@@ -37,7 +37,7 @@ TEST(LevelChains, LevelsAreSumsOfThresholds) {
 
 TEST(LevelChains, ChainsOfTwoHoldTheThresholdBetweenThem) {
   const LevelChains levels =
-      observe_levels(some_events(), small_camera(), {0.2, 0.3}, {.length = 2});
+      observe_levels(some_events(), tiny_camera(), {0.2, 0.3}, {.length = 2});
   EXPECT_EQ(levels.chains, 3U);
   for (std::size_t i = 0; i < 6; i += 2) {
     const auto& a = levels.observations[i];
@@ -52,14 +52,14 @@ TEST(LevelChains, SomePixelsKeepAllOfTheirEvents) {
   for (int i = 0; i < 10; ++i)
     for (std::uint16_t y = 0; y < 3; ++y)
       for (std::uint16_t x = 0; x < 4; ++x) events.push_back({1000LL * i, x, y, 1});
-  const LevelChains levels = observe_levels(events, small_camera(), {0.2, 0.3}, {.events = 60});
+  const LevelChains levels = observe_levels(events, tiny_camera(), {0.2, 0.3}, {.events = 60});
   EXPECT_GE(levels.chains, 5U);
   EXPECT_LE(levels.chains, 7U);
   EXPECT_EQ(levels.observations.size(), 10 * levels.chains);
 }
 
 TEST(LevelChains, NoEventsGiveNone) {
-  EXPECT_TRUE(observe_levels({}, small_camera(), {}, {}).observations.empty());
+  EXPECT_TRUE(observe_levels({}, tiny_camera(), {}, {}).observations.empty());
 }
 
 }  // namespace

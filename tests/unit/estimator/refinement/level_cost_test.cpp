@@ -8,21 +8,16 @@
 namespace saccade {
 namespace {
 
-using testing::CornerView;
+using testing::corner_view;
 using Unknowns = Eigen::Matrix<double, 25, 1>;
-
-const CornerView& recording() {
-  static const CornerView recording;
-  return recording;
-}
 
 /// A pixel that looks at the left wall, seen from a little way on.
 LevelCost::Observation some_observation(const MapSurface& surface) {
-  const auto controls = SplineControls::smooth(recording().disturbed(1), 0.05);
+  const auto controls = SplineControls::smooth(corner_view().disturbed(1), 0.05);
   LevelCost::Observation o;
   o.time = controls.knots.at(0.12);
   for (std::size_t k = 0; k < 4; ++k) o.controls[k] = controls.poses[o.time.first + k];
-  o.ray = recording().world.camera().ray({40, 50});
+  o.ray = corner_view().world.camera().ray({40, 50});
   o.level = -0.3;
   o.sigma = 0.06;
   o.hit.plane = *surface.plane(0, {44.3, 51.8});
@@ -30,7 +25,7 @@ LevelCost::Observation some_observation(const MapSurface& surface) {
 }
 
 TEST(LevelCost, HasItsDerivativesAlsoAwayFromZero) {
-  const MapSurface surface(recording().map);
+  const MapSurface surface(corner_view().map);
   const LevelCost cost(some_observation(surface), surface);
   Unknowns at;
   for (Eigen::Index i = 0; i < 25; ++i) at[i] = 0.004 * std::sin(1.7 * static_cast<double>(i));
@@ -50,7 +45,7 @@ TEST(LevelCost, HasItsDerivativesAlsoAwayFromZero) {
 }
 
 TEST(LevelCost, ARayThatLeavesThePlaneIsNoResidual) {
-  const MapSurface surface(recording().map);
+  const MapSurface surface(corner_view().map);
   LevelCost::Observation o = some_observation(surface);
   o.hit.plane = -o.hit.plane;
   const LevelCost cost(o, surface);

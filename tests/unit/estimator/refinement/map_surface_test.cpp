@@ -9,16 +9,12 @@
 namespace saccade {
 namespace {
 
+using testing::corner_view;
 using testing::CornerView;
 
-const CornerView& recording() {
-  static const CornerView recording;
-  return recording;
-}
-
 TEST(MapSurface, ReadsThePictureAndItsSlope) {
-  const MapSurface surface(recording().map);
-  const ImageF& atlas = recording().map.atlas();
+  const MapSurface surface(corner_view().map);
+  const ImageF& atlas = corner_view().map.atlas();
   EXPECT_NEAR(surface.read(0, {33, 41}).value, static_cast<double>(atlas(33, 41)), 1e-6);
   const Eigen::Vector2d at(33.4, 40.7);
   constexpr double kStep = 1e-5;
@@ -32,11 +28,11 @@ TEST(MapSurface, ReadsThePictureAndItsSlope) {
 }
 
 TEST(MapSurface, ARayMeetsTheSurfaceThatItsPixelSees) {
-  const MapSurface surface(recording().map);
+  const MapSurface surface(corner_view().map);
   const Rigid3 map_from_camera = CornerView::motion(0).inverse() * CornerView::motion(0.2);
-  const ImageF depth = recording().world.depth(CornerView::motion(0.2));
-  const PinholeCamera& camera = recording().world.camera();
-  MapView view(recording().map, 1);
+  const ImageF depth = corner_view().world.depth(CornerView::motion(0.2));
+  const PinholeCamera& camera = corner_view().world.camera();
+  MapView view(corner_view().map, 1);
   view.draw(map_from_camera);
   int hits = 0, exact = 0;
   for (int y = 0; y < camera.height; ++y)
@@ -56,9 +52,9 @@ TEST(MapSurface, ARayMeetsTheSurfaceThatItsPixelSees) {
 }
 
 TEST(MapSurface, NothingIsMetBesideAnOccludingEdge) {
-  const MapSurface surface(recording().map);
-  const IntensityMap::View& view = recording().map.views()[0];
-  const PinholeCamera& camera = recording().world.camera();
+  const MapSurface surface(corner_view().map);
+  const IntensityMap::View& view = corner_view().map.views()[0];
+  const PinholeCamera& camera = corner_view().world.camera();
   int edges = 0;
   for (int y = 3; y < camera.height - 3; ++y)
     for (int x = 3; x < camera.width - 3; ++x)

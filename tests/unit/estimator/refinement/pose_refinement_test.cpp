@@ -7,15 +7,11 @@
 namespace saccade {
 namespace {
 
+using testing::corner_view;
 using testing::CornerView;
 
-const CornerView& recording() {
-  static const CornerView recording;
-  return recording;
-}
-
-RefinedPath refined(double share, int rounds = 3) {
-  const CornerView& r = recording();
+RefinedPath refined_path(double share, int rounds = 3) {
+  const CornerView& r = corner_view();
   const MapSurface surface(r.map);
   std::vector<StampedPose> start = r.disturbed(share);
   for (StampedPose& pose : start)
@@ -32,7 +28,7 @@ std::pair<double, double> errors_of(const Spline& map_from_camera) {
   std::pair<double, double> squares{0, 0};
   double count = 0;
   for (double t_s = 0.01; t_s < CornerView::kEnd_s - 0.005; t_s += 0.005, ++count) {
-    const Rigid3 pose = recording().map.world_from_map() * map_from_camera.pose(t_s);
+    const Rigid3 pose = corner_view().map.world_from_map() * map_from_camera.pose(t_s);
     const Rigid3 error = CornerView::motion(t_s).inverse() * pose;
     squares.first += error.translation().squaredNorm();
     squares.second += so3_log(error.rotation()).squaredNorm();
@@ -41,8 +37,8 @@ std::pair<double, double> errors_of(const Spline& map_from_camera) {
 }
 
 TEST(PoseRefinement, BringsADisturbedPathBack) {
-  const auto [before_m, before_rad] = errors_of(refined(1, 0).map_from_camera.spline());
-  const RefinedPath path = refined(1);
+  const auto [before_m, before_rad] = errors_of(refined_path(1, 0).map_from_camera.spline());
+  const RefinedPath path = refined_path(1);
   const auto [after_m, after_rad] = errors_of(path.map_from_camera.spline());
   EXPECT_LT(after_m, 0.2 * before_m);
   EXPECT_LT(after_rad, 0.3 * before_rad);
@@ -52,7 +48,7 @@ TEST(PoseRefinement, BringsADisturbedPathBack) {
 }
 
 TEST(PoseRefinement, KnowsHowSureItIs) {
-  const RefinedPath path = refined(0, 1);
+  const RefinedPath path = refined_path(0, 1);
   const Matrix6 covariance = path.covariance_at(0.15);
   const double position_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   const double rotation_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
@@ -63,7 +59,7 @@ TEST(PoseRefinement, KnowsHowSureItIs) {
 }
 
 TEST(PoseRefinement, IsTheSameEveryTime) {
-  const RefinedPath a = refined(1, 1), b = refined(1, 1);
+  const RefinedPath a = refined_path(1, 1), b = refined_path(1, 1);
   for (std::size_t k = 0; k < a.map_from_camera.poses.size(); ++k) {
     EXPECT_EQ(a.map_from_camera.poses[k].translation(), b.map_from_camera.poses[k].translation());
     EXPECT_EQ(a.map_from_camera.poses[k].rotation().coeffs(),
@@ -73,7 +69,7 @@ TEST(PoseRefinement, IsTheSameEveryTime) {
 }
 
 TEST(PoseRefinement, WithoutEventsThePathStays) {
-  const CornerView& r = recording();
+  const CornerView& r = corner_view();
   const MapSurface surface(r.map);
   const auto start = r.disturbed(1);
   const RefinedPath path = refine_path(surface, r.world.camera(), {0.1, 0.1}, {}, start, {});

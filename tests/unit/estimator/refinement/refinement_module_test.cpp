@@ -34,10 +34,10 @@ using ::testing::HasSubstr;
 using testing::PlanarWorld;
 using testing::read_file;
 
-constexpr double kDepth_m = 1.5;
-constexpr double kEnd_s = 0.4;
+constexpr double kWall_m = 1.5;
+constexpr double kRunEnd_s = 0.4;
 
-/// One textured wall at kDepth_m that fills the view of a small camera.
+/// One textured wall at kWall_m that fills the view of a small camera.
 PlanarWorld wall() {
   PinholeCamera camera;
   camera.width = 120;
@@ -45,9 +45,8 @@ PlanarWorld wall() {
   camera.fx = camera.fy = 100;
   camera.cx = 59.5;
   camera.cy = 44.5;
-  return {
-      camera,
-      {{{-2.4, -1.8, kDepth_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(240, 180, 4)}}};
+  return {camera,
+          {{{-2.4, -1.8, kWall_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(240, 180, 4)}}};
 }
 
 Rigid3 sweep(double t_s) {
@@ -56,7 +55,7 @@ Rigid3 sweep(double t_s) {
 }
 
 /// Sideways with a turn, before a corner.
-Rigid3 glide(double t_s) {
+Rigid3 wavy_glide(double t_s) {
   return {so3_exp({0.1 * t_s, -0.25 * t_s, 0.3 * t_s}),
           {0.8 * t_s, 0.1 * std::sin(6 * t_s), 0.1 * t_s}};
 }
@@ -92,7 +91,7 @@ Errors errors_of(const fs::path& run, const testing::Motion& motion) {
 class RefinementModule : public testing::SharedFolder<RefinementModule> {
  public:
   static void fill() {
-    record(dataset(), wall(), sweep, kEnd_s);
+    record(dataset(), wall(), sweep, kRunEnd_s);
     RunRequest track = request("track", "reference: {frame: 0, planar_depth_m: 1.5}");
     track.from.reset();
     (void)run_track(track);
@@ -130,7 +129,7 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
 }
 
 TEST_F(RefinementModule, PathAndMapOfARunOfOdometryGoTogether) {
-  record(path("corner"), testing::corner_world(160, 120), glide, 0.5);
+  record(path("corner"), testing::corner_world(160, 120), wavy_glide, 0.5);
   RunRequest odometry = request("odometry", R"(
 start: {truth_s: 0.2, truth_share: 0.4}
 keyframe: {distance: 0.05, active: 3}
@@ -146,7 +145,8 @@ tracking: {event_frame: {ratio: 0.2}, motion: {prediction: constant_velocity}}
   joint.dataset = path("corner");
   joint.from = path("odometry");
   (void)run_refinement(joint);
-  const Errors before = errors_of(path("odometry"), glide), after = errors_of(path("joint"), glide);
+  const Errors before = errors_of(path("odometry"), wavy_glide),
+               after = errors_of(path("joint"), wavy_glide);
   EXPECT_LT(after.position_m, before.position_m);
   const auto views = read_view_list(path("joint") / "views.yaml");
   EXPECT_EQ(views.size(), read_view_list(path("odometry") / "views.yaml").size());

@@ -86,6 +86,11 @@ inline const CornerRecording& resolved_recording() {
   return recording;
 }
 
+/// Of the poses that a tracker found in it.
+inline CornerRecording::Errors resolved_errors(const std::vector<TrackedPose>& poses) {
+  return resolved_recording().errors_of(poses);
+}
+
 /// A file of configs/tracking, without its ending.
 inline TrackConfig tracking_config(const std::string& name) {
   const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/" + name + ".yaml";

@@ -8,26 +8,17 @@
 
 #include "core/random.h"
 #include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
 
 using testing::central_differences;
+using testing::small_uneven_camera;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr EventChunk::Noise kNoise{0.05F, 0};
+constexpr EventChunk::Noise kEventNoise{0.05F, 0};
 constexpr float kTail = 2.4F;
-
-PinholeCamera some_camera() {
-  PinholeCamera camera;
-  camera.width = 64;
-  camera.height = 48;
-  camera.fx = 61;
-  camera.fy = 58;
-  camera.cx = 30.7;
-  camera.cy = 24.2;
-  return camera;
-}
 
 /// Gentle slopes that differ from cell to cell.
 ImageF some_atlas() {
@@ -54,7 +45,7 @@ EventChunk::Motion motion_at(const Rigid3& map_from_camera, const Vector6& veloc
 /// What a pixel sees at a depth from some_pose(); the place is in the middle of a cell, where the
 /// interpolant is smooth over what a test moves.
 Sight sight(const Eigen::Vector2d& pixel, double depth_m, float level, float time_s = 0) {
-  const Eigen::Vector3d point = some_pose() * (depth_m * some_camera().ray(pixel));
+  const Eigen::Vector3d point = some_pose() * (depth_m * small_uneven_camera().ray(pixel));
   Sight sight;
   sight.event = {pixel.cast<float>(), time_s, level, 0.8F};
   sight.seen.point = point.cast<float>();
@@ -68,7 +59,7 @@ Sight sight(const Eigen::Vector2d& pixel, double depth_m, float level, float tim
 EventChunk::Sums sums_of(EventChunk& chunk, const EventChunk::Noise& noise, const ImageF& atlas,
                          const Rigid3& pose = some_pose(),
                          const Vector6& velocity = Vector6::Zero()) {
-  chunk.evaluate(some_camera(), atlas, motion_at(pose, velocity));
+  chunk.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
   chunk.weigh(noise);
   EventChunk::Sums sums;
   chunk.add_to(sums);
@@ -80,7 +71,7 @@ double residual_of(const Sight& sight, const Rigid3& pose, const Vector6& veloci
                    const ImageF& atlas) {
   EventChunk chunk;
   chunk.add(sight.event, sight.seen);
-  chunk.evaluate(some_camera(), atlas, motion_at(pose, velocity));
+  chunk.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
   return static_cast<double>(chunk.residual(0));
 }
 
@@ -90,7 +81,7 @@ void expect_row(const Sight& sight, const Vector6& velocity, double tolerance) {
   const ImageF atlas = some_atlas();
   EventChunk chunk;
   chunk.add(sight.event, sight.seen);
-  const EventChunk::Sums sums = sums_of(chunk, kNoise, atlas, some_pose(), velocity);
+  const EventChunk::Sums sums = sums_of(chunk, kEventNoise, atlas, some_pose(), velocity);
   const auto residual = [&](const Vector6& twist) {
     return Eigen::Matrix<double, 1, 1>(
         residual_of(sight, some_pose() * Rigid3::exp(twist), velocity, atlas));
@@ -187,7 +178,7 @@ TEST(EventChunk, SteepPlacesWeighLess) {
 }
 
 void expect_nothing(EventChunk& chunk, const ImageF& atlas, const Rigid3& pose = some_pose()) {
-  const EventChunk::Sums sums = sums_of(chunk, kNoise, atlas, pose);
+  const EventChunk::Sums sums = sums_of(chunk, kEventNoise, atlas, pose);
   EXPECT_TRUE(std::isnan(chunk.residual(0)));
   EXPECT_EQ(sums.rhs, Vector6(Vector6::Zero()));
   EXPECT_EQ(sums.normal, Matrix6(Matrix6::Zero()));
@@ -277,7 +268,7 @@ TEST(EventChunk, LanesBehindTheLastEventWeighNothing) {
       const Sight& sight = sights[static_cast<std::size_t>(i)];
       used.add(sight.event, sight.seen);
       EventChunk alone = chunk_of(sights, i, 1);
-      const EventChunk::Sums sums = sums_of(alone, kNoise, atlas);
+      const EventChunk::Sums sums = sums_of(alone, kEventNoise, atlas);
       singly.rhs += sums.rhs;
       singly.normal += sums.normal;
       singly.trust += sums.trust;
@@ -286,7 +277,7 @@ TEST(EventChunk, LanesBehindTheLastEventWeighNothing) {
     EventChunk fresh = chunk_of(sights, 0, count);
     for (EventChunk* chunk : {&used, &fresh}) {
       EXPECT_EQ(chunk->size(), count);
-      const EventChunk::Sums sums = sums_of(*chunk, kNoise, atlas);
+      const EventChunk::Sums sums = sums_of(*chunk, kEventNoise, atlas);
       EXPECT_LT((sums.rhs - singly.rhs).norm(), 1e-5 * (1 + singly.rhs.norm()));
       EXPECT_LT((sums.normal - singly.normal).norm(), 1e-5 * singly.normal.norm());
       EXPECT_NEAR(sums.trust, singly.trust, 1e-4);
@@ -299,10 +290,10 @@ TEST(EventChunk, LanesBehindTheLastEventWeighNothingWhereTheMapBegins) {
   // They are zero in a new chunk: points in the very centre of the first camera.
   const ImageF atlas = some_atlas();
   Sight here = sight({20, 30}, 2, -0.7F);
-  here.seen.point = (2 * some_camera().ray({20, 30})).cast<float>();
+  here.seen.point = (2 * small_uneven_camera().ray({20, 30})).cast<float>();
   EventChunk chunk;
   chunk.add(here.event, here.seen);
-  const EventChunk::Sums sums = sums_of(chunk, kNoise, atlas, Rigid3());
+  const EventChunk::Sums sums = sums_of(chunk, kEventNoise, atlas, Rigid3());
   EXPECT_TRUE(sums.rhs.allFinite());
   EXPECT_TRUE(sums.normal.allFinite());
   EXPECT_GT(sums.normal(0, 0), 0);
@@ -316,8 +307,8 @@ TEST(EventChunk, OrderOfChunksIsRoundingOnly) {
   const auto sum = [&](std::vector<EventChunk*> chunks) {
     EventChunk::Sums sums;
     for (EventChunk* chunk : chunks) {
-      chunk->evaluate(some_camera(), atlas, motion_at(some_pose(), Vector6::Zero()));
-      chunk->weigh(kNoise);
+      chunk->evaluate(small_uneven_camera(), atlas, motion_at(some_pose(), Vector6::Zero()));
+      chunk->weigh(kEventNoise);
       chunk->add_to(sums);
     }
     return sums;

@@ -11,7 +11,7 @@ namespace {
 
 using Drawing = EventFrameOptions::Drawing;
 
-PinholeCamera camera(double k1 = 0) {
+PinholeCamera lens_camera(double k1 = 0) {
   PinholeCamera camera;
   camera.width = 64;
   camera.height = 48;
@@ -35,7 +35,7 @@ int sum(const EventFrame& frame) {
 
 TEST(EventFrame, IsFullWhereAnEventFellAndEmptyElsewhere) {
   for (const Drawing drawing : {Drawing::kNearest, Drawing::kBilinear}) {
-    EventFrame frame(camera(), drawing);
+    EventFrame frame(lens_camera(), drawing);
     frame.draw(Events{at(0, 0), at(30, 20), at(30, 20), at(63, 47)});
     EXPECT_EQ(frame(0, 0), EventFrame::kFull);
     EXPECT_EQ(frame(30, 20), EventFrame::kFull) << "twice is no more than once";
@@ -47,7 +47,7 @@ TEST(EventFrame, IsFullWhereAnEventFellAndEmptyElsewhere) {
 }
 
 TEST(EventFrame, PolarityIsIgnored) {
-  EventFrame frame(camera(), Drawing::kNearest);
+  EventFrame frame(lens_camera(), Drawing::kNearest);
   Event off = at(7, 8);
   off.polarity = -1;
   frame.draw(std::span(&off, 1));
@@ -55,7 +55,7 @@ TEST(EventFrame, PolarityIsIgnored) {
 }
 
 TEST(EventFrame, MovesEventsToTheUndistortedPixel) {
-  const PinholeCamera lens = camera(-0.25);
+  const PinholeCamera lens = lens_camera(-0.25);
   int moved = 0;
   for (int y = 0; y < lens.height; y += 3)
     for (int x = 0; x < lens.width; x += 3) {
@@ -75,7 +75,7 @@ TEST(EventFrame, MovesEventsToTheUndistortedPixel) {
 }
 
 TEST(EventFrame, BilinearDrawingKeepsTheSubPixelPosition) {
-  const PinholeCamera lens = camera(-0.25);
+  const PinholeCamera lens = lens_camera(-0.25);
   for (int y = 12; y < 36; y += 5)
     for (int x = 16; x < 48; x += 5) {
       const Eigen::Vector2d expected = lens.undistort({x, y});
@@ -90,7 +90,7 @@ TEST(EventFrame, BilinearDrawingKeepsTheSubPixelPosition) {
 }
 
 TEST(EventFrame, BilinearWeightsSaturate) {
-  const PinholeCamera lens = camera(-0.25);
+  const PinholeCamera lens = lens_camera(-0.25);
   EventFrame frame(lens, Drawing::kBilinear);
   for (int i = 0; i < 100; ++i) frame.draw(Events{at(20, 20)});
   const Eigen::Vector2d p = lens.undistort({20, 20});
@@ -104,12 +104,12 @@ TEST(EventFrame, RemoveTakesBackWhatAddDrew) {
   for (int i = 0; i < 600; ++i) events.push_back(at(i * 7 % 64, i * 5 % 48));  // some pixels twice
   for (const double k1 : {0.0, -0.25})
     for (const Drawing drawing : {Drawing::kNearest, Drawing::kBilinear}) {
-      EventFrame sliding(camera(k1), drawing);
+      EventFrame sliding(lens_camera(k1), drawing);
       for (std::size_t begin = 0; begin + 300 <= events.size(); begin += 100) {
         if (begin > 0) sliding.remove(std::span(events).subspan(begin - 100, 100));
         sliding.add(
             std::span(events).subspan(begin == 0 ? 0 : begin + 200, begin == 0 ? 300 : 100));
-        EventFrame drawn(camera(k1), drawing);
+        EventFrame drawn(lens_camera(k1), drawing);
         drawn.draw(std::span(events).subspan(begin, 300));
         for (int y = 0; y < drawn.height(); ++y)
           for (int x = 0; x < drawn.width(); ++x) ASSERT_EQ(sliding(x, y), drawn(x, y));
@@ -127,7 +127,7 @@ TEST(EventFrame, ASurfaceDecaysWithTheAgeOfTheLastEvent) {
   Events events;
   for (int i = 0; i <= 10; ++i) events.push_back(at(5 * i, 3 * i, i * 1'000'000));
   events.insert(events.begin() + 9, at(10, 6, 8'000'000));  // the third pixel again
-  EventFrame frame(camera(), Drawing::kNearest);
+  EventFrame frame(lens_camera(), Drawing::kNearest);
   const TimeNs stamp = frame.draw_surface(events, kTau_s);
   double weights = 0;
   double moment = 0;
@@ -149,8 +149,8 @@ TEST(EventFrame, ASlowSurfaceIsTheBinaryFrame) {
   Events events;
   for (int i = 0; i < 200; ++i) events.push_back(at(i * 7 % 64, i * 5 % 48, 1000 * i));
   for (const double k1 : {0.0, -0.25}) {
-    EventFrame surface(camera(k1), Drawing::kNearest);
-    EventFrame binary(camera(k1), Drawing::kNearest);
+    EventFrame surface(lens_camera(k1), Drawing::kNearest);
+    EventFrame binary(lens_camera(k1), Drawing::kNearest);
     EXPECT_NEAR(static_cast<double>(surface.draw_surface(events, 1e3) - mean_time(events)), 0, 5);
     binary.draw(events);
     for (int y = 0; y < binary.height(); ++y)
@@ -169,10 +169,10 @@ TEST(TimeConstant, FollowsTheDurationUnlessItIsStated) {
 }
 
 TEST(EventFrame, HalvedIsTheMeanOfFourPixels) {
-  PinholeCamera half = camera();
+  PinholeCamera half = lens_camera();
   half.width /= 2;
   half.height /= 2;
-  EventFrame fine(camera(), Drawing::kNearest);
+  EventFrame fine(lens_camera(), Drawing::kNearest);
   fine.draw(
       Events{at(0, 0), at(10, 10), at(11, 11), at(62, 46), at(63, 46), at(62, 47), at(63, 47)});
   EventFrame coarse(half, Drawing::kNearest);

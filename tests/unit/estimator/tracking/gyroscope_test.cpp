@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-constexpr TimeNs kStep = 5'000'000;
+constexpr TimeNs kSampleStep = 5'000'000;
 
 Eigen::Vector3d rate(double t_s) { return {std::sin(9 * t_s), 0.5 - 3 * t_s, std::cos(4 * t_s)}; }
 
@@ -17,7 +17,7 @@ std::vector<ImuSample> readings(int count) {
   std::vector<ImuSample> samples;
   for (int i = 0; i < count; ++i) {
     ImuSample sample;
-    sample.t_ns = i * kStep;
+    sample.t_ns = i * kSampleStep;
     sample.angular_velocity = rate(seconds_from_ns(sample.t_ns));
     samples.push_back(sample);
   }
@@ -41,27 +41,30 @@ TEST(Gyroscope, MeanRateIsTheIntegralOverTheTime) {
 }
 
 TEST(Gyroscope, OfNoTimeIsTheRate) {
-  EXPECT_LT((camera_gyroscope().mean_rate(20 * kStep, 20 * kStep) - rate(0.1)).norm(), 1e-12);
+  EXPECT_LT((camera_gyroscope().mean_rate(20 * kSampleStep, 20 * kSampleStep) - rate(0.1)).norm(),
+            1e-12);
 }
 
 TEST(Gyroscope, HoldsItsLastReadings) {
   const Gyroscope gyroscope = camera_gyroscope();
-  EXPECT_LT((gyroscope.mean_rate(-50 * kStep, -10 * kStep) - rate(0)).norm(), 1e-12);
-  EXPECT_LT((gyroscope.mean_rate(150 * kStep, 170 * kStep) - rate(0.495)).norm(), 1e-12);
+  EXPECT_LT((gyroscope.mean_rate(-50 * kSampleStep, -10 * kSampleStep) - rate(0)).norm(), 1e-12);
+  EXPECT_LT((gyroscope.mean_rate(150 * kSampleStep, 170 * kSampleStep) - rate(0.495)).norm(),
+            1e-12);
 }
 
 TEST(Gyroscope, TurnsIntoTheCameraAndTakesTheBiasOff) {
   const Eigen::Matrix3d camera_from_imu = so3_exp({0.3, -1, 0.4}).toRotationMatrix();
   const Eigen::Vector3d bias(0.1, -0.2, 0.05);
   const Gyroscope gyroscope(readings(100), camera_from_imu, bias);
-  EXPECT_LT(
-      (gyroscope.mean_rate(20 * kStep, 20 * kStep) - camera_from_imu * (rate(0.1) - bias)).norm(),
-      1e-12);
+  EXPECT_LT((gyroscope.mean_rate(20 * kSampleStep, 20 * kSampleStep) -
+             camera_from_imu * (rate(0.1) - bias))
+                .norm(),
+            1e-12);
 }
 
 TEST(Gyroscope, OneReadingHoldsForAllTimes) {
   const Gyroscope gyroscope(readings(1), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
-  EXPECT_LT((gyroscope.mean_rate(-kStep, 3 * kStep) - rate(0)).norm(), 1e-12);
+  EXPECT_LT((gyroscope.mean_rate(-kSampleStep, 3 * kSampleStep) - rate(0)).norm(), 1e-12);
 }
 
 }  // namespace

@@ -8,28 +8,19 @@
 
 #include "core/random.h"
 #include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
 
 using testing::central_differences;
+using testing::small_uneven_camera;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
 constexpr double kGain = 0.7;
-constexpr IncrementChunk::Noise kNoise{0.5F, 0.2F};
-
-PinholeCamera some_camera() {
-  PinholeCamera camera;
-  camera.width = 64;
-  camera.height = 48;
-  camera.fx = 61;
-  camera.fy = 58;
-  camera.cx = 30.7;
-  camera.cy = 24.2;
-  return camera;
-}
+constexpr IncrementChunk::Noise kIncrementNoise{0.5F, 0.2F};
 
 /// Increments M(u) = a x + b y + c: bilinear sampling is exact.
 constexpr double kSlopeX = 0.06, kSlopeY = -0.04, kOffset = 0.3;
@@ -38,7 +29,7 @@ double increment_at(const Eigen::Vector2d& pixel) {
 }
 
 void add_point(IncrementPoints& points, const Eigen::Vector2d& pixel, double depth_m) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = small_uneven_camera();
   const Eigen::Vector3d ray = camera.ray(pixel);
   const Twist row =
       (Eigen::RowVector2d(kSlopeX, kSlopeY) * interaction_matrix(camera, ray, depth_m)).transpose();
@@ -72,11 +63,11 @@ ImageF frame_of(double excess = 0) {
 
 IncrementChunk::Sums sums_of(const IncrementPoints& points, const ImageF& frame,
                              const Rigid3& current_from_template, double gain = kGain,
-                             const IncrementChunk::Noise& noise = kNoise) {
+                             const IncrementChunk::Noise& noise = kIncrementNoise) {
   IncrementChunk chunk;
   IncrementChunk::Sums sums;
   for (std::size_t first = 0; first < points.count; first += IncrementChunk::kCapacity) {
-    chunk.evaluate(some_camera(), frame, points, first, current_from_template, gain, noise);
+    chunk.evaluate(small_uneven_camera(), frame, points, first, current_from_template, gain, noise);
     chunk.add_to(sums);
   }
   return sums;

@@ -12,9 +12,9 @@
 namespace saccade {
 namespace {
 
-constexpr float kDepth_m = 2;
+constexpr float kStillDepth_m = 2;
 
-PinholeCamera some_camera() {
+PinholeCamera still_camera() {
   PinholeCamera camera;
   camera.width = 64;
   camera.height = 48;
@@ -25,11 +25,11 @@ PinholeCamera some_camera() {
 }
 
 /// A wall before the camera, which stands still beside its map.
-class Scene {
+class StillWall {
  public:
-  Scene()
-      : reference_{ImageF(64, 48, -1), ImageF(64, 48, kDepth_m), Rigid3()},
-        map_(some_camera(), std::span(&reference_, 1), {.blur_px = 0}),
+  StillWall()
+      : reference_{ImageF(64, 48, -1), ImageF(64, 48, kStillDepth_m), Rigid3()},
+        map_(still_camera(), std::span(&reference_, 1), {.blur_px = 0}),
         view_(map_, 0) {
     view_.draw(Rigid3());
   }
@@ -43,8 +43,8 @@ class Scene {
 
 ImageMotion moving_right(double speed_px) {
   Twist velocity = Twist::Zero();
-  velocity(0) = -speed_px * static_cast<double>(kDepth_m) / some_camera().fx;
-  return {some_camera(), velocity};
+  velocity(0) = -speed_px * static_cast<double>(kStillDepth_m) / still_camera().fx;
+  return {still_camera(), velocity};
 }
 
 Event event(double t_s, int x, int y, int polarity) {
@@ -57,8 +57,8 @@ double sum_of(const ImageF& image) {
 }
 
 TEST(IncrementFrame, SumsPolarities) {
-  const Scene scene;
-  IncrementFrame frame(some_camera(), true);
+  const StillWall scene;
+  IncrementFrame frame(still_camera(), true);
   const Events events{event(0, 10, 12, 1), event(1, 10, 12, 1), event(2, 20, 12, -1)};
   for (int repeat = 0; repeat < 2; ++repeat) {
     frame.draw(events, 0, moving_right(0), scene.view());
@@ -69,8 +69,8 @@ TEST(IncrementFrame, SumsPolarities) {
 }
 
 TEST(IncrementFrame, EventsMoveToTheTimeOfTheFrame) {
-  const Scene scene;
-  IncrementFrame frame(some_camera(), true);
+  const StillWall scene;
+  IncrementFrame frame(still_camera(), true);
   const Events events{event(0.1, 10, 12, 1)};
   frame.draw(events, ns_from_seconds(0.1625), moving_right(100), scene.view());
   EXPECT_NEAR(frame.image()(16, 12), 0.75, 1e-4);
@@ -82,8 +82,8 @@ TEST(IncrementFrame, EventsMoveToTheTimeOfTheFrame) {
 }
 
 TEST(IncrementFrame, ATurnOfPolarityCountsTwice) {
-  const Scene scene;
-  IncrementFrame frame(some_camera(), true);
+  const StillWall scene;
+  IncrementFrame frame(still_camera(), true);
   const Events before{event(0, 10, 12, 1)};
   const Events after{event(0.01, 10, 12, -1), event(0.02, 10, 12, -1)};
   frame.draw(before, 0, moving_right(0), scene.view());
@@ -92,16 +92,16 @@ TEST(IncrementFrame, ATurnOfPolarityCountsTwice) {
   frame.forget();
   frame.draw(after, 0, moving_right(0), scene.view());
   EXPECT_EQ(frame.image()(10, 12), -2) << "it has forgotten";
-  IncrementFrame plain(some_camera(), false);
+  IncrementFrame plain(still_camera(), false);
   plain.draw(before, 0, moving_right(0), scene.view());
   plain.draw(after, 0, moving_right(0), scene.view());
   EXPECT_EQ(plain.image()(10, 12), -2);
 }
 
 TEST(IncrementFrame, TheFirstThresholdAfterATurnWasCrossedEarlier) {
-  const Scene scene;
+  const StillWall scene;
   const auto moved_px = [&](double since_s) {
-    IncrementFrame frame(some_camera(), true);
+    IncrementFrame frame(still_camera(), true);
     const Events events{event(0, 10, 12, 1), event(since_s, 10, 12, -1)};
     frame.draw(std::span(events).first(1), 0, moving_right(100), scene.view());
     frame.draw(std::span(events).last(1), events[1].t_ns, moving_right(100), scene.view());
@@ -132,7 +132,7 @@ Events fire(double amplitude, double phase, double contrast) {
 TEST(IncrementFrame, TurnsLeaveNoLagBehindTheSignal) {
   // The first moment of the increments over the second half of the wave, in which the signal falls
   // by twice the amplitude around t = 1.5: late events move it to later times.
-  const Scene scene;
+  const StillWall scene;
   const Random random(4);
   constexpr double kAmplitude = 1;
   constexpr double kContrast = 0.15;
@@ -144,7 +144,7 @@ TEST(IncrementFrame, TurnsLeaveNoLagBehindTheSignal) {
       // Half a wave that falls from 1.25 to 1.75, of pixels that began anywhere.
       const double level = random.uniform(0, i);
       const Events events = fire(kAmplitude + 0.1 * level, 0, kContrast);
-      IncrementFrame frame(some_camera(), reversals);
+      IncrementFrame frame(still_camera(), reversals);
       for (const Event& e : events) {
         const double t_s = seconds_from_ns(e.t_ns);
         frame.draw(std::span(&e, 1), ns_from_seconds(1.5), moving_right(kSpeed_px), scene.view());

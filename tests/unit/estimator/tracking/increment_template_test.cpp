@@ -6,25 +6,16 @@
 
 #include "core/camera.h"
 #include "tests/support/jacobian_check.h"
+#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
 
 using testing::central_differences;
+using testing::small_uneven_camera;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-PinholeCamera some_camera() {
-  PinholeCamera camera;
-  camera.width = 64;
-  camera.height = 48;
-  camera.fx = 61;
-  camera.fy = 58;
-  camera.cx = 30.7;
-  camera.cy = 24.2;
-  return camera;
-}
-
-constexpr double kDepth_m = 2;
+constexpr double kWavyDepth_m = 2;
 
 /// A wall whose log intensity is a gentle function of the pixel that sees it from the origin.
 double wall(const Eigen::Vector2d& pixel) {
@@ -32,19 +23,20 @@ double wall(const Eigen::Vector2d& pixel) {
          0.4 * std::cos(0.08 * pixel.y() - 0.03 * pixel.x());
 }
 
-double depth_at(const Eigen::Vector2d&) { return kDepth_m; }
+double depth_at(const Eigen::Vector2d&) { return kWavyDepth_m; }
 
 /// What a camera that has moved by `camera_from_wall` sees at a pixel.
 double seen(const Eigen::Vector2d& pixel, const Rigid3& map_from_camera) {
-  const Eigen::Vector3d ray = map_from_camera.rotation_matrix() * some_camera().ray(pixel);
-  const double scale = (kDepth_m - map_from_camera.translation().z()) / ray.z();
-  return wall(some_camera().project(map_from_camera.translation() + scale * ray));
+  const Eigen::Vector3d ray = map_from_camera.rotation_matrix() * small_uneven_camera().ray(pixel);
+  const double scale = (kWavyDepth_m - map_from_camera.translation().z()) / ray.z();
+  return wall(small_uneven_camera().project(map_from_camera.translation() + scale * ray));
 }
 
-class Scene {
+class WavyWall {
  public:
-  Scene()
-      : reference_(reference()), map_(some_camera(), std::span(&reference_, 1), {.blur_px = 0}) {}
+  WavyWall()
+      : reference_(reference()),
+        map_(small_uneven_camera(), std::span(&reference_, 1), {.blur_px = 0}) {}
   [[nodiscard]] const IntensityMap& map() const { return map_; }
 
  private:
@@ -63,10 +55,10 @@ class Scene {
   IntensityMap map_;
 };
 
-IncrementTemplate template_of(const Scene& scene) {
+IncrementTemplate template_of(const WavyWall& scene) {
   MapView view(scene.map(), 0);
   view.draw(Rigid3());
-  IncrementTemplate increments(some_camera());
+  IncrementTemplate increments(small_uneven_camera());
   increments.draw(view, scene.map().atlas());
   return increments;
 }
@@ -78,13 +70,13 @@ Twist some_velocity() {
 }
 
 Eigen::Vector2d pixel_of(const IncrementPoints& points, std::size_t i) {
-  const PinholeCamera camera = some_camera();
+  const PinholeCamera camera = small_uneven_camera();
   return {camera.fx * static_cast<double>(points.ray_x[i]) + camera.cx,
           camera.fy * static_cast<double>(points.ray_y[i]) + camera.cy};
 }
 
 /// How fast the brightness of a pixel changes while the camera moves.
-double increment_at(const Eigen::Vector2d& pixel) {
+double true_increment_at(const Eigen::Vector2d& pixel) {
   constexpr double kStep_s = 1e-4;
   return (seen(pixel, Rigid3::exp(kStep_s * some_velocity())) -
           seen(pixel, Rigid3::exp(-kStep_s * some_velocity()))) /
@@ -92,13 +84,13 @@ double increment_at(const Eigen::Vector2d& pixel) {
 }
 
 TEST(IncrementTemplate, IncrementsAreWhatAMovingCameraSees) {
-  const Scene scene;
+  const WavyWall scene;
   IncrementTemplate increments = template_of(scene);
   const IncrementPoints& points = increments.points(some_velocity(), 0);
   ASSERT_GT(points.count, 2000U);
   double largest = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
-    const double expected = increment_at(pixel_of(points, i));
+    const double expected = true_increment_at(pixel_of(points, i));
     largest = std::max(largest, std::abs(expected));
     EXPECT_NEAR(points.increment[i], expected, 0.02) << pixel_of(points, i).transpose();
     EXPECT_NEAR(points.inverse_depth[i], 0.5, 1e-5);
@@ -108,15 +100,15 @@ TEST(IncrementTemplate, IncrementsAreWhatAMovingCameraSees) {
 
 TEST(IncrementTemplate, JacobianIsThatOfTheIncrementsWithThePointsMotion) {
   // Against differences of the exact increments, which the template reads off neighbouring pixels.
-  const Scene scene;
+  const WavyWall scene;
   IncrementTemplate increments = template_of(scene);
   const IncrementPoints& points = increments.points(some_velocity(), 0);
   for (std::size_t i = 0; i < points.count; i += 97) {
     const Eigen::Vector2d pixel = pixel_of(points, i);
-    const Eigen::Vector3d point = kDepth_m * some_camera().ray(pixel);
+    const Eigen::Vector3d point = kWavyDepth_m * small_uneven_camera().ray(pixel);
     const auto moved = [&](const Vector6& twist) {
       return Eigen::Matrix<double, 1, 1>(
-          increment_at(some_camera().project(Rigid3::exp(twist) * point)));
+          true_increment_at(small_uneven_camera().project(Rigid3::exp(twist) * point)));
     };
     const Vector6 numeric =
         central_differences<1, 6>(moved, Vector6(Vector6::Zero()), 1e-3).transpose();
@@ -125,17 +117,17 @@ TEST(IncrementTemplate, JacobianIsThatOfTheIncrementsWithThePointsMotion) {
       row(static_cast<Eigen::Index>(c)) = static_cast<double>(points.by_pose[c][i]);
     EXPECT_LT((row - numeric).cwiseAbs().maxCoeff(), 0.05 * std::max(1.0, numeric.norm()))
         << row.transpose() << "\nnumeric " << numeric.transpose();
-    const double slope = Eigen::Vector2d((increment_at(pixel + Eigen::Vector2d(0.5, 0)) -
-                                          increment_at(pixel - Eigen::Vector2d(0.5, 0))),
-                                         (increment_at(pixel + Eigen::Vector2d(0, 0.5)) -
-                                          increment_at(pixel - Eigen::Vector2d(0, 0.5))))
+    const double slope = Eigen::Vector2d((true_increment_at(pixel + Eigen::Vector2d(0.5, 0)) -
+                                          true_increment_at(pixel - Eigen::Vector2d(0.5, 0))),
+                                         (true_increment_at(pixel + Eigen::Vector2d(0, 0.5)) -
+                                          true_increment_at(pixel - Eigen::Vector2d(0, 0.5))))
                              .norm();
     EXPECT_NEAR(points.slope[i], slope, 0.01);
   }
 }
 
 TEST(IncrementTemplate, NothingIsExpectedNextToTheUnknown) {
-  const Scene scene;
+  const WavyWall scene;
   IncrementTemplate increments = template_of(scene);
   const IncrementPoints& points = increments.points(some_velocity(), 0);
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -147,7 +139,7 @@ TEST(IncrementTemplate, NothingIsExpectedNextToTheUnknown) {
 }
 
 TEST(IncrementTemplate, KeepsTheSteepOnes) {
-  const Scene scene;
+  const WavyWall scene;
   IncrementTemplate increments = template_of(scene);
   const std::size_t all = increments.points(some_velocity(), 0).count;
   const IncrementPoints& steep = increments.points(some_velocity(), 1);

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/tracking/grey_frames.h"
+
 namespace saccade {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-PinholeCamera some_camera() {
+PinholeCamera tiny_camera() {
   PinholeCamera camera;
   camera.width = 24;
   camera.height = 18;
@@ -31,7 +31,7 @@ ReferenceView view_with_step(float step) {
 }
 
 IntensityMap map_of(const ReferenceView& view, const IntensityMapOptions& options = {}) {
-  return {some_camera(), std::span(&view, 1), options};
+  return {tiny_camera(), std::span(&view, 1), options};
 }
 
 TEST(IntensityMap, SmoothesAtStrongEdgesOnly) {
@@ -74,7 +74,7 @@ TEST(IntensityMap, NoBlurLeavesThePicture) {
 
 TEST(IntensityMap, WhatIsUnknownStaysSoAndSpreadsNowhere) {
   ReferenceView view = view_with_step(2.5F);
-  for (int y = 0; y < 18; ++y) view.log_intensity(13, y) = kUnknown;
+  for (int y = 0; y < 18; ++y) view.log_intensity(13, y) = kUnknownLevel;
   const IntensityMap map = map_of(view);
   for (int y = 0; y < 18; ++y)
     for (int x = 0; x < 24; ++x) EXPECT_EQ(std::isnan(map.atlas()(x, y)), x == 13);
@@ -90,7 +90,7 @@ TEST(IntensityMap, PointsAreThePixelsAtTheirDepth) {
   EXPECT_EQ(lifted.inverse_depth[4 * 24 + 3], 0);
   EXPECT_FLOAT_EQ(lifted.inverse_depth[7 * 24 + 20], 0.8F);
   const Eigen::Vector3d point = lifted.points[7 * 24 + 20].cast<double>();
-  EXPECT_LT((point - 1.25 * some_camera().ray({20, 7})).norm(), 1e-6);
+  EXPECT_LT((point - 1.25 * tiny_camera().ray({20, 7})).norm(), 1e-6);
 }
 
 TEST(IntensityMap, PicturesOfSeveralViewsLieOneBelowTheOther) {
@@ -99,7 +99,7 @@ TEST(IntensityMap, PicturesOfSeveralViewsLieOneBelowTheOther) {
   const Rigid3 first_from_second(so3_exp({0, 0.4, 0}), {0.5, 0, -0.1});
   views[0].world_from_reference = world_from_first;
   views[1].world_from_reference = world_from_first * first_from_second;
-  const IntensityMap map(some_camera(), views, {});
+  const IntensityMap map(tiny_camera(), views, {});
   ASSERT_EQ(map.views().size(), 2U);
   EXPECT_EQ(map.atlas().width(), 24);
   EXPECT_EQ(map.atlas().height(), 37);
@@ -115,7 +115,7 @@ TEST(IntensityMap, PicturesOfSeveralViewsLieOneBelowTheOther) {
   EXPECT_LT((map.world_from_map().inverse() * world_from_first).log().norm(), 1e-9);
   EXPECT_LT((map.views()[1].view_from_map * first_from_second).log().norm(), 1e-9);
   const Eigen::Vector3d point = map.views()[1].points[7 * 24 + 20].cast<double>();
-  EXPECT_LT((point - first_from_second * (2 * some_camera().ray({20, 7}))).norm(), 1e-6);
+  EXPECT_LT((point - first_from_second * (2 * tiny_camera().ray({20, 7}))).norm(), 1e-6);
 }
 
 }  // namespace

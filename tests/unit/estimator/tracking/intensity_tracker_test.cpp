@@ -13,22 +13,23 @@ namespace {
 using testing::corner_motion;
 using testing::expect_equal;
 using testing::expect_lost_but_finite;
+using testing::kRecordedContrast;
+using testing::resolved_errors;
+using testing::resolved_recording;
 using testing::tracking_config;
-
-constexpr double kContrast = testing::kRecordedContrast;
-
-const testing::CornerRecording& recording() { return testing::resolved_recording(); }
+using Errors = testing::CornerRecording::Errors;
 
 TrackConfig best() { return tracking_config("best"); }
 
-double error_px(const TrackedPose& pose) { return recording().error_px(pose); }
+double resolved_error_px(const TrackedPose& pose) { return resolved_recording().error_px(pose); }
 
 /// The tracker with all that has to outlive it.
-class Tracking {
+class IntensityTracking {
  public:
-  explicit Tracking(const TrackConfig& config = best(), double contrast = kContrast,
-                    const ReferenceView& view = recording().view)
-      : map_(recording().world.camera(), std::span(&view, 1), config.intensity.map),
+  explicit IntensityTracking(const TrackConfig& config = best(),
+                             double contrast = kRecordedContrast,
+                             const ReferenceView& view = resolved_recording().view)
+      : map_(resolved_recording().world.camera(), std::span(&view, 1), config.intensity.map),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
         edges_(config.tracker, map_.camera(), points_, map_.world_from_map(), config.seed),
         tracker_(config.intensity, config.tracker.motion, {contrast, contrast}, map_.camera(), map_,
@@ -46,9 +47,6 @@ class Tracking {
   IntensityTracker tracker_;
 };
 
-using Errors = testing::CornerRecording::Errors;
-Errors errors_of(const std::vector<TrackedPose>& poses) { return recording().errors_of(poses); }
-
 /// The poses from a time on, all of which must be sure of themselves.
 std::vector<TrackedPose> from(double start_s, const std::vector<TrackedPose>& poses) {
   std::vector<TrackedPose> later;
@@ -63,33 +61,34 @@ std::vector<TrackedPose> from(double start_s, const std::vector<TrackedPose>& po
 
 Events without(double from_s, double to_s) {
   Events events;
-  for (const Event& event : recording().events)
+  for (const Event& event : resolved_recording().events)
     if (seconds_from_ns(event.t_ns) < from_s || seconds_from_ns(event.t_ns) >= to_s)
       events.push_back(event);
   return events;
 }
 
 TEST(IntensityTracker, RecoversEveryPoseAndBeatsTheEdges) {
-  Tracking tracking;
-  const Errors errors = errors_of(from(0, tracking->track(recording().events)));
+  IntensityTracking tracking;
+  const Errors errors = resolved_errors(from(0, tracking->track(resolved_recording().events)));
   EXPECT_LT(errors.mean, 0.09);
   EXPECT_LT(errors.largest, 0.6);
 
   const TrackConfig edges = tracking_config("accurate");
-  const ReferenceView& view = recording().view;
-  const PinholeCamera& camera = recording().world.camera();
+  const ReferenceView& view = resolved_recording().view;
+  const PinholeCamera& camera = resolved_recording().world.camera();
   const MapPoints points = extract_map(view.log_intensity, view.depth, camera, edges.map);
   Tracker tracker(edges.tracker, camera, points, view.world_from_reference, 1);
   tracker.reset(0, view.world_from_reference);
-  const Errors by_edges = errors_of(tracker.track(recording().events));
+  const Errors by_edges = resolved_errors(tracker.track(resolved_recording().events));
   EXPECT_LT(3 * errors.mean, by_edges.mean);
 }
 
 TEST(IntensityTracker, PosesFollowOneAnotherInTime) {
-  Tracking tracking;
+  IntensityTracking tracking;
   std::size_t done = 0;
-  const auto poses = tracking->track(recording().events, [&](std::size_t n) { done += n; });
-  EXPECT_EQ(poses.size(), recording().events.size() / 1000);
+  const auto poses =
+      tracking->track(resolved_recording().events, [&](std::size_t n) { done += n; });
+  EXPECT_EQ(poses.size(), resolved_recording().events.size() / 1000);
   EXPECT_EQ(done, poses.size() * 1000);
   TimeNs last = -1;
   for (const TrackedPose& pose : poses) {
@@ -106,10 +105,10 @@ TEST(IntensityTracker, PosesFollowOneAnotherInTime) {
 
 TEST(IntensityTracker, RepeatsItsBits) {
   const Events gap = without(0.1, 0.15);
-  for (const Events* events : {&recording().events, &gap}) {
-    Tracking tracking;
+  for (const Events* events : {&resolved_recording().events, &gap}) {
+    IntensityTracking tracking;
     const auto first = tracking->track(*events);
-    Tracking other;
+    IntensityTracking other;
     expect_equal(first, other->track(*events));
     tracking->reset(0, corner_motion(0));
     expect_equal(first, tracking->track(*events));
@@ -118,12 +117,12 @@ TEST(IntensityTracker, RepeatsItsBits) {
 
 TEST(IntensityTracker, DoesNotDependOnWhereTheWorldBegins) {
   const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
-  ReferenceView moved = recording().view;
+  ReferenceView moved = resolved_recording().view;
   moved.world_from_reference = elsewhere * corner_motion(0);
-  Tracking here;
-  Tracking there(best(), kContrast, moved);
-  const auto a = here->track(recording().events);
-  const auto b = there->track(recording().events);
+  IntensityTracking here;
+  IntensityTracking there(best(), kRecordedContrast, moved);
+  const auto a = here->track(resolved_recording().events);
+  const auto b = there->track(resolved_recording().events);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)
     EXPECT_LT(
@@ -133,7 +132,7 @@ TEST(IntensityTracker, DoesNotDependOnWhereTheWorldBegins) {
 
 TEST(IntensityTracker, AGapOfEventsIsReportedLostAndRecoveredFrom) {
   constexpr double kGap_s = 0.1, kGapEnd_s = 0.15;
-  Tracking tracking;
+  IntensityTracking tracking;
   const auto poses = tracking->track(without(kGap_s, kGapEnd_s));
   std::size_t lost = 0;
   for (const TrackedPose& pose : poses) {
@@ -143,11 +142,11 @@ TEST(IntensityTracker, AGapOfEventsIsReportedLostAndRecoveredFrom) {
       EXPECT_GE(t_s, kGap_s - 0.005);
       EXPECT_LT(t_s, 0.25);
     } else {
-      EXPECT_LT(error_px(pose), 3) << "lost without knowing at " << t_s;
+      EXPECT_LT(resolved_error_px(pose), 3) << "lost without knowing at " << t_s;
     }
   }
   EXPECT_GT(lost, 0U);
-  const Errors errors = errors_of(from(0.27, poses));
+  const Errors errors = resolved_errors(from(0.27, poses));
   // The levels that were taken from where the edges found the pose are forgotten little by little.
   EXPECT_LT(errors.mean, 0.5);
 }
@@ -156,38 +155,38 @@ TEST(IntensityTracker, StartsInTheMiddleOfARecording) {
   // By then the pixels have fired anywhere within a threshold around what the map shows.
   constexpr double kStart_s = 0.05;
   const Events events = without(0, kStart_s);
-  Tracking tracking;
+  IntensityTracking tracking;
   tracking->reset(ns_from_seconds(kStart_s), corner_motion(kStart_s));
-  const Errors errors = errors_of(from(0.1, tracking->track(events)));
+  const Errors errors = resolved_errors(from(0.1, tracking->track(events)));
   EXPECT_LT(errors.mean, 0.12);
 }
 
 TEST(IntensityTracker, WrongLevelsAtTheStartAreForgotten) {
   // A third of the pixels is blind at first: what they miss is wrong in their levels.
   Events events;
-  for (const Event& event : recording().events)
+  for (const Event& event : resolved_recording().events)
     if (event.t_ns > ns_from_seconds(0.03) || (event.x + event.y) % 3 != 0) events.push_back(event);
-  Tracking tracking;
+  IntensityTracking tracking;
   const auto poses = tracking->track(events);
-  const Errors errors = errors_of(from(0.1, poses));
+  const Errors errors = resolved_errors(from(0.1, poses));
   EXPECT_LT(errors.mean, 0.12);
 }
 
 TEST(IntensityTracker, AStartBesideTheTruthIsPulledBack) {
-  Tracking tracking;
+  IntensityTracking tracking;
   const Rigid3 beside({1, 0, 0, 0}, {0.03, 0, 0});
   tracking->reset(0, corner_motion(0) * beside);
-  const auto poses = tracking->track(recording().events);
+  const auto poses = tracking->track(resolved_recording().events);
   TrackedPose start;
   start.world_from_camera = corner_motion(0) * beside;
-  const Errors errors = errors_of(from(0.15, poses));
-  EXPECT_GT(error_px(start), 1.5) << "the test must start beside it";
+  const Errors errors = resolved_errors(from(0.15, poses));
+  EXPECT_GT(resolved_error_px(start), 1.5) << "the test must start beside it";
   EXPECT_LT(errors.mean, 0.2);
 }
 
 TEST(IntensityTracker, AWrongContrastIsBornByTheCorrections) {
-  Tracking tracking(best(), 1.1 * kContrast);
-  const Errors errors = errors_of(from(0, tracking->track(recording().events)));
+  IntensityTracking tracking(best(), 1.1 * kRecordedContrast);
+  const Errors errors = resolved_errors(from(0, tracking->track(resolved_recording().events)));
   EXPECT_LT(errors.mean, 0.3);
 }
 
@@ -199,8 +198,8 @@ double mean_residual(const std::vector<TrackedPose>& poses) {
 
 TEST(IntensityTracker, TheResidualTellsAWrongContrast) {
   const auto residual = [](double share) {
-    Tracking tracking(best(), share * kContrast);
-    return mean_residual(tracking->track(recording().events));
+    IntensityTracking tracking(best(), share * kRecordedContrast);
+    return mean_residual(tracking->track(resolved_recording().events));
   };
   const double right = residual(1);
   EXPECT_GT(residual(0.7), 1.2 * right);
@@ -208,21 +207,21 @@ TEST(IntensityTracker, TheResidualTellsAWrongContrast) {
 }
 
 TEST(IntensityTracker, TooFewEventsGiveNoPose) {
-  Tracking tracking;
+  IntensityTracking tracking;
   EXPECT_TRUE(tracking->track({}).empty());
-  EXPECT_TRUE(tracking->track(std::span(recording().events).first(999)).empty());
-  EXPECT_EQ(tracking->track(std::span(recording().events).first(1000)).size(), 1U);
+  EXPECT_TRUE(tracking->track(std::span(resolved_recording().events).first(999)).empty());
+  EXPECT_EQ(tracking->track(std::span(resolved_recording().events).first(1000)).size(), 1U);
 }
 
 TEST(IntensityTracker, AFewEventsAPoseFollowAsWell) {
-  const auto events = std::span(recording().events).first(20000);
+  const auto events = std::span(resolved_recording().events).first(20000);
   for (const int count : {1, 20}) {
     TrackConfig few = best();
     few.intensity.events = count;
-    Tracking tracking(few);
+    IntensityTracking tracking(few);
     const auto poses = from(0, tracking->track(events));
     EXPECT_EQ(poses.size(), events.size() / static_cast<std::size_t>(count));
-    EXPECT_LT(errors_of(poses).mean, 0.15);
+    EXPECT_LT(resolved_errors(poses).mean, 0.15);
   }
 }
 
@@ -231,8 +230,8 @@ TEST(IntensityTracker, PixelsBetweenTheirEventsHoldThePose) {
     TrackConfig config = best();
     config.intensity.pixels_per_event = pixels;
     config.intensity.half_step = half_step;
-    Tracking tracking(config);
-    return errors_of(from(0, tracking->track(recording().events))).mean;
+    IntensityTracking tracking(config);
+    return resolved_errors(from(0, tracking->track(resolved_recording().events))).mean;
   };
   const double events_alone = error_with(0, true);
   const double with_pixels = error_with(1, true);
@@ -244,33 +243,33 @@ TEST(IntensityTracker, OneInThreeEventsAlignsNearlyAsWell) {
   TrackConfig sparse = best();
   sparse.intensity.events = 3000;
   sparse.intensity.samples = 1000;
-  Tracking tracking(sparse);
-  const auto poses = from(0, tracking->track(recording().events));
-  EXPECT_EQ(poses.size(), recording().events.size() / 3000);
-  EXPECT_LT(errors_of(poses).mean, 0.12);
+  IntensityTracking tracking(sparse);
+  const auto poses = from(0, tracking->track(resolved_recording().events));
+  EXPECT_EQ(poses.size(), resolved_recording().events.size() / 3000);
+  EXPECT_LT(resolved_errors(poses).mean, 0.12);
 }
 
 TEST(IntensityTracker, WithoutTheMapInViewItIsLost) {
-  Tracking tracking;
+  IntensityTracking tracking;
   const Rigid3 turned(so3_exp({0, std::numbers::pi, 0}), {0, 0, 0});
   tracking->reset(0, corner_motion(0) * turned);
-  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+  expect_lost_but_finite(tracking->track(std::span(resolved_recording().events).first(50000)));
 }
 
 TEST(IntensityTracker, AMapOfNothingIsLostFromTheStart) {
-  ReferenceView nothing = recording().view;
+  ReferenceView nothing = resolved_recording().view;
   nothing.depth.fill(0);
-  Tracking tracking(best(), kContrast, nothing);
-  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+  IntensityTracking tracking(best(), kRecordedContrast, nothing);
+  expect_lost_but_finite(tracking->track(std::span(resolved_recording().events).first(50000)));
 }
 
 TEST(IntensityTracker, TheViewIsDrawnAnewOnlyWhereItHasMoved) {
   TrackConfig often = best();
   often.intensity.redraw_deg = 0.3;
-  Tracking often_drawn(often);
-  Tracking usual;
-  const Errors finely = errors_of(from(0, often_drawn->track(recording().events)));
-  static_cast<void>(usual->track(recording().events));
+  IntensityTracking often_drawn(often);
+  IntensityTracking usual;
+  const Errors finely = resolved_errors(from(0, often_drawn->track(resolved_recording().events)));
+  static_cast<void>(usual->track(resolved_recording().events));
   EXPECT_LT(usual->templates_drawn(), often_drawn->templates_drawn() / 2);
   EXPECT_LT(finely.mean, 0.09);
 }

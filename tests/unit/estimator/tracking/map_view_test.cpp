@@ -15,7 +15,7 @@ constexpr int kMargin = 6;
 constexpr int kLeft = 30, kRight = 50, kTop = 20, kBottom = 42;
 constexpr float kNear_m = 1.5F, kFar_m = 3;
 
-PinholeCamera some_camera() {
+PinholeCamera two_planes_camera() {
   PinholeCamera camera;
   camera.width = kWidth;
   camera.height = kHeight;
@@ -35,7 +35,7 @@ IntensityMap two_planes() {
   ReferenceView view{ImageF(kWidth, kHeight, -1), ImageF(kWidth, kHeight, kFar_m), {}};
   for (int y = kTop; y <= kBottom; ++y)
     for (int x = kLeft; x <= kRight; ++x) view.depth(x, y) = kNear_m;
-  return {some_camera(), std::span(&view, 1), {}};
+  return {two_planes_camera(), std::span(&view, 1), {}};
 }
 
 /// A step to the side that opens a gap of some pixels, and a small turn.
@@ -63,8 +63,8 @@ TEST(MapView, PointsAndPlacesAreThoseThatThePixelsSee) {
     ++seen_pixels;
     const Eigen::Vector3d point = seen.point.cast<double>();
     const Eigen::Vector3d in_camera = beside().inverse() * point;
-    EXPECT_LT((some_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
-    EXPECT_LT((some_camera().project(point) - seen.place.cast<double>()).norm(), 0.02);
+    EXPECT_LT((two_planes_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
+    EXPECT_LT((two_planes_camera().project(point) - seen.place.cast<double>()).norm(), 0.02);
     EXPECT_NEAR(1 / in_camera.z(), static_cast<double>(seen.inverse_depth), 1e-4);
     EXPECT_NEAR(point.z(), is_near(seen.place.x(), seen.place.y(), -0.5) ? kNear_m : kFar_m, 1e-4);
   });
@@ -75,11 +75,11 @@ TEST(MapView, PointsAndPlacesAreThoseThatThePixelsSee) {
 enum class Truth { kNear, kFar, kGap, kBorder };
 
 Truth truth_at(int x, int y, const Rigid3& map_from_camera) {
-  const Eigen::Vector3d ray = map_from_camera.rotation_matrix() * some_camera().ray({x, y});
+  const Eigen::Vector3d ray = map_from_camera.rotation_matrix() * two_planes_camera().ray({x, y});
   const Eigen::Vector3d& eye = map_from_camera.translation();
   const auto at = [&](float depth_m) -> Eigen::Vector2d {
     const double along = (static_cast<double>(depth_m) - eye.z()) / ray.z();
-    return some_camera().project(eye + along * ray);
+    return two_planes_camera().project(eye + along * ray);
   };
   // Within a pixel of an outline either is right.
   constexpr double kRoom = 1.1;
@@ -232,11 +232,11 @@ IntensityMap turned_views(const std::vector<double>& angles) {
     // A ball around the eye, so that all views show the same points.
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
-        view.depth(x, y) = static_cast<float>(4 / some_camera().ray({x, y}).norm());
+        view.depth(x, y) = static_cast<float>(4 / two_planes_camera().ray({x, y}).norm());
     view.world_from_reference = {so3_exp({0, angle, 0}), {0, 0, 0}};
     views.push_back(view);
   }
-  return {some_camera(), views, {}};
+  return {two_planes_camera(), views, {}};
 }
 
 /// Which view the place belongs to; -1: none.
@@ -267,11 +267,11 @@ TEST(MapView, PlacesInFurtherViewsAreWhereThoseShowThePoint) {
     const SeenPlace& seen = view(x, y);
     const IntensityMap::View& of = map.views()[static_cast<std::size_t>(shown_by)];
     const Eigen::Vector2d in_view =
-        some_camera().project(of.view_from_map * seen.point.cast<double>());
+        two_planes_camera().project(of.view_from_map * seen.point.cast<double>());
     EXPECT_LT((in_view + Eigen::Vector2d(0, of.first_row) - seen.place.cast<double>()).norm(),
               0.02);
     const Eigen::Vector3d in_camera = pose.inverse() * seen.point.cast<double>();
-    EXPECT_LT((some_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
+    EXPECT_LT((two_planes_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
     compared += shown_by;
   });
   EXPECT_GT(compared, 1000);

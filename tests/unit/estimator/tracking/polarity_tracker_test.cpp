@@ -14,20 +14,19 @@ namespace {
 using testing::corner_motion;
 using testing::expect_equal;
 using testing::expect_lost_but_finite;
+using testing::resolved_errors;
+using testing::resolved_recording;
 using testing::tracking_config;
-
-const testing::CornerRecording& recording() { return testing::resolved_recording(); }
 using Errors = testing::CornerRecording::Errors;
-Errors errors_of(const std::vector<TrackedPose>& poses) { return recording().errors_of(poses); }
 
 TrackConfig polarity() { return tracking_config("polarity"); }
 
 /// The tracker with all that has to outlive it.
-class Tracking {
+class PolarityTracking {
  public:
-  explicit Tracking(const TrackConfig& config = polarity(),
-                    const ReferenceView& view = recording().view)
-      : map_(recording().world.camera(), std::span(&view, 1), config.polarity.map),
+  explicit PolarityTracking(const TrackConfig& config = polarity(),
+                            const ReferenceView& view = resolved_recording().view)
+      : map_(resolved_recording().world.camera(), std::span(&view, 1), config.polarity.map),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
         edges_(config.tracker, map_.camera(), points_, map_.world_from_map(), config.seed),
         tracker_(config.polarity, config.tracker.motion, map_.camera(), map_, edges_) {
@@ -63,45 +62,47 @@ void expect_tracked(const std::vector<TrackedPose>& poses) {
 }
 
 TEST(PolarityTracker, RecoversEveryPoseAndBeatsTheEdges) {
-  Tracking tracking;
-  const auto poses = tracking->track(recording().events);
+  PolarityTracking tracking;
+  const auto poses = tracking->track(resolved_recording().events);
   expect_tracked(poses);
-  const Errors errors = errors_of(steady(poses));
+  const Errors errors = resolved_errors(steady(poses));
   EXPECT_LT(errors.mean, 0.2);
   EXPECT_LT(errors.largest, 0.6);
 
   const TrackConfig edges = tracking_config("accurate");
-  const ReferenceView& view = recording().view;
-  const PinholeCamera& camera = recording().world.camera();
+  const ReferenceView& view = resolved_recording().view;
+  const PinholeCamera& camera = resolved_recording().world.camera();
   const MapPoints points = extract_map(view.log_intensity, view.depth, camera, edges.map);
   Tracker tracker(edges.tracker, camera, points, view.world_from_reference, 1);
   tracker.reset(0, view.world_from_reference);
-  EXPECT_LT(1.3 * errors.mean, errors_of(steady(tracker.track(recording().events))).mean);
+  EXPECT_LT(1.3 * errors.mean,
+            resolved_errors(steady(tracker.track(resolved_recording().events))).mean);
 }
 
 TEST(PolarityTracker, DoesNotKnowTheContrast) {
   const testing::CornerRecording coarse(testing::resolved_world(), 0.15, 2e-4, 0.3);
-  Tracking tracking;
+  PolarityTracking tracking;
   const auto poses = tracking->track(coarse.events);
   expect_tracked(poses);
-  EXPECT_LT(errors_of(steady(poses)).mean, 0.4);
+  EXPECT_LT(resolved_errors(steady(poses)).mean, 0.4);
 }
 
 TEST(PolarityTracker, ReversalsTakeTheLagAway) {
   TrackConfig plain = polarity();
   plain.polarity.reversals = false;
-  Tracking without(plain);
-  Tracking with;
-  EXPECT_LT(1.2 * errors_of(steady(with->track(recording().events))).mean,
-            errors_of(steady(without->track(recording().events))).mean);
+  PolarityTracking without(plain);
+  PolarityTracking with;
+  EXPECT_LT(1.2 * resolved_errors(steady(with->track(resolved_recording().events))).mean,
+            resolved_errors(steady(without->track(resolved_recording().events))).mean);
 }
 
 TEST(PolarityTracker, PosesFollowOneAnotherInTime) {
-  Tracking tracking;
+  PolarityTracking tracking;
   std::size_t done = 0;
-  const auto poses = tracking->track(recording().events, [&](std::size_t n) { done += n; });
-  EXPECT_LE(done, recording().events.size());
-  EXPECT_GT(done + 20000, recording().events.size());
+  const auto poses =
+      tracking->track(resolved_recording().events, [&](std::size_t n) { done += n; });
+  EXPECT_LE(done, resolved_recording().events.size());
+  EXPECT_GT(done + 20000, resolved_recording().events.size());
   TimeNs last = -1;
   for (const TrackedPose& pose : poses) {
     EXPECT_GE(pose.first_ns, last);
@@ -116,22 +117,22 @@ TEST(PolarityTracker, PosesFollowOneAnotherInTime) {
 }
 
 TEST(PolarityTracker, RepeatsItsBits) {
-  Tracking tracking;
-  const auto first = tracking->track(recording().events);
-  Tracking other;
-  expect_equal(first, other->track(recording().events));
+  PolarityTracking tracking;
+  const auto first = tracking->track(resolved_recording().events);
+  PolarityTracking other;
+  expect_equal(first, other->track(resolved_recording().events));
   tracking->reset(0, corner_motion(0));
-  expect_equal(first, tracking->track(recording().events));
+  expect_equal(first, tracking->track(resolved_recording().events));
 }
 
 TEST(PolarityTracker, DoesNotDependOnWhereTheWorldBegins) {
   const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
-  ReferenceView moved = recording().view;
+  ReferenceView moved = resolved_recording().view;
   moved.world_from_reference = elsewhere * corner_motion(0);
-  Tracking here;
-  Tracking there(polarity(), moved);
-  const auto a = here->track(recording().events);
-  const auto b = there->track(recording().events);
+  PolarityTracking here;
+  PolarityTracking there(polarity(), moved);
+  const auto a = here->track(resolved_recording().events);
+  const auto b = there->track(resolved_recording().events);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)
     EXPECT_LT(
@@ -140,9 +141,9 @@ TEST(PolarityTracker, DoesNotDependOnWhereTheWorldBegins) {
 }
 
 TEST(PolarityTracker, TooFewEventsGiveNoPose) {
-  Tracking tracking;
+  PolarityTracking tracking;
   EXPECT_TRUE(tracking->track({}).empty());
-  EXPECT_TRUE(tracking->track(std::span(recording().events).first(2999)).empty());
+  EXPECT_TRUE(tracking->track(std::span(resolved_recording().events).first(2999)).empty());
 }
 
 /// Events at random pixels, as dense as those of the recording, after it.
@@ -158,8 +159,8 @@ Events noise_after(std::span<const Event> events) {
 }
 
 TEST(PolarityTracker, NoiseIsReportedLost) {
-  Tracking tracking;
-  const auto events = std::span(recording().events).first(60000);
+  PolarityTracking tracking;
+  const auto events = std::span(resolved_recording().events).first(60000);
   expect_tracked(tracking->track(events));
   const auto poses = tracking->track(noise_after(events));
   double lost = 0;
@@ -171,8 +172,8 @@ TEST(PolarityTracker, NoiseIsReportedLost) {
 }
 
 TEST(PolarityTracker, AShortDisturbanceIsOvercome) {
-  Tracking tracking;
-  const auto events = std::span(recording().events);
+  PolarityTracking tracking;
+  const auto events = std::span(resolved_recording().events);
   const auto before = events.first(events.size() / 2);
   expect_tracked(tracking->track(before));
   // For a moment nothing that is seen means anything.
@@ -182,12 +183,12 @@ TEST(PolarityTracker, AShortDisturbanceIsOvercome) {
   const auto poses = tracking->track(events.subspan(events.size() / 2));
   ASSERT_FALSE(poses.empty());
   EXPECT_EQ(poses.back().status, TrackStatus::kOk);
-  EXPECT_LT(recording().error_px(poses.back()), 0.6);
+  EXPECT_LT(resolved_recording().error_px(poses.back()), 0.6);
 }
 
 TEST(PolarityTracker, EdgesGoOnWhereTheCameraTurnsBack) {
-  Tracking tracking;
-  const auto poses = tracking->track(recording().events);
+  PolarityTracking tracking;
+  const auto poses = tracking->track(resolved_recording().events);
   expect_tracked(poses);
   int by_edges = 0;
   for (const TrackedPose& pose : poses)
@@ -195,21 +196,21 @@ TEST(PolarityTracker, EdgesGoOnWhereTheCameraTurnsBack) {
       by_edges += pose.iterations == polarity().tracker.align.iterations ? 1 : 0;
   EXPECT_GT(by_edges, 0);
   EXPECT_LT(by_edges, 20);
-  EXPECT_LT(recording().error_px(poses.back()), 1);
+  EXPECT_LT(resolved_recording().error_px(poses.back()), 1);
 }
 
 TEST(PolarityTracker, WithoutTheMapInViewItIsLost) {
-  Tracking tracking;
+  PolarityTracking tracking;
   const Rigid3 turned(so3_exp({0, std::numbers::pi, 0}), {0, 0, 0});
   tracking->reset(0, corner_motion(0) * turned);
-  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+  expect_lost_but_finite(tracking->track(std::span(resolved_recording().events).first(50000)));
 }
 
 TEST(PolarityTracker, AMapOfNothingIsLostFromTheStart) {
-  ReferenceView nothing = recording().view;
+  ReferenceView nothing = resolved_recording().view;
   nothing.depth.fill(0);
-  Tracking tracking(polarity(), nothing);
-  expect_lost_but_finite(tracking->track(std::span(recording().events).first(50000)));
+  PolarityTracking tracking(polarity(), nothing);
+  expect_lost_but_finite(tracking->track(std::span(resolved_recording().events).first(50000)));
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ using testing::small_camera;
 using Brightness = AlignOptions::Brightness;
 using Hessian = AlignOptions::Hessian;
 
-constexpr double kGain = 0.8;
-constexpr double kOffset = 0.05;
+constexpr double kTemplateGain = 0.8;
+constexpr double kTemplateOffset = 0.05;
 
 /// The motion along one degree of freedom that shifts the image of points 2 m away and 50 px off
 /// the centre by `px`.
@@ -41,7 +41,7 @@ class Alignment {
       : map_(rectangle_map()),
         aligner_(options, small_camera()),
         truth_(truth),
-        frame_(random_frame(map_, truth, kGain, kOffset, 1)) {
+        frame_(random_frame(map_, truth, kTemplateGain, kTemplateOffset, 1)) {
     TemplateDrawer drawer(small_camera(), TemplateOptions{}, map_);
     const std::span<const TemplatePoint> drawn = drawer.draw({});
     points_.assign(drawn.begin(), drawn.end());
@@ -140,8 +140,8 @@ TEST(TemplateAligner, RecoversATrueMotion) {
 
 TEST(TemplateAligner, RecoversGainAndOffset) {
   const AlignResult result = Alignment(options_with(1'000'000, 30)).align({});
-  EXPECT_NEAR(result.brightness.gain, kGain, 0.08);
-  EXPECT_NEAR(result.brightness.offset, kOffset, 0.05);
+  EXPECT_NEAR(result.brightness.gain, kTemplateGain, 0.08);
+  EXPECT_NEAR(result.brightness.offset, kTemplateOffset, 0.05);
   EXPECT_GT(result.visible_ratio, 0.9);
   EXPECT_GT(result.inlier_ratio, 0.6);
   EXPECT_LE(result.inlier_ratio, 1);
@@ -240,7 +240,8 @@ AlignResult align_map(const MapPoints& map, Hessian hessian) {
   TemplateDrawer drawer(small_camera(), TemplateOptions{}, map);
   TemplateAligner aligner(options_with(500, 30, hessian), small_camera());
   aligner.set_template(drawer.draw({}));
-  return aligner.align(random_frame(map, {}, kGain, kOffset, 1), {}, Matrix6::Zero(), {}, 1, 0);
+  return aligner.align(random_frame(map, {}, kTemplateGain, kTemplateOffset, 1), {},
+                       Matrix6::Zero(), {}, 1, 0);
 }
 
 TEST(TemplateAligner, OneStraightLineIsSingular) {

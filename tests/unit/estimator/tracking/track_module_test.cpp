@@ -31,7 +31,7 @@ using testing::read_file;
 using testing::TemporaryFolder;
 
 constexpr double kDepth_m = 1.5;
-constexpr double kEnd_s = 0.4;
+constexpr double kWallEnd_s = 0.4;
 
 /// One textured wall at kDepth_m that fills the view of a small camera.
 PlanarWorld wall() {
@@ -62,8 +62,8 @@ void write_wall(const fs::path& folder) {
   for (int i = 0; i <= 400; ++i) poses.push_back({i * 1e-3, motion(i * 1e-3)});
   const testing::StampedPicture pictures[] = {{0, picture_of(world, motion(0))},
                                               {0.2, picture_of(world, motion(0.2))}};
-  testing::write_recording(folder, world.camera(), world.simulate(motion, 0, kEnd_s, 2e-3, 0.12),
-                           pictures, poses);
+  testing::write_recording(folder, world.camera(),
+                           world.simulate(motion, 0, kWallEnd_s, 2e-3, 0.12), pictures, poses);
 }
 
 /// RMS distance of points of the wall all over the view between a pose and the true one [px].
@@ -129,7 +129,7 @@ TEST_F(TrackModule, FollowsTheTrueMotion) {
   static_cast<void>(run_track(request("run")));
   const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
   ASSERT_GT(trajectory.size(), 10U);
-  EXPECT_GT(error_px({}, kEnd_s), 4) << "the camera must move";
+  EXPECT_GT(error_px({}, kWallEnd_s), 4) << "the camera must move";
   for (const StampedPose& pose : trajectory.poses())
     EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 1.5) << pose.t_s;
 }

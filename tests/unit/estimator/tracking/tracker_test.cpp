@@ -22,7 +22,7 @@ const testing::CornerRecording& recording() {
   return recording;
 }
 
-const MapPoints& map() {
+const MapPoints& map_points() {
   static const MapPoints map = extract_map(recording().view.log_intensity, recording().view.depth,
                                            recording().world.camera(), {});
   return map;
@@ -34,7 +34,7 @@ TrackerOptions accurate() { return setting("accurate"); }
 TrackerOptions fast() { return setting("fast"); }
 
 Tracker tracker_from(const TrackerOptions& options, std::uint64_t seed = 1) {
-  Tracker tracker(options, recording().world.camera(), map(), corner_motion(0), seed);
+  Tracker tracker(options, recording().world.camera(), map_points(), corner_motion(0), seed);
   tracker.reset(0, corner_motion(0));
   return tracker;
 }
@@ -285,7 +285,8 @@ TEST(Tracker, ResetStartsAnew) {
 
 TEST(Tracker, DoesNotDependOnWhereTheWorldBegins) {
   const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
-  Tracker tracker(accurate(), recording().world.camera(), map(), elsewhere * corner_motion(0), 1);
+  Tracker tracker(accurate(), recording().world.camera(), map_points(),
+                  elsewhere * corner_motion(0), 1);
   tracker.reset(0, elsewhere * corner_motion(0));
   const auto moved = tracker.track(recording().events);
   const auto poses = track(accurate());

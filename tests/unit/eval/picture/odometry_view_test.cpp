@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr int kWidth = 80, kHeight = 60;
+constexpr int kKeyframeWidth = 80, kKeyframeHeight = 60;
 
 class OdometryViewTest : public testing::FakeFolders {
  protected:
@@ -42,8 +42,8 @@ TEST_F(OdometryViewTest, FourPicturesOfOneMoment) {
   const std::vector<CaptionedPicture> pictures = view.pictures(0.1);
   ASSERT_EQ(pictures.size(), 4U);
   for (const CaptionedPicture& picture : pictures) {
-    EXPECT_EQ(picture.image.width(), 2 * kWidth);
-    EXPECT_EQ(picture.image.height(), 2 * kHeight);
+    EXPECT_EQ(picture.image.width(), 2 * kKeyframeWidth);
+    EXPECT_EQ(picture.image.height(), 2 * kKeyframeHeight);
   }
   EXPECT_THAT(pictures[1].caption, StartsWith("depth of keyframe 3, 0.080 s"));
   EXPECT_THAT(pictures[2].caption, StartsWith("image of keyframe 3"));
@@ -55,14 +55,14 @@ TEST_F(OdometryViewTest, SheetsAndMoments) {
   const fs::path file = folder.path() / "sheet.png";
   render(odometry, file, {.upscale = 2});
   const ImageRgb8 sheet = read_image_rgb(file);
-  EXPECT_GT(sheet.width(), 4 * 2 * kWidth);
-  EXPECT_GT(sheet.height(), 4 * 2 * kHeight);
+  EXPECT_GT(sheet.width(), 4 * 2 * kKeyframeWidth);
+  EXPECT_GT(sheet.height(), 4 * 2 * kKeyframeHeight);
   render(odometry, file, {.time_s = 0.1, .upscale = 2});
   const ImageRgb8 moment = read_image_rgb(file);
-  EXPECT_GT(moment.width(), 2 * 2 * kWidth);
-  EXPECT_LT(moment.width(), 3 * 2 * kWidth);
-  EXPECT_GT(moment.height(), 2 * 2 * kHeight);
-  EXPECT_LT(moment.height(), 3 * 2 * kHeight);
+  EXPECT_GT(moment.width(), 2 * 2 * kKeyframeWidth);
+  EXPECT_LT(moment.width(), 3 * 2 * kKeyframeWidth);
+  EXPECT_GT(moment.height(), 2 * 2 * kKeyframeHeight);
+  EXPECT_LT(moment.height(), 3 * 2 * kKeyframeHeight);
 }
 
 TEST_F(OdometryViewTest, AFilmOfThem) {

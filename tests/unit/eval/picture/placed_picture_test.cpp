@@ -17,7 +17,7 @@ constexpr Rgba8 kGreen{0, 255, 0, 255};
 constexpr Rgba8 kBlue{0, 0, 255, 255};
 constexpr Rgba8 kWhite{255, 255, 255, 255};
 
-const PinholeCamera kCamera{81, 61, 100, 100, 40, 30};
+const PinholeCamera kFloorCamera{81, 61, 100, 100, 40, 30};
 
 Rgb8 rgb(const Rgba8& colour) { return {colour[0], colour[1], colour[2]}; }
 
@@ -51,9 +51,9 @@ struct Drawing {
 
 Drawing draw(const PlacedPicture& picture, const Rigid3& world_from_camera = {}, int upscale = 1,
              const HidesPoint& hides = {}, double opacity = 1) {
-  Drawing result{{kCamera.width * upscale, kCamera.height * upscale, kGround}, false};
-  result.any = draw_placed_picture(picture, {kCamera, world_from_camera, upscale}, opacity, hides,
-                                   result.image);
+  Drawing result{{kFloorCamera.width * upscale, kFloorCamera.height * upscale, kGround}, false};
+  result.any = draw_placed_picture(picture, {kFloorCamera, world_from_camera, upscale}, opacity,
+                                   hides, result.image);
   return result;
 }
 
@@ -66,9 +66,9 @@ TEST(PlacedPicture, TheHomographyIsTheProjectionOfThePlane) {
     const Eigen::Vector3d point(0.2 * number(6), 0.2 * number(7), 0);
     const Eigen::Vector3d in_camera = camera_from_plane * point;
     ASSERT_GT(in_camera.z(), 0.5);
-    const Eigen::Matrix3d from_plane = pixel_from_plane(kCamera, camera_from_plane);
+    const Eigen::Matrix3d from_plane = pixel_from_plane(kFloorCamera, camera_from_plane);
     const Eigen::Vector3d scaled = from_plane * Eigen::Vector3d(point.x(), point.y(), 1);
-    const Eigen::Vector2d pixel = kCamera.project(in_camera);
+    const Eigen::Vector2d pixel = kFloorCamera.project(in_camera);
     EXPECT_LT((scaled.hnormalized() - pixel).norm(), 1e-9);
     EXPECT_NEAR(scaled.z(), in_camera.z(), 1e-12);
     const Eigen::Vector3d back = from_plane.inverse() * pixel.homogeneous();
@@ -94,10 +94,10 @@ TEST(PlacedPicture, StandsAtItsPlaceXToTheRightAndYDown) {
 TEST(PlacedPicture, StaysInTheWorldWhenTheCameraTurnsAndMoves) {
   const Rigid3 world_from_camera = pose(0.2, -0.1, 0.3, {0.05, -0.06, 0.3});
   const ImageRgb8 image = draw(ahead(quarters()), world_from_camera, 3).image;
-  const ScreenView view{kCamera, world_from_camera, 3};
+  const ScreenView view{kFloorCamera, world_from_camera, 3};
   const auto seen = [&](double x, double y) {
     const Eigen::Vector3d in_camera = world_from_camera.inverse() * Eigen::Vector3d(x, y, 2);
-    const Eigen::Vector2d at = view.screen_from_pixel(kCamera.project(in_camera));
+    const Eigen::Vector2d at = view.screen_from_pixel(kFloorCamera.project(in_camera));
     return image(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())));
   };
   EXPECT_EQ(seen(-0.1, -0.1), rgb(kRed));
@@ -121,7 +121,7 @@ TEST(PlacedPicture, BehindTheCameraOrEdgeOnNothingIsDrawn) {
     const Drawing drawn = draw(picture);
     EXPECT_FALSE(drawn.any);
     EXPECT_TRUE(drawn.is_ground());
-    EXPECT_EQ(with_outline(drawn.image, ahead(quarters(), -2), {kCamera, {}, 1}, rgb(kRed), 1),
+    EXPECT_EQ(with_outline(drawn.image, ahead(quarters(), -2), {kFloorCamera, {}, 1}, rgb(kRed), 1),
               drawn.image);
   }
 }
@@ -137,7 +137,7 @@ TEST(PlacedPicture, NoSizeOrDistanceIsTooLarge) {
     for (const double z : {1e-300, 1e150, 1e300}) {
       const PlacedPicture picture{PicturePyramid(quarters()), pose(0, 0, z), size};
       const Drawing drawn = draw(picture);
-      (void)with_outline(drawn.image, picture, {kCamera, {}, 1}, rgb(kRed), 1);
+      (void)with_outline(drawn.image, picture, {kFloorCamera, {}, 1}, rgb(kRed), 1);
     }
 }
 
@@ -148,7 +148,8 @@ TEST(PlacedPicture, AFloorThatReachesBehindTheCameraIsDrawnUpToTheHorizon) {
   const Drawing drawn = draw(floor);
   EXPECT_EQ(drawn.image(40, 60), rgb(kRed));
   EXPECT_EQ(drawn.image(40, 20), kGround);
-  const ImageRgb8 framed = with_outline(drawn.image, floor, {kCamera, {}, 1}, {255, 255, 0}, 1);
+  const ImageRgb8 framed =
+      with_outline(drawn.image, floor, {kFloorCamera, {}, 1}, {255, 255, 0}, 1);
   EXPECT_NE(framed, drawn.image);
   EXPECT_EQ(framed(40, 20), kGround);
 }
@@ -204,8 +205,8 @@ TEST(PlacedPicture, SmallPicturesShowTheirMean) {
 
 TEST(PlacedPicture, TheOutlineRunsThroughItsCorners) {
   const PlacedPicture picture = ahead(quarters());
-  const ImageRgb8 image = with_outline(ImageRgb8(kCamera.width, kCamera.height, kGround), picture,
-                                       {kCamera, {}, 1}, rgb(kWhite), 1);
+  const ImageRgb8 image = with_outline(ImageRgb8(kFloorCamera.width, kFloorCamera.height, kGround),
+                                       picture, {kFloorCamera, {}, 1}, rgb(kWhite), 1);
   for (const int x : {30, 40, 50}) {
     EXPECT_GT(image(x, 20)[0], 200);  // anti-aliased
     EXPECT_GT(image(x, 40)[0], 200);

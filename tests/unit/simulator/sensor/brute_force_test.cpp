@@ -31,13 +31,9 @@ void expect_agreement(const Scene& scene, const Spline& motion, const PinholeCam
   EXPECT_GE(result.share_1_us(), least_1_us);
 }
 
-Mesh wall() {
-  return testing::rectangle({-6, -5, 4}, {12, 0, 1}, {0, 10, 0}, patches(128, 128, 1));
-}
-
 TEST(EventCameraAgainstBruteForce, TexturedPlanesThatHideOneAnother) {
   const Scene scene = testing::scene_of(
-      {wall(),
+      {testing::slanted_wall(),
        testing::rectangle({-0.5, -0.6, 2}, {0.9, 0.3, 0.2}, {-0.3, 0.9, 0}, patches(128, 128, 2)),
        testing::rectangle({0.1, -0.2, 1.2}, {0.3, 0.05, 0}, {-0.05, 0.3, 0.1},
                           patches(128, 128, 3))});
@@ -51,13 +47,14 @@ TEST(EventCameraAgainstBruteForce, TexturedPlanesThatHideOneAnother) {
 
 TEST(EventCameraAgainstBruteForce, CurvedMeshes) {
   for (const std::uint32_t rings : {16U, 160U}) {
-    const Scene scene = testing::scene_of(
-        {wall(), testing::ball({0.1, 0.1, 2.2}, 0.45, rings, patches(256, 128, 4))});
+    const Scene scene =
+        testing::scene_of({testing::slanted_wall(),
+                           testing::ball({0.1, 0.1, 2.2}, 0.45, rings, patches(256, 128, 4))});
     expect_agreement(scene, testing::lively_motion(0.1, 1.5, 0.8, 2), crop_at(150, 100), 0.999,
                      0.99);
   }
-  const Scene scene =
-      testing::scene_of({wall(), testing::torus({0, 0.1, 2}, 0.4, 0.12, 60, patches(256, 128, 5))});
+  const Scene scene = testing::scene_of(
+      {testing::slanted_wall(), testing::torus({0, 0.1, 2}, 0.4, 0.12, 60, patches(256, 128, 5))});
   expect_agreement(scene, testing::lively_motion(0.1, 1.5, 0.8, 3), crop_at(150, 100), 0.999, 0.99);
 }
 
@@ -92,7 +89,7 @@ std::vector<Mesh> bars() {
 
 TEST(EventCameraAgainstBruteForce, BarsThinnerThanAPixel) {
   std::vector<Mesh> meshes = bars();
-  meshes.push_back(wall());
+  meshes.push_back(testing::slanted_wall());
   const Scene scene = testing::scene_of(meshes);
   for (const std::uint64_t seed : {1, 2, 3})
     expect_agreement(scene, testing::lively_motion(0.06, 1, 0.7, seed), crop_at(119, 89), 0.99,
@@ -101,7 +98,7 @@ TEST(EventCameraAgainstBruteForce, BarsThinnerThanAPixel) {
 
 TEST(EventCameraAgainstBruteForce, MovingBarsThinnerThanAPixel) {
   SceneBuilder builder;
-  builder.add(wall(), Eigen::Affine3d::Identity());
+  builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
   const std::vector<Mesh> meshes = bars();
   for (std::uint64_t k = 0; k < meshes.size(); k += 2)
     builder.add_moving(meshes[k], Eigen::Affine3d::Identity(),
@@ -145,7 +142,7 @@ class RandomWorld : public ::testing::TestWithParam<std::uint64_t> {
   Scene scene() {
     SceneBuilder builder;
     const bool is_open = GetParam() % 2 == 0;
-    if (!is_open) builder.add(wall(), Eigen::Affine3d::Identity());
+    if (!is_open) builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
     for (int k = 0; k < 12; ++k) {
       const Eigen::Affine3d pose = Eigen::Translation3d(point(0.5) + Eigen::Vector3d(0, 0, 1.8)) *
                                    Eigen::Affine3d(so3_exp(point(3)).toRotationMatrix());

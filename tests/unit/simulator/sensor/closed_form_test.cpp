@@ -20,12 +20,6 @@ namespace {
 using testing::ClosedFormPlane;
 using testing::ExactEvent;
 
-EventOptions in_nanoseconds() {
-  EventOptions options;
-  options.timestamp_unit = TimestampUnit::kNanoseconds;
-  return options;
-}
-
 void expect_exact(const std::vector<ExactEvent>& expected, const Events& found,
                   const PinholeCamera& camera) {
   const testing::ExactMatch match =
@@ -41,7 +35,7 @@ void expect_exact(const std::vector<ExactEvent>& expected, const Events& found,
 }
 
 void expect_exact(const ClosedFormPlane& plane) {
-  const EventOptions options = in_nanoseconds();
+  const EventOptions options = testing::in_nanoseconds();
   const Events events =
       testing::record(testing::scene_of(plane), plane.motion(), plane.camera, options).events;
   expect_exact(plane.events(options.contrast.on, options.contrast.off, options.log_eps), events,
@@ -152,7 +146,7 @@ TEST(ClosedForm, RotationBeforeAPanorama) {
   poses[0].world_from_camera = Rigid3(Eigen::Quaterniond(start), {0, 0, 0});
   poses[1] = {kDuration_s,
               Rigid3(Eigen::Quaterniond(start) * so3_exp(rate * kDuration_s), {0, 0, 0})};
-  const EventOptions options = in_nanoseconds();
+  const EventOptions options = testing::in_nanoseconds();
   const Events events = testing::record(scene, Spline::interpolate(poses), camera, options).events;
   const auto log_intensity = [&](int x, int y, double t_s) {
     const Eigen::Vector3d ray = start * (so3_exp(rate * t_s) * camera.ray({x, y}));

@@ -34,16 +34,16 @@ EventOptions noisy_options() {
   return options;
 }
 
-struct Recording {
+struct FrameRecording {
   SensedEvents events;
   std::vector<double> frames_s;
   EventStatistics statistics;
 };
 
-Recording record(const ClosedFormPlane& plane, const EventOptions& options) {
+FrameRecording record(const ClosedFormPlane& plane, const EventOptions& options) {
   const Scene scene = testing::scene_of(plane);
   const Spline motion = plane.motion();
-  Recording recording;
+  FrameRecording recording;
   FrameCamera sensor(scene, motion, plane.camera, options);
   sensor.record(plane.duration_s, [&](std::span<const SensedEvent> events, double t_s) {
     recording.events.insert(recording.events.end(), events.begin(), events.end());
@@ -53,7 +53,7 @@ Recording record(const ClosedFormPlane& plane, const EventOptions& options) {
   return recording;
 }
 
-ExactMatch match(const ClosedFormPlane& plane, const EventOptions& options) {
+ExactMatch match_frames(const ClosedFormPlane& plane, const EventOptions& options) {
   Events events;
   for (const SensedEvent& event : record(plane, options).events) events.push_back(event.event());
   const auto expected = plane.events(options.contrast.on, options.contrast.off, options.log_eps);
@@ -64,7 +64,7 @@ TEST(FrameCamera, FramesAreLambdaOfImageMotionApart) {
   ClosedFormPlane plane = ClosedFormPlane::smooth(9, 7);
   plane.duration_s = 0.2;
   const double speed_px_s = plane.velocity.norm() * plane.camera.fx / plane.distance_m;
-  const Recording recording = record(plane, frame_options(0.1));
+  const FrameRecording recording = record(plane, frame_options(0.1));
   ASSERT_EQ(recording.frames_s.size(), std::ceil(plane.duration_s * speed_px_s / 0.1));
   for (std::size_t k = 0; k + 1 < recording.frames_s.size(); ++k)
     EXPECT_NEAR(recording.frames_s[k], static_cast<double>(k + 1) * 0.1 / speed_px_s, 1e-9);
@@ -91,7 +91,7 @@ TEST(FrameCamera, TimesOfALogarithmicRampAreExact) {
   for (int j = 0; j < plane.texture.height(); ++j)
     for (int i = 0; i < plane.texture.width(); ++i)
       plane.texture(i, j) = std::exp(0.02F * static_cast<float>(i)) - 1e-3F;
-  const ExactMatch result = match(plane, frame_options(0.5));
+  const ExactMatch result = match_frames(plane, frame_options(0.5));
   EXPECT_GT(result.expected, 10U);
   EXPECT_EQ(result.found, result.expected);
   EXPECT_EQ(result.wrong_pixels, 0U);
@@ -103,9 +103,9 @@ TEST(FrameCamera, TimesOfALogarithmicRampAreExact) {
 TEST(FrameCamera, TimeErrorIsOfSecondOrderInLambda) {
   ClosedFormPlane plane = ClosedFormPlane::smooth(31, 22);
   plane.metres_per_texel = 1.0 / 8;  // a texel is several pixels wide
-  const ExactMatch coarse = match(plane, frame_options(0.2));
-  const ExactMatch fine = match(plane, frame_options(0.05));
-  const ExactMatch finest = match(plane, frame_options(0.0125));
+  const ExactMatch coarse = match_frames(plane, frame_options(0.2));
+  const ExactMatch fine = match_frames(plane, frame_options(0.05));
+  const ExactMatch finest = match_frames(plane, frame_options(0.0125));
   std::printf("median |dt| %.3f, %.3f, %.4f us\n", coarse.median_us, fine.median_us,
               finest.median_us);
   EXPECT_GT(coarse.expected, 1000U);
@@ -117,7 +117,7 @@ TEST(FrameCamera, StaticCameraSeesNothing) {
   ClosedFormPlane plane = ClosedFormPlane::smooth(9, 7);
   plane.velocity = {0, 0};
   plane.duration_s = 0.1;
-  const Recording recording = record(plane, frame_options(0.1));
+  const FrameRecording recording = record(plane, frame_options(0.1));
   EXPECT_TRUE(recording.events.empty());
   EXPECT_NEAR(recording.statistics.time_bound_s, 0.01, 1e-9);
 }
@@ -128,7 +128,7 @@ TEST(FrameCamera, LeakingReferenceFiresBeforeAStaticScene) {
   plane.duration_s = 2;
   EventOptions options = frame_options(0.1);
   options.noise.leak.rate_hz = 10;
-  const Recording recording = record(plane, options);
+  const FrameRecording recording = record(plane, options);
   EXPECT_NEAR(static_cast<double>(recording.events.size()), 9 * 7 * 20, 9 * 7);
   for (const SensedEvent& event : recording.events) ASSERT_EQ(event.origin, EventOrigin::kLeak);
 }

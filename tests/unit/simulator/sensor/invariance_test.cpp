@@ -17,27 +17,23 @@
 namespace saccade {
 namespace {
 
-constexpr double kDuration_s = 0.06;
-const PinholeCamera kCamera{22, 14, 200, 200, 10, 7, {}};
-
-Mesh wall() {
-  return testing::rectangle({-6, -5, 4}, {12, 0, 1}, {0, 10, 0}, testing::patches(128, 128, 1));
-}
+constexpr double kStretch_s = 0.06;
+const PinholeCamera kSmallCamera{22, 14, 200, 200, 10, 7, {}};
 
 Mesh card(std::uint64_t seed) {
   return testing::rectangle({-0.2, -0.2, 1.4}, {0.3, 0.05, 0}, {-0.05, 0.3, 0.1},
                             testing::patches(64, 64, seed));
 }
 
-Scene still_scene() { return testing::scene_of({wall(), card(2)}); }
+Scene still_scene() { return testing::scene_of({testing::slanted_wall(), card(2)}); }
 
 /// A card that moves and one that does not, under a lamp.
 Scene lively_scene() {
   SceneBuilder builder;
-  builder.add(wall(), Eigen::Affine3d::Identity());
+  builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
   builder.add(card(2), Eigen::Affine3d::Identity());
   builder.add_moving(card(3), Eigen::Affine3d::Identity(),
-                     testing::lively_motion(kDuration_s, 2, 1, 7));
+                     testing::lively_motion(kStretch_s, 2, 1, 7));
   LightOptions lamp;
   lamp.position = {0.5, -1, 0};
   lamp.intensity = 4;
@@ -45,7 +41,7 @@ Scene lively_scene() {
   return std::move(builder).build(Background(0.5));
 }
 
-Spline motion() { return testing::lively_motion(kDuration_s, 1.5, 1, 4); }
+Spline motion() { return testing::lively_motion(kStretch_s, 1.5, 1, 4); }
 
 EventOptions ideal() {
   EventOptions options;
@@ -81,11 +77,11 @@ TEST(Invariance, DenserSamplingGivesTheSameEvents) {
   const Scene scene = still_scene();
   const Spline way = motion();
   EventOptions options = ideal();
-  const Events normal = testing::record(scene, way, kCamera, options).events;
+  const Events normal = testing::record(scene, way, kSmallCamera, options).events;
   ASSERT_GT(normal.size(), 2000U);
   for (const double step_px : {0.137, 0.05}) {
     options.max_step_px = step_px;
-    const Events dense = testing::record(scene, way, kCamera, options).events;
+    const Events dense = testing::record(scene, way, kSmallCamera, options).events;
     EXPECT_EQ(dense.size(), normal.size()) << step_px;
     EXPECT_EQ(testing::count_pairs(dense, normal, 1000), normal.size()) << step_px;
   }
@@ -102,12 +98,12 @@ TEST_P(EventCameraThreadsAndNoise, DoNotChangeTheStream) {
   for (const double cutoff_hz : {0.0, 200.0}) {
     const EventOptions options = with_all_noise(GetParam(), cutoff_hz);
     set_thread_count(1);
-    EventCamera alone(scene, way, kCamera, options, 5);
+    EventCamera alone(scene, way, kSmallCamera, options, 5);
     const SensedEvents expected = sense(alone, way.end_s());
     EXPECT_GT(expected.size(), 200U);
     for (const int threads : {2, 8}) {
       set_thread_count(threads);
-      EventCamera camera(scene, way, kCamera, options, 5);
+      EventCamera camera(scene, way, kSmallCamera, options, 5);
       EXPECT_EQ(sense(camera, way.end_s()), expected) << threads;
     }
   }
@@ -125,14 +121,14 @@ void expect_same_after_resuming(const EventOptions& options) {
   };
   std::vector<Saved> saved;
   SensedEvents expected;
-  EventCamera first(scene, way, kCamera, options, 9);
+  EventCamera first(scene, way, kSmallCamera, options, 9);
   first.record(way.end_s(), [&](std::span<const SensedEvent> some, double t_s) {
     expected.insert(expected.end(), some.begin(), some.end());
     if (t_s < way.end_s()) saved.push_back({first.state(), expected.size()});
   });
   ASSERT_GT(saved.size(), 2U);
   for (std::size_t k = 0; k < saved.size(); k += 3) {
-    EventCamera second(scene, way, kCamera, options, 9);
+    EventCamera second(scene, way, kSmallCamera, options, 9);
     second.resume(saved[k].state);
     const SensedEvents rest = sense(second, way.end_s());
     ASSERT_EQ(saved[k].events + rest.size(), expected.size()) << k;
@@ -158,12 +154,12 @@ TEST(EventCameraState, NoisyCameraGoesOnWhereItWas) {
 
 TEST(Reconstruction, StaysWithinTheThresholdAtAllTimes) {
   const Spline way = motion();
-  const Scene flat = testing::scene_of({wall()});
+  const Scene flat = testing::scene_of({testing::slanted_wall()});
   const Scene cards = still_scene();
   const EventOptions options = ideal();
   for (const Scene* scene : {&flat, &cards}) {
-    const Events events = testing::record(*scene, way, kCamera, options).events;
-    EXPECT_LE(testing::reconstruction_excess(*scene, way, kCamera, options, events, 2e-5,
+    const Events events = testing::record(*scene, way, kSmallCamera, options).events;
+    EXPECT_LE(testing::reconstruction_excess(*scene, way, kSmallCamera, options, events, 2e-5,
                                              1e-6 * options.time_tolerance_us),
               1e-9);
   }

@@ -8,18 +8,13 @@
 #include "core/parallel.h"
 #include "simulator/sensor/event_camera.h"
 #include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/sensor/noise/log_eps.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kLogEps = 1e-3;
-
-EventOptions in_nanoseconds() {
-  EventOptions options;
-  options.timestamp_unit = TimestampUnit::kNanoseconds;
-  return options;
-}
+using testing::kLogEps;
 
 Spline line(const Eigen::Vector3d& to, double duration_s) {
   std::vector<StampedPose> poses(2);
@@ -95,7 +90,7 @@ std::vector<double> counts(const SensedEvents& events, const PinholeCamera& came
 
 // The texture is linear between texels: ln I strays by (ln 40 / 4096)^2 / 8 = 1e-7 from the ramp.
 TEST(NoisyCamera, RefractoryPeriodMakesARampFireAtItsReciprocalRate) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.noise.refractory.period_us = 20'000;
   const double gap_s = 0.02 + options.contrast.on / kRampSlope;
   const World world = ramp(0.6);
@@ -113,7 +108,7 @@ TEST(NoisyCamera, RefractoryPeriodMakesARampFireAtItsReciprocalRate) {
 
 // Also: minutes in, nanoseconds still tell; float32 seconds would step by 7.6 us.
 TEST(NoisyCamera, LeakFiresAtItsRateBeforeAStaticScene) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.noise.leak.rate_hz = 0.7;
   const World world = still(0.4, 130.5, 4, 4);
   const SensedEvents events = of_pixel(world.record(options), 1, 2);
@@ -129,7 +124,7 @@ TEST(NoisyCamera, LeakFiresAtItsRateBeforeAStaticScene) {
 
 /// The leak has been at work before: a pixel's first event comes at any time of its period.
 TEST(NoisyCamera, LeakHasItsRateFromTheStartOn) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.noise.leak.rate_hz = 0.7;
   const World world = still(0.4, 0.9);
   const double share = 0.9 * 0.7;
@@ -144,7 +139,7 @@ TEST(NoisyCamera, LeakHasItsRateFromTheStartOn) {
 }
 
 TEST(NoisyCamera, ShotNoiseIsPoissonAtTheRateOfTheIntensity) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.contrast = {5, 5};
   options.noise.shot.rate_hz = 20;
   for (const double radiance : {0.0, 0.5, 1.0}) {
@@ -164,7 +159,7 @@ TEST(NoisyCamera, ShotNoiseIsPoissonAtTheRateOfTheIntensity) {
 
 /// The gap of a ramp is a pixel's threshold by the slope: their spread is that of the thresholds.
 TEST(NoisyCamera, MismatchIsRecoveredFromARampAndStaysWithThePixel) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.noise.mismatch.sigma = 0.1;
   const World world = ramp(0.6);
   const SensedEvents events = world.record(options);
@@ -195,10 +190,10 @@ TEST(NoisyCamera, LowPassDelaysAnEdgeByItsStepResponse) {
   const double cutoff_hz = 100;
   const double rate = 2 * std::numbers::pi * cutoff_hz * (dark + 0.08) / 1.08;
   const World world = edge(bright, dark, 0.35);
-  const SensedEvents ideal = of_pixel(world.record(in_nanoseconds()), 6, 3);
+  const SensedEvents ideal = of_pixel(world.record(testing::in_nanoseconds()), 6, 3);
   ASSERT_EQ(ideal.size(), 9U);
   for (const int order : {1, 2}) {
-    EventOptions options = in_nanoseconds();
+    EventOptions options = testing::in_nanoseconds();
     options.noise.bandwidth.cutoff_hz = cutoff_hz;
     options.noise.bandwidth.order = order;
     const SensedEvents events = of_pixel(world.record(options), 6, 3);
@@ -216,7 +211,7 @@ TEST(NoisyCamera, LowPassDelaysAnEdgeByItsStepResponse) {
 }
 
 TEST(NoisyCamera, HotPixelsAloneFireBeforeAStaticScene) {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.noise.hot = {0.1, 50, 0};
   const World world = still(0.4, 2);
   const SensedEvents events = world.record(options);
@@ -277,7 +272,7 @@ TEST(NoisyCamera, EventsDoNotDependOnHowDenselyTheSignalIsSampled) {
   const World world = lively_plane();
   for (const auto& [name, set] : exact_models()) {
     SCOPED_TRACE(name);
-    EventOptions options = in_nanoseconds();
+    EventOptions options = testing::in_nanoseconds();
     set(options.noise);
     const SensedEvents events = world.record(options);
     for (const double step_px : {0.05, 0.317}) {
@@ -288,7 +283,7 @@ TEST(NoisyCamera, EventsDoNotDependOnHowDenselyTheSignalIsSampled) {
 }
 
 EventOptions with_everything() {
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   for (const auto& [name, set] : exact_models()) set(options.noise);
   options.noise.bandwidth.cutoff_hz = 300;
   options.noise.latency = {20, 30, 0.08, 5};
@@ -336,7 +331,7 @@ TEST(NoisyCamera, ResumedGoesOnWithTheSameStream) {
 
 TEST(NoisyCamera, ZeroStrengthIsTheIdealStream) {
   const World world = lively_plane();
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   const SensedEvents ideal = world.record(options);
   options.noise.leak = {0, 0.5};
   options.noise.shot = {0, 0.1, 1};
@@ -351,7 +346,7 @@ TEST(NoisyCamera, SlowRampIsNotLost) {
   World slow = ramp(1);
   slow.camera.width = slow.camera.height = 4;
   slow.motion = line({4 * 0.0015 / std::log(40.0), 0, 0}, 30);
-  EventOptions options = in_nanoseconds();
+  EventOptions options = testing::in_nanoseconds();
   options.contrast = {0.001, 0.001};
   const SensedEvents events = of_pixel(slow.record(options), 1, 2);
   ASSERT_EQ(events.size(), 1U);

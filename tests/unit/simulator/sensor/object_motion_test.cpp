@@ -14,7 +14,7 @@
 namespace saccade {
 namespace {
 
-const PinholeCamera kCamera{41, 30, 60, 63, 21, 14, {-0.2, 0.05, 0.003, -0.002, 0}};
+const PinholeCamera kLensCamera{41, 30, 60, 63, 21, 14, {-0.2, 0.05, 0.003, -0.002, 0}};
 
 Spline wobble(const Eigen::Vector3d& position, double turn, double shift, double phase) {
   std::vector<StampedPose> poses;
@@ -69,8 +69,8 @@ TEST(MovingView, PlaneBeforeACameraAtRestEqualsTheOppositeMotion) {
   moving.add_moving(textured_plane(), Eigen::Affine3d::Identity(), motion);
   const Scene still_scene = std::move(still).build(Background(0.5));
   const Scene moving_scene = std::move(moving).build(Background(0.5));
-  const ViewRenderer still_view(still_scene, kCamera, 4);
-  const ViewRenderer moving_view(moving_scene, kCamera, 4);
+  const ViewRenderer still_view(still_scene, kLensCamera, 4);
+  const ViewRenderer moving_view(moving_scene, kLensCamera, 4);
   for (const double t : {0.03, 0.31, 0.66, 0.97}) {
     const SplineState state = inverted(motion.state(t));
     const StampedPose pose{t, state.world_from_body};
@@ -105,7 +105,7 @@ TEST(MovingView, FlowIsTheMotionOfTheSeenPointWhenBothMove) {
   SceneBuilder builder;
   builder.add_moving(textured_plane(), Eigen::Affine3d::Identity(), object);
   const Scene scene = std::move(builder).build(Background(0.5));
-  const ViewRenderer view(scene, kCamera, 1);
+  const ViewRenderer view(scene, kLensCamera, 1);
   constexpr double kTime_s = 0.43;
   constexpr double kStep_s = 1e-4;
   const FlowField flow = view.flow(motion.state(kTime_s), kTime_s);
@@ -115,13 +115,13 @@ TEST(MovingView, FlowIsTheMotionOfTheSeenPointWhenBothMove) {
     for (int x = 0; x < 41; ++x) {
       if (depth(x, y) <= 0) continue;
       ++compared;
-      const Eigen::Vector3d ray = kCamera.ray(kCamera.undistort({x, y}));
+      const Eigen::Vector3d ray = kLensCamera.ray(kLensCamera.undistort({x, y}));
       const Eigen::Vector3d on_object =
           object.pose(kTime_s).inverse() *
           (motion.pose(kTime_s) * (static_cast<double>(depth(x, y)) * ray));
       const auto pixel_at = [&](double t) {
-        return kCamera.distort(
-            kCamera.project(motion.pose(t).inverse() * (object.pose(t) * on_object)));
+        return kLensCamera.distort(
+            kLensCamera.project(motion.pose(t).inverse() * (object.pose(t) * on_object)));
       };
       const Eigen::Vector2d expected =
           (pixel_at(kTime_s + kStep_s) - pixel_at(kTime_s - kStep_s)) / (2 * kStep_s);
@@ -137,7 +137,7 @@ TEST(MovingView, LabelsOfEventsAgreeWithTheImages) {
   const Scene scene = std::move(builder).build(Background(0.5));
   const Spline motion = wobble({0, 0, 0}, 0.2, 0.3, 2);
   constexpr double kTime_s = 0.43;
-  const ViewRenderer view(scene, kCamera, 1);
+  const ViewRenderer view(scene, kLensCamera, 1);
   const ImageF depth = view.depth({kTime_s, motion.pose(kTime_s)});
   const FlowField flow = view.flow(motion.state(kTime_s), kTime_s);
   SensedEvents events;
@@ -149,7 +149,7 @@ TEST(MovingView, LabelsOfEventsAgreeWithTheImages) {
       event.y = static_cast<std::uint16_t>(y);
       events.push_back(event);
     }
-  const EventLabels labels = EventLabeller(scene, motion, kCamera).label(events);
+  const EventLabels labels = EventLabeller(scene, motion, kLensCamera).label(events);
   for (std::size_t i = 0; i < events.size(); ++i) {
     EXPECT_EQ(labels.object[i], depth.pixels()[i] > 0 ? 0 : -1);
     EXPECT_NEAR(labels.depth[i], depth.pixels()[i], 1e-6);

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "core/random.h"
+#include "tests/unit/simulator/sensor/noise/log_eps.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kLogEps = 1e-3;
+using testing::kLogEps;
 
 /// Random pieces whose states, inputs and rates reach from slow to fast.
 class RandomPieces {

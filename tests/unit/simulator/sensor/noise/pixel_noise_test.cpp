@@ -7,15 +7,17 @@
 #include "simulator/sensor/noise/leak.h"
 #include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/noise/spontaneous_events.h"
+#include "tests/unit/simulator/sensor/noise/log_eps.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
 namespace saccade {
 namespace {
 
+using testing::kLogEps;
+
 constexpr int kWidth = 240;
 constexpr int kHeight = 180;
 constexpr std::uint64_t kSeed = 11;
-constexpr double kLogEps = 1e-3;
 
 /// `of(x, y)` for every pixel, row by row.
 template <class Function>

@@ -11,17 +11,18 @@
 
 #include "core/random.h"
 #include "tests/support/error_of.h"
+#include "tests/unit/simulator/sensor/noise/log_eps.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
 namespace saccade {
 namespace {
 
 using testing::error_of;
+using testing::kLogEps;
 
-constexpr int kWidth = 40;
-constexpr int kHeight = 30;
-constexpr std::uint64_t kSeed = 5;
-constexpr double kLogEps = 1e-3;
+constexpr int kOutputWidth = 40;
+constexpr int kOutputHeight = 30;
+constexpr std::uint64_t kOutputSeed = 5;
 constexpr TimeNs kStep_ns = 1000;
 
 /// `count` events at random pixels of the sensor, at Poisson times of `rate_hz`, in whole steps.
@@ -33,8 +34,8 @@ SensedEvents random_events(std::size_t count, double rate_hz, TimeNs step_ns = k
     t_ns -= 1e9 * std::log1p(-random.uniform(0, i)) / rate_hz;
     SensedEvent event;
     event.t_ns = step_ns * std::llround(t_ns / static_cast<double>(step_ns));
-    event.x = static_cast<std::uint16_t>(random.below(kWidth, 1, i));
-    event.y = static_cast<std::uint16_t>(random.below(kHeight, 2, i));
+    event.x = static_cast<std::uint16_t>(random.below(kOutputWidth, 1, i));
+    event.y = static_cast<std::uint16_t>(random.below(kOutputHeight, 2, i));
     event.polarity = random.uniform(3, i) < 0.5 ? 1 : -1;
     event.log_intensity = static_cast<float>(random.uniform(4, i) - 1);
     events.push_back(event);
@@ -44,8 +45,8 @@ SensedEvents random_events(std::size_t count, double rate_hz, TimeNs step_ns = k
 }
 
 SensorOutput make_output(const NoiseOptions& options, TimeNs step_ns = kStep_ns,
-                         std::uint64_t seed = kSeed) {
-  return {options, kLogEps, kWidth, kHeight, step_ns, seed};
+                         std::uint64_t seed = kOutputSeed) {
+  return {options, kLogEps, kOutputWidth, kOutputHeight, step_ns, seed};
 }
 
 /// Pushes `events` in pieces of `chunk`, each complete up to a bit less than its next event, which
@@ -118,7 +119,8 @@ TEST(SensorOutput, RefusesAStateThatDoesNotFit) {
   const std::string state = output.state();
   EXPECT_NE(error_of([&] { output.load(state.substr(0, state.size() - 1)); }), "no error");
   EXPECT_NE(error_of([&] { output.load(state + "x"); }), "no error");
-  SensorOutput other(busy_options(), kLogEps, kWidth + 1, kHeight, kStep_ns, kSeed);
+  SensorOutput other(busy_options(), kLogEps, kOutputWidth + 1, kOutputHeight, kStep_ns,
+                     kOutputSeed);
   EXPECT_NE(error_of([&] { other.load(state); }), "no error");
 }
 
@@ -131,8 +133,8 @@ std::vector<double> latencies_us(const LatencyOptions& latency, float log_intens
   for (std::size_t i = 0; i < count; ++i) {
     SensedEvent event;
     event.t_ns = static_cast<TimeNs>(i) * 10'000'000;
-    event.x = static_cast<std::uint16_t>(i % kWidth);
-    event.y = static_cast<std::uint16_t>(i / kWidth % kHeight);
+    event.x = static_cast<std::uint16_t>(i % kOutputWidth);
+    event.y = static_cast<std::uint16_t>(i / kOutputWidth % kOutputHeight);
     event.log_intensity = log_intensity;
     events.push_back(event);
   }
@@ -212,8 +214,8 @@ TEST(Readout, ServesABurstAtItsRateAndLosesWhatFindsNoPlace) {
   SensedEvents events(100);
   for (std::size_t i = 0; i < events.size(); ++i) {
     events[i].t_ns = 5'000'000;
-    events[i].x = static_cast<std::uint16_t>(i % kWidth);
-    events[i].y = static_cast<std::uint16_t>(i / kWidth);
+    events[i].x = static_cast<std::uint16_t>(i % kOutputWidth);
+    events[i].y = static_cast<std::uint16_t>(i / kOutputWidth);
   }
   SensorOutput output = make_output(readout(1e5, false, 60));
   const SensedEvents recorded = record(output, events, 100);
