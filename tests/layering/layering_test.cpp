@@ -2,6 +2,7 @@
 // tree; the checker itself is tested on samples that break each rule.
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -122,6 +123,61 @@ std::vector<fs::path> find_sources(const fs::path& root) {
   return sources;
 }
 
+/// A line without its comment, what its strings hold, and the names of suite and test: what a file
+/// uses. Empty for directives.
+std::string code_of(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  if (first == std::string::npos || line[first] == '#') return "";
+  std::string code;
+  bool in_text = false;
+  std::size_t i = line.starts_with("TEST") ? std::min(line.find(')'), line.size()) : first;
+  for (; i < line.size(); ++i) {
+    if (in_text && line[i] == '\\') {
+      ++i;
+    } else if (line[i] == '"') {
+      in_text = !in_text;
+      code += ' ';
+    } else if (!in_text) {
+      if (line.compare(i, 2, "//") == 0) break;
+      code += line[i];
+    }
+  }
+  return code;
+}
+
+struct Names {
+  std::set<std::string> used;      ///< beginning with a capital, as types do
+  std::set<std::string> declared;  ///< in whatever scope
+};
+
+/// Members and what other libraries or types hold (`.X`, `->X`, `A::X`) are not used by that name.
+Names names_in(const std::string& text) {
+  const auto is_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+  static const std::set<std::string> kDeclaring{"struct", "class", "enum", "using", "typename"};
+  Names names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string code = code_of(line);
+    std::string before, word;
+    for (std::size_t i = 0; i < code.size(); i += std::max<std::size_t>(1, word.size())) {
+      word.clear();
+      for (std::size_t k = i; k < code.size() && is_word(code[k]); ++k) word += code[k];
+      if (word.empty()) continue;
+      const bool is_inner =
+          i > 0 && (code[i - 1] == '.' || code[i - 1] == '>' || code[i - 1] == ':');
+      const bool is_ours =
+          code.substr(0, i).ends_with("testing::") || code.substr(0, i).ends_with("saccade::");
+      if (kDeclaring.contains(before)) names.declared.insert(word);
+      if (std::isupper(static_cast<unsigned char>(word[0])) && (!is_inner || is_ours))
+        names.used.insert(word);
+      before = word;
+    }
+  }
+  return names;
+}
+
 struct Sample {
   const char* path;
   const char* text;
@@ -199,6 +255,45 @@ TEST(Layering, EveryTypeHasANameOfItsOwn) {
     }
   }
   EXPECT_GT(where.size(), 100U);
+}
+
+TEST(NamesIn, AreThoseOfTheCodeAlone) {
+  const Names names = names_in(
+      "#include <Eigen/Cholesky>\nTEST(Suite, Name) { Used x(\"Text \\\" Text\"); }  // Comment\n"
+      "struct Own {};\nEigen::Other y = a.Member + b->Member;\nsaccade::Ours z;\n");
+  EXPECT_EQ(names.used, (std::set<std::string>{"Eigen", "Ours", "Own", "Used"}));
+  EXPECT_EQ(names.declared, std::set<std::string>{"Own"});
+}
+
+// Where a folder is compiled as one unit the compiler does not see that a file relies on the
+// includes of its neighbours.
+TEST(Layering, EveryFileReachesTheTypesThatItNames) {
+  const fs::path root = SACCADE_SOURCE_DIR;
+  std::map<std::string, std::string> header_of;
+  std::map<std::string, Names> names;
+  std::map<std::string, std::vector<Include>> includes;
+  for (const fs::path& source : find_sources(root)) {
+    const std::string text = read_text(root / source), path = source.generic_string();
+    names[path] = names_in(text);
+    includes[path] = read_includes(text);
+    if (source.extension() == ".h")
+      for (const std::string& type : defined_types(text))
+        header_of[type.substr(type.rfind(':') + 1)] = path;
+  }
+  for (const auto& [path, own] : names) {
+    std::vector<std::string> reached{path};
+    std::set<std::string> seen{path}, declared;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      declared.insert(names[reached[i]].declared.begin(), names[reached[i]].declared.end());
+      for (const Include& include : includes[reached[i]])
+        if (seen.insert(include.path).second) reached.push_back(include.path);
+    }
+    for (const std::string& name : own.used)
+      if (const auto header = header_of.find(name);
+          header != header_of.end() && !seen.contains(header->second) && !declared.contains(name))
+        ADD_FAILURE() << path << ": " << name << " is from \"" << header->second
+                      << "\", which it does not include";
+  }
 }
 
 }  // namespace
