@@ -26,3 +26,23 @@ function(saccade_set_warnings target)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
     "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-uninitialized;-Wno-maybe-uninitialized;-Wno-restrict>")
 endfunction()
+
+# saccade_group_by_folder(<target>): with SACCADE_UNITY_BUILD the sources of one folder are compiled as one unit. Most of a clean
+# build is parsing the same outside headers, some 3 s for each of seven hundred short files; per folder it takes less than half.
+# Every file keeps its unit whatever is added beside it. Hence the rule that a name in an anonymous namespace is unique in
+# its folder. Generated files, added later, stay alone.
+function(saccade_group_by_folder target)
+  if(NOT SACCADE_UNITY_BUILD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE group)
+    string(MAKE_C_IDENTIFIER "${group}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+  # GCC takes the sources of a unit for headers, of whose classes none may hold what is in an anonymous namespace.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
