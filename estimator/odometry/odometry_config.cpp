@@ -32,6 +32,10 @@ void describe_start(config::Fields& fields, StartOptions& options) {
       .value("truth_share", options.truth_share, "... but for no more than this share of the whole")
       .above(0)
       .at_most(1);
+  fields
+      .value("time_offset_s", options.time_offset_s,
+             "a given pose is that of so long after its time stamp")
+      .range(-1, 1);
 }
 
 void describe_keyframe(config::Fields& fields, OdometryOptions& options) {
@@ -139,6 +143,7 @@ void describe_last(config::Fields& fields, LastAdjustment& last) {
 void describe(config::Fields& fields, OdometryConfig& config) {
   using config::Fields;
   OdometryOptions& odometry = config.odometry;
+  fields.section("camera", config.camera, "what is taken to differ from the calibration");
   fields.group(
       "start", [&](Fields& f) { describe_start(f, config.start); }, "what is known at the start");
   fields.choice("mode", odometry.mode,

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/config/fields.h"
+#include "estimator/camera_correction.h"
 #include "estimator/odometry/odometry.h"
 #include "estimator/odometry/start/bootstrap.h"
 
@@ -13,6 +14,7 @@ struct StartOptions {
   /// The ground truth is given for so long from the first event on; 0: nothing is known.
   double truth_s = 0.2;
   double truth_share = 0.1;  ///< ... but for no more than this share of the events' time
+  double time_offset_s = 0;  ///< a given pose is that of so long after its time stamp
   BootstrapOptions found;    ///< of truth_s: 0
 };
 
@@ -20,6 +22,7 @@ struct StartOptions {
 /// Nothing comes from the dataset but its events, its calibration and the poses of the start, if
 /// there are any.
 struct OdometryConfig {
+  CameraCorrection camera;
   StartOptions start;
   OdometryOptions odometry;
   std::uint64_t seed = 1;

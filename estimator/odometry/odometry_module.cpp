@@ -28,16 +28,16 @@ Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
   const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
   const double truth_s = std::min(options.truth_s, options.truth_share * whole_s);
   std::vector<StampedPose> start;
-  const StampedPose* before = nullptr;
-  for (const StampedPose& pose : dataset.groundtruth().poses()) {
+  std::optional<StampedPose> before;
+  for (StampedPose pose : dataset.groundtruth().poses()) {
+    pose.t_s += options.time_offset_s;
     if (pose.t_s > from_s + truth_s) break;
     if (pose.t_s < from_s)
-      before = &pose;
+      before = pose;
     else
       start.push_back(pose);
   }
-  if (before != nullptr && (start.empty() || start.front().t_s > from_s))
-    start.insert(start.begin(), *before);
+  if (before && (start.empty() || start.front().t_s > from_s)) start.insert(start.begin(), *before);
   if (start.size() < 2)
     throw InputError(
         dataset.folder().string(),
@@ -48,9 +48,9 @@ Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
 }
 
 /// The path at the start from events alone.
-Bootstrap found_start(const Dataset& dataset, std::span<const Event> events,
-                      const StartOptions& options) {
-  Bootstrap start = find_start(events, dataset.camera(), options.found);
+Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
+                      std::span<const Event> events, const StartOptions& options) {
+  Bootstrap start = find_start(events, camera, options.found);
   if (start.status == Bootstrap::Status::kNoMotion)
     throw InputError(dataset.folder().string(),
                      "the events show no motion that odometry could start from");
@@ -69,7 +69,8 @@ struct Start {
   double seconds = 0;              ///< of work
 };
 
-Start start_of(const Dataset& dataset, std::span<const Event> events, const StartOptions& options) {
+Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<const Event> events,
+               const StartOptions& options) {
   Start start;
   if (options.truth_s > 0) {
     start.path.poses = start_poses(dataset, events, options);
@@ -77,7 +78,7 @@ Start start_of(const Dataset& dataset, std::span<const Event> events, const Star
     return start;
   }
   const StageClock clock(start.seconds);
-  start.found = found_start(dataset, events, options);
+  start.found = found_start(dataset, camera, events, options);
   start.from_s = start.found->path.start_s();
   // All but the first pose may change.
   start.path = {start.found->path, start.from_s, options.found.depth_m, {}};
@@ -95,10 +96,11 @@ RunSummary run_odometry(const RunRequest& request) {
   RunTiming timing;
   std::optional<StageClock> io(timing.io_s);
   const Dataset dataset = Dataset::open(request.dataset);
+  const PinholeCamera camera = config.camera.of(dataset.camera());
   const Events events = load_events(request, dataset);
   const Gyroscope gyroscope = load_gyroscope(config.odometry.tracker.motion, dataset);
   io.reset();
-  const Start start = start_of(dataset, events, config.start);
+  const Start start = start_of(dataset, camera, events, config.start);
 
   // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
@@ -113,7 +115,7 @@ RunSummary run_odometry(const RunRequest& request) {
   std::optional<Odometry> odometry;
   Progress progress("odometry", events.size() * static_cast<std::size_t>(request.repeat), "events");
   for (int i = 0; i < request.repeat; ++i) {
-    odometry.emplace(config.odometry, dataset.camera(), config.seed);
+    odometry.emplace(config.odometry, camera, config.seed);
     odometry->set_gyroscope(gyroscope);
     double wall_s = start.seconds;
     refine_s = 0;
@@ -145,7 +147,7 @@ RunSummary run_odometry(const RunRequest& request) {
   if (config.odometry.mode == OdometryMode::kOnline) timing.dropped_events = result.dropped_events;
 
   io.emplace(timing.io_s);
-  write_odometry(writer.path(), dataset.camera(), result, odometry->map());
+  write_odometry(writer.path(), camera, result, odometry->map());
   if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
   if (start.found)
     write_start(writer.path() / "start.yaml", *start.found, config.start.found.depth_m);

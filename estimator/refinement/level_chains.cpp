@@ -1,11 +1,10 @@
 #include "estimator/refinement/level_chains.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/check.h"
+#include "estimator/refinement/pixel_choice.h"
 
 namespace saccade {
 namespace {
@@ -18,12 +17,6 @@ struct PixelChain {
   std::uint32_t chain = kNone;
   int length = 0;  ///< of the chain so far
 };
-
-/// Multiples of the golden ratio's fraction spread evenly, however many of them are taken.
-bool is_chosen(std::size_t pixel, double share) {
-  const double x = static_cast<double>(pixel) * (std::numbers::phi - 1);
-  return x - std::floor(x) < share;
-}
 
 /// Leaves out chains of one observation and numbers the others anew.
 void drop_single(LevelChains& result) {

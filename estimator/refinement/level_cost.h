@@ -4,14 +4,9 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "core/spline_knots.h"
-#include "estimator/refinement/map_surface.h"
+#include "estimator/refinement/seen_level.h"
 
 namespace saccade {
-
-/// A control pose of the camera's path is corrected by (e, w): p + e in the map's axes, R Exp(w).
-inline constexpr int kControlSize = 6;
-[[nodiscard]] Rigid3 corrected(const Rigid3& control, const double* correction);
 
 /// One event before the map, by the four control poses of map_from_camera at its time and the
 /// offset of its chain:

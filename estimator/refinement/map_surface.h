@@ -44,4 +44,21 @@ class MapSurface {
   const IntensityMap& map_;
 };
 
+/// Harmonic mean of the depths of places in their views.
+class MeanDepth {
+ public:
+  void add(const MapSurface& surface, const MapSurface::Hit& hit) {
+    inverse_ += hit.plane.dot(surface.map().camera().ray(hit.pixel));
+    ++count_;
+  }
+  /// 1 without any place.
+  [[nodiscard]] double value_m() const {
+    return count_ == 0 ? 1 : static_cast<double>(count_) / inverse_;
+  }
+
+ private:
+  double inverse_ = 0;  ///< [1/m]
+  std::size_t count_ = 0;
+};
+
 }  // namespace saccade

@@ -77,14 +77,15 @@ Eigen::MatrixXd marginal_information(ceres::Problem& problem, const std::vector<
                                   eliminated.end());
   ceres::CRSMatrix jacobian;
   SACCADE_CHECK(problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian));
-  // The last group: rows of kept blocks alone.
-  std::vector<std::vector<int>> groups(eliminated.size() + 1);
+  // A row of kept blocks alone is a group of its own, after those of the eliminated ones.
+  std::vector<std::vector<int>> groups(eliminated.size());
   for (int row = 0; row < jacobian.num_rows; ++row) {
-    std::size_t group = eliminated.size();
+    std::size_t group = groups.size();
     for (int k = jacobian.rows[static_cast<std::size_t>(row)];
          k < jacobian.rows[static_cast<std::size_t>(row) + 1]; ++k)
       if (const int column = jacobian.cols[static_cast<std::size_t>(k)]; column >= kept_size)
         group = static_cast<std::size_t>((column - kept_size) / block_size);
+    if (group == groups.size()) groups.emplace_back();
     groups[group].push_back(row);
   }
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kept_size, kept_size);

@@ -46,8 +46,10 @@ JointInput load(const RunRequest& request, const Dataset& dataset, const SourceR
   const double first_s = seconds_from_ns(input.events.front().t_ns);
   JointStart& start = input.start;
   std::vector<StampedPose> known;
-  for (const StampedPose& pose : dataset.groundtruth().poses())
+  for (StampedPose pose : dataset.groundtruth().poses()) {
+    pose.t_s += input.odometry.start.time_offset_s;
     if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) known.push_back(pose);
+  }
   std::vector<StampedPose> found =
       known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
                  run.folder.string());
@@ -127,7 +129,8 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   JointInput input = load(request, dataset, run);
   io.reset();
   const DepthConfig& method = input.odometry.odometry.mapping.depth;
-  const RayDepth depth(method.rays, method.limits, dataset.camera());
+  const PinholeCamera camera = input.odometry.camera.of(dataset.camera());
+  const RayDepth depth(method.rays, method.limits, camera);
   JointResult result;
   Progress progress("refine", config.joint.steps() * static_cast<std::size_t>(request.repeat),
                     "steps");
@@ -135,7 +138,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
     double wall_s = 0;
     {
       const StageClock clock(wall_s);
-      result = refine_jointly(input.events, input.start, dataset.camera(), depth, config.joint,
+      result = refine_jointly(input.events, input.start, camera, depth, config.joint,
                               [&](std::size_t n) { progress.add(n); });
     }
     timing.wall_s.push_back(wall_s);
@@ -156,7 +159,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   write_poses(writer.path(), input.poses);
   if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
   result.costs.save(writer.path() / "cost.csv");
-  write_keyframes(writer.path(), dataset.camera().undistorted(), input, result.path, depths,
+  write_keyframes(writer.path(), camera.undistorted(), input, result.path, depths,
                   config.joint.window_s);
   io.reset();
   writer.finish("refine", request, dataset, input.window, config.seed, config::print(config),

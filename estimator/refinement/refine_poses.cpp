@@ -73,12 +73,13 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   const double first_s = seconds_from_ns(events.front().t_ns);
   const double last_s = seconds_from_ns(events.back().t_ns);
   const RunRecord::Window window = window_of(request, first_s, last_s);
+  const PinholeCamera camera = tracked.camera.of(dataset.camera());
   const auto references =
-      load_references(dataset, reference_of(config, tracked), window.start_s, window.end_s);
+      load_references(dataset, camera, reference_of(config, tracked), window.start_s, window.end_s);
   const EventContrast contrast = contrast_of(config, tracked, dataset);
   io.reset();
 
-  const IntensityMap map(dataset.camera().undistorted(), references, config.map);
+  const IntensityMap map(camera.undistorted(), references, config.map);
   const MapSurface surface(map);
   std::vector<StampedPose> start = known_path(poses, first_s, last_s, run.folder.string());
   const Rigid3 map_from_world = map.world_from_map().inverse();
@@ -90,7 +91,7 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
     double wall_s = 0;
     {
       const StageClock clock(wall_s);
-      path = refine_path(surface, dataset.camera(), contrast, events, start, config.poses);
+      path = refine_path(surface, camera, contrast, events, start, config.poses);
     }
     progress.add(events.size());
     timing.wall_s.push_back(wall_s);

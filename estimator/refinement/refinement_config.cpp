@@ -22,16 +22,32 @@ void describe_map(config::Fields& fields, RefinementConfig& config) {
 }
 
 void describe_poses(config::Fields& fields, PoseRefinementOptions& options) {
+  using Residual = PoseRefinementOptions::Residual;
+  fields.choice("residual", options.residual,
+                {{"events", Residual::kEvents}, {"frames", Residual::kFrames}},
+                "what is compared with the map: the level at each event, or how much brighter "
+                "pixels became over windows of events");
   fields.value("knot_spacing_s", options.knot_spacing_s, "of the cubic spline").range(1e-3, 10);
-  fields.value("events", options.chains.events, "at most so many, all of evenly spread pixels")
-      .range(1000, 1e9);
-  fields
-      .value("chain", options.chains.length,
-             "events of a pixel that are compared with each other; 2: neighbours alone")
-      .range(2, 1e9);
+  if (options.residual == Residual::kEvents) {
+    fields.value("events", options.chains.events, "at most so many, all of evenly spread pixels")
+        .range(1000, 1e9);
+    fields
+        .value("chain", options.chains.length,
+               "events of a pixel that are compared with each other; 2: neighbours alone")
+        .range(2, 1e9);
+  } else {
+    fields.value("window_events", options.images.window_events, "in a window").range(100, 1e9);
+    fields
+        .value("increments", options.images.increments,
+               "at most so many, all of evenly spread pixels")
+        .range(1000, 1e9);
+  }
   fields.value("noise", options.noise, "deviation of a level from the map [log units]").above(0);
   fields.value("place_px", options.place_px, "of the place where the map shows it").at_least(0);
-  fields.value("outlier", options.outlier, "deviations beyond which an event counts less")
+  fields
+      .value("outlier",
+             options.residual == Residual::kEvents ? options.outlier : options.images.outlier,
+             "deviations beyond which a residual counts less")
       .range(0.1, 1e6);
   fields.value("hold_px", options.hold_px, "of the control poses from the run's, as image motion")
       .above(0);

@@ -15,6 +15,17 @@ class CallEach : public ceres::IterationCallback {
   const std::function<void()>& each_;
 };
 
+ceres::Solver::Summary solve(ceres::Problem& problem, ceres::Solver::Options options,
+                             int iterations, double tolerance) {
+  options.max_num_iterations = iterations;
+  options.function_tolerance = tolerance;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary;
+}
+
 }  // namespace
 
 ceres::Solver::Summary solve_by_schur(
@@ -23,15 +34,15 @@ ceres::Solver::Summary solve_by_schur(
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
-  options.max_num_iterations = iterations;
-  options.function_tolerance = tolerance;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
   CallEach call_each(each);
   if (each) options.callbacks.push_back(&call_each);
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return summary;
+  return solve(problem, options, iterations, tolerance);
+}
+
+ceres::Solver::Summary solve_sparsely(ceres::Problem& problem, int iterations, double tolerance) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  return solve(problem, options, iterations, tolerance);
 }
 
 }  // namespace saccade

@@ -15,4 +15,8 @@ namespace saccade {
     ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering,
     int iterations, double tolerance, const std::function<void()>& each = {});
 
+/// The same without an order: sparse normal equations, of many residuals over few unknowns.
+[[nodiscard]] ceres::Solver::Summary solve_sparsely(ceres::Problem& problem, int iterations,
+                                                    double tolerance);
+
 }  // namespace saccade

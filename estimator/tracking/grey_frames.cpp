@@ -68,15 +68,16 @@ ImageF log_intensity_of_codes(const ImageU8& codes, const ToneCurve& tone, doubl
   return image;
 }
 
-std::vector<GreyFrame> load_grey_frames(const Dataset& dataset, double start_s, double end_s) {
+std::vector<GreyFrame> load_grey_frames(const Dataset& dataset, const PinholeCamera& camera,
+                                        double start_s, double end_s) {
   const ToneCurve tone = tone_of(dataset);
   std::vector<GreyFrame> frames;
   for (const StampedFile& frame : dataset.frames()) {
     if (frame.t_s < start_s - kRounding_s || frame.t_s > end_s + kRounding_s) continue;
     const ImageF levels =
-        log_intensity_of_codes(read_codes(frame, dataset.camera()), tone, dataset.facts().log_eps);
+        log_intensity_of_codes(read_codes(frame, camera), tone, dataset.facts().log_eps);
     frames.push_back(
-        {ns_from_seconds(frame.t_s), undistort_bilinear(levels, dataset.camera(), kUnknownLevel)});
+        {ns_from_seconds(frame.t_s), undistort_bilinear(levels, camera, kUnknownLevel)});
   }
   if (frames.empty())
     throw InputError(dataset.folder().string(), "holds no frames in the window to be tracked");

@@ -24,10 +24,12 @@ struct GreyFrame {
 [[nodiscard]] ImageF log_intensity_of_codes(const ImageU8& codes, const ToneCurve& tone,
                                             double log_eps);
 
-/// The 8-bit pictures (not the radiance beside them) with start_s <= t <= end_s, decoded by the
-/// tone curve that dataset.yaml states, else sRGB. Throws InputError naming the dataset where there
-/// is none in the window, or the file that is no 8-bit picture of the camera's size.
-[[nodiscard]] std::vector<GreyFrame> load_grey_frames(const Dataset& dataset, double start_s,
+/// The 8-bit pictures (not the radiance beside them) with start_s <= t <= end_s, taken by `camera`,
+/// decoded by the tone curve that dataset.yaml states, else sRGB. Throws InputError naming the
+/// dataset where there is none in the window, or the file that is no 8-bit picture of the camera's
+/// size.
+[[nodiscard]] std::vector<GreyFrame> load_grey_frames(const Dataset& dataset,
+                                                      const PinholeCamera& camera, double start_s,
                                                       double end_s);
 
 }  // namespace saccade

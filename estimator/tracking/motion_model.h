@@ -23,6 +23,7 @@ struct PredictionOptions {
   /// readings are off by [rad/s], and a bias to be taken from them [rad/s, sensor frame].
   double gyro_sigma = 0.05;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
+  double gyro_offset_s = 0;  ///< a reading is of so long after its time stamp
 };
 
 /// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).

@@ -67,9 +67,8 @@ void keep_region(const std::array<double, 4>& region, ImageF& depth) {
       if (x < region[0] || y < region[1] || x > region[2] || y > region[3]) depth(x, y) = 0;
 }
 
-ReferenceView load_view(const Dataset& dataset, const ReferenceOptions& options,
-                        std::size_t index) {
-  const PinholeCamera& camera = dataset.camera();
+ReferenceView load_view(const Dataset& dataset, const PinholeCamera& camera,
+                        const ReferenceOptions& options, std::size_t index) {
   const StampedFile& frame = dataset.frames()[index];
   ReferenceView view;
   const ImageF radiance = dataset.load_frame(index);
@@ -108,10 +107,11 @@ ImageF undistort_nearest(const ImageF& image, const PinholeCamera& camera, float
   });
 }
 
-std::vector<ReferenceView> load_references(const Dataset& dataset, const ReferenceOptions& options,
-                                           double start_s, double end_s) {
+std::vector<ReferenceView> load_references(const Dataset& dataset, const PinholeCamera& camera,
+                                           const ReferenceOptions& options, double start_s,
+                                           double end_s) {
   const std::size_t first = reference_index(dataset, options, start_s);
-  std::vector<ReferenceView> views{load_view(dataset, options, first)};
+  std::vector<ReferenceView> views{load_view(dataset, camera, options, first)};
   if (!options.turn_deg) return views;
   if (dataset.groundtruth().empty())
     throw InputError("reference.turn_deg",
@@ -123,7 +123,7 @@ std::vector<ReferenceView> load_references(const Dataset& dataset, const Referen
     const bool is_new = std::all_of(views.begin(), views.end(), [&](const ReferenceView& view) {
       return angle_between(view.world_from_reference.rotation(), pose.rotation()) > turn;
     });
-    if (is_new) views.push_back(load_view(dataset, options, i));
+    if (is_new) views.push_back(load_view(dataset, camera, options, i));
   }
   return views;
 }

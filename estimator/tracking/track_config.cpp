@@ -175,6 +175,7 @@ void describe(config::Fields& fields, TrackConfig& config) {
        {"frames", TrackConfig::Method::kFrames}},
       "edges against event frames (the thesis), log intensity at each event, brightness increments "
       "against signed event frames, or grey frames");
+  fields.section("camera", config.camera, "what is taken to differ from the calibration");
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "where the map comes from");

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/config/fields.h"
+#include "estimator/camera_correction.h"
 #include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/polarity_tracker.h"
@@ -19,6 +20,7 @@ struct TrackConfig {
   enum class Method { kEdges, kIntensity, kPolarity, kFrames };
 
   Method method = Method::kEdges;
+  CameraCorrection camera;
   ReferenceOptions reference;
   MapOptions map;
   TrackerOptions tracker;

@@ -33,6 +33,7 @@ double seconds_since(Clock::time_point start) {
 
 /// Everything that tracking needs, read from the dataset.
 struct TrackInput {
+  PinholeCamera camera;
   Events events;                  ///< none where frames are tracked
   std::vector<GreyFrame> frames;  ///< none where events are
   RunRecord::Window window;
@@ -63,26 +64,28 @@ Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double st
   return dataset.groundtruth().at_clamped(start_s);
 }
 
-std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset) {
+std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset,
+                                         const PinholeCamera& camera) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double first_s = dataset.frames().empty() ? 0 : dataset.frames().front().t_s;
   const double start_s = request.start_s.value_or(first_s);
-  return load_grey_frames(dataset, start_s,
+  return load_grey_frames(dataset, camera, start_s,
                           request.duration_s ? start_s + *request.duration_s : infinity);
 }
 
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,
                       const Dataset& dataset) {
   TrackInput input;
+  input.camera = config.camera.of(dataset.camera());
   if (config.method == TrackConfig::Method::kFrames) {
-    input.frames = load_frame_window(request, dataset);
+    input.frames = load_frame_window(request, dataset, input.camera);
     input.window = window_over(request, input.frames);
   } else {
     input.events = load_events(request, dataset);
     input.window = window_over(request, input.events);
   }
-  input.references =
-      load_references(dataset, config.reference, input.window.start_s, input.window.end_s);
+  input.references = load_references(dataset, input.camera, config.reference, input.window.start_s,
+                                     input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
   input.gyroscope = load_gyroscope(config.tracker.motion, dataset);
   return input;
@@ -149,7 +152,7 @@ const IntensityMapOptions& smoothing_of(const TrackConfig& config) {
 
 TrackOutput track(const TrackConfig& config, const Dataset& dataset, const TrackInput& input,
                   int repeat) {
-  const PinholeCamera& camera = dataset.camera();
+  const PinholeCamera& camera = input.camera;
   const Rigid3& start = input.initial_world_from_camera;
   TrackOutput output;
   const auto map_start = Clock::now();

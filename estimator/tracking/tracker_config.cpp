@@ -141,6 +141,9 @@ void describe_gyroscope(config::Fields& fields, PredictionOptions& options) {
              "what a reading of the gyroscope is off by, its bias included [rad/s]")
       .range(1e-6, 10);
   fields.value("gyro_bias", options.gyro_bias, "taken from every reading [rad/s, sensor frame]");
+  fields
+      .value("gyro_offset_s", options.gyro_offset_s, "a reading is of so long after its time stamp")
+      .range(-1, 1);
 }
 
 void describe_lost(config::Fields& fields, LostOptions& options) {

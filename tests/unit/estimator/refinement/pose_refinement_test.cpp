@@ -10,14 +10,18 @@ namespace {
 using testing::corner_view;
 using testing::CornerView;
 
-RefinedPath refined_path(double share, int rounds = 3) {
+using Residual = PoseRefinementOptions::Residual;
+
+RefinedPath refined_path(double share, int rounds = 3, Residual residual = Residual::kEvents) {
   const CornerView& r = corner_view();
   const MapSurface surface(r.map);
   std::vector<StampedPose> start = r.disturbed(share);
   for (StampedPose& pose : start)
     pose.world_from_camera = r.map.world_from_map().inverse() * pose.world_from_camera;
   PoseRefinementOptions options;
+  options.residual = residual;
   options.chains.events = 20000;
+  options.images = {.window_events = 5000, .increments = 100000};
   options.rounds = rounds;
   return refine_path(surface, r.world.camera(), {CornerView::kContrast, CornerView::kContrast},
                      r.events, start, options);
@@ -47,6 +51,19 @@ TEST(PoseRefinement, BringsADisturbedPathBack) {
   EXPECT_LT(path.costs.steps().back().cost, 0.5 * path.costs.steps().front().cost);
 }
 
+TEST(PoseRefinement, BringsADisturbedPathBackByImages) {
+  const auto [before_m, before_rad] = errors_of(refined_path(1, 0).map_from_camera.spline());
+  const RefinedPath path = refined_path(1, 1, Residual::kFrames);
+  const auto [after_m, after_rad] = errors_of(path.map_from_camera.spline());
+  EXPECT_LT(after_m, 0.3 * before_m);
+  EXPECT_LT(after_rad, 0.4 * before_rad);
+  EXPECT_GT(path.inliers, path.observations * 9 / 10);
+  EXPECT_LT(path.costs.steps().back().cost, path.costs.steps().front().cost);
+  const double variance = path.covariance_at(0.15).topLeftCorner<3, 3>().trace();
+  EXPECT_GT(variance, 1e-12);
+  EXPECT_LT(variance, 1e-4);
+}
+
 TEST(PoseRefinement, KnowsHowSureItIs) {
   const RefinedPath path = refined_path(0, 1);
   const Matrix6 covariance = path.covariance_at(0.15);
@@ -72,11 +89,15 @@ TEST(PoseRefinement, WithoutEventsThePathStays) {
   const CornerView& r = corner_view();
   const MapSurface surface(r.map);
   const auto start = r.disturbed(1);
-  const RefinedPath path = refine_path(surface, r.world.camera(), {0.1, 0.1}, {}, start, {});
-  EXPECT_EQ(path.observations, 0U);
-  const auto kept = SplineControls::smooth(start, PoseRefinementOptions{}.knot_spacing_s);
-  for (std::size_t k = 0; k < kept.poses.size(); ++k)
-    EXPECT_LT((kept.poses[k].inverse() * path.map_from_camera.poses[k]).log().norm(), 1e-9);
+  for (const Residual residual : {Residual::kEvents, Residual::kFrames}) {
+    PoseRefinementOptions options;
+    options.residual = residual;
+    const auto path = refine_path(surface, r.world.camera(), {0.1, 0.1}, {}, start, options);
+    EXPECT_EQ(path.observations, 0U);
+    const auto kept = SplineControls::smooth(start, options.knot_spacing_s);
+    for (std::size_t k = 0; k < kept.poses.size(); ++k)
+      EXPECT_LT((kept.poses[k].inverse() * path.map_from_camera.poses[k]).log().norm(), 1e-9);
+  }
 }
 
 }  // namespace

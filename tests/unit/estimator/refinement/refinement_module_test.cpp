@@ -128,6 +128,15 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
   EXPECT_GE(costs.number(costs.rows() - 1, costs.require("seconds")), 0);
 }
 
+TEST_F(RefinementModule, PosesByImagesOfEventsBecomeBetter) {
+  (void)run_refinement(
+      request("images",
+              "{map: {contrast: 0.12}, poses: {residual: frames, increments: 100000, rounds: 1}}"));
+  const Errors before = errors_of(path("track"), sweep), after = errors_of(path("images"), sweep);
+  EXPECT_LT(after.position_m, before.position_m);
+  EXPECT_LT(after.rotation_rad, before.rotation_rad);
+}
+
 TEST_F(RefinementModule, PathAndMapOfARunOfOdometryGoTogether) {
   record(path("corner"), testing::corner_world(160, 120), wavy_glide, 0.5);
   RunRequest odometry = request("odometry", R"(
@@ -192,6 +201,9 @@ TEST(RefinementConfigs, ShippedOnesAreRead) {
     EXPECT_THAT(print_refinement_config(config::load(std::string(SACCADE_SOURCE_DIR) +
                                                      "/configs/refinement/" + name + ".yaml")),
                 HasSubstr(std::string("kind: ") + name));
+  EXPECT_THAT(print_refinement_config(config::load(std::string(SACCADE_SOURCE_DIR) +
+                                                   "/configs/refinement/poses_frames.yaml")),
+              HasSubstr("residual: frames"));
 }
 
 }  // namespace

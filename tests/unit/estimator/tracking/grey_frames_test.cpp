@@ -52,37 +52,39 @@ TEST(LogIntensityOfCodes, LeavesOutWhatIsBlackOrWhite) {
 }
 
 TEST_F(GreyFrames, AreThoseOfTheWindow) {
-  const auto frames = load_grey_frames(dataset(), 0.04, 0.08);
+  const auto frames = load_grey_frames(dataset(), dataset().camera(), 0.04, 0.08);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].t_ns, 40'000'000);
   EXPECT_NEAR(frames[0].log_intensity(7, 9), std::log(1e-3 + linear_from_srgb(100 / 255.0)), 1e-5);
-  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), 0.05, 0.07); }),
+  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), dataset().camera(), 0.05, 0.07); }),
               HasSubstr("no frames in the window"));
 }
 
 TEST_F(GreyFrames, AreDecodedByTheToneCurveOfTheDataset) {
   state("{gain: 0.25, gamma: 2}");
-  const auto frames = load_grey_frames(dataset(), 0, 0);
+  const auto frames = load_grey_frames(dataset(), dataset().camera(), 0, 0);
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_NEAR(frames[0].log_intensity(3, 3), std::log(0.01 + 4 * std::pow(50 / 255.0, 2)), 1e-5);
   state("{gamma: rec709}");
-  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), 0, 0); }),
+  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), dataset().camera(), 0, 0); }),
               HasSubstr("frames.gamma"));
 }
 
 TEST_F(GreyFrames, AreThePicturesNotTheRadianceBesideThem) {
   write_exr(folder_.path() / "images/0.exr", ImageF(40, 30, 0.9F), "Y");
-  const auto frames = load_grey_frames(dataset(), 0, 0);
+  const auto frames = load_grey_frames(dataset(), dataset().camera(), 0, 0);
   EXPECT_NEAR(frames[0].log_intensity(3, 3), std::log(1e-3 + linear_from_srgb(50 / 255.0)), 1e-5);
 }
 
 TEST_F(GreyFrames, NameTheFileThatIsNoFrame) {
   folder_.write("images.txt", "0 images/0.png\n0.04 images/a.exr\n");
   write_exr(folder_.path() / "images/a.exr", ImageF(40, 30, 0.9F), "Y");
-  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), 0, 1); }), HasSubstr("a.exr"));
+  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), dataset().camera(), 0, 1); }),
+              HasSubstr("a.exr"));
   folder_.write("images.txt", "0 images/0.png\n0.04 images/1.png\n");
   write_png(folder_.path() / "images/1.png", ImageU8(30, 40, 9));
-  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), 0, 1); }), HasSubstr("30 x 40"));
+  EXPECT_THAT(error_of([&] { return load_grey_frames(dataset(), dataset().camera(), 0, 1); }),
+              HasSubstr("30 x 40"));
 }
 
 }  // namespace

@@ -190,6 +190,15 @@ TEST_F(TrackModule, InitialPoseReplacesTheTruth) {
             CsvColumns(folder_.path() / "run/poses.csv").rows());
 }
 
+TEST_F(TrackModule, AWrongCalibrationIsCorrected) {
+  (void)run_track(request("right"));
+  folder_.write("wall/calib.txt", "132 132 39.5 29.5 0 0 0 0 0\n");
+  (void)run_track(
+      request("corrected", "{reference: {planar_depth_m: 1.5}, camera: {focal_scale: 0.5}}"));
+  EXPECT_EQ(read_file(folder_.path() / "right/trajectory.txt"),
+            read_file(folder_.path() / "corrected/trajectory.txt"));
+}
+
 TEST_F(TrackModule, WithoutDepthNamesTheCure) {
   EXPECT_THAT(error(request("run", "{}")), HasSubstr("reference.planar_depth_m"));
 }

@@ -1,0 +1,65 @@
+#include "estimator/refinement/level_residuals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/refinement/level_cost.h"
+#include "estimator/refinement/seen_surfaces.h"
+
+namespace saccade {
+
+void LevelResiduals::add_to(PathProblem& problem) {
+  offsets_.assign(levels_.chains, 0);
+  length_.assign(levels_.chains, 0);
+  seen_.clear();
+  find_surfaces(problem.path());
+  start_offsets();
+  MeanDepth depth;
+  for (const Seen& seen : seen_) {
+    depth.add(surface_, seen.hit);
+    if (length_[seen.observation->chain] > 1) add_event(seen, problem);
+  }
+  problem.hold(options_.hold_px / surface_.map().camera().fx, depth.value_m());
+}
+
+void LevelResiduals::find_surfaces(const SplineControls& path) {
+  SeenSurfaces surfaces(surface_, path, options_.redraw_px);
+  for (const LevelObservation& o : levels_.observations) {
+    const auto hit = surfaces.at(o.t_s, o.pixel, o.ray);
+    if (!hit) continue;
+    const SampleWithGradient<double> map = surface_.read(hit->view, hit->pixel);
+    if (!std::isfinite(map.value)) continue;
+    const double misplaced = options_.place_px * std::hypot(map.dx, map.dy);
+    seen_.push_back({&o, *hit, map.value, std::hypot(options_.noise, misplaced)});
+    ++length_[o.chain];
+  }
+}
+
+void LevelResiduals::start_offsets() {
+  // The middle of what the map shows above the levels of a chain.
+  std::vector<std::vector<double>> excess(offsets_.size());
+  for (const Seen& seen : seen_)
+    excess[seen.observation->chain].push_back(seen.level - seen.observation->level);
+  for (std::size_t i = 0; i < offsets_.size(); ++i) {
+    if (excess[i].empty()) continue;
+    const auto middle = excess[i].begin() + static_cast<std::ptrdiff_t>(excess[i].size() / 2);
+    std::nth_element(excess[i].begin(), middle, excess[i].end());
+    offsets_[i] = *middle;
+  }
+}
+
+void LevelResiduals::add_event(const Seen& seen, PathProblem& problem) {
+  const LevelObservation& o = *seen.observation;
+  LevelCost::Observation observation;
+  observation.time = problem.path().knots.at(o.t_s);
+  for (std::size_t k = 0; k < 4; ++k)
+    observation.controls[k] = problem.path().poses[observation.time.first + k];
+  observation.ray = o.ray;
+  observation.level = o.level;
+  observation.sigma = seen.sigma;
+  observation.hit = seen.hit;
+  problem.add(new LevelCost(observation, surface_), options_.outlier,
+              problem.corrections(observation.time.first, 4), seen.sigma, &offsets_[o.chain]);
+}
+
+}  // namespace saccade

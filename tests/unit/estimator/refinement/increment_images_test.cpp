@@ -1,0 +1,58 @@
+#include "estimator/refinement/increment_images.h"
+
+#include <gtest/gtest.h>
+
+namespace saccade {
+namespace {
+
+PinholeCamera small_camera() {
+  PinholeCamera camera;
+  camera.width = 4;
+  camera.height = 3;
+  camera.fx = camera.fy = 4;
+  camera.cx = 1.5;
+  camera.cy = 1;
+  return camera;
+}
+
+/// Pixel (1, 2) goes up five times and down three times, a millisecond after another.
+Events some_events() {
+  Events events;
+  for (int i = 0; i < 8; ++i)
+    events.push_back({1000000LL * (i + 1), 1, 2, static_cast<std::int8_t>(i < 5 ? 1 : -1)});
+  return events;
+}
+
+TEST(IncrementImages, AreSumsOfThresholdsOfAllPixels) {
+  const auto images = observe_increments(some_events(), small_camera(), {0.2, 0.3},
+                                         {.window_events = 4, .increments = 24});
+  ASSERT_EQ(images.windows(), 2U);
+  EXPECT_EQ(images.times_s, (std::vector<double>{0.001, 0.004, 0.008}));
+  ASSERT_EQ(images.pixels.size(), 12U);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_NEAR(images.increment(0, i), i == 9 ? 0.8 : 0, 1e-6);
+    EXPECT_NEAR(images.increment(1, i), i == 9 ? 0.2 - 0.9 : 0, 1e-6);
+  }
+  EXPECT_EQ(images.pixels[9].place, Eigen::Vector2f(1, 2));
+  EXPECT_LT((images.pixels[9].ray - Eigen::Vector3d(-0.125, 0.25, 1)).norm(), 1e-6);
+}
+
+TEST(IncrementImages, AWindowIsNoShorterThanAsked) {
+  const auto images =
+      observe_increments(some_events(), small_camera(), {0.2, 0.3}, {.window_events = 5});
+  EXPECT_EQ(images.windows(), 1U);
+}
+
+TEST(IncrementImages, AFewPixelsStandForAll) {
+  const auto images = observe_increments(some_events(), small_camera(), {0.2, 0.3},
+                                         {.window_events = 4, .increments = 12});
+  EXPECT_EQ(images.pixels.size(), 6U);
+  EXPECT_EQ(images.increments.size(), 12U);
+}
+
+TEST(IncrementImages, WithoutEventsThereAreNone) {
+  EXPECT_EQ(observe_increments({}, small_camera(), {0.2, 0.3}, {}).windows(), 0U);
+}
+
+}  // namespace
+}  // namespace saccade
