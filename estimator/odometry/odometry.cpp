@@ -241,6 +241,8 @@ std::vector<StampedCovariance> Odometry::refine(std::span<const Event> events,
   if (is_settled(start)) joint.known.assign(start.poses.poses().begin(), start.poses.poses().end());
   for (const Keyframe& keyframe : map_.keyframes()) joint.keyframe_s.push_back(keyframe.t_s);
   joint.typical_depth_m = typical_depth_m_;
+  joint.imu = imu_;
+  joint.is_metric = is_settled(start);
   const JointResult refined = refine_jointly(within(events, Trajectory(known_)), joint, camera_,
                                              mapper_.rays(), options_.last.joint, progress);
   for (StampedPose& pose : known_) pose.world_from_camera = refined.path.at_clamped(pose.t_s);

@@ -103,6 +103,8 @@ class Odometry {
 
   /// For tracking.motion.prediction: imu.
   void set_gyroscope(Gyroscope gyroscope) { tracker_.set_gyroscope(std::move(gyroscope)); }
+  /// For last.joint.imu.
+  void set_imu(MountedImu imu) { imu_ = std::move(imu); }
 
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
   /// are found from the last of them on; those of a start that is not settled as a whole are
@@ -160,6 +162,7 @@ class Odometry {
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
   double last_search_s_ = -std::numeric_limits<double>::infinity();
+  std::optional<MountedImu> imu_;
   Rigid3 last_keyframe_at_;  ///< where the camera was when the last one was begun
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;

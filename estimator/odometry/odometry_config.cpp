@@ -138,6 +138,34 @@ void describe_last(config::Fields& fields, LastAdjustment& last) {
   if (last.use) describe(fields, last.joint);
 }
 
+void describe_inertial(config::Fields& fields, MetricWorldOptions& options) {
+  fields.value("align", options.align,
+               "scale, gravity, biases and time offset by gyroscope and accelerometer, once the "
+               "path is found; without given poses the run is then in metres and upright");
+  if (!options.align) return;
+  InertialAlignmentOptions& alignment = options.alignment;
+  fields.value("gravity", alignment.gravity, "[m/s^2]").above(0);
+  fields.value("interval_s", alignment.interval_s, "readings are summed up over so long")
+      .range(0.02, 10);
+  fields
+      .value("smoothing_s", alignment.smoothing_s,
+             "spacing of the knots of a spline through the path")
+      .range(1e-3, 10);
+  fields
+      .value("position_sigma", options.position_sigma,
+             "of a pose of the path, as a share of the typical depth")
+      .above(0);
+  fields.value("tilt_sigma_rad", alignment.tilt_sigma_rad, "of its orientation").above(0);
+  fields.value("accel_bias_sigma", alignment.accel_bias_sigma, "of the accelerometer's bias")
+      .above(0);
+  fields
+      .value("max_scale_sigma", alignment.max_scale_sigma,
+             "a scale that is known less, relative, is not used")
+      .above(0);
+  fields.value("outlier", alignment.outlier, "deviations beyond which an interval counts less")
+      .range(0.1, 1e6);
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, OdometryConfig& config) {
@@ -206,6 +234,8 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   const ReconstructionConfig& reconstruction = odometry.mapping.reconstruction;
   fields.expect(reconstruction.contrast_on && reconstruction.contrast_off, "reconstruction",
                 "contrast_on and contrast_off must be stated: nothing comes from the dataset");
+  fields.group(
+      "imu", [&](Fields& f) { describe_inertial(f, config.metric); }, "metres and upright");
   fields.value("seed", config.seed, "of the samples");
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/config/fields.h"
 #include "estimator/camera_correction.h"
+#include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry.h"
 #include "estimator/odometry/start/bootstrap.h"
 
@@ -19,12 +20,13 @@ struct StartOptions {
 };
 
 /// The configuration of `saccade run odometry`; describe() names the keys, ranges and defaults.
-/// Nothing comes from the dataset but its events, its calibration and the poses of the start, if
-/// there are any.
+/// Nothing comes from the dataset but its events, its calibration, the poses of the start, if
+/// there are any, and, where asked for, the readings of its inertial sensor.
 struct OdometryConfig {
   CameraCorrection camera;
   StartOptions start;
   OdometryOptions odometry;
+  MetricWorldOptions metric;
   std::uint64_t seed = 1;
 };
 

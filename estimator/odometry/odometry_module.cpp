@@ -99,6 +99,9 @@ RunSummary run_odometry(const RunRequest& request) {
   const PinholeCamera camera = config.camera.of(dataset.camera());
   const Events events = load_events(request, dataset);
   const Gyroscope gyroscope = load_gyroscope(config.odometry.tracker.motion, dataset);
+  std::optional<MountedImu> imu;
+  if (config.metric.align || config.odometry.last.joint.imu.use)
+    imu = load_mounted_imu(dataset, "imu.align or last.imu.use");
   io.reset();
   const Start start = start_of(dataset, camera, events, config.start);
 
@@ -117,6 +120,7 @@ RunSummary run_odometry(const RunRequest& request) {
   for (int i = 0; i < request.repeat; ++i) {
     odometry.emplace(config.odometry, camera, config.seed);
     odometry->set_gyroscope(gyroscope);
+    if (imu) odometry->set_imu(*imu);
     double wall_s = start.seconds;
     refine_s = 0;
     {
@@ -146,9 +150,17 @@ RunSummary run_odometry(const RunRequest& request) {
   timing.latency_ms = std::move(result.latency_ms);
   if (config.odometry.mode == OdometryMode::kOnline) timing.dropped_events = result.dropped_events;
 
+  std::vector<Keyframe> keyframes = odometry->map().keyframes();
+  std::optional<InertialAlignment> felt;
+  if (config.metric.align) felt = align_odometry(result.poses, keyframes, *imu, config.metric);
+  // Given poses have a world and metres of their own.
+  const bool is_metric = felt && start.found && felt->status == InertialAlignment::Status::kOk;
+  if (is_metric) take_into_metric_world(*felt, result.poses, keyframes, covariances);
+
   io.emplace(timing.io_s);
-  write_odometry(writer.path(), camera, result, odometry->map());
+  write_odometry(writer.path(), camera, result, keyframes);
   if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
+  if (felt) write_inertial_alignment(writer.path() / "inertial.yaml", *felt, is_metric);
   if (start.found)
     write_start(writer.path() / "start.yaml", *start.found, config.start.found.depth_m);
   io.reset();
@@ -160,6 +172,9 @@ RunSummary run_odometry(const RunRequest& request) {
   summary.lost_poses = count_lost(result.poses);
   summary.found = fmt::format("{} poses ({} lost) by {} keyframes", summary.poses,
                               summary.lost_poses, odometry->map().keyframes().size());
+  if (felt)
+    summary.found +=
+        fmt::format(", scale {:.4g} +- {:.2g} %", felt->scale, 100 * felt->scale_sigma);
   summary.wall_s = median(timing.wall_s);
   return summary;
 }

@@ -41,24 +41,24 @@ KeyframeEntry entry_of(const Keyframe& keyframe) {
   return entry;
 }
 
-MapPoints all_edges(const EdgeMap& map) {
+MapPoints all_edges(std::span<const Keyframe> keyframes) {
   MapPoints all;
-  for (const Keyframe& keyframe : map.keyframes()) append(all, keyframe.edges);
+  for (const Keyframe& keyframe : keyframes) append(all, keyframe.edges);
   return all;
 }
 
 }  // namespace
 
 void write_odometry(const std::filesystem::path& folder, const PinholeCamera& camera,
-                    const OdometryResult& result, const EdgeMap& map) {
+                    const OdometryResult& result, std::span<const Keyframe> keyframes) {
   const PinholeCamera undistorted = camera.undistorted();
   for (const char* name : {"depth", "gradient", "image"})
     std::filesystem::create_directories(folder / name);
   std::vector<RunView> views;
   std::vector<KeyframeEntry> entries;
-  for (std::size_t i = 0; i < map.keyframes().size(); ++i) {
-    views.push_back(write_view(folder, i, undistorted, map.keyframes()[i]));
-    entries.push_back(entry_of(map.keyframes()[i]));
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    views.push_back(write_view(folder, i, undistorted, keyframes[i]));
+    entries.push_back(entry_of(keyframes[i]));
   }
   entries.front().active = {0};
   for (const KeyframeChange& change : result.changes) {
@@ -69,7 +69,7 @@ void write_odometry(const std::filesystem::path& folder, const PinholeCamera& ca
   write_view_list(folder / "views.yaml", views);
   write_keyframe_list(folder / "keyframes.yaml", entries);
   write_poses(folder, result.poses);
-  write_map(folder / "map.ply", all_edges(map), Rigid3());
+  write_map(folder / "map.ply", all_edges(keyframes), Rigid3());
 }
 
 }  // namespace saccade

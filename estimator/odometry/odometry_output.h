@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "core/camera.h"
 #include "estimator/odometry/odometry.h"
@@ -11,6 +12,6 @@ namespace saccade {
 /// world), depth/, gradient/ and image/ of every keyframe as `saccade run depth` and `reconstruct`
 /// write them, views.yaml and keyframes.yaml.
 void write_odometry(const std::filesystem::path& folder, const PinholeCamera& camera,
-                    const OdometryResult& result, const EdgeMap& map);
+                    const OdometryResult& result, std::span<const Keyframe> keyframes);
 
 }  // namespace saccade

@@ -1,6 +1,28 @@
 #include "estimator/refinement/joint_config.h"
 
 namespace saccade {
+namespace {
+
+void describe_readings(config::Fields& fields, InertialRowsOptions& options) {
+  fields.value(
+      "use", options.use,
+      "gyroscope and accelerometer join in, with gravity, biases and time offset; of a run "
+      "without given poses the scale, too");
+  if (!options.use) return;
+  fields.value("interval_s", options.interval_s, "they are summed up over so long").range(0.02, 10);
+  fields.value("bias_spacing_s", options.bias_spacing_s, "biases are even for so long")
+      .range(0.1, 1e4);
+  fields.value("gyro_bias_step", options.gyro_bias_step, "of one from that before [rad/s]")
+      .above(0);
+  fields.value("accel_bias_step", options.accel_bias_step, "the same [m/s^2]").above(0);
+  fields.value("accel_bias_sigma", options.accel_bias_sigma, "of the first [m/s^2]").above(0);
+  fields.value("offset_sigma_s", options.offset_sigma_s, "of the readings' clock").above(0);
+  fields.value("slack_rad", options.slack_rad, "of turns that the path's spline cannot follow")
+      .above(0);
+  fields.value("slack", options.slack, "of places, as a share of the typical depth").above(0);
+}
+
+}  // namespace
 
 void describe(config::Fields& fields, JointRefinementOptions& options) {
   fields.value("knot_spacing_s", options.knot_spacing_s, "of the path and its correction")
@@ -25,6 +47,9 @@ void describe(config::Fields& fields, JointRefinementOptions& options) {
              "of that of independent residuals: neighbouring ones err alike")
       .above(0)
       .at_most(1);
+  fields.group(
+      "imu", [&](config::Fields& f) { describe_readings(f, options.imu); },
+      "readings of the inertial sensor between instants of the path");
 }
 
 }  // namespace saccade

@@ -8,8 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "core/check.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
@@ -21,7 +24,8 @@
 namespace saccade {
 namespace {
 
-constexpr double kPathStep_s = 1e-3;  ///< between the poses of a path
+constexpr double kPositionSigma = 1e-3;  ///< of the path, over an interval and depth
+constexpr double kPathStep_s = 1e-3;     ///< between the poses of a path
 
 /// `most` of `count` indices, evenly.
 std::vector<std::size_t> evenly(std::size_t count, int most) {
@@ -72,6 +76,7 @@ class Problem {
     choose_edges();
     for (Adjusted& edge : adjusted_) add_edge(edge);
     hold_path(start.known);
+    if (options.imu.use) add_readings(start);
   }
 
   void solve(CostLog& costs, const std::function<void()>& each) {
@@ -81,6 +86,10 @@ class Problem {
   }
 
   [[nodiscard]] Trajectory path() const { return correction_.applied(path_); }
+
+  [[nodiscard]] std::optional<InertialAlignment> inertial() const {
+    return readings_ ? std::optional(readings_->found()) : std::nullopt;
+  }
 
   void judge(JointResult& result) {
     result.observations = residuals_.size();
@@ -177,15 +186,37 @@ class Problem {
     }
   }
 
+  void add_readings(const JointStart& start) {
+    SACCADE_CHECK(start.imu.has_value());
+    InertialAlignmentOptions alignment;
+    alignment.position_sigma = kPositionSigma * depth_m_;
+    alignment.interval_s = options_.imu.interval_s;
+    const InertialAlignment aligned = align_inertially(path_, *start.imu, alignment);
+    if (!(aligned.gravity.norm() > 0))
+      throw InputError({},
+                       "the readings of imu.txt cover too little of the path, or do not fit it");
+    const bool knows_scale = aligned.status == InertialAlignment::Status::kOk;
+    // Neighbouring events err alike and count for less than their number says; readings do not.
+    readings_.emplace(
+        path_, correction_.knots(),
+        InertialRowsStart{*start.imu, aligned, start.is_metric || !knows_scale, depth_m_},
+        options_.imu, 1 / std::sqrt(options_.information));
+    readings_->add_to(problem_, correction_, *ordering_);
+  }
+
   [[nodiscard]] Eigen::MatrixXd inverse_information() {
     std::vector<double*> controls, edges;
     for (std::size_t k = 0; k < correction_.knots().controls(); ++k)
       controls.push_back(correction_.data(k));
+    if (readings_)
+      for (double* block : readings_->unknowns()) controls.push_back(block);
     for (Adjusted& edge : adjusted_) edges.push_back(edge.unknowns.data());
     const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     if (factor.info() != Eigen::Success) return {};
-    return factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+    const auto wanted =
+        static_cast<Eigen::Index>(PathCorrection::kSize * correction_.knots().controls());
+    return factor.solve(Eigen::MatrixXd::Identity(information.rows(), wanted)).topRows(wanted);
   }
 
   const Trajectory& path_;
@@ -198,6 +229,7 @@ class Problem {
   PathCorrection correction_;
   std::vector<std::vector<std::uint8_t>> steps_;  ///< of the windows' events
   std::vector<Adjusted> adjusted_;
+  std::optional<InertialRows> readings_;
   std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
@@ -251,6 +283,7 @@ JointResult refine_jointly(std::span<const Event> events, const JointStart& star
     result.path = problem.path();
     advance_to(options.steps() * static_cast<std::size_t>(i + 1) /
                static_cast<std::size_t>(options.rounds));
+    result.inertial = problem.inertial();
   }
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/trajectory.h"
 #include "estimator/depth/ray_depth.h"
 #include "estimator/refinement/cost_log.h"
+#include "estimator/refinement/inertial_rows.h"
 #include "estimator/refinement/path_correction.h"
 
 namespace saccade {
@@ -29,6 +31,7 @@ struct JointRefinementOptions {
   int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most
   double information = 0.1;      ///< of that of independent residuals: neighbouring ones err alike
+  InertialRowsOptions imu;
 
   /// Steps of work, as far as progress goes.
   [[nodiscard]] std::size_t steps() const {
@@ -47,12 +50,15 @@ struct JointStart {
   std::vector<StampedPose> known;
   std::vector<double> keyframe_s;  ///< times of the keyframes' views
   double typical_depth_m = 1;      ///< turns pixels into metres
+  std::optional<MountedImu> imu;   ///< for options.imu.use
+  bool is_metric = true;           ///< the path is in metres; else the readings say the scale
 };
 
 struct JointResult {
   Trajectory path;  ///< every millisecond
   SplineKnots knots;
   Eigen::MatrixXd covariance;  ///< of the correction's twists; empty where it is not determined
+  std::optional<InertialAlignment> inertial;  ///< what the readings say, in the last round
   CostLog costs;
   std::size_t observations = 0;  ///< in the last round
   double residual_px = 0;        ///< robust deviation of the events from their edges
@@ -63,9 +69,11 @@ struct JointResult {
 
 /// The joint optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
 /// over all keyframes' windows, which overlap and so hold each other, by Ceres with the edges
-/// eliminated first. Scale and place are those of the start's known poses. Deterministic for any
-/// number of threads. `progress` is called with the steps done since its last call, of
-/// options.steps() in all.
+/// eliminated first. Scale and place are those of the start's known poses. With an inertial sensor
+/// its readings between instants of the path join in, with gravity, biases and time offset and, of
+/// a path that is not metric, the scale; the path stays in its unit. Deterministic for any number
+/// of threads. `progress` is called with the steps done since its last call, of options.steps() in
+/// all.
 [[nodiscard]] JointResult refine_jointly(std::span<const Event> events, const JointStart& start,
                                          const PinholeCamera& camera, const RayDepth& depth,
                                          const JointRefinementOptions& options,

@@ -1,9 +1,9 @@
 #include "estimator/refinement/level_residuals.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "estimator/refinement/level_cost.h"
+#include "estimator/refinement/robust_spread.h"
 #include "estimator/refinement/seen_surfaces.h"
 
 namespace saccade {
@@ -40,12 +40,8 @@ void LevelResiduals::start_offsets() {
   std::vector<std::vector<double>> excess(offsets_.size());
   for (const Seen& seen : seen_)
     excess[seen.observation->chain].push_back(seen.level - seen.observation->level);
-  for (std::size_t i = 0; i < offsets_.size(); ++i) {
-    if (excess[i].empty()) continue;
-    const auto middle = excess[i].begin() + static_cast<std::ptrdiff_t>(excess[i].size() / 2);
-    std::nth_element(excess[i].begin(), middle, excess[i].end());
-    offsets_[i] = *middle;
-  }
+  for (std::size_t i = 0; i < offsets_.size(); ++i)
+    if (!excess[i].empty()) offsets_[i] = median_of(excess[i]);
 }
 
 void LevelResiduals::add_event(const Seen& seen, PathProblem& problem) {

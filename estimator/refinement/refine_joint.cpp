@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "estimator/depth/depth_output.h"
+#include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/refinement/joint_poses.h"
 #include "estimator/run_input.h"
@@ -38,7 +39,8 @@ JointInput load(const RunRequest& request, const Dataset& dataset, const SourceR
   if (input.keyframes.empty())
     throw InputError((run.folder / "keyframes.yaml").string(),
                      "holds no keyframe: nothing to refine");
-  if (!run.record.window || dataset.groundtruth().empty())
+  const bool has_truth = input.odometry.start.truth_s > 0;
+  if (!run.record.window || (has_truth && dataset.groundtruth().empty()))
     throw InputError(run.folder.string(), "does not say where its given start ends");
   // The run's window begins where the given start ends; the events of the start belong to it.
   input.events = load_events(request, dataset);
@@ -47,12 +49,16 @@ JointInput load(const RunRequest& request, const Dataset& dataset, const SourceR
   JointStart& start = input.start;
   std::vector<StampedPose> known;
   for (StampedPose pose : dataset.groundtruth().poses()) {
+    if (!has_truth) break;
     pose.t_s += input.odometry.start.time_offset_s;
     if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) known.push_back(pose);
   }
   std::vector<StampedPose> found =
       known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
                  run.folder.string());
+  // Without given poses the first that was found holds the place.
+  if (!has_truth) known.assign(1, found.front());
+  start.is_metric = has_truth;
   start.path = known;
   for (const StampedPose& pose : found)
     if (start.path.empty() || pose.t_s > start.path.back().t_s) start.path.push_back(pose);
@@ -75,6 +81,24 @@ std::vector<StampedCovariance> take(const JointResult& result, std::vector<Track
     pose.residual = result.residual_px;
   }
   return take_sigmas(result, poses);
+}
+
+/// The path in metres and a world whose z axis points up.
+void take_into_metres(JointResult& result) {
+  const double scale = result.inertial->scale;
+  const Eigen::Quaterniond level = result.inertial->level();
+  std::vector<StampedPose> poses(result.path.poses().begin(), result.path.poses().end());
+  for (StampedPose& pose : poses) {
+    const Rigid3& before = pose.world_from_camera;
+    pose.world_from_camera =
+        Rigid3(level * before.rotation(), level * (scale * before.translation()));
+  }
+  result.path = Trajectory(std::move(poses));
+  for (Eigen::Index i = 0; i < result.covariance.rows(); ++i) {
+    if (i % PathCorrection::kSize >= 3) continue;
+    result.covariance.row(i) *= scale;
+    result.covariance.col(i) *= scale;
+  }
 }
 
 /// Depths of the keyframes on the refined path.
@@ -127,6 +151,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   RunTiming timing;
   std::optional<StageClock> io(timing.io_s);
   JointInput input = load(request, dataset, run);
+  if (config.joint.imu.use) input.start.imu = load_mounted_imu(dataset, "joint.imu.use");
   io.reset();
   const DepthConfig& method = input.odometry.odometry.mapping.depth;
   const PinholeCamera camera = input.odometry.camera.of(dataset.camera());
@@ -143,6 +168,8 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
     }
     timing.wall_s.push_back(wall_s);
   }
+  const bool is_scaled = result.inertial && !input.start.is_metric;
+  if (is_scaled) take_into_metres(result);
   double depth_s = 0;
   std::vector<DepthResult> depths;
   {
@@ -158,6 +185,8 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   const auto covariances = take(result, input.poses);
   write_poses(writer.path(), input.poses);
   if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
+  if (result.inertial)
+    write_inertial_alignment(writer.path() / "inertial.yaml", *result.inertial, is_scaled);
   result.costs.save(writer.path() / "cost.csv");
   write_keyframes(writer.path(), camera.undistorted(), input, result.path, depths,
                   config.joint.window_s);

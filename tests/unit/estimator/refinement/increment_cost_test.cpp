@@ -11,26 +11,21 @@
 namespace saccade {
 namespace {
 
-using testing::CornerView;
+using testing::corner_view;
 
 /// A pixel that looks at the left wall, over a window that begins at `begin_s` and ends at 0.12 s;
 /// over knots of 0.05 s.
 struct Window {
   explicit Window(double begin_s) {
-    observation.ray = recording().world.camera().ray({40, 50});
+    observation.ray = corner_view().world.camera().ray({40, 50});
     observation.begin = {path.knots.at(begin_s), {0, *surface.plane(0, {44.3, 51.8}), {}}};
     observation.end = {path.knots.at(0.12), {0, *surface.plane(0, {46.1, 52.4}), {}}};
     observation.increment = -0.2;
     observation.sigma = 0.1;
   }
 
-  static const CornerView& recording() {
-    static const CornerView recording;
-    return recording;
-  }
-
-  MapSurface surface{recording().map};
-  SplineControls path = SplineControls::smooth(recording().disturbed(1), 0.05);
+  MapSurface surface{corner_view().map};
+  SplineControls path = SplineControls::smooth(corner_view().disturbed(1), 0.05);
   IncrementCost::Observation observation;
 };
 

@@ -1,12 +1,16 @@
 #include "estimator/refinement/joint_refinement.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
+#include "tests/support/error_of.h"
+#include "tests/support/handheld_motion.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -36,7 +40,20 @@ const JointRecording& joint_recording() {
   return recording;
 }
 
-JointResult refined(int rounds, const std::function<void(std::size_t)>& progress = {}) {
+/// What a perfect sensor feels on the glide, its world's z axis pointing up; the gyroscope is
+/// biased.
+MountedImu readings_of_glide() {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 9; ++i) poses.push_back({0.05 * i, corner_glide(0.05 * i)});
+  MountedImu imu;
+  imu.samples = testing::imu_readings(Spline::interpolate(poses), Rigid3(), {0.01, -0.02, 0.03},
+                                      Eigen::Vector3d::Zero());
+  imu.noise = {1000, {1e-3, 0}, {1e-4, 0}};
+  return imu;
+}
+
+JointResult refined(int rounds, const std::function<void(std::size_t)>& progress = {},
+                    const std::optional<MountedImu>& imu = {}) {
   const PinholeCamera& camera = joint_recording().world.camera();
   JointStart start;
   for (double t_s = 0; t_s <= kJointEnd_s + 1e-9; t_s += 2e-3) {
@@ -50,6 +67,9 @@ JointResult refined(int rounds, const std::function<void(std::size_t)>& progress
   options.edges = 300;
   options.events_per_edge = 20;
   options.rounds = rounds;
+  options.imu.use = imu.has_value();
+  options.imu.interval_s = 0.04;
+  start.imu = imu;
   const DepthConfig config;
   return refine_jointly(joint_recording().events, start, camera,
                         RayDepth(config.rays, config.limits, camera), options, progress);
@@ -75,6 +95,27 @@ TEST(JointRefinement, BringsADriftingPathBack) {
     return std::sqrt(result.covariance_at(t_s).topLeftCorner<3, 3>().trace());
   };
   EXPECT_GT(position_m(0.38), 2 * position_m(0.1));
+}
+
+TEST(JointRefinement, AnInertialSensorSaysWhereDownIsAndHoldsThePath) {
+  const JointResult without = refined(1);
+  const JointResult with = refined(1, {}, readings_of_glide());
+  ASSERT_TRUE(with.inertial);
+  EXPECT_FALSE(without.inertial);
+  EXPECT_NEAR(with.inertial->scale, 1, 1e-3) << "the start is metric";
+  EXPECT_LT(std::acos(-with.inertial->gravity.normalized().z()), 0.02);
+  EXPECT_LT((with.inertial->bias.gyro - Eigen::Vector3d(0.01, -0.02, 0.03)).norm(), 0.01);
+  const auto error_rad = [](const JointResult& result) {
+    return angle_between(corner_glide(0.38).rotation(), result.path.at_clamped(0.38).rotation());
+  };
+  EXPECT_LT(error_rad(with), error_rad(without));
+}
+
+TEST(JointRefinement, SaysThatReadingsDoNotFit) {
+  MountedImu imu = readings_of_glide();
+  imu.samples.resize(20);
+  EXPECT_THAT(testing::error_of([&] { return refined(1, {}, imu); }),
+              ::testing::HasSubstr("imu.txt"));
 }
 
 TEST(JointRefinement, IsTheSameForAnyNumberOfThreads) {

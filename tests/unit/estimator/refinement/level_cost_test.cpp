@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 using testing::corner_view;
-using Unknowns = Eigen::Matrix<double, 25, 1>;
+using LevelUnknowns = Eigen::Matrix<double, 25, 1>;
 
 /// A pixel that looks at the left wall, seen from a little way on.
 LevelCost::Observation some_observation(const MapSurface& surface) {
@@ -27,21 +27,21 @@ LevelCost::Observation some_observation(const MapSurface& surface) {
 TEST(LevelCost, HasItsDerivativesAlsoAwayFromZero) {
   const MapSurface surface(corner_view().map);
   const LevelCost cost(some_observation(surface), surface);
-  Unknowns at;
+  LevelUnknowns at;
   for (Eigen::Index i = 0; i < 25; ++i) at[i] = 0.004 * std::sin(1.7 * static_cast<double>(i));
-  const auto evaluate = [&](const Unknowns& x, double** jacobians) {
+  const auto evaluate = [&](const LevelUnknowns& x, double** jacobians) {
     const double* blocks[] = {&x[0], &x[6], &x[12], &x[18], &x[24]};
     Eigen::Matrix<double, 1, 1> residual;
     EXPECT_TRUE(cost.Evaluate(blocks, residual.data(), jacobians));
     return residual;
   };
-  Unknowns derivatives;
+  LevelUnknowns derivatives;
   double* jacobians[] = {&derivatives[0], &derivatives[6], &derivatives[12], &derivatives[18],
                          &derivatives[24]};
   evaluate(at, jacobians);
   testing::expect_jacobian<1, 25>(
-      derivatives.transpose(), [&](const Unknowns& x) { return evaluate(x, nullptr); }, at, 1e-6,
-      1e-6);
+      derivatives.transpose(), [&](const LevelUnknowns& x) { return evaluate(x, nullptr); }, at,
+      1e-6, 1e-6);
 }
 
 TEST(LevelCost, ARayThatLeavesThePlaneIsNoResidual) {
@@ -49,7 +49,7 @@ TEST(LevelCost, ARayThatLeavesThePlaneIsNoResidual) {
   LevelCost::Observation o = some_observation(surface);
   o.hit.plane = -o.hit.plane;
   const LevelCost cost(o, surface);
-  const Unknowns x = Unknowns::Zero();
+  const LevelUnknowns x = LevelUnknowns::Zero();
   const double* blocks[] = {&x[0], &x[6], &x[12], &x[18], &x[24]};
   double residual = 0;
   EXPECT_FALSE(cost.Evaluate(blocks, &residual, nullptr));

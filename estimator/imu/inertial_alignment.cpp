@@ -1,0 +1,260 @@
+#include "estimator/imu/inertial_alignment.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rigid3.h"
+#include "core/spline.h"
+#include "estimator/imu/velocity_chain.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kRounds = 10;
+constexpr std::size_t kFewest = 8;  ///< intervals that say something
+
+using Chain = VelocityChain<6>;
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
+
+/// Readings between two poses of the path.
+struct Interval {
+  std::size_t node;  ///< the first of the two
+  Preintegration sum;
+};
+
+/// Two unit vectors across a third.
+Matrix32 across(const Eigen::Vector3d& direction) {
+  Matrix32 basis;
+  basis.col(0) = direction.unitOrthogonal();
+  basis.col(1) = direction.cross(basis.col(0));
+  return basis;
+}
+
+/// The path at even times.
+std::vector<StampedPose> nodes_of(const Trajectory& path, const InertialAlignmentOptions& options) {
+  const Spline spline = Spline::smooth(path.poses(), options.smoothing_s);
+  const double length_s = spline.end_s() - spline.start_s();
+  const auto count = static_cast<std::size_t>(length_s / options.interval_s);
+  std::vector<StampedPose> nodes;
+  for (std::size_t j = 0; j <= count; ++j) {
+    const double t_s = spline.start_s() + static_cast<double>(j) * options.interval_s;
+    nodes.push_back({t_s, spline.pose(t_s)});
+  }
+  return nodes;
+}
+
+class Alignment {
+ public:
+  Alignment(const Trajectory& path, const MountedImu& imu, const InertialAlignmentOptions& options)
+      : imu_(imu), options_(options), nodes_(nodes_of(path, options)) {}
+
+  [[nodiscard]] InertialAlignment solve() {
+    for (int round = 0; round < kRounds; ++round) {
+      sum_up();
+      if (intervals_.size() < kFewest) return result_;
+      match_turns();
+    }
+    sum_up();
+    if (intervals_.size() < kFewest) return result_;
+    weights_.assign(intervals_.size(), 1);
+    find_down();
+    const Eigen::Vector3d by_mean_force = result_.gravity;
+    for (int round = 0; round < kRounds; ++round) match_gravity();
+    result_.intervals = intervals_.size();
+    const bool is_known = result_.scale > 0 && result_.scale_sigma < options_.max_scale_sigma;
+    result_.status =
+        is_known ? InertialAlignment::Status::kOk : InertialAlignment::Status::kEvenMotion;
+    // Where accelerations do not show, gravity and the accelerometer's bias are not told apart.
+    if (!is_known) {
+      result_.gravity = by_mean_force;
+      result_.bias.accel.setZero();
+    }
+    return result_;
+  }
+
+ private:
+  void sum_up() {
+    intervals_.clear();
+    for (std::size_t j = 0; j + 1 < nodes_.size(); ++j) {
+      const double from_s = nodes_[j].t_s - result_.time_offset_s;
+      const double to_s = nodes_[j + 1].t_s - result_.time_offset_s;
+      if (auto sum = preintegrate(imu_.samples, from_s, to_s, result_.bias, imu_.noise))
+        intervals_.push_back({j, *sum});
+    }
+  }
+
+  /// One Gauss-Newton step of gyroscope bias and time offset.
+  void match_turns() {
+    Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const Interval& interval : intervals_) {
+      const Preintegration& sum = interval.sum;
+      const Eigen::Quaterniond& a = nodes_[interval.node].world_from_camera.rotation();
+      const Eigen::Quaterniond& b = nodes_[interval.node + 1].world_from_camera.rotation();
+      const Eigen::Vector3d residual = so3_log(sum.turn.conjugate() * a.conjugate() * b);
+      Eigen::Matrix<double, 3, 4> by_unknowns;
+      by_unknowns.leftCols<3>() = sum.by_bias.topLeftCorner<3, 3>();
+      // A later camera's time means earlier readings.
+      by_unknowns.col(3) = sum.turn.conjugate() * sum.first_rate - sum.last_rate;
+      information += by_unknowns.transpose() * by_unknowns;
+      right += by_unknowns.transpose() * residual;
+    }
+    // A turn that is even says nothing of the offset, which then is none.
+    information(3, 3) += 1e-6;
+    const Eigen::Vector4d step = information.ldlt().solve(right);
+    result_.bias.gyro += step.head<3>();
+    result_.time_offset_s += step[3];
+  }
+
+  /// Solves for the head of `rows_of(interval)` over all intervals.
+  template <int kHead, class MakeRows>
+  [[nodiscard]] typename VelocityChain<kHead>::Solution least_squares(
+      const Eigen::Matrix<double, kHead, 1>& precision, const MakeRows& rows_of) const {
+    VelocityChain<kHead> chain(precision);
+    std::size_t node = 0;
+    for (std::size_t k = 0; k < intervals_.size(); ++k) {
+      for (; node < intervals_[k].node; ++node) chain.skip();
+      typename VelocityChain<kHead>::Rows rows = rows_of(intervals_[k]);
+      rows.weight *= weights_[k];
+      chain.add(rows);
+      ++node;
+    }
+    return chain.solve();
+  }
+
+  /// Rows of an interval but for the head: what the path may be off by, and where it went.
+  template <int kHead>
+  [[nodiscard]] typename VelocityChain<kHead>::Rows rows_without_head(
+      const Interval& interval) const {
+    const double t_s = interval.sum.duration_s;
+    const double drift = options_.gravity * options_.tilt_sigma_rad * t_s / result_.scale;
+    const double position = std::hypot(options_.position_sigma, 0.5 * t_s * drift);
+    typename VelocityChain<kHead>::Rows rows;
+    rows.duration_s = t_s;
+    rows.weight.template head<3>().setConstant(1 / position);
+    rows.weight.template tail<3>().setConstant(1 / drift);
+    rows.value.setZero();
+    rows.value.template head<3>() = nodes_[interval.node + 1].world_from_camera.translation() -
+                                    nodes_[interval.node].world_from_camera.translation();
+    return rows;
+  }
+
+  /// What the sensor adds to position and velocity in the path's world, without gravity [m, m/s].
+  [[nodiscard]] Chain::Six felt(const Interval& interval) const {
+    const Rigid3& a = nodes_[interval.node].world_from_camera;
+    const Rigid3& b = nodes_[interval.node + 1].world_from_camera;
+    Chain::Six sum;
+    sum.head<3>() = a.rotation() * interval.sum.position -
+                    (b.rotation() * imu_.place - a.rotation() * imu_.place);
+    sum.tail<3>() = a.rotation() * interval.sum.velocity;
+    return sum;
+  }
+
+  /// How that changes with the biases.
+  [[nodiscard]] Matrix6 rotated_bias(const Interval& interval) const {
+    const Eigen::Matrix3d rotation = nodes_[interval.node].world_from_camera.rotation_matrix();
+    Matrix6 by_bias;
+    by_bias.topRows<3>() = rotation * interval.sum.by_bias.bottomRows<3>();
+    by_bias.bottomRows<3>() = rotation * interval.sum.by_bias.middleRows<3>(3);
+    return by_bias;
+  }
+
+  /// Columns of position and velocity for an even acceleration along each of some directions.
+  template <int kColumns>
+  static Eigen::Matrix<double, 6, kColumns> falling(
+      double t_s, const Eigen::Matrix<double, 3, kColumns>& directions) {
+    Eigen::Matrix<double, 6, kColumns> columns;
+    columns.template topRows<3>() = 0.5 * t_s * t_s * directions;
+    columns.template bottomRows<3>() = t_s * directions;
+    return columns;
+  }
+
+  /// Down by the mean force, as of a camera whose velocity hardly changes in all.
+  void find_down() {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (const Interval& interval : intervals_) force += felt(interval).tail<3>();
+    if (force.norm() > 0) direction_ = -force.normalized();
+    result_.gravity = options_.gravity * direction_;
+  }
+
+  /// (l, l t, l c) about the direction before.
+  void match_gravity() {
+    const Matrix32 basis = across(direction_);
+    const auto rows_of = [&](const Interval& interval) {
+      const Matrix6 by_bias = rotated_bias(interval);
+      Chain::Rows rows = rows_without_head<6>(interval);
+      rows.head.col(0) =
+          felt(interval) +
+          falling<1>(rows.duration_s, Eigen::Vector3d(options_.gravity * direction_));
+      rows.head.middleCols<2>(1) = falling<2>(rows.duration_s, options_.gravity * basis);
+      rows.head.rightCols<3>() = by_bias.rightCols<3>();
+      return rows;
+    };
+    Chain::Head precision = Chain::Head::Zero();
+    precision.tail<3>().setConstant(std::pow(result_.scale / options_.accel_bias_sigma, 2));
+    const Chain::Solution found = least_squares<6>(precision, rows_of);
+    take(found, basis);
+    judge(found, rows_of);
+  }
+
+  void take(const Chain::Solution& found, const Matrix32& basis) {
+    const double inverse = found.head[0];
+    if (!(inverse > 0)) {
+      result_.scale_sigma = std::numeric_limits<double>::infinity();
+      return;
+    }
+    result_.scale = 1 / inverse;
+    result_.scale_sigma = std::sqrt(found.covariance(0, 0)) / inverse;
+    const Eigen::Vector2d turn = found.head.segment<2>(1) / inverse;
+    result_.tilt_sigma_rad = std::sqrt(found.covariance.block<2, 2>(1, 1).trace() / 2) / inverse;
+    direction_ = (direction_ + basis * turn).normalized();
+    result_.gravity = options_.gravity * direction_;
+    result_.bias.accel = found.head.tail<3>() / inverse;
+  }
+
+  /// Intervals that fit badly count less; deviations grow to what the rows are off by.
+  template <class MakeRows>
+  void judge(const Chain::Solution& found, const MakeRows& rows_of) {
+    double squares = 0, weight_sum = 0;
+    for (std::size_t k = 0; k < intervals_.size(); ++k) {
+      const Chain::Rows rows = rows_of(intervals_[k]);
+      const Eigen::Vector3d& before = found.velocities[intervals_[k].node];
+      const Eigen::Vector3d& after = found.velocities[intervals_[k].node + 1];
+      Chain::Six error = rows.value - rows.head * found.head;
+      error.head<3>() -= rows.duration_s * before;
+      error.tail<3>() -= before - after;
+      const double square = rows.weight.cwiseProduct(error).squaredNorm() / 6;
+      squares += weights_[k] * weights_[k] * square;
+      weight_sum += weights_[k] * weights_[k];
+      weights_[k] = 1 / std::sqrt(1 + square / (options_.outlier * options_.outlier));
+    }
+    // Six rows and three unknowns for each interval.
+    result_.residual = std::sqrt(2 * squares / weight_sum);
+    const double grown = std::max(1.0, result_.residual);
+    result_.scale_sigma *= grown;
+    result_.tilt_sigma_rad *= grown;
+  }
+
+  const MountedImu& imu_;
+  const InertialAlignmentOptions& options_;
+  std::vector<StampedPose> nodes_;
+  std::vector<Interval> intervals_;
+  std::vector<double> weights_;  ///< of each interval
+  Eigen::Vector3d direction_ = -Eigen::Vector3d::UnitZ();
+  InertialAlignment result_;
+};
+
+}  // namespace
+
+Eigen::Quaterniond InertialAlignment::level() const {
+  return Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
+}
+
+InertialAlignment align_inertially(const Trajectory& path, const MountedImu& imu,
+                                   const InertialAlignmentOptions& options) {
+  return Alignment(path, imu, options).solve();
+}
+
+}  // namespace saccade

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace saccade {
+
+/// Linear least squares over a head of kHead unknowns and a chain of velocities, of which each row
+/// touches two neighbours: v_j is eliminated as soon as all rows with it are there, so that time
+/// and memory grow with the chain's length alone.
+template <int kHead>
+class VelocityChain {
+ public:
+  using Head = Eigen::Matrix<double, kHead, 1>;
+  using HeadMatrix = Eigen::Matrix<double, kHead, kHead>;
+  using Six = Eigen::Matrix<double, 6, 1>;
+
+  /// Of one interval: position(head, v_j) and velocity (head, v_j, v_(j+1)) rows,
+  ///   value = head_rows * head + (T v_j; v_j - v_(j+1)).
+  struct Rows {
+    Eigen::Matrix<double, 6, kHead> head;
+    Six value;
+    double duration_s = 0;  ///< T
+    Six weight;             ///< 1 / deviation
+  };
+
+  struct Solution {
+    Head head;
+    HeadMatrix covariance;
+    std::vector<Eigen::Vector3d> velocities;  ///< one more than links
+  };
+
+  /// `precision`: of the head from zero, 1 / sigma^2.
+  explicit VelocityChain(const Head& precision) {
+    information_.setZero();
+    right_.setZero();
+    information_.diagonal().template tail<kHead>() = precision;
+    free_velocity();
+  }
+
+  /// The next link of the chain.
+  void add(const Rows& rows) {
+    Eigen::Matrix<double, 6, kHead + 6> full = Eigen::Matrix<double, 6, kHead + 6>::Zero();
+    full.template block<3, 3>(0, 0) = rows.duration_s * Eigen::Matrix3d::Identity();
+    full.template block<3, 3>(3, 0).setIdentity();
+    full.template block<3, 3>(3, 3) = -Eigen::Matrix3d::Identity();
+    full.template rightCols<kHead>() = rows.head;
+    const Eigen::Matrix<double, 6, 6> weight =
+        Eigen::Matrix<double, 6, 6>(rows.weight.cwiseAbs2().asDiagonal());
+    const Eigen::Matrix<double, 6, kHead + 6> weighted = weight * full;
+    link(full.transpose() * weighted, weighted.transpose() * rows.value);
+  }
+
+  /// A link of which nothing is known: the next velocity may be any.
+  void skip() { link(Wide::Zero(), WideVector::Zero()); }
+
+  [[nodiscard]] Solution solve() const {
+    const Eigen::LDLT<Eigen::Matrix<double, kHead + 3, kHead + 3>> factor(information_);
+    const Narrow inverse = factor.solve(Narrow::Identity());
+    const NarrowVector last = inverse * right_;
+    Solution solution;
+    solution.head = last.template tail<kHead>();
+    solution.covariance = inverse.template bottomRightCorner<kHead, kHead>();
+    solution.velocities.assign(links_.size() + 1, last.template head<3>());
+    NarrowVector next = last;
+    for (std::size_t j = links_.size(); j-- > 0;) {
+      solution.velocities[j] = links_[j].value - links_[j].by_next * next;
+      next.template head<3>() = solution.velocities[j];
+    }
+    return solution;
+  }
+
+ private:
+  using Narrow = Eigen::Matrix<double, kHead + 3, kHead + 3>;
+  using NarrowVector = Eigen::Matrix<double, kHead + 3, 1>;
+  using Wide = Eigen::Matrix<double, kHead + 6, kHead + 6>;
+  using WideVector = Eigen::Matrix<double, kHead + 6, 1>;
+
+  /// v_j = value - by_next (v_(j+1), head).
+  struct Link {
+    Eigen::Matrix<double, 3, kHead + 3> by_next;
+    Eigen::Vector3d value;
+  };
+
+  /// A velocity that no row rules is zero.
+  void free_velocity() { information_.template topLeftCorner<3, 3>().diagonal().array() += 1e-9; }
+
+  /// Adds to the normal equations of (v_j, v_(j+1), head) and eliminates v_j.
+  void link(Wide information, WideVector right) {
+    information.template topLeftCorner<3, 3>() += information_.template topLeftCorner<3, 3>();
+    information.template topRightCorner<3, kHead>() +=
+        information_.template topRightCorner<3, kHead>();
+    information.template bottomLeftCorner<kHead, 3>() +=
+        information_.template bottomLeftCorner<kHead, 3>();
+    information.template bottomRightCorner<kHead, kHead>() +=
+        information_.template bottomRightCorner<kHead, kHead>();
+    right.template head<3>() += right_.template head<3>();
+    right.template tail<kHead>() += right_.template tail<kHead>();
+    const Eigen::Matrix3d inverse = information.template topLeftCorner<3, 3>().inverse();
+    const Eigen::Matrix<double, 3, kHead + 3> cross =
+        information.template topRightCorner<3, kHead + 3>();
+    const Link link{inverse * cross, inverse * right.template head<3>()};
+    information_ = information.template bottomRightCorner<kHead + 3, kHead + 3>() -
+                   cross.transpose() * link.by_next;
+    right_ = right.template tail<kHead + 3>() - cross.transpose() * link.value;
+    links_.push_back(link);
+    free_velocity();
+  }
+
+  Narrow information_;  ///< of (v_j, head), j the last
+  NarrowVector right_;
+  std::vector<Link> links_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,160 @@
+#include "estimator/refinement/inertial_rows.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/refinement/held_cost.h"
+#include "estimator/refinement/jacobian_block.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kHalfStep_s = 5e-3;    ///< that the path's own motion is measured over
+constexpr double kKnownScale = 1e-5;    ///< deviation of a scale that is known
+constexpr double kFree = 1e3;           ///< deviation of what may be anything
+constexpr double kGyroBiasSigma = 0.1;  ///< [rad/s]
+
+/// (b' - b) / sigma of the biases of neighbouring spans.
+class BiasStepCost : public ceres::SizedCostFunction<6, 6, 6> {
+ public:
+  explicit BiasStepCost(const Twist& sigma) : precision_(sigma.cwiseInverse()) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Twist> before(parameters[0]), after(parameters[1]);
+    Eigen::Map<Twist>(residuals, 6) = precision_.cwiseProduct(after - before);
+    if (jacobians == nullptr) return true;
+    write_block(jacobians[0], Matrix6((-precision_).asDiagonal()));
+    write_block(jacobians[1], Matrix6(precision_.asDiagonal()));
+    return true;
+  }
+
+ private:
+  Twist precision_;
+};
+
+Twist biases_of(double gyro, double accel) {
+  Twist both;
+  both.head<3>().setConstant(gyro);
+  both.tail<3>().setConstant(accel);
+  return both;
+}
+
+}  // namespace
+
+InertialRows::InertialRows(const Trajectory& path, const SplineKnots& knots,
+                           const InertialRowsStart& start, const InertialRowsOptions& options,
+                           double weight)
+    : path_(path),
+      knots_(knots),
+      start_(start),
+      options_(options),
+      weight_(weight),
+      frame_(InertialFrame::about(start.aligned.gravity)) {
+  const double length_s = path.end_s() - path.start_s();
+  const auto count = static_cast<std::size_t>(length_s / options.interval_s);
+  for (std::size_t j = 0; j <= count; ++j) {
+    times_s_.push_back(path.start_s() + static_cast<double>(j) * options.interval_s);
+    nodes_.push_back(node_at(times_s_.back()));
+  }
+  const ImuBias& bias = start.aligned.bias;
+  for (std::size_t j = 0; j < count; ++j)
+    if (auto sum =
+            preintegrate(start.imu.samples, times_s_[j] - start.aligned.time_offset_s,
+                         times_s_[j + 1] - start.aligned.time_offset_s, bias, start.imu.noise))
+      links_.push_back({j, *sum});
+  biases_ = bias_of(count) + 1;
+  const double scale = start.is_metric ? 1 : start.aligned.scale;
+  for (const InertialNode& node : nodes_) {
+    // The sensor's velocity; motion is the camera's.
+    const Eigen::Vector3d in_camera =
+        scale * node.motion.head<3>() + node.motion.tail<3>().cross(start.imu.place);
+    const Eigen::Vector3d velocity = node.given.rotation() * in_camera;
+    unknowns_.insert(unknowns_.end(), velocity.begin(), velocity.end());
+  }
+  for (std::size_t i = 0; i < biases_; ++i) {
+    unknowns_.insert(unknowns_.end(), bias.gyro.begin(), bias.gyro.end());
+    unknowns_.insert(unknowns_.end(), bias.accel.begin(), bias.accel.end());
+  }
+  const double frame[InertialFrame::kSize] = {0, 0, scale, 0};
+  unknowns_.insert(unknowns_.end(), std::begin(frame), std::end(frame));
+}
+
+InertialNode InertialRows::node_at(double t_s) const {
+  const double from_s = std::max(path_.start_s(), t_s - kHalfStep_s);
+  const double to_s = std::min(path_.end_s(), t_s + kHalfStep_s);
+  const Rigid3 step = path_.at_clamped(from_s).inverse() * path_.at_clamped(to_s);
+  return {path_.at_clamped(t_s), step.log() / (to_s - from_s), knots_.at(t_s)};
+}
+
+std::size_t InertialRows::bias_of(std::size_t node) const {
+  return static_cast<std::size_t>(static_cast<double>(node) * options_.interval_s /
+                                  options_.bias_spacing_s);
+}
+
+InertialCost::Matrix9 InertialRows::root_of(const Preintegration& sum) const {
+  InertialCost::Matrix9 covariance = sum.covariance;
+  const double slack_m = options_.slack * start_.typical_depth_m;
+  covariance.diagonal().head<3>().array() += options_.slack_rad * options_.slack_rad;
+  covariance.diagonal().tail<3>().array() += slack_m * slack_m;
+  const Eigen::LLT<InertialCost::Matrix9> factor(covariance);
+  return weight_ * InertialCost::Matrix9(factor.matrixL().solve(InertialCost::Matrix9::Identity()));
+}
+
+void InertialRows::add_to(ceres::Problem& problem, PathCorrection& correction,
+                          ceres::ParameterBlockOrdering& ordering) {
+  for (const Link& link : links_) {
+    auto* cost = new InertialCost({nodes_[link.node], nodes_[link.node + 1]}, link.sum,
+                                  start_.imu.place, frame_, root_of(link.sum));
+    std::vector<double*> blocks;
+    for (std::size_t k = 0; k < cost->controls(); ++k)
+      blocks.push_back(correction.data(cost->first_control() + k));
+    blocks.insert(blocks.end(), {velocity(link.node), velocity(link.node + 1),
+                                 bias(bias_of(link.node)), shared()});
+    problem.AddResidualBlock(cost, nullptr, blocks);
+  }
+  hold(problem);
+  for (double* block : unknowns()) ordering.AddElementToGroup(block, 2);
+}
+
+void InertialRows::hold(ceres::Problem& problem) {
+  // Where no readings are; far beyond what a hand does.
+  for (std::size_t j = 0; j < nodes_.size(); ++j)
+    problem.AddResidualBlock(new HeldCost<3>(Eigen::Map<const Eigen::Vector3d>(velocity(j)),
+                                             Eigen::Vector3d::Constant(kFree)),
+                             nullptr, velocity(j));
+  problem.AddResidualBlock(
+      new HeldCost<6>(Twist::Zero(), biases_of(kGyroBiasSigma, options_.accel_bias_sigma)), nullptr,
+      bias(0));
+  const Twist step = biases_of(options_.gyro_bias_step, options_.accel_bias_step);
+  for (std::size_t i = 0; i + 1 < biases_; ++i)
+    problem.AddResidualBlock(new BiasStepCost(step), nullptr, bias(i), bias(i + 1));
+  const Eigen::Map<const InertialFrame::Vector> mean(shared());
+  const InertialFrame::Vector sigma(kFree, kFree, start_.is_metric ? kKnownScale : kFree,
+                                    options_.offset_sigma_s);
+  problem.AddResidualBlock(new HeldCost<InertialFrame::kSize>(mean, sigma), nullptr, shared());
+}
+
+std::vector<double*> InertialRows::unknowns() {
+  std::vector<double*> blocks;
+  for (std::size_t j = 0; j < nodes_.size(); ++j) blocks.push_back(velocity(j));
+  for (std::size_t i = 0; i < biases_; ++i) blocks.push_back(bias(i));
+  blocks.push_back(shared());
+  return blocks;
+}
+
+InertialAlignment InertialRows::found() const {
+  InertialAlignment found = start_.aligned;
+  const double* frame = &unknowns_[unknowns_.size() - InertialFrame::kSize];
+  const double* bias = &unknowns_[3 * nodes_.size()];
+  found.gravity = frame_.gravity_at(Eigen::Vector2d(frame[0], frame[1]));
+  found.scale = frame[InertialFrame::kScale];
+  found.time_offset_s += frame[InertialFrame::kOffset];
+  found.bias = {Eigen::Map<const Eigen::Vector3d>(bias),
+                Eigen::Map<const Eigen::Vector3d>(bias + 3)};
+  found.intervals = links_.size();
+  return found;
+}
+
+}  // namespace saccade
