@@ -33,6 +33,7 @@ void describe_command(CLI::App& command) {
   add_run_verb(command);
   add_eval_verb(command);
   add_report_verb(command);
+  add_gate_verb(command);
   add_sweep_verb(command);
   add_render_verb(command);
   add_info_verb(command);

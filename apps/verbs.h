@@ -9,6 +9,7 @@ void add_simulate_verb(CLI::App& command);
 void add_run_verb(CLI::App& command);
 void add_eval_verb(CLI::App& command);
 void add_report_verb(CLI::App& command);
+void add_gate_verb(CLI::App& command);
 void add_sweep_verb(CLI::App& command);
 void add_render_verb(CLI::App& command);
 void add_info_verb(CLI::App& command);

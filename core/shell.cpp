@@ -1,7 +1,6 @@
 #include "core/shell.h"
 
 #include <cctype>
-#include <string_view>
 
 namespace saccade {
 namespace {
@@ -28,6 +27,26 @@ std::string shell_line(std::span<const std::string> words) {
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
   return line;
+}
+
+std::vector<std::string> shell_words(std::string_view line) {
+  std::vector<std::string> words;
+  bool in_word = false, in_quotes = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == ' ' && !in_quotes) {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) words.emplace_back();
+    in_word = true;
+    if (line[i] == '\'')
+      in_quotes = !in_quotes;
+    else if (line[i] == '\\' && !in_quotes && i + 1 < line.size())
+      words.back() += line[++i];
+    else
+      words.back() += line[i];
+  }
+  return words;
 }
 
 }  // namespace saccade

@@ -2,10 +2,15 @@
 
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace saccade {
 
 /// Words as one line that a POSIX shell takes apart into the same words again.
 [[nodiscard]] std::string shell_line(std::span<const std::string> words);
+
+/// The words of such a line.
+[[nodiscard]] std::vector<std::string> shell_words(std::string_view line);
 
 }  // namespace saccade

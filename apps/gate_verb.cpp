@@ -1,0 +1,166 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apps/common_options.h"
+#include "apps/option_checks.h"
+#include "apps/verbs.h"
+#include "core/error.h"
+#include "core/io/atomic_file.h"
+#include "core/progress.h"
+#include "eval/gate/baseline_file.h"
+#include "eval/gate/build_race.h"
+#include "eval/gate/comparison.h"
+#include "eval/gate/gate_report.h"
+
+namespace saccade {
+namespace {
+
+struct GateVerbOptions {
+  std::vector<std::string> words;  ///< run folders, or with --build the arguments of both
+  std::filesystem::path baseline;
+  std::vector<std::filesystem::path> builds;
+  std::optional<std::filesystem::path> junit;
+  std::optional<std::filesystem::path> markdown;
+  GateOptions gate;
+  int repeats = 10;
+  bool update = false;
+  bool all = false;
+  bool no_speed = false;
+  bool quiet = false;
+};
+
+/// The runs given, and with --partial those of the old baseline that are not among them.
+std::vector<GateRun> updated(const GateVerbOptions& options, std::vector<GateRun> runs) {
+  if (!options.gate.partial || !std::filesystem::exists(options.baseline)) return runs;
+  const std::size_t given = runs.size();
+  for (const GateRun& old : read_baseline(options.baseline)) {
+    bool is_given = false;
+    for (std::size_t i = 0; i < given; ++i) is_given = is_given || runs[i].key == old.key;
+    if (!is_given) runs.push_back(old);
+  }
+  return runs;
+}
+
+void update(const GateVerbOptions& options, const std::vector<GateRun>& runs) {
+  const std::vector<GateRun> kept = updated(options, runs);
+  write_baseline(options.baseline, kept);
+  if (!options.quiet)
+    fmt::print("wrote {}: {} {}\n", options.baseline.string(), kept.size(),
+               kept.size() == 1 ? "run" : "runs");
+}
+
+/// Shows and writes the result. A gate that tripped is a failure.
+void finish(const GateVerbOptions& options, const GateResult& result) {
+  if (!options.quiet) fmt::print("{}", gate_text(result, options.all));
+  if (options.junit) write_atomically(*options.junit, gate_junit(result));
+  if (options.markdown) write_atomically(*options.markdown, gate_markdown(result));
+  if (!result.tripped()) return;
+  const std::size_t count = result.count(GateRow::Verdict::kRegressed);
+  throw std::runtime_error(fmt::format("the gate tripped: {} {} regressed", count,
+                                       count == 1 ? "comparison has" : "comparisons have"));
+}
+
+void gate_runs(const GateVerbOptions& options) {
+  if (options.baseline.empty())
+    throw InputError("--baseline", "name the baseline: --baseline FILE");
+  if (options.words.empty()) throw InputError("gate", "name at least one run folder");
+  const std::vector<GateRun> runs = read_gate_runs({options.words.begin(), options.words.end()});
+  if (options.update) return update(options, runs);
+  if (!std::filesystem::exists(options.baseline))
+    throw InputError(options.baseline.string(), "does not exist; --update writes it");
+  finish(options, compare_runs(read_baseline(options.baseline), runs, options.gate));
+}
+
+void race_builds(const GateVerbOptions& options) {
+  if (options.builds.size() != 2)
+    throw InputError("--build", "name two programs: --build A --build B -- ARGUMENTS");
+  if (!options.baseline.empty() || options.update)
+    throw InputError("--build", "two builds are compared with each other, not with a --baseline");
+  if (options.words.empty())
+    throw InputError("--build", "say what both are to do: --build A --build B -- ARGUMENTS");
+  for (const std::filesystem::path& build : options.builds)
+    if (!std::filesystem::exists(build)) throw InputError(build.string(), "does not exist");
+  const BuildRace race{options.builds[0], options.builds[1], options.words, options.repeats};
+  Progress progress("running", race_order(race.repeats).size(), "runs");
+  const RaceTimes times = run_race(race, [&](const RaceTurn&) { progress.add(1); });
+  progress.finish();
+  finish(options, compare_times(times.first_s, times.second_s, options.gate));
+}
+
+void gate(GateVerbOptions& options) {
+  set_progress_quiet(options.quiet);
+  options.gate.speed = !options.no_speed;
+  options.gate.check();
+  if (options.builds.empty()) return gate_runs(options);
+  options.all = true;  // there is one row
+  race_builds(options);
+}
+
+void add_rule_options(CLI::App& verb, GateOptions& gate) {
+  verb.add_option("--tolerance", gate.tolerance, "Smallest relative change that counts")
+      ->capture_default_str();
+  verb.add_option("--gross", gate.gross,
+                  "Relative change that counts in a sequence with fewer than six pairs")
+      ->capture_default_str();
+  verb.add_option("--slower", gate.slower, "Smallest factor of the time that counts")
+      ->capture_default_str();
+  verb.add_option("--confidence", gate.confidence, "Of all comparisons together")
+      ->capture_default_str();
+  verb.add_option("--resamples", gate.resamples, "Of the bootstrap")->capture_default_str();
+  verb.add_option("--metric", gate.metrics, "Judge this metric, too (repeatable)")
+      ->type_name("KEY")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb.add_flag("--partial", gate.partial,
+                "Runs of the baseline may be left out; --update then keeps them");
+}
+
+void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
+  verb.add_option("RUN", options.words,
+                  "Scored run folders; with --build, behind --, the arguments of both programs");
+  verb.add_option("--baseline", options.baseline, "What the runs are held against")
+      ->type_name("FILE");
+  verb.add_flag("--update", options.update, "Write the runs to the baseline and compare nothing");
+  verb.add_option("--build", options.builds,
+                  "Given twice: run both programs in turn and compare their times")
+      ->type_name("PROGRAM")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb.add_option("--repeats", options.repeats, "Timed runs of each build")
+      ->type_name("N")
+      ->check(whole_number(2, 100000))
+      ->capture_default_str();
+  add_rule_options(verb, options.gate);
+  verb.add_flag("--no-speed", options.no_speed, "Leave the times of the runs out");
+  verb.add_option("--junit", options.junit, "Write the result as JUnit XML")->type_name("FILE");
+  verb.add_option("--markdown", options.markdown, "Write the result as Markdown")
+      ->type_name("FILE");
+  verb.add_flag("--all", options.all,
+                "Show the comparisons that neither regressed nor improved, too");
+  verb.add_flag("-q,--quiet", options.quiet, "No progress, no table: the exit code and errors");
+}
+
+}  // namespace
+
+void add_gate_verb(CLI::App& command) {
+  const auto options = std::make_shared<GateVerbOptions>();
+  CLI::App* verb = command.add_subcommand(
+      "gate", "Hold scored runs against a baseline, or two builds against each other");
+  add_gate_options(*verb, *options);
+  verb->footer(
+      "Examples:\n"
+      "  saccade gate runs/* --baseline baseline.yaml --update\n"
+      "  saccade gate runs/* --baseline baseline.yaml --junit gate.xml --markdown gate.md\n"
+      "  saccade gate --build old/saccade --build new/saccade -- \\\n"
+      "    run track --data data/walls -c configs/tracking/accurate.yaml -o runs/timed\n\n"
+      "Exit codes: 0 nothing regressed, 1 the gate tripped, 2 bad usage or bad input.");
+  verb->callback([options] { gate(*options); });
+}
+
+}  // namespace saccade

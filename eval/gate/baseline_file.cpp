@@ -1,0 +1,56 @@
+#include "eval/gate/baseline_file.h"
+
+#include <algorithm>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/atomic_file.h"
+
+namespace saccade {
+namespace {
+
+/// The contents of a baseline file.
+struct Baseline {
+  int format_version = 1;
+  std::vector<GateRun> runs;
+};
+
+void describe(config::Fields& fields, Baseline& baseline) {
+  fields.value("format_version", baseline.format_version, "of this file").required().range(1, 1);
+  fields.list("runs", baseline.runs, "scored runs").required();
+}
+
+void sort_by_key(std::vector<GateRun>& runs) {
+  std::sort(runs.begin(), runs.end(),
+            [](const GateRun& a, const GateRun& b) { return a.key < b.key; });
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, GateRun& run) {
+  fields.value("dataset", run.key.dataset, "name of its folder").required();
+  fields.value("module", run.key.module, "estimator").required();
+  fields.value("config", run.key.config, "its file's name and what was --set").required();
+  fields.value("seed", run.key.seed, "of every random number").required();
+  fields.value("machine", run.machine, "kind that it ran on");
+  fields.value("threads", run.threads, "it ran on; 0 is not stated").at_least(0);
+  fields.value("tool_version", run.tool_version, "that made the run");
+  fields.value("metrics", run.metrics, "scores").required();
+}
+
+std::vector<GateRun> read_baseline(const std::filesystem::path& file) {
+  auto baseline = config::read<Baseline>(config::load(file));
+  if (baseline.runs.empty()) throw InputError(file.string(), "runs: must not be empty");
+  sort_by_key(baseline.runs);
+  for (std::size_t i = 1; i < baseline.runs.size(); ++i)
+    if (baseline.runs[i].key == baseline.runs[i - 1].key)
+      throw InputError(file.string(), "holds " + baseline.runs[i].key.text() + " twice");
+  return std::move(baseline.runs);
+}
+
+void write_baseline(const std::filesystem::path& file, std::vector<GateRun> runs) {
+  sort_by_key(runs);
+  write_atomically(file, config::print(Baseline{1, std::move(runs)}));
+}
+
+}  // namespace saccade

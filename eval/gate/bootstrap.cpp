@@ -1,0 +1,128 @@
+#include "eval/gate/bootstrap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/check.h"
+#include "core/random.h"
+
+namespace saccade {
+namespace {
+
+/// The draws of one resample with replacement: `number` says which, so that it depends on neither
+/// order nor thread.
+void resample(const Random& random, std::uint64_t number, std::span<const double> values,
+              std::vector<double>& drawn) {
+  const std::uint64_t size = values.size();
+  drawn.resize(values.size());
+  for (std::size_t i = 0; i < drawn.size(); i += 4) {
+    const std::array<std::uint32_t, 4> bits = random.bits(number, i / 4);
+    for (std::size_t j = i; j < std::min(i + 4, drawn.size()); ++j)
+      drawn[j] = values[static_cast<std::size_t>((bits[j - i] * size) >> 32)];
+  }
+}
+
+/// Mean and standard error of the mean.
+struct Estimate {
+  double mean;
+  double error;
+};
+
+Estimate estimate(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0;
+  for (const double value : values) sum += value;
+  const double mean = sum / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {mean, std::sqrt(squares / (n - 1) / n)};
+}
+
+double median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+/// The sorted value with a share `tail` of all at it or above.
+double upper_quantile(const std::vector<double>& sorted, double tail) {
+  const auto beyond = static_cast<std::size_t>(tail * static_cast<double>(sorted.size() + 1));
+  return sorted[sorted.size() - std::max<std::size_t>(beyond, 1)];
+}
+
+/// The one with such a share at it or below.
+double lower_quantile(const std::vector<double>& sorted, double tail) {
+  const auto beyond = static_cast<std::size_t>(tail * static_cast<double>(sorted.size() + 1));
+  return sorted[std::max<std::size_t>(beyond, 1) - 1];
+}
+
+/// t* of all resamples, sorted. Sums are of what is off from the mean, so that one pass is exact
+/// enough for them.
+std::vector<double> studentised(std::span<const double> values, double mean,
+                                const ResampleOptions& options) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Random random(options.seed);
+  const auto n = static_cast<double>(values.size());
+  std::vector<double> off(values.begin(), values.end()), drawn, t;
+  for (double& value : off) value -= mean;
+  t.reserve(static_cast<std::size_t>(options.resamples));
+  for (int i = 0; i < options.resamples; ++i) {
+    resample(random, static_cast<std::uint64_t>(i), off, drawn);
+    double sum = 0, squares = 0;
+    for (const double value : drawn) {
+      sum += value;
+      squares += value * value;
+    }
+    const double variance = (squares - sum * sum / n) / (n - 1);
+    t.push_back(variance > 0 ? sum / std::sqrt(n * variance) : std::copysign(kInfinity, sum));
+  }
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+void check_options(const ResampleOptions& options) {
+  SACCADE_CHECK(options.resamples >= 100 && options.tail > 0 && options.tail < 0.5);
+}
+
+}  // namespace
+
+BootstrapMean bootstrap_mean(std::span<const double> values, const ResampleOptions& options) {
+  check_options(options);
+  SACCADE_CHECK(values.size() >= kLeastForBootstrap);
+  for (const double value : values) SACCADE_CHECK(std::isfinite(value));
+  const auto [mean, error] = estimate(values);
+  const double least = 1.0 / (options.resamples + 1.0);
+  // What rounding alone makes of equal values.
+  if (error <= 1e-12 * std::abs(mean))
+    return {mean, mean, mean, mean > 0 ? least : 1, mean < 0 ? least : 1};
+  const std::vector<double> t = studentised(values, mean, options);
+  const double at = mean / error;
+  const auto above = t.end() - std::lower_bound(t.begin(), t.end(), at);
+  const auto below = std::upper_bound(t.begin(), t.end(), at) - t.begin();
+  return {mean, mean - error * upper_quantile(t, options.tail),
+          mean - error * lower_quantile(t, options.tail), (1 + static_cast<double>(above)) * least,
+          (1 + static_cast<double>(below)) * least};
+}
+
+BootstrapRatio bootstrap_median_ratio(std::span<const double> of, std::span<const double> to,
+                                      const ResampleOptions& options) {
+  check_options(options);
+  SACCADE_CHECK(!of.empty() && !to.empty());
+  for (const std::span<const double> values : {of, to})
+    for (const double value : values) SACCADE_CHECK(std::isfinite(value) && value > 0);
+  const Random first(options.seed), second(options.seed + 1);
+  std::vector<double> drawn_of, drawn_to, ratios;
+  for (int i = 0; i < options.resamples; ++i) {
+    const auto number = static_cast<std::uint64_t>(i);
+    resample(first, number, of, drawn_of);
+    resample(second, number, to, drawn_to);
+    ratios.push_back(median_of(drawn_of) / median_of(drawn_to));
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return {median_of({of.begin(), of.end()}), median_of({to.begin(), to.end()}),
+          lower_quantile(ratios, options.tail), upper_quantile(ratios, options.tail)};
+}
+
+}  // namespace saccade

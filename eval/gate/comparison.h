@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/gate/gate_run.h"
+
+namespace saccade {
+
+struct GateOptions {
+  double tolerance = 0.03;  ///< smallest relative change that counts, > 0; some metrics have theirs
+  double gross = 0.25;      ///< change of a sequence with few pairs that needs no statistics, > 0
+  double slower = 1.1;      ///< smallest factor of the time that counts, > 1
+  double confidence = 0.99;  ///< of all comparisons together, in (0.5, 1)
+  int resamples = 10000;     ///< of the bootstrap, >= 100; more are drawn for many comparisons
+  std::uint64_t seed = 1;    ///< of the resamples
+  bool speed = true;         ///< judge the time, too
+  bool partial = false;      ///< runs of the baseline may be left out
+  std::vector<std::string> metrics;  ///< judged besides gate_metrics()
+
+  /// Throws InputError whose place is the option of the command.
+  void check() const;
+};
+
+/// One comparison.
+struct GateRow {
+  enum class Verdict { kRegressed, kImproved, kSame };
+
+  Verdict verdict = Verdict::kSame;
+  std::string metric;
+  std::string scope;  ///< the sequence, or the module whose sequences are pooled
+  std::size_t pairs = 0;
+  std::optional<double> before;  ///< mean over the pairs
+  std::optional<double> after;
+  std::optional<double> change;  ///< relative, e.g. 0.05 for 5 % more
+  std::optional<double> low;     ///< the simultaneous interval of `change`
+  std::optional<double> high;
+  std::optional<double> p;  ///< one-sided, in the direction of the change, corrected (Holm)
+  std::string note;         ///< what is behind the verdict where it is not the interval
+};
+
+struct GateResult {
+  std::vector<GateRow> rows;  ///< regressed ones first, then improved ones
+  std::vector<std::string> notes;
+
+  [[nodiscard]] std::size_t count(GateRow::Verdict verdict) const;
+  [[nodiscard]] bool tripped() const { return count(GateRow::Verdict::kRegressed) > 0; }
+};
+
+/// Holds runs against those of the baseline with the same keys, by the rules of docs/gate.md. Equal
+/// input gives an equal result. Throws InputError where no run has a partner.
+[[nodiscard]] GateResult compare_runs(std::span<const GateRun> baseline,
+                                      std::span<const GateRun> runs, const GateOptions& options);
+
+/// Holds the times of a second build against those of a first: both [s], > 0, not empty.
+[[nodiscard]] GateResult compare_times(std::span<const double> first_s,
+                                       std::span<const double> second_s,
+                                       const GateOptions& options);
+
+/// Holm's step-down correction: p_(i) becomes max over j <= i of (m - j + 1) p_(j), at most 1; in
+/// the order of the input.
+[[nodiscard]] std::vector<double> holm(std::span<const double> p);
+
+}  // namespace saccade

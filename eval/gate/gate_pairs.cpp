@@ -1,0 +1,105 @@
+#include "eval/gate/gate_pairs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/error.h"
+#include "eval/gate/gate_metric.h"
+
+namespace saccade {
+namespace {
+
+/// Where something went wrong: how many pairs, and the first of them.
+struct Found {
+  std::size_t count = 0;
+  const GatePair* first = nullptr;
+
+  void add(const GatePair& pair) {
+    if (count++ == 0) first = &pair;
+  }
+  [[nodiscard]] std::string scope() const {
+    const std::string text = first->after->key.text();
+    return count == 1 ? text : fmt::format("{} and {} more", text, count - 1);
+  }
+};
+
+const GateRun* find(std::span<const GateRun> runs, const GateKey& key) {
+  const auto found =
+      std::find_if(runs.begin(), runs.end(), [&](const GateRun& run) { return run.key == key; });
+  return found == runs.end() ? nullptr : &*found;
+}
+
+GateRow regressed(const std::string& metric, const Found& found, std::string note) {
+  GateRow row;
+  row.verdict = GateRow::Verdict::kRegressed;
+  row.metric = metric;
+  row.scope = found.scope();
+  row.pairs = found.count;
+  row.before = found.first->before->get(metric);
+  row.after = found.first->after->get(metric);
+  row.note = std::move(note);
+  return row;
+}
+
+}  // namespace
+
+std::vector<GatePair> match_runs(std::span<const GateRun> baseline, std::span<const GateRun> runs,
+                                 bool partial, GateResult& result) {
+  std::vector<GatePair> pairs;
+  for (const GateRun& before : baseline) {
+    if (const GateRun* after = find(runs, before.key)) {
+      pairs.push_back({&before, after});
+    } else if (!partial) {
+      GateRow row;
+      row.verdict = GateRow::Verdict::kRegressed;
+      row.metric = "the run";
+      row.scope = before.key.text();
+      row.note = "missing";
+      result.rows.push_back(row);
+    }
+  }
+  for (const GateRun& after : runs)
+    if (find(baseline, after.key) == nullptr)
+      result.notes.push_back("not in the baseline: " + after.key.text());
+  if (pairs.empty())
+    throw InputError("--baseline", "none of the runs is in it: it holds " +
+                                       baseline.front().key.text() + " and not " +
+                                       runs.front().key.text());
+  return pairs;
+}
+
+void add_missing_metrics(std::span<const GatePair> pairs, bool speed, GateResult& result) {
+  std::map<std::string, Found> missing;
+  for (const GatePair& pair : pairs)
+    for (const auto& [metric, value] : pair.before->metrics)
+      if (value && !pair.after->get(metric) && (speed || !metric.starts_with("speed.")))
+        missing[metric].add(pair);
+  for (const auto& [metric, found] : missing)
+    result.rows.push_back(regressed(metric, found, "missing"));
+}
+
+void add_changed_signs(std::span<const GatePair> pairs, GateResult& result) {
+  std::map<std::string, Found> changed;
+  for (const GatePair& pair : pairs)
+    for (const auto& [metric, before] : pair.before->metrics) {
+      const std::optional<double> after = pair.after->get(metric);
+      if (is_judged_by_sign(metric) && before && after && *before * *after < 0)
+        changed[metric].add(pair);
+    }
+  for (const auto& [metric, found] : changed)
+    result.rows.push_back(regressed(metric, found, "other sign"));
+}
+
+void note_other_data(std::span<const GatePair> pairs, GateResult& result) {
+  for (const GatePair& pair : pairs) {
+    const std::optional<double> before = pair.before->get("speed.events");
+    const std::optional<double> after = pair.after->get("speed.events");
+    if (before && after && *before != *after)
+      result.notes.push_back(fmt::format("{}: {} events in place of {}; not the same data",
+                                         pair.after->key.text(), *after, *before));
+  }
+}
+
+}  // namespace saccade
