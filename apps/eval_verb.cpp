@@ -3,12 +3,15 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "eval/evaluate.h"
+#include "eval/store/result_store.h"
 
 namespace saccade {
 namespace {
@@ -58,6 +61,16 @@ void evaluate_foreign(const EvalOptions& options) {
   show(options, metrics, options.trajectory.string());
 }
 
+/// The scores are in metrics.json whatever becomes of the store, for which the folder above the run
+/// must be writable.
+void keep_result(const std::filesystem::path& run) {
+  try {
+    store_result(run);
+  } catch (const InputError& error) {
+    show_notice(std::string("not stored for `saccade results`: ") + error.what());
+  }
+}
+
 void evaluate(const EvalOptions& options) {
   options.common.apply();
   const int named =
@@ -72,7 +85,9 @@ void evaluate(const EvalOptions& options) {
   if (options.output)
     throw InputError(
         "-o", "the scores of a run go to RUN/metrics.json; -o is for other programs' results");
-  show(options, evaluate_run(options.run, options.evaluate), options.run.string());
+  const Metrics metrics = evaluate_run(options.run, options.evaluate);
+  keep_result(options.run);
+  show(options, metrics, options.run.string());
 }
 
 }  // namespace
@@ -81,7 +96,8 @@ void add_eval_verb(CLI::App& command) {
   const auto options = std::make_shared<EvalOptions>();
   CLI::App* verb = command.add_subcommand(
       "eval", "Score a run, or the trajectory of any program, against ground truth");
-  verb->add_option("RUN", options->run, "Run folder; its metrics.json is written");
+  verb->add_option("RUN", options->run,
+                   "Run folder; its metrics.json is written, and results.sqlite beside it");
   verb->add_option("--trajectory", options->trajectory,
                    "Trajectory of any program (TUM: t tx ty tz qx qy qz qw)");
   verb->add_option("--depth", options->depth,

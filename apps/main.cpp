@@ -35,6 +35,8 @@ void describe_command(CLI::App& command) {
   add_report_verb(command);
   add_gate_verb(command);
   add_sweep_verb(command);
+  add_results_verb(command);
+  add_cache_verb(command);
   add_render_verb(command);
   add_info_verb(command);
   add_convert_verb(command);

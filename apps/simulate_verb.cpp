@@ -7,6 +7,7 @@
 #include "apps/verbs.h"
 #include "core/config/config.h"
 #include "core/error.h"
+#include "simulator/dataset_cache.h"
 #include "simulator/simulate.h"
 
 namespace saccade {
@@ -15,6 +16,7 @@ namespace {
 struct SimulateVerbOptions {
   std::string config;
   std::filesystem::path output;
+  bool cached = false;
   CommonOptions common;
 };
 
@@ -39,6 +41,19 @@ void show(const SimulationReport& report, const std::filesystem::path& output) {
   fmt::print("  {:.1f} s in all, scene {:.1f} s\n", report.total_s, report.load_s);
 }
 
+/// Simulates into the cache what is not there yet; `-o` becomes a link to it.
+void simulate_cached(const SimulateVerbOptions& options, const SimulationConfig& config) {
+  const DatasetCache::Obtained obtained =
+      DatasetCache(default_cache_folder())
+          .obtain(config, std::filesystem::path(options.config).stem().string());
+  if (!options.output.empty()) link_dataset(obtained.folder, options.output);
+  if (options.common.quiet) return;
+  if (obtained.report)
+    show(*obtained.report, obtained.folder);
+  else
+    fmt::print("{}: simulated before\n", obtained.folder.string());
+}
+
 void simulate_config(const SimulateVerbOptions& options) {
   options.common.apply();
   const auto config = config::read<SimulationConfig>(options.common.load(options.config));
@@ -46,8 +61,10 @@ void simulate_config(const SimulateVerbOptions& options) {
     fmt::print("{}", config::print_documented(config));
     return;
   }
+  if (options.cached) return simulate_cached(options, config);
   if (options.output.empty())
     throw InputError("-o", "name the dataset folder to write: -o DATASET");
+  unlink_dataset(options.output);
   const SimulationReport report = simulate(config, options.output);
   if (!options.common.quiet) show(report, options.output);
 }
@@ -60,6 +77,9 @@ void add_simulate_verb(CLI::App& command) {
       "simulate", "Render a scene along a trajectory into events, frames, depth, IMU and poses");
   verb->add_option("CONFIG", options->config, "Simulation configuration (YAML)")->required();
   verb->add_option("-o,--output", options->output, "Dataset folder to write")->type_name("DATASET");
+  verb->add_flag("--cached", options->cached,
+                 "Into the cache ($SACCADE_CACHE, see `saccade cache`) unless it is there; DATASET "
+                 "becomes a link to it");
   add_config_options(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(

@@ -11,6 +11,8 @@ void add_eval_verb(CLI::App& command);
 void add_report_verb(CLI::App& command);
 void add_gate_verb(CLI::App& command);
 void add_sweep_verb(CLI::App& command);
+void add_results_verb(CLI::App& command);
+void add_cache_verb(CLI::App& command);
 void add_render_verb(CLI::App& command);
 void add_info_verb(CLI::App& command);
 void add_convert_verb(CLI::App& command);

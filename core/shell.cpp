@@ -31,20 +31,24 @@ std::string shell_line(std::span<const std::string> words) {
 
 std::vector<std::string> shell_words(std::string_view line) {
   std::vector<std::string> words;
-  bool in_word = false, in_quotes = false;
+  bool in_word = false;
+  char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == ' ' && !in_quotes) {
+    const char c = line[i];
+    if (quote == 0 && (c == ' ' || c == '\t' || c == '\n')) {
       in_word = false;
       continue;
     }
     if (!in_word) words.emplace_back();
     in_word = true;
-    if (line[i] == '\'')
-      in_quotes = !in_quotes;
-    else if (line[i] == '\\' && !in_quotes && i + 1 < line.size())
+    if (c == '\\' && quote != '\'' && i + 1 < line.size())
       words.back() += line[++i];
+    else if (c == quote)
+      quote = 0;
+    else if (quote == 0 && (c == '\'' || c == '"'))
+      quote = c;
     else
-      words.back() += line[i];
+      words.back() += c;
   }
   return words;
 }

@@ -1,11 +1,6 @@
 #include "core/io/resumable_folder.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -14,6 +9,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/file_bytes.h"
+#include "core/io/file_lock.h"
 #include "core/io/sha256.h"
 
 namespace saccade {
@@ -61,13 +57,6 @@ void remove_workplace(const fs::path& folder) {
   fs::remove_all(folder, ignored);
 }
 
-bool is_same_file(int descriptor, const fs::path& file) {
-  struct stat open_one {};
-  struct stat named {};
-  return ::fstat(descriptor, &open_one) == 0 && ::stat(file.c_str(), &named) == 0 &&
-         open_one.st_ino == named.st_ino && open_one.st_dev == named.st_dev;
-}
-
 }  // namespace
 
 std::string difference(const Fingerprint& before, const Fingerprint& now) {
@@ -80,31 +69,17 @@ std::string difference(const Fingerprint& before, const Fingerprint& now) {
   return {};
 }
 
-/// Held as long as it lives; the system releases it when the program ends, however that happens.
+/// `folder` is created when it is not there.
 class ResumableFolder::Lock {
  public:
-  /// `folder` is created when it is not there.
-  Lock(const fs::path& folder, const fs::path& target) {
-    const fs::path file = folder / kLockFile;
-    do {
-      if (descriptor_ >= 0) ::close(descriptor_);
-      create_folder(folder);
-      descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-      if (descriptor_ < 0) fail_to_write(file, errno);
-      const bool taken = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-      if (taken) {
-        ::close(descriptor_);
-        throw InputError(target.string(), "is being written by another program at this moment");
-      }
-      // Its last owner may have removed the folder meanwhile.
-    } while (!is_same_file(descriptor_, file));
+  Lock(const fs::path& folder, const fs::path& target)
+      : lock_(FileLock::try_take(folder / kLockFile)) {
+    if (!lock_)
+      throw InputError(target.string(), "is being written by another program at this moment");
   }
-  ~Lock() { ::close(descriptor_); }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
 
  private:
-  int descriptor_ = -1;
+  std::optional<FileLock> lock_;
 };
 
 ResumableFolder::ResumableFolder(const fs::path& folder, std::string marker,

@@ -133,6 +133,7 @@ class Planner {
     append(settings, dataset.set);
     if (seed) append(settings, "--seed", std::to_string(*seed));
     Words call{"simulate", simulation.config.string(), "-o", simulation.output.string()};
+    if (sweep_.cache) call.emplace_back("--cached");
     append(call, settings);
     simulation.commands = {call};
     simulation.settings = "simulate " + shell_line(settings);

@@ -86,6 +86,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.value("repeat", sweep.repeat, "repetitions of each run, for its speed").range(1, 100000);
   fields.value("timing", sweep.timing, "one run at a time on one thread, for a speed to quote");
   fields.value("threads", sweep.threads, "of one run").range(1, 4096);
+  fields.value("cache", sweep.cache, "simulate into the cache that all sweeps share");
   fields.value("start_s", sweep.start_s, "begin of the window; default: first event");
   fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
   fields.value("metrics", sweep.metrics, "of metrics.json in sweep.md; default: the usual ones");

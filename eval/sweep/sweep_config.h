@@ -45,6 +45,7 @@ struct SweepConfig {
   int repeat = 1;                    ///< of each run, for its timing
   bool timing = false;               ///< one run at a time, with one thread
   int threads = 1;                   ///< of one run
+  bool cache = true;                 ///< simulations go to the cache that all sweeps share
   std::optional<double> start_s;     ///< window of the runs, as --start-s
   std::optional<double> duration_s;
   std::vector<std::string>

@@ -13,6 +13,16 @@
 
 namespace saccade::testing {
 
+/// The tests of a program share a cache of datasets of their own, and leave the user's alone.
+class OwnCache {
+ public:
+  OwnCache() { setenv("SACCADE_CACHE", folder_.path().c_str(), 1); }
+
+ private:
+  TemporaryFolder folder_;
+};
+inline const OwnCache kOwnCache;
+
 /// Runs the command of this build.
 [[nodiscard]] inline CommandResult saccade(const std::vector<std::string>& arguments) {
   return run_command(SACCADE_COMMAND, arguments);

@@ -59,7 +59,7 @@ TEST(SweepPlan, MakesCommandLines) {
   const std::string root = folder.path(), out = root + "/out/";
   EXPECT_THAT(sweep.simulations.at(0).commands,
               ElementsAre(ElementsAre("simulate", root + "/walls.yaml", "-o", out + "data/walls",
-                                      "--set", "duration_s=0.1", "--seed", "7")));
+                                      "--cached", "--set", "duration_s=0.1", "--seed", "7")));
   EXPECT_THAT(
       sweep.runs.at(0).commands,
       ElementsAre(ElementsAre("run", "track", "--data", out + "data/walls", "-o",

@@ -1,0 +1,133 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "apps/verbs.h"
+#include "core/error.h"
+#include "eval/store/result_diff.h"
+#include "eval/store/result_store.h"
+#include "eval/store/result_text.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ResultsOptions {
+  fs::path store;
+  std::string where;
+  std::vector<std::string> columns;
+  std::vector<std::string> diff;
+  std::string format = "table";
+  std::vector<fs::path> add;
+  fs::path scan;
+};
+
+ResultFormat format_of(const ResultsOptions& options) {
+  static const std::map<std::string, ResultFormat> kFormats{
+      {"table", ResultFormat::kTable}, {"csv", ResultFormat::kCsv}, {"json", ResultFormat::kJson}};
+  return kFormats.at(options.format);
+}
+
+/// The store that a path names: itself, in the folder, or in the folder's runs/, as a sweep has it.
+fs::path find_store(const fs::path& named) {
+  if (fs::is_regular_file(named)) return named;
+  for (const fs::path& folder : {named, named / "runs"})
+    if (fs::exists(folder / kResultStoreName)) return folder / kResultStoreName;
+  return named / kResultStoreName;
+}
+
+/// Every run folder below `folder`, or itself.
+std::vector<fs::path> runs_below(const fs::path& folder) {
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder (--scan)");
+  if (fs::exists(folder / "run.yaml")) return {folder};
+  std::vector<fs::path> runs;
+  std::error_code error;
+  for (auto at = fs::recursive_directory_iterator(folder, error);
+       at != fs::recursive_directory_iterator(); at.increment(error)) {
+    if (!at->is_directory(error)) continue;
+    const bool hidden = at->path().filename().string().starts_with('.');  // unfinished
+    const bool is_run = !hidden && fs::exists(at->path() / "run.yaml");
+    if (is_run) runs.push_back(at->path());
+    if (is_run || hidden) at.disable_recursion_pending();
+  }
+  if (runs.empty()) throw InputError(folder.string(), "holds no runs (--scan)");
+  std::sort(runs.begin(), runs.end());
+  return runs;
+}
+
+void add_runs(const std::vector<fs::path>& runs) {
+  std::map<fs::path, std::vector<ResultRow>> rows;
+  for (const fs::path& run : runs) rows[result_store_beside(run)].push_back(read_result(run));
+  for (const auto& [store, added] : rows) {
+    ResultStore(store).add(added);
+    fmt::print("{}: {} {} added\n", store.string(), added.size(),
+               added.size() == 1 ? "run" : "runs");
+  }
+}
+
+void show_results(const ResultsOptions& options) {
+  std::vector<fs::path> runs = options.add;
+  if (!options.scan.empty()) {
+    const std::vector<fs::path> found = runs_below(options.scan);
+    runs.insert(runs.end(), found.begin(), found.end());
+  }
+  if (!runs.empty()) return add_runs(runs);
+  ResultReader reader(find_store(options.store.empty() ? "." : options.store));
+  if (options.diff.empty()) {
+    fmt::print("{}", list_results(reader, options.where, options.columns, format_of(options)));
+    return;
+  }
+  if (!options.columns.empty())
+    throw InputError("--columns", "is for the list of runs; --diff has columns of its own");
+  fmt::print("{}",
+             format_diff(diff_results(reader, options.diff[0], options.diff[1], options.where),
+                         format_of(options)));
+}
+
+}  // namespace
+
+void add_results_verb(CLI::App& command) {
+  const auto options = std::make_shared<ResultsOptions>();
+  CLI::App* verb = command.add_subcommand(
+      "results",
+      "List, filter and compare the stored results of runs (results.sqlite beside them)");
+  verb->add_option("STORE", options->store,
+                   "results.sqlite or the folder that holds it, also as runs/results.sqlite "
+                   "(default: the working directory)");
+  verb->add_option("--where", options->where,
+                   "Condition over columns and metrics; text goes in quotes")
+      ->type_name("EXPR");
+  verb->add_option("--columns", options->columns, "Columns and metrics to show")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb->add_option("--diff", options->diff,
+                   "Compare two runs, or the runs of two commits, versions or configurations that "
+                   "agree in dataset, module, window, configuration and seed")
+      ->type_name("A B")
+      ->expected(2);
+  verb->add_option("--format", options->format, "table, csv or json")
+      ->check(CLI::IsMember({"table", "csv", "json"}))
+      ->capture_default_str();
+  verb->add_option("--add", options->add, "Add runs to the stores beside them")
+      ->type_name("RUN...");
+  verb->add_option("--scan", options->scan, "Add every run below a folder")->type_name("FOLDER");
+  verb->footer(
+      "Examples:\n"
+      "  saccade results runs\n"
+      "  saccade results runs --where \"module = 'track' and trajectory.drift_percent < 1\"\n"
+      "  saccade results runs --diff best fast\n"
+      "  saccade results runs --columns run,machine,speed.wall_s --format csv\n"
+      "  saccade results --scan runs");
+  verb->callback([options] { show_results(*options); });
+}
+
+}  // namespace saccade

@@ -1,0 +1,139 @@
+#include "eval/store/result_row.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/io/run_record.h"
+#include "core/io/sha256.h"
+#include "core/shell.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Last part of a path, also of one that ends with a slash or a dot.
+std::string folder_name(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+/// The values that a command line gives to an option: "-c X", "--config X", "--config=X".
+std::vector<std::string> option_values(const std::vector<std::string>& words,
+                                       const std::string& long_name,
+                                       const std::string& short_name = {}) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool named = words[i] == long_name || (!short_name.empty() && words[i] == short_name);
+    if (named && i + 1 < words.size())
+      values.push_back(words[++i]);
+    else if (words[i].starts_with(long_name + "="))
+      values.push_back(words[i].substr(long_name.size() + 1));
+  }
+  return values;
+}
+
+/// What a person calls the configuration. One that no command line names has its hash alone.
+std::string config_name(const RunRecord& record, const std::string& config_sha256) {
+  constexpr std::size_t kShown = 8;
+  if (record.command.empty()) return config_sha256.substr(0, kShown);
+  const std::vector<std::string> words = shell_words(record.command);
+  const std::vector<std::string> files = option_values(words, "--config", "-c");
+  std::string name = files.empty() ? "defaults" : fs::path(files.back()).stem().string();
+  for (const std::string& setting : option_values(words, "--set"))
+    if (!setting.starts_with("seed=")) name += " " + setting;
+  return name;
+}
+
+/// "0.1.0 (1234567890ab)" taken apart.
+void set_version(const std::string& tool_version, ResultRow& row) {
+  const std::size_t open = tool_version.find(" (");
+  row.version = tool_version.substr(0, open);
+  if (open == std::string::npos || !tool_version.ends_with(')')) return;
+  row.commit = tool_version.substr(open + 2, tool_version.size() - open - 3);
+}
+
+std::string hash_of(const std::string& text) {
+  return text.empty() ? std::string() : sha256(std::as_bytes(std::span(text)));
+}
+
+Metrics scores_or_speed(const fs::path& folder) {
+  if (fs::exists(folder / "metrics.json")) return read_json_metrics(folder / "metrics.json");
+  Metrics speed;
+  if (!fs::exists(folder / "timing.json")) return speed;
+  const Metrics timing = read_json_metrics(folder / "timing.json");
+  for (const auto& [key, value] : timing.values()) speed.set("speed." + key, value);
+  return speed;
+}
+
+}  // namespace
+
+CsvTable::Cell ResultColumn::of(const ResultRow& row) const {
+  struct Shown {
+    CsvTable::Cell operator()(const std::string& text) const { return text; }
+    CsvTable::Cell operator()(std::uint64_t value) const { return std::to_string(value); }
+    CsvTable::Cell operator()(int value) const { return static_cast<long long>(value); }
+    CsvTable::Cell operator()(const std::optional<double>& value) const {
+      return value.value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+  };
+  return std::visit([&](auto pointer) { return Shown{}(row.*pointer); }, member);
+}
+
+std::span<const ResultColumn> result_columns() {
+  static const std::vector<ResultColumn> columns{
+      {"run", &ResultRow::run},
+      {"module", &ResultRow::module},
+      {"dataset", &ResultRow::dataset},
+      {"config", &ResultRow::config},
+      {"seed", &ResultRow::seed},
+      {"threads", &ResultRow::threads},
+      {"start_s", &ResultRow::start_s},
+      {"end_s", &ResultRow::end_s},
+      {"version", &ResultRow::version},
+      {"commit", &ResultRow::commit},
+      {"machine", &ResultRow::machine},
+      {"added", &ResultRow::added},
+      {"command", &ResultRow::command},
+      {"dataset_path", &ResultRow::dataset_path},
+      {"dataset_sha256", &ResultRow::dataset_sha256},
+      {"config_sha256", &ResultRow::config_sha256},
+      {"run_sha256", &ResultRow::run_sha256},
+      {"config_yaml", &ResultRow::config_yaml},
+  };
+  return columns;
+}
+
+ResultRow read_result(const fs::path& run_folder) {
+  const fs::path file = run_folder / "run.yaml";
+  if (!fs::exists(file)) throw InputError(run_folder.string(), "is no run: it holds no run.yaml");
+  const RunRecord record = read_run_record(file);
+  ResultRow row;
+  row.run = folder_name(run_folder);
+  row.module = record.module;
+  row.dataset = folder_name(record.dataset);
+  row.config_sha256 = hash_of(record.config_yaml);
+  row.config = config_name(record, row.config_sha256);
+  row.seed = record.seed;
+  row.threads = record.threads;
+  if (record.window) row.start_s = record.window->start_s;
+  if (record.window) row.end_s = record.window->end_s;
+  set_version(record.tool_version, row);
+  row.machine = record.machine;
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  row.added = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  row.command = record.command;
+  row.dataset_path = record.dataset.string();
+  row.dataset_sha256 = record.dataset_sha256;
+  row.run_sha256 = sha256_of_file(file);
+  row.config_yaml = record.config_yaml;
+  row.metrics = scores_or_speed(run_folder);
+  return row;
+}
+
+}  // namespace saccade
