@@ -85,6 +85,8 @@ TEST_F(Launching, OneAtATimeKeepsTheOrder) {
 }
 
 TEST_F(Launching, AnInterruptStopsTheChildren) {
+  // Whoever was started in the background of a script ignores it.
+  std::signal(SIGINT, SIG_DFL);
   add("a", {"echo $$ > " + (folder_.path() / "pid").string() + "; sleep 1000 & wait"});
   add("b", {"true"});
   EXPECT_FALSE(run(1, [&] {
