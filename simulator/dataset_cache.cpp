@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/io/file_lock.h"
+#include "core/io/folder_name.h"
 #include "core/io/input_log.h"
 #include "core/io/sha256.h"
 #include "core/program.h"
@@ -98,11 +99,6 @@ std::vector<CachedDataset> doomed(const std::vector<CachedDataset>& datasets,
   return chosen;
 }
 
-fs::path without_slash(const fs::path& path) {
-  const fs::path whole = fs::absolute(path).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
-}
-
 }  // namespace
 
 fs::path default_cache_folder() {
@@ -163,7 +159,7 @@ std::vector<CachedDataset> DatasetCache::prune(const PruneOptions& options) cons
 }
 
 void link_dataset(const fs::path& cached, const fs::path& output) {
-  const fs::path name = without_slash(output);
+  const fs::path name = named_folder(output);
   if (!fs::is_symlink(name)) {
     const FinalFolder target(name, kMarker);
     target.check_replaceable();
@@ -178,7 +174,7 @@ void link_dataset(const fs::path& cached, const fs::path& output) {
 }
 
 void unlink_dataset(const fs::path& output) {
-  const fs::path name = without_slash(output);
+  const fs::path name = named_folder(output);
   if (!fs::is_symlink(name)) return;
   const fs::path entry = fs::read_symlink(name).parent_path();
   if (entry.parent_path().filename() == "datasets" && fs::exists(entry / kLock)) fs::remove(name);

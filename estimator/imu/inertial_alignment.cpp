@@ -63,11 +63,9 @@ class Alignment {
     const Eigen::Vector3d by_mean_force = result_.gravity;
     for (int round = 0; round < kRounds; ++round) match_gravity();
     result_.intervals = intervals_.size();
-    const bool is_known = result_.scale > 0 && result_.scale_sigma < options_.max_scale_sigma;
-    result_.status =
-        is_known ? InertialAlignment::Status::kOk : InertialAlignment::Status::kEvenMotion;
+    result_.status = status();
     // Where accelerations do not show, gravity and the accelerometer's bias are not told apart.
-    if (!is_known) {
+    if (result_.status != InertialAlignment::Status::kOk) {
       result_.gravity = by_mean_force;
       result_.bias.accel.setZero();
     }
@@ -75,6 +73,13 @@ class Alignment {
   }
 
  private:
+  [[nodiscard]] InertialAlignment::Status status() const {
+    using Status = InertialAlignment::Status;
+    if (result_.residual > options_.max_residual) return Status::kDisagrees;
+    const bool is_known = result_.scale > 0 && result_.scale_sigma < options_.max_scale_sigma;
+    return is_known ? Status::kOk : Status::kEvenMotion;
+  }
+
   void sum_up() {
     intervals_.clear();
     for (std::size_t j = 0; j + 1 < nodes_.size(); ++j) {

@@ -17,6 +17,7 @@ struct InertialAlignmentOptions {
   double tilt_sigma_rad = 2e-3;   ///< of an orientation of the path
   double accel_bias_sigma = 0.2;  ///< [m/s^2]
   double max_scale_sigma = 0.05;  ///< relative; a scale that is known less is not known
+  double max_residual = 2;        ///< of a path that the readings agree with
   double outlier = 3;             ///< deviations beyond which an interval counts less (Cauchy)
 };
 
@@ -25,7 +26,8 @@ struct InertialAlignment {
   enum class Status {
     kOk,
     kNoReadings,  ///< the readings do not cover enough of the path
-    kEvenMotion   ///< accelerations are too small to say how long a metre is
+    kEvenMotion,  ///< accelerations are too small to say how long a metre is
+    kDisagrees    ///< the path is not the one that the sensor felt, to its stated deviations
   };
 
   Status status = Status::kNoReadings;

@@ -24,7 +24,8 @@ void describe(config::Fields& fields, InertialRecord& record) {
   fields.choice("status", found.status,
                 {{"ok", Status::kOk},
                  {"no_readings", Status::kNoReadings},
-                 {"even_motion", Status::kEvenMotion}},
+                 {"even_motion", Status::kEvenMotion},
+                 {"disagrees", Status::kDisagrees}},
                 "whether the readings say what the scale is");
   fields.value("applied", record.applied, "the run is in metres, its world's z axis points up");
   fields.value("scale", found.scale, "metres in the unit that the path was found in");

@@ -232,9 +232,9 @@ bool Odometry::wants_refinement(const OdometryResult& result) const {
          count_lost(result.poses) == 0;
 }
 
-std::vector<StampedCovariance> Odometry::refine(std::span<const Event> events,
-                                                const KnownPath& start, OdometryResult& result,
-                                                const std::function<void(std::size_t)>& progress) {
+void Odometry::refine(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
+                      const std::function<void(std::size_t)>& progress) {
+  const StageClock clock(result.refinement_s);
   JointStart joint;
   joint.path = known_;
   joint.known.push_back(start.poses.poses().front());
@@ -250,7 +250,8 @@ std::vector<StampedCovariance> Odometry::refine(std::span<const Event> events,
   parallel_for(keyframes.size(),
                [&](std::size_t i) { mapper_.renew(events, refined.path, keyframes[i]); });
   output(result);
-  return take_sigmas(refined, result.poses);
+  result.covariances = take_sigmas(refined, result.poses);
+  result.inertial = refined.inertial;
 }
 
 void Odometry::add_images(std::span<const Event> events,

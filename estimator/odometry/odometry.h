@@ -86,6 +86,10 @@ struct OdometryResult {
   std::vector<KeyframeChange> changes;
   double tracking_s = 0;  ///< seconds of work
   double mapping_s = 0;
+  // Of refine().
+  double refinement_s = 0;
+  std::vector<StampedCovariance> covariances;  ///< of all poses; none where not determined
+  std::optional<InertialAlignment> inertial;   ///< of last.joint.imu, in the path's unit
   // Of kOnline.
   std::vector<double> latency_ms;  ///< from the arrival of a pose's last event to the pose
   std::size_t dropped_events = 0;
@@ -119,11 +123,9 @@ class Odometry {
   [[nodiscard]] bool wants_refinement(const OdometryResult& result) const;
 
   /// The last adjustment, of what run() found of the same events and start: poses with their
-  /// sigmas, and keyframes on the refined path. `progress`: as of refine_jointly(). The covariance
-  /// of every pose of the result; none where it is not determined.
-  [[nodiscard]] std::vector<StampedCovariance> refine(
-      std::span<const Event> events, const KnownPath& start, OdometryResult& result,
-      const std::function<void(std::size_t)>& progress = {});
+  /// sigmas and covariances, and keyframes on the refined path. `progress`: as of refine_jointly().
+  void refine(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
+              const std::function<void(std::size_t)>& progress = {});
 
   /// Images for people, after run(): of every keyframe that has none, with the poses as last
   /// adjusted; in parallel. `progress` is called, by any thread, with the number of keyframes done

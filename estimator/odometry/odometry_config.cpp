@@ -162,6 +162,10 @@ void describe_inertial(config::Fields& fields, MetricWorldOptions& options) {
       .value("max_scale_sigma", alignment.max_scale_sigma,
              "a scale that is known less, relative, is not used")
       .above(0);
+  fields
+      .value("max_residual", alignment.max_residual,
+             "a path that the readings fit worse, over the deviations above, stays as it is")
+      .above(0);
   fields.value("outlier", alignment.outlier, "deviations beyond which an interval counts less")
       .range(0.1, 1e6);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
@@ -85,6 +86,107 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
   return start;
 }
 
+/// What a run works on.
+struct OdometryInput {
+  Dataset dataset;
+  PinholeCamera camera;
+  Events events;
+  Gyroscope gyroscope;
+  std::optional<MountedImu> imu;
+};
+
+OdometryInput load(const RunRequest& request, const OdometryConfig& config) {
+  Dataset dataset = Dataset::open(request.dataset);
+  const PinholeCamera camera = config.camera.of(dataset.camera());
+  OdometryInput input{std::move(dataset), camera, {}, {}, {}};
+  input.events = load_events(request, input.dataset);
+  input.gyroscope = load_gyroscope(config.odometry.tracker.motion, input.dataset);
+  if (config.metric.align || config.odometry.last.joint.imu.use)
+    input.imu = load_mounted_imu(input.dataset, "imu.align or last.imu.use");
+  return input;
+}
+
+/// What a run found.
+struct OdometryFound {
+  OdometryResult result;
+  std::vector<Keyframe> keyframes;
+  double images_s = 0;
+  bool is_metric = false;  ///< brought into metres and upright
+};
+
+/// The stages that are timed, as often as asked for; `wall_s` of each time.
+OdometryFound run_stages(const OdometryInput& input, const Start& start,
+                         const OdometryConfig& config, int repeat, std::vector<double>& wall_s) {
+  OdometryFound found;
+  std::optional<Odometry> odometry;
+  Progress progress("odometry", input.events.size() * static_cast<std::size_t>(repeat), "events");
+  for (int i = 0; i < repeat; ++i) {
+    odometry.emplace(config.odometry, input.camera, config.seed);
+    odometry->set_gyroscope(input.gyroscope);
+    if (input.imu) odometry->set_imu(*input.imu);
+    wall_s.push_back(start.seconds);
+    const StageClock clock(wall_s.back());
+    found.result = odometry->run(input.events, start.path, [&](std::size_t n) { progress.add(n); });
+    if (!odometry->wants_refinement(found.result)) continue;
+    Progress refinement("refine", config.odometry.last.joint.steps(), "steps");
+    odometry->refine(input.events, start.path, found.result,
+                     [&](std::size_t n) { refinement.add(n); });
+  }
+  if (config.odometry.mapping.image) {
+    const StageClock clock(found.images_s);
+    Progress images("images", odometry->map().keyframes().size(), "keyframes");
+    odometry->add_images(input.events, [&](std::size_t n) { images.add(n); });
+  }
+  found.keyframes = odometry->map().keyframes();
+  return found;
+}
+
+/// Scale and gravity by the readings. Given poses have a world and metres of their own.
+void align(OdometryFound& found, const OdometryInput& input, const MetricWorldOptions& options,
+           bool has_given_poses) {
+  OdometryResult& result = found.result;
+  result.inertial = align_odometry(result.poses, found.keyframes, *input.imu, options);
+  found.is_metric = !has_given_poses && result.inertial->status == InertialAlignment::Status::kOk;
+  if (found.is_metric)
+    take_into_metric_world(*result.inertial, result.poses, found.keyframes, result.covariances);
+}
+
+void write(const std::filesystem::path& folder, const OdometryInput& input, const Start& start,
+           const OdometryConfig& config, const OdometryFound& found) {
+  const OdometryResult& result = found.result;
+  write_odometry(folder, input.camera, result, found.keyframes);
+  if (!result.covariances.empty()) write_covariances(folder / "covariance.txt", result.covariances);
+  if (result.inertial)
+    write_inertial_alignment(folder / "inertial.yaml", *result.inertial, found.is_metric);
+  if (start.found) write_start(folder / "start.yaml", *start.found, config.start.found.depth_m);
+}
+
+void take_timing(const OdometryFound& found, const Start& start, bool is_online,
+                 RunTiming& timing) {
+  const OdometryResult& result = found.result;
+  timing.stages_s = {{"start", start.seconds},
+                     {"tracking", result.tracking_s},
+                     {"mapping", result.mapping_s},
+                     {"refinement", result.refinement_s},
+                     {"images", found.images_s}};
+  timing.poses = result.poses.size();
+  timing.latency_ms = result.latency_ms;
+  if (is_online) timing.dropped_events = result.dropped_events;
+}
+
+RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
+                      const RunTiming& timing) {
+  const std::size_t lost = count_lost(found.result.poses);
+  std::string text = fmt::format("{} poses ({} lost) by {} keyframes", found.result.poses.size(),
+                                 lost, found.keyframes.size());
+  if (config.odometry.last.use && lost > 0) text += ", not adjusted as a whole";
+  if (const auto& inertial = found.result.inertial)
+    text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);
+  RunSummary summary = summary_of(timing, text);
+  summary.lost_poses = lost;
+  return summary;
+}
+
 }  // namespace
 
 RunSummary run_odometry(const RunRequest& request) {
@@ -95,16 +197,10 @@ RunSummary run_odometry(const RunRequest& request) {
 
   RunTiming timing;
   std::optional<StageClock> io(timing.io_s);
-  const Dataset dataset = Dataset::open(request.dataset);
-  const PinholeCamera camera = config.camera.of(dataset.camera());
-  const Events events = load_events(request, dataset);
-  const Gyroscope gyroscope = load_gyroscope(config.odometry.tracker.motion, dataset);
-  std::optional<MountedImu> imu;
-  if (config.metric.align || config.odometry.last.joint.imu.use)
-    imu = load_mounted_imu(dataset, "imu.align or last.imu.use");
+  const OdometryInput input = load(request, config);
   io.reset();
-  const Start start = start_of(dataset, camera, events, config.start);
-
+  const Events& events = input.events;
+  const Start start = start_of(input.dataset, input.camera, events, config.start);
   // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
@@ -112,71 +208,16 @@ RunSummary run_odometry(const RunRequest& request) {
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
-  OdometryResult result;
-  double refine_s = 0;
-  std::vector<StampedCovariance> covariances;
-  std::optional<Odometry> odometry;
-  Progress progress("odometry", events.size() * static_cast<std::size_t>(request.repeat), "events");
-  for (int i = 0; i < request.repeat; ++i) {
-    odometry.emplace(config.odometry, camera, config.seed);
-    odometry->set_gyroscope(gyroscope);
-    if (imu) odometry->set_imu(*imu);
-    double wall_s = start.seconds;
-    refine_s = 0;
-    {
-      const StageClock clock(wall_s);
-      result = odometry->run(events, start.path, [&](std::size_t n) { progress.add(n); });
-    }
-    if (odometry->wants_refinement(result)) {
-      const StageClock clock(refine_s);
-      Progress refinement("refine", config.odometry.last.joint.steps(), "steps");
-      covariances =
-          odometry->refine(events, start.path, result, [&](std::size_t n) { refinement.add(n); });
-    }
-    timing.wall_s.push_back(wall_s + refine_s);
-  }
-  double images_s = 0;
-  if (config.odometry.mapping.image) {
-    const StageClock clock(images_s);
-    Progress images("images", odometry->map().keyframes().size(), "keyframes");
-    odometry->add_images(events, [&](std::size_t n) { images.add(n); });
-  }
-  timing.stages_s = {{"start", start.seconds},
-                     {"tracking", result.tracking_s},
-                     {"mapping", result.mapping_s},
-                     {"refinement", refine_s},
-                     {"images", images_s}};
-  timing.poses = result.poses.size();
-  timing.latency_ms = std::move(result.latency_ms);
-  if (config.odometry.mode == OdometryMode::kOnline) timing.dropped_events = result.dropped_events;
-
-  std::vector<Keyframe> keyframes = odometry->map().keyframes();
-  std::optional<InertialAlignment> felt;
-  if (config.metric.align) felt = align_odometry(result.poses, keyframes, *imu, config.metric);
-  // Given poses have a world and metres of their own.
-  const bool is_metric = felt && start.found && felt->status == InertialAlignment::Status::kOk;
-  if (is_metric) take_into_metric_world(*felt, result.poses, keyframes, covariances);
+  OdometryFound found = run_stages(input, start, config, request.repeat, timing.wall_s);
+  if (config.metric.align) align(found, input, config.metric, !start.found);
+  take_timing(found, start, config.odometry.mode == OdometryMode::kOnline, timing);
 
   io.emplace(timing.io_s);
-  write_odometry(writer.path(), camera, result, keyframes);
-  if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
-  if (felt) write_inertial_alignment(writer.path() / "inertial.yaml", *felt, is_metric);
-  if (start.found)
-    write_start(writer.path() / "start.yaml", *start.found, config.start.found.depth_m);
+  write(writer.path(), input, start, config, found);
   io.reset();
-  writer.finish("odometry", request, dataset, window, config.seed, config::print(config), timing);
-
-  RunSummary summary;
-  summary.events = events.size();
-  summary.poses = result.poses.size();
-  summary.lost_poses = count_lost(result.poses);
-  summary.found = fmt::format("{} poses ({} lost) by {} keyframes", summary.poses,
-                              summary.lost_poses, odometry->map().keyframes().size());
-  if (felt)
-    summary.found +=
-        fmt::format(", scale {:.4g} +- {:.2g} %", felt->scale, 100 * felt->scale_sigma);
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  writer.finish("odometry", request, input.dataset, window, config.seed, config::print(config),
+                timing);
+  return summary_of(found, config, timing);
 }
 
 std::string print_odometry_config(const config::Document& document) {

@@ -80,7 +80,7 @@ class NodePriorCost
   Matrix6 root_;
 };
 
-/// W (xi_(j+1) - xi_j) of neighbouring nodes.
+/// W (x_(j+1) - x_j) of six unknowns each, such as neighbouring nodes' twists.
 class NodeStepCost : public ceres::SizedCostFunction<NodeCorrection::kSize, NodeCorrection::kSize,
                                                      NodeCorrection::kSize> {
  public:

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/held_cost.h"
-#include "estimator/refinement/jacobian_block.h"
 
 namespace saccade {
 namespace {
@@ -14,25 +14,6 @@ constexpr double kHalfStep_s = 5e-3;    ///< that the path's own motion is measu
 constexpr double kKnownScale = 1e-5;    ///< deviation of a scale that is known
 constexpr double kFree = 1e3;           ///< deviation of what may be anything
 constexpr double kGyroBiasSigma = 0.1;  ///< [rad/s]
-
-/// (b' - b) / sigma of the biases of neighbouring spans.
-class BiasStepCost : public ceres::SizedCostFunction<6, 6, 6> {
- public:
-  explicit BiasStepCost(const Twist& sigma) : precision_(sigma.cwiseInverse()) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Twist> before(parameters[0]), after(parameters[1]);
-    Eigen::Map<Twist>(residuals, 6) = precision_.cwiseProduct(after - before);
-    if (jacobians == nullptr) return true;
-    write_block(jacobians[0], Matrix6((-precision_).asDiagonal()));
-    write_block(jacobians[1], Matrix6(precision_.asDiagonal()));
-    return true;
-  }
-
- private:
-  Twist precision_;
-};
 
 Twist biases_of(double gyro, double accel) {
   Twist both;
@@ -127,9 +108,10 @@ void InertialRows::hold(ceres::Problem& problem) {
   problem.AddResidualBlock(
       new HeldCost<6>(Twist::Zero(), biases_of(kGyroBiasSigma, options_.accel_bias_sigma)), nullptr,
       bias(0));
-  const Twist step = biases_of(options_.gyro_bias_step, options_.accel_bias_step);
+  const Matrix6 step =
+      biases_of(options_.gyro_bias_step, options_.accel_bias_step).cwiseInverse().asDiagonal();
   for (std::size_t i = 0; i + 1 < biases_; ++i)
-    problem.AddResidualBlock(new BiasStepCost(step), nullptr, bias(i), bias(i + 1));
+    problem.AddResidualBlock(new NodeStepCost(step), nullptr, bias(i), bias(i + 1));
   const Eigen::Map<const InertialFrame::Vector> mean(shared());
   const InertialFrame::Vector sigma(kFree, kFree, start_.is_metric ? kKnownScale : kFree,
                                     options_.offset_sigma_s);

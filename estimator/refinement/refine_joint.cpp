@@ -169,7 +169,11 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
     timing.wall_s.push_back(wall_s);
   }
   const bool is_scaled = result.inertial && !input.start.is_metric;
-  if (is_scaled) take_into_metres(result);
+  if (is_scaled) {
+    take_into_metres(result);
+    for (KeyframeEntry& keyframe : input.keyframes)
+      keyframe.typical_depth_m *= result.inertial->scale;
+  }
   double depth_s = 0;
   std::vector<DepthResult> depths;
   {

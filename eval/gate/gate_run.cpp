@@ -3,8 +3,10 @@
 #include <array>
 
 #include "core/error.h"
+#include "core/io/folder_name.h"
 #include "core/io/run_record.h"
 #include "core/shell.h"
+#include "eval/configuration_name.h"
 #include "eval/metrics/metrics.h"
 
 namespace saccade {
@@ -19,25 +21,10 @@ std::string machine_kind(const std::string& machine) {
   return machine.substr(0, machine.find(' ', system + 2));
 }
 
-/// "-c configs/tracking/best.yaml --set align.samples=9" is "best align.samples=9".
-std::string config_name(const std::string& command) {
-  std::string name = "default", settings;
-  const std::vector<std::string> words = shell_words(command);
-  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
-    if (words[i] == "-c" || words[i] == "--config") name = fs::path(words[i + 1]).stem().string();
-    if (words[i] == "--set") settings += " " + words[i + 1];
-  }
-  return name + settings;
-}
-
 /// Of the speed what one run can be compared by; the rest changes with every run.
 bool is_kept(const std::string& key) {
   return !key.starts_with("speed.") || key.starts_with("speed.wall_s") || key == "speed.events" ||
          key == "speed.repetitions";
-}
-
-fs::path without_slash(const fs::path& folder) {
-  return folder.has_filename() ? folder : folder.parent_path();
 }
 
 }  // namespace
@@ -59,8 +46,7 @@ GateRun read_gate_run(const fs::path& folder) {
                      "has not been scored; first: " + shell_line(std::array<std::string, 3>{
                                                           "saccade", "eval", folder.string()}));
   GateRun run;
-  run.key = {without_slash(record.dataset).filename().string(), record.module,
-             config_name(record.command), record.seed};
+  run.key = {folder_name(record.dataset), record.module, configuration_name(record), record.seed};
   run.machine = machine_kind(record.machine);
   run.threads = record.threads;
   run.tool_version = record.tool_version;

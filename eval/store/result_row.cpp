@@ -8,47 +8,15 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/io/folder_name.h"
 #include "core/io/run_record.h"
 #include "core/io/sha256.h"
-#include "core/shell.h"
+#include "eval/configuration_name.h"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Last part of a path, also of one that ends with a slash or a dot.
-std::string folder_name(const fs::path& path) {
-  const fs::path whole = fs::absolute(path).lexically_normal();
-  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
-/// The values that a command line gives to an option: "-c X", "--config X", "--config=X".
-std::vector<std::string> option_values(const std::vector<std::string>& words,
-                                       const std::string& long_name,
-                                       const std::string& short_name = {}) {
-  std::vector<std::string> values;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool named = words[i] == long_name || (!short_name.empty() && words[i] == short_name);
-    if (named && i + 1 < words.size())
-      values.push_back(words[++i]);
-    else if (words[i].starts_with(long_name + "="))
-      values.push_back(words[i].substr(long_name.size() + 1));
-  }
-  return values;
-}
-
-/// What a person calls the configuration. One that no command line names has its hash alone.
-std::string config_name(const RunRecord& record, const std::string& config_sha256) {
-  constexpr std::size_t kShown = 8;
-  if (record.command.empty()) return config_sha256.substr(0, kShown);
-  const std::vector<std::string> words = shell_words(record.command);
-  const std::vector<std::string> files = option_values(words, "--config", "-c");
-  std::string name = files.empty() ? "defaults" : fs::path(files.back()).stem().string();
-  for (const std::string& setting : option_values(words, "--set"))
-    if (!setting.starts_with("seed=")) name += " " + setting;
-  return name;
-}
 
 /// "0.1.0 (1234567890ab)" taken apart.
 void set_version(const std::string& tool_version, ResultRow& row) {
@@ -56,10 +24,6 @@ void set_version(const std::string& tool_version, ResultRow& row) {
   row.version = tool_version.substr(0, open);
   if (open == std::string::npos || !tool_version.ends_with(')')) return;
   row.commit = tool_version.substr(open + 2, tool_version.size() - open - 3);
-}
-
-std::string hash_of(const std::string& text) {
-  return text.empty() ? std::string() : sha256(std::as_bytes(std::span(text)));
 }
 
 Metrics scores_or_speed(const fs::path& folder) {
@@ -117,8 +81,8 @@ ResultRow read_result(const fs::path& run_folder) {
   row.run = folder_name(run_folder);
   row.module = record.module;
   row.dataset = folder_name(record.dataset);
-  row.config_sha256 = hash_of(record.config_yaml);
-  row.config = config_name(record, row.config_sha256);
+  row.config_sha256 = configuration_sha256(record);
+  row.config = configuration_name(record);
   row.seed = record.seed;
   row.threads = record.threads;
   if (record.window) row.start_s = record.window->start_s;

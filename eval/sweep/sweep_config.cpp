@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "core/io/folder_name.h"
+
 namespace saccade {
 namespace {
 
@@ -32,10 +34,6 @@ void expect_no_seed(config::Fields& fields, const char* key, const std::vector<K
   const bool stated =
       std::any_of(items.begin(), items.end(), [](const Keyed& item) { return item.key == "seed"; });
   fields.expect(!stated, key, "must not hold 'seed'; state it in 'seeds'");
-}
-
-std::string folder_name(const std::filesystem::path& folder) {
-  return folder.has_filename() ? folder.filename() : folder.parent_path().filename();
 }
 
 }  // namespace

@@ -97,6 +97,20 @@ TEST(InertialAlignment, AnEvenMotionHasNoScale) {
             Status::kEvenMotion);
 }
 
+TEST(InertialAlignment, APathThatWasNotFeltDisagrees) {
+  const Spline motion = testing::handheld_motion(kEnd_s);
+  const Trajectory path = path_of(motion);
+  std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
+  for (StampedPose& pose : poses) {
+    const Eigen::Vector3d place = pose.world_from_camera.translation();
+    pose.world_from_camera = {pose.world_from_camera.rotation(), {place.y(), -place.x(), 0}};
+  }
+  const InertialAlignment found =
+      align_inertially(Trajectory(std::move(poses)), sensor_on(motion), {});
+  EXPECT_EQ(found.status, Status::kDisagrees);
+  EXPECT_GT(found.residual, 2);
+}
+
 TEST(InertialAlignment, NeedsReadings) {
   const Spline motion = testing::handheld_motion(2);
   MountedImu imu = sensor_on(motion);

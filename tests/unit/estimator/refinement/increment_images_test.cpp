@@ -2,29 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/estimator/refinement/tiny_sensor.h"
+
 namespace saccade {
 namespace {
 
-PinholeCamera four_by_three() {
-  PinholeCamera camera;
-  camera.width = 4;
-  camera.height = 3;
-  camera.fx = camera.fy = 4;
-  camera.cx = 1.5;
-  camera.cy = 1;
-  return camera;
-}
+using testing::tiny_camera;
 
-/// Pixel (1, 2) goes up five times and down three times, a millisecond after another.
-Events ups_and_downs() {
-  Events events;
-  for (int i = 0; i < 8; ++i)
-    events.push_back({1000000LL * (i + 1), 1, 2, static_cast<std::int8_t>(i < 5 ? 1 : -1)});
-  return events;
-}
+Events eight_events() { return testing::ups_and_downs(5, 3); }
 
 TEST(IncrementImages, AreSumsOfThresholdsOfAllPixels) {
-  const auto images = observe_increments(ups_and_downs(), four_by_three(), {0.2, 0.3},
+  const auto images = observe_increments(eight_events(), tiny_camera(), {0.2, 0.3},
                                          {.window_events = 4, .increments = 24});
   ASSERT_EQ(images.windows(), 2U);
   EXPECT_EQ(images.times_s, (std::vector<double>{0.001, 0.004, 0.008}));
@@ -39,19 +27,19 @@ TEST(IncrementImages, AreSumsOfThresholdsOfAllPixels) {
 
 TEST(IncrementImages, AWindowIsNoShorterThanAsked) {
   const auto images =
-      observe_increments(ups_and_downs(), four_by_three(), {0.2, 0.3}, {.window_events = 5});
+      observe_increments(eight_events(), tiny_camera(), {0.2, 0.3}, {.window_events = 5});
   EXPECT_EQ(images.windows(), 1U);
 }
 
 TEST(IncrementImages, AFewPixelsStandForAll) {
-  const auto images = observe_increments(ups_and_downs(), four_by_three(), {0.2, 0.3},
+  const auto images = observe_increments(eight_events(), tiny_camera(), {0.2, 0.3},
                                          {.window_events = 4, .increments = 12});
   EXPECT_EQ(images.pixels.size(), 6U);
   EXPECT_EQ(images.increments.size(), 12U);
 }
 
 TEST(IncrementImages, WithoutEventsThereAreNone) {
-  EXPECT_EQ(observe_increments({}, four_by_three(), {0.2, 0.3}, {}).windows(), 0U);
+  EXPECT_EQ(observe_increments({}, tiny_camera(), {0.2, 0.3}, {}).windows(), 0U);
 }
 
 }  // namespace

@@ -17,12 +17,11 @@ using Unknowns = Eigen::Matrix<double, kSize, 1>;
 using InertialResidual = Eigen::Matrix<double, 9, 1>;
 
 const Eigen::Vector3d kPlace(0.05, -0.1, 0.02);
-const Eigen::Vector3d kGravity(0, 0, -9.81);
 
 struct World {
   Spline motion = testing::handheld_motion(1);
   SplineKnots knots = SplineKnots::over(0, 1, 0.05);
-  InertialFrame frame = InertialFrame::about(kGravity);
+  InertialFrame frame = InertialFrame::about(testing::kGravity);
 
   [[nodiscard]] InertialNode node(double t_s) const {
     const SplineState state = motion.state(t_s);

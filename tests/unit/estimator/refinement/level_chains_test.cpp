@@ -2,24 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/estimator/refinement/tiny_sensor.h"
+
 namespace saccade {
 namespace {
 
-PinholeCamera tiny_camera() {
-  PinholeCamera camera;
-  camera.width = 4;
-  camera.height = 3;
-  camera.fx = camera.fy = 4;
-  camera.cx = 1.5;
-  camera.cy = 1;
-  return camera;
-}
+using testing::tiny_camera;
 
 /// Pixel (1, 2) goes up five times and down once, pixel (3, 0) fires once.
 Events some_events() {
-  Events events;
-  for (int i = 0; i < 6; ++i)
-    events.push_back({1000000LL * (i + 1), 1, 2, static_cast<std::int8_t>(i < 5 ? 1 : -1)});
+  Events events = testing::ups_and_downs(5, 1);
   events.push_back({8000000, 3, 0, 1});
   return events;
 }
