@@ -50,8 +50,9 @@ Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
 
 /// The path at the start from events alone.
 Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
-                      std::span<const Event> events, const StartOptions& options) {
-  Bootstrap start = find_start(events, camera, options.found);
+                      std::span<const Event> events, const StartOptions& options,
+                      const Gyroscope& gyroscope) {
+  Bootstrap start = find_start(events, camera, options.found, gyroscope);
   if (start.status == Bootstrap::Status::kNoMotion)
     throw InputError(dataset.folder().string(),
                      "the events show no motion that odometry could start from");
@@ -71,7 +72,7 @@ struct Start {
 };
 
 Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<const Event> events,
-               const StartOptions& options) {
+               const StartOptions& options, const Gyroscope& gyroscope) {
   Start start;
   if (options.truth_s > 0) {
     start.path.poses = start_poses(dataset, events, options);
@@ -79,7 +80,7 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
     return start;
   }
   const StageClock clock(start.seconds);
-  start.found = found_start(dataset, camera, events, options);
+  start.found = found_start(dataset, camera, events, options, gyroscope);
   start.from_s = start.found->path.start_s();
   // All but the first pose may change.
   start.path = {start.found->path, start.from_s, options.found.depth_m, {}};
@@ -200,7 +201,8 @@ RunSummary run_odometry(const RunRequest& request) {
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;
-  const Start start = start_of(input.dataset, input.camera, events, config.start);
+  const Start start =
+      start_of(input.dataset, input.camera, events, config.start, input.gyroscope);
   // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));

@@ -102,7 +102,9 @@ class WindowProblem {
   [[nodiscard]] Matrix6 root_of_px(double px) const {
     if (options_.deviations == AdjustmentOptions::Deviations::kPicture)
       return image_motion_root(observed_.camera(), known_.typical_depth_m, px);
-    return sigma_of_px(px).cwiseInverse().asDiagonal();
+    Twist sigma = sigma_of_px(px);
+    sigma.tail<3>() *= options_.turn_share;
+    return sigma.cwiseInverse().asDiagonal();
   }
 
   [[nodiscard]] double noise_px(const FittedEdge& edge) const {

@@ -33,6 +33,7 @@ struct AdjustmentOptions {
   double pose_sigma_px = 3;      ///< as image motion
   double step_sigma_px = 0.3;    ///< between neighbouring nodes
   double known_sigma_px = 0.05;  ///< of poses that are known already
+  double turn_share = 1;  ///< of kPose: of turns, from these, where something else tells them
   /// Of the edges from a smooth surface (CoarseSurface), relative to the typical inverse depth; 0:
   /// edges are on their own.
   double surface_sigma = 0;

@@ -18,7 +18,21 @@ std::span<const Event> between(std::span<const Event> events, double from_s, dou
   return {first, std::max(first, at(to_s))};
 }
 
-Trajectory path_of(const PlaneFit& fit) {
+/// Replaces the turns of the poses from `first` >= 1 on by those that the gyroscope felt.
+void turn_by(const Gyroscope& gyroscope, std::vector<StampedPose>& poses, std::size_t first) {
+  if (gyroscope.is_empty()) return;
+  for (std::size_t i = first; i < poses.size(); ++i) {
+    const StampedPose& before = poses[i - 1];
+    const Eigen::Vector3d rate =
+        gyroscope.mean_rate(ns_from_seconds(before.t_s), ns_from_seconds(poses[i].t_s));
+    Rigid3& pose = poses[i].world_from_camera;
+    pose = {before.world_from_camera.rotation() * so3_exp((poses[i].t_s - before.t_s) * rate),
+            pose.translation()};
+  }
+}
+
+/// `gyroscope` tells the turn, where it is not empty.
+Trajectory path_of(const PlaneFit& fit, const Gyroscope& gyroscope) {
   std::vector<StampedPose> poses;
   const double duration_s = fit.end_s - fit.start_s;
   const int steps = std::max(1, static_cast<int>(duration_s / kPoseSpacing_s));
@@ -26,11 +40,12 @@ Trajectory path_of(const PlaneFit& fit) {
     const double t_s = fit.start_s + i * duration_s / steps;
     poses.push_back({t_s, fit.motion.reference_from_camera(t_s - fit.middle_s)});
   }
+  turn_by(gyroscope, poses, 1);
   return Trajectory(std::move(poses));
 }
 
 /// The path goes on at its velocity of the last 20 ms.
-Trajectory carried_on(const Trajectory& path, double until_s) {
+Trajectory carried_on(const Trajectory& path, double until_s, const Gyroscope& gyroscope) {
   constexpr double kLast_s = 0.02;
   const double end_s = path.end_s();
   const Rigid3 last = path.poses().back().world_from_camera;
@@ -38,6 +53,7 @@ Trajectory carried_on(const Trajectory& path, double until_s) {
   std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
   for (double t_s = end_s + kPoseSpacing_s; t_s < until_s + kPoseSpacing_s; t_s += kPoseSpacing_s)
     poses.push_back({t_s, last * Rigid3::exp((t_s - end_s) / kLast_s * step)});
+  turn_by(gyroscope, poses, path.size());
   return Trajectory(std::move(poses));
 }
 
@@ -63,11 +79,13 @@ Trajectory in_world(const Trajectory& path, double depth_m) {
 
 class StartFinder {
  public:
-  StartFinder(const PinholeCamera& camera, const BootstrapOptions& options)
+  StartFinder(const PinholeCamera& camera, const BootstrapOptions& options,
+              const Gyroscope& gyroscope)
       : camera_(camera),
         options_(options),
-        search_(options.plane, camera),
-        refinement_(options.refinement, camera) {}
+        gyroscope_(gyroscope),
+        search_(options.plane, camera, gyroscope),
+        refinement_(refinement_of(options, gyroscope), camera) {}
 
   Bootstrap from(std::span<const Event> events) {
     Bootstrap start;
@@ -86,11 +104,18 @@ class StartFinder {
   }
 
  private:
+  [[nodiscard]] static PathRefinementOptions refinement_of(const BootstrapOptions& options,
+                                                           const Gyroscope& gyroscope) {
+    PathRefinementOptions refinement = options.refinement;
+    if (!gyroscope.is_empty()) refinement.adjustment.turn_share = options.felt_turn_share;
+    return refinement;
+  }
+
   [[nodiscard]] FreePath best_of(std::span<const Event> events,
                                  const std::vector<PlaneFit>& fits) const {
     FreePath best;
     for (const PlaneFit& fit : fits) {
-      FreePath path = refined(events, path_of(fit), options_.first_rounds);
+      FreePath path = refined(events, path_of(fit, gyroscope_), options_.first_rounds);
       if (best.poses.empty() || path.events > best.events) best = std::move(path);
     }
     return refined(events, best.poses, options_.rounds);
@@ -102,7 +127,7 @@ class StartFinder {
         std::min(options_.window_s, seconds_from_ns(events.back().t_ns) - start_s);
     while (path.is_clear && path.poses.end_s() - start_s < longest_s - kPoseSpacing_s) {
       const double window_s = std::min(options_.growth * (path.poses.end_s() - start_s), longest_s);
-      path = refined(events, carried_on(path.poses, start_s + window_s), 1);
+      path = refined(events, carried_on(path.poses, start_s + window_s, gyroscope_), 1);
     }
     return path;
   }
@@ -114,6 +139,7 @@ class StartFinder {
 
   PinholeCamera camera_;
   BootstrapOptions options_;
+  const Gyroscope& gyroscope_;
   PlaneSearch search_;
   PathRefinement refinement_;
 };
@@ -133,10 +159,10 @@ PathRefinementOptions start_refinement() {
 }
 
 Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
-                     const BootstrapOptions& options) {
+                     const BootstrapOptions& options, const Gyroscope& gyroscope) {
   Bootstrap start;
   if (events.empty()) return start;
-  StartFinder finder(camera, options);
+  StartFinder finder(camera, options, gyroscope);
   const double end_s = seconds_from_ns(events.back().t_ns);
   double from_s = seconds_from_ns(events.front().t_ns);
   while (!events.empty()) {

@@ -19,6 +19,8 @@ struct BootstrapOptions {
   double window_s = 0.25;  ///< of the path that is found, at most
   PlaneSearchOptions plane;
   PathRefinementOptions refinement = start_refinement();
+  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
+  double felt_turn_share = 0.05;
   int first_rounds = 1;        ///< of every hypothesis, before the best goes on
   int rounds = 3;              ///< of the best
   double growth = 1.15;        ///< of its window, from round to round after these
@@ -46,8 +48,9 @@ struct Bootstrap {
 /// which most events lie on edges is taken, and carried on at its last velocity: the longer the
 /// path, the better it tells a turn from a step, but no steady motion explains a long one. Where
 /// the camera rests, or only turns, it begins later. `events` in order of time; `camera` with its
-/// lens. Deterministic.
+/// lens; `gyroscope`, where it is not empty, tells the turn. Deterministic.
 [[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
-                                   const BootstrapOptions& options);
+                                   const BootstrapOptions& options,
+                                   const Gyroscope& gyroscope = {});
 
 }  // namespace saccade

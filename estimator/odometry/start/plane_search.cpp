@@ -22,8 +22,9 @@ constexpr double kStepShares[] = {1, 0.5, 1.5};
 /// -log contrast + (slope / sigma)^2 / 2, of parameters in pixels.
 class PlaneCost : public ceres::FirstOrderFunction {
  public:
-  PlaneCost(PlaneContrast& contrast, const Parameters& px, double slope_sigma)
-      : contrast_(contrast), px_(px), slope_sigma_(slope_sigma) {}
+  /// `turns`: the turn is looked for, too.
+  PlaneCost(PlaneContrast& contrast, const Parameters& px, double slope_sigma, bool turns)
+      : contrast_(contrast), px_(px), slope_sigma_(slope_sigma), turns_(turns) {}
 
   bool Evaluate(const double* const x, double* cost, double* gradient) const override {
     const Parameters at = Eigen::Map<const Parameters>(x).cwiseQuotient(px_);
@@ -34,6 +35,7 @@ class PlaneCost : public ceres::FirstOrderFunction {
     if (gradient != nullptr) {
       Parameters by = -value.gradient / value.contrast;
       by.tail<2>() += slope / slope_sigma_;
+      if (!turns_) by.segment<3>(3).setZero();
       Eigen::Map<Parameters>(gradient, kSize) = by.cwiseQuotient(px_);
     }
     return true;
@@ -44,6 +46,7 @@ class PlaneCost : public ceres::FirstOrderFunction {
   PlaneContrast& contrast_;
   Parameters px_;
   double slope_sigma_;
+  bool turns_;
 };
 
 /// By how much an event moves, RMS, per unit of the parameters [px].
@@ -59,9 +62,11 @@ Parameters px_per_parameter(const PlaneContrast& contrast, const PlaneMotion& mo
 
 }  // namespace
 
-PlaneSearch::PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera)
+PlaneSearch::PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera,
+                         const Gyroscope& gyroscope)
     : options_(options),
       camera_(camera),
+      gyroscope_(gyroscope),
       contrast_(camera, options.blur_px, options.burst_share,
                 static_cast<std::size_t>(options.samples)) {}
 
@@ -131,9 +136,11 @@ PlaneFit PlaneSearch::climbed(std::span<const Event> events, const PlaneFit& gue
   fit.end_s = seconds_from_ns(events.back().t_ns);
   fit.middle_s = contrast_.middle_s();
   fit.motion = guess.motion.seen_at(fit.middle_s - guess.middle_s);
+  if (!gyroscope_.is_empty()) fit.motion.rate = felt_rate(fit);
   const Parameters px = px_per_parameter(contrast_, fit.motion);
   Parameters at = PlaneContrast::parameters_of(fit.motion).cwiseProduct(px);
-  ceres::GradientProblem problem(new PlaneCost(contrast_, px, options_.slope_sigma));
+  ceres::GradientProblem problem(
+      new PlaneCost(contrast_, px, options_.slope_sigma, gyroscope_.is_empty()));
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = ceres::BFGS;
   solver.max_num_iterations = options_.iterations;
@@ -148,14 +155,32 @@ PlaneFit PlaneSearch::climbed(std::span<const Event> events, const PlaneFit& gue
   return fit;
 }
 
+Eigen::Vector3d PlaneSearch::felt_rate(const PlaneFit& fit) const {
+  return gyroscope_.mean_rate(ns_from_seconds(fit.start_s), ns_from_seconds(fit.end_s));
+}
+
+std::vector<PlaneFit> PlaneSearch::guesses(const PlaneFit& turn) const {
+  std::vector<PlaneFit> guesses;
+  if (!gyroscope_.is_empty()) {
+    PlaneFit guess = turn;
+    guess.motion.rate -= felt_rate(turn);
+    guess.motion = guess.motion.with_step_share(1);
+    guesses.push_back(guess);
+    return guesses;
+  }
+  for (const double share : kStepShares) {
+    guesses.push_back(turn);
+    guesses.back().motion = turn.motion.with_step_share(share);
+  }
+  return guesses;
+}
+
 std::vector<PlaneFit> PlaneSearch::find(std::span<const Event> events) {
   std::vector<PlaneFit> fits;
   if (events.empty()) return fits;
   const PlaneFit turn = first_turn(events);
   if (turn.motion_px < kLeastMotion_px) return fits;
-  for (const double share : kStepShares) {
-    PlaneFit fit = turn;
-    fit.motion = fit.motion.with_step_share(share);
+  for (PlaneFit fit : guesses(turn)) {
     double duration_s = fit.end_s - fit.start_s;
     while (true) {
       const std::span<const Event> part = window(events, duration_s);

@@ -7,6 +7,7 @@
 #include "core/event.h"
 #include "estimator/odometry/start/plane_contrast.h"
 #include "estimator/odometry/start/plane_motion.h"
+#include "estimator/tracking/gyroscope.h"
 
 namespace saccade {
 
@@ -31,10 +32,13 @@ struct PlaneFit {
 
 /// Explains the first events by motions before a plane. The window grows: first a turn, which
 /// hardly any window is too short for; then, at several px, turn and step in several proportions,
-/// because a short window does not tell them apart. Deterministic.
+/// because a short window does not tell them apart. Where a gyroscope tells the turn, the rest of
+/// the image's motion is a step, and the turn stays as it is. Deterministic.
 class PlaneSearch {
  public:
-  PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera);
+  /// `gyroscope`: none where it is empty; outlives it.
+  PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera,
+              const Gyroscope& gyroscope);
 
   /// From the first of `events` on; the sharpest first, none where nothing moves.
   [[nodiscard]] std::vector<PlaneFit> find(std::span<const Event> events);
@@ -42,12 +46,15 @@ class PlaneSearch {
  private:
   [[nodiscard]] std::span<const Event> window(std::span<const Event> events,
                                               double duration_s) const;
+  [[nodiscard]] Eigen::Vector3d felt_rate(const PlaneFit& fit) const;
+  [[nodiscard]] std::vector<PlaneFit> guesses(const PlaneFit& turn) const;
   [[nodiscard]] PlaneFit first_turn(std::span<const Event> events) const;
   [[nodiscard]] PlaneFit climbed(std::span<const Event> events, const PlaneFit& guess);
   [[nodiscard]] double image_motion_px(const PlaneFit& fit) const;
 
   PlaneSearchOptions options_;
   PinholeCamera camera_;
+  const Gyroscope& gyroscope_;
   PlaneContrast contrast_;
 };
 
