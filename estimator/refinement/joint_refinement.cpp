@@ -14,6 +14,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/marginal_information.h"
@@ -174,6 +175,11 @@ class Problem {
           nullptr, correction_.data(k));
       ordering_->AddElementToGroup(correction_.data(k), 1);
     }
+    const double walked_px = options_.walk_px * std::sqrt(options_.knot_spacing_s);
+    const Matrix6 per_walk = sigma_of_px(walked_px).cwiseInverse().asDiagonal();
+    for (std::size_t k = 1; k < correction_.knots().controls(); ++k)
+      problem_.AddResidualBlock(new NodeStepCost(per_walk), nullptr, correction_.data(k - 1),
+                                correction_.data(k));
     const Twist sigma = sigma_of_px(options_.known_sigma_px);
     for (const StampedPose& pose : known) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
