@@ -21,6 +21,7 @@ struct SweepVerbOptions {
   std::string file;
   std::filesystem::path output;
   std::string launcher = "local";
+  std::vector<std::string> slurm_options;  ///< after those of the file
   std::vector<std::string> overrides;
   std::vector<std::string> seeds;
   int threads = 0;  ///< 0: as the file states it
@@ -36,7 +37,9 @@ SweepConfig load(const SweepVerbOptions& options) {
   for (const std::string& seed : options.seeds) seeds += (seeds.empty() ? "" : ", ") + seed;
   if (!seeds.empty()) overrides.push_back("seeds=[" + seeds + "]");
   if (options.threads > 0) overrides.push_back(fmt::format("threads={}", options.threads));
-  return config::read<SweepConfig>(config::load(options.file, overrides));
+  auto sweep = config::read<SweepConfig>(config::load(options.file, overrides));
+  for (const std::string& option : options.slurm_options) sweep.slurm.options.push_back(option);
+  return sweep;
 }
 
 void show(const SweepVerbOptions& options, const SweepSummary& summary) {
@@ -48,8 +51,9 @@ void show(const SweepVerbOptions& options, const SweepSummary& summary) {
 
 void sweep(const SweepVerbOptions& options) {
   set_progress_quiet(options.quiet);
-  const std::unique_ptr<Launcher> launcher = make_launcher(options.launcher);
   const SweepConfig config = load(options);
+  const std::unique_ptr<Launcher> launcher =
+      make_launcher(options.launcher, {{}, options.output, config.slurm});
   if (options.print_config) {
     fmt::print("{}", config::print_documented(config));
     return;
@@ -70,10 +74,16 @@ void sweep(const SweepVerbOptions& options) {
 }
 
 void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
-  verb.add_option("--launcher", options.launcher, "Where the jobs run: local")
+  verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm")
       ->capture_default_str();
+  verb.add_option("--slurm-option", options.slurm_options,
+                  "An option of sbatch, e.g. --slurm-option=--partition=long (repeatable)")
+      ->type_name("OPTION")
+      ->take_all()
+      ->allow_extra_args(false);
   verb.add_option("-j,--jobs", options.sweep.jobs,
-                  "Runs at a time (default: one per core). Speeds are worth quoting with 1 alone; "
+                  "Jobs at a time (default: as many as there are cores for; on Slurm as many as it has "
+                  "room for). Speeds are worth quoting with 1 alone; "
                   "`timing: true` in the file demands it")
       ->type_name("N")
       ->check(whole_number(1, 4096));
@@ -108,7 +118,8 @@ void add_sweep_verb(CLI::App& command) {
   verb->footer(
       "Examples:\n"
       "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples\n"
-      "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples --dry-run");
+      "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples --dry-run\n"
+      "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples --launcher slurm");
   verb->callback([options] { sweep(*options); });
 }
 

@@ -26,7 +26,7 @@ constexpr std::array kInterrupts{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t interrupted = 0;
 std::array<struct sigaction, kInterrupts.size()> former_actions;
 
-void remember(int) { interrupted = 1; }
+void remember(int signal) { interrupted = signal; }
 
 /// What a child gets instead of what this program has.
 class SpawnSetup {
@@ -147,6 +147,6 @@ InterruptGuard::~InterruptGuard() {
     sigaction(kInterrupts[i], &former_actions[i], nullptr);
 }
 
-bool InterruptGuard::requested() const { return interrupted != 0; }
+int InterruptGuard::signal() const { return interrupted; }
 
 }  // namespace saccade

@@ -52,7 +52,9 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  [[nodiscard]] bool requested() const;
+  [[nodiscard]] bool requested() const { return signal() != 0; }
+  /// The last one that came; 0: none.
+  [[nodiscard]] int signal() const;
 };
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <system_error>
 
 #include "core/config/config.h"
@@ -105,6 +106,12 @@ const std::string& JobInputs::dataset(const fs::path& folder) {
   const auto known = datasets_.find(folder);
   if (known != datasets_.end()) return known->second;
   return datasets_.emplace(folder, dataset_identity(folder)).first->second;
+}
+
+std::string identity_of(const Fingerprint& inputs) {
+  std::string text;
+  for (const auto& [name, content] : inputs) text += name + '\0' + content + '\0';
+  return sha256(std::as_bytes(std::span(text)));
 }
 
 std::string why_to_run(const SweepJob& job, const fs::path& record_file,

@@ -38,6 +38,9 @@ class JobInputs {
   std::map<std::filesystem::path, std::string> datasets_;
 };
 
+/// A hash of all of it.
+[[nodiscard]] std::string identity_of(const Fingerprint& inputs);
+
 /// Why a job must run; empty when its output is there, complete and made of `inputs`.
 [[nodiscard]] std::string why_to_run(const SweepJob& job, const std::filesystem::path& record_file,
                                      const Fingerprint& inputs);

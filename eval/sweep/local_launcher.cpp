@@ -2,8 +2,10 @@
 
 #include <poll.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
+#include <thread>
 
 #include "core/check.h"
 #include "core/io/atomic_file.h"
@@ -65,20 +67,25 @@ std::optional<LaunchResult> advance(Running& one, const ChildEnd& end, const Lau
 
 }  // namespace
 
-bool LocalLauncher::run(std::span<const LaunchJob> jobs, int at_once,
-                        const std::function<void(std::size_t, const LaunchResult&)>& on_end,
-                        const std::function<void()>& on_wait) {
-  SACCADE_CHECK(at_once >= 1);
+int LocalLauncher::usual_at_once(int threads) const {
+  if (threads == 0) return 1;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, cores / threads);
+}
+
+bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
+                        const LaunchEvents& events) {
+  SACCADE_CHECK(limits.at_once >= 1);
   const InterruptGuard interrupt;
   std::vector<Running> running;
   std::size_t next = 0;
   while (next < jobs.size() || !running.empty()) {
-    for (; next < jobs.size() && running.size() < static_cast<std::size_t>(at_once); ++next) {
+    for (; next < jobs.size() && running.size() < static_cast<std::size_t>(limits.at_once); ++next) {
       write_atomically(jobs[next].log, "");
       running.push_back({next, 0, Clock::now(), begin(program_, jobs[next], 0)});
     }
     wait_for_any(running);
-    on_wait();
+    events.on_wait();
     if (interrupt.requested()) {
       stop_all(running);
       return false;
@@ -87,7 +94,7 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, int at_once,
       std::optional<LaunchResult> result;
       if (const std::optional<ChildEnd> end = one->process.poll_end())
         result = advance(*one, *end, jobs[one->index], program_);
-      if (result) on_end(one->index, *result);
+      if (result) events.on_end(one->index, *result);
       one = result ? running.erase(one) : one + 1;
     }
   }

@@ -9,9 +9,10 @@ class LocalLauncher : public Launcher {
  public:
   explicit LocalLauncher(std::filesystem::path program) : program_(std::move(program)) {}
 
-  [[nodiscard]] bool run(std::span<const LaunchJob> jobs, int at_once,
-                         const std::function<void(std::size_t, const LaunchResult&)>& on_end,
-                         const std::function<void()>& on_wait) override;
+  [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
+                         const LaunchEvents& events) override;
+  /// The jobs and their threads together never exceed the cores.
+  [[nodiscard]] int usual_at_once(int threads) const override;
 
  private:
   std::filesystem::path program_;

@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 #include <system_error>
-#include <thread>
 
 #include "core/config/config.h"
 #include "core/error.h"
@@ -83,7 +82,7 @@ class Phase {
   }
 
   /// False when it was interrupted.
-  bool run(Launcher& launcher, int at_once, const std::string& label) {
+  bool run(Launcher& launcher, const LaunchLimits& limits, const std::string& label) {
     select_due();
     if (due_.empty()) return true;
     Progress progress(label, jobs_.size(), "jobs", jobs_.size() - due_.size());
@@ -91,7 +90,9 @@ class Phase {
       finish(i, result, progress);
       progress.add(1);
     };
-    return launcher.run(launches_, at_once, on_end, [&] { progress.add(0); });
+    return launcher.run(launches_, limits,
+                        {on_end, [&] { progress.add(0); },
+                         [&](const std::string& note) { progress.report("saccade: " + note); }});
   }
 
  private:
@@ -109,7 +110,8 @@ class Phase {
       fs::remove(job_folder / "job.yaml");
       due_.push_back(i);
       inputs_.push_back(std::move(job_inputs));
-      launches_.push_back({job.name, job.commands, job_folder / "log.txt"});
+      launches_.push_back(
+          {job.name, job.commands, job_folder / "log.txt", identity_of(inputs_.back())});
     }
   }
 
@@ -148,11 +150,17 @@ class Phase {
   std::vector<LaunchJob> launches_;  ///< of the due jobs
 };
 
-int runs_at_once(const SweepConfig& sweep, const SweepOptions& options) {
-  if (sweep.timing) return 1;
-  if (options.jobs > 0) return options.jobs;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::max(1, cores / sweep.threads);
+/// Each with all cores of its machine.
+LaunchLimits limits_of_simulations(const SweepOptions& options, const Launcher& launcher) {
+  const int usual = launcher.usual_at_once(0);
+  return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, 0};
+}
+
+LaunchLimits limits_of_runs(const SweepConfig& sweep, const SweepOptions& options,
+                            const Launcher& launcher) {
+  if (sweep.timing) return {1, 0};
+  const int at_once = options.jobs > 0 ? options.jobs : launcher.usual_at_once(sweep.threads);
+  return {at_once, sweep.threads};
 }
 
 std::size_t count(const SweepStates& states, JobState state) {
@@ -182,9 +190,9 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   SweepStates states;
   Phase simulations(plan.simulations, folder, states.simulations);
   Phase runs(plan.runs, folder, states.runs);
-  bool complete = simulations.run(launcher, 1, "simulating");
+  bool complete = simulations.run(launcher, limits_of_simulations(options, launcher), "simulating");
   runs.fail_without_dataset(states.simulations);
-  complete = complete && runs.run(launcher, runs_at_once(sweep, options), "running");
+  complete = complete && runs.run(launcher, limits_of_runs(sweep, options, launcher), "running");
   SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
                        count(states, JobState::kFailed), !complete};
   if (complete) write_sweep_results(sweep, plan, states, folder);

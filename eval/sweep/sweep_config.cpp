@@ -88,6 +88,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.value("start_s", sweep.start_s, "begin of the window; default: first event");
   fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
   fields.value("metrics", sweep.metrics, "of metrics.json in sweep.md; default: the usual ones");
+  fields.section("slurm", sweep.slurm, "what --launcher slurm asks for each job");
   expect_names_differ(fields, "datasets", sweep.datasets);
   expect_names_differ(fields, "configurations", sweep.configurations);
   expect_names_differ(fields, "variants", sweep.variants);

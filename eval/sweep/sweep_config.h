@@ -8,6 +8,7 @@
 
 #include "core/config/fields.h"
 #include "eval/sweep/settings.h"
+#include "eval/sweep/slurm_options.h"
 
 namespace saccade {
 
@@ -50,6 +51,7 @@ struct SweepConfig {
   std::optional<double> duration_s;
   std::vector<std::string>
       metrics;  ///< columns of sweep.md and its pictures; empty: the usual ones
+  SlurmOptions slurm;  ///< for the launcher of that name
 };
 
 void describe(config::Fields& fields, SweepConfig& sweep);

@@ -168,8 +168,8 @@ TEST(Sweep, RefusesWhatItCannotDo) {
     return result.output;
   };
   EXPECT_THAT(error({"sweep", sweep, "-o", note.parent_path()}), HasSubstr("no sweep"));
-  EXPECT_THAT(error({"sweep", sweep, "-o", folder.path() / "out", "--launcher", "slurm"}),
-              HasSubstr("valid launchers: local"));
+  EXPECT_THAT(error({"sweep", sweep, "-o", folder.path() / "out", "--launcher", "cloud"}),
+              HasSubstr("valid launchers: local, slurm"));
   EXPECT_THAT(error({"sweep", sweep}), HasSubstr("-o DIR"));
   EXPECT_THAT(error({"sweep", sweep, "-o", "x", "--set", "repet=2"}),
               HasSubstr("did you mean 'repeat'?"));

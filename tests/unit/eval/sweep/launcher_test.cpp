@@ -20,18 +20,18 @@ using testing::TemporaryFolder;
 class Launching : public ::testing::Test {
  protected:
   void add(const std::string& name, const std::vector<std::string>& scripts) {
-    LaunchJob job{name, {}, folder_.path() / name / "log.txt"};
+    LaunchJob job{name, {}, folder_.path() / name / "log.txt", {}};
     for (const std::string& script : scripts) job.commands.push_back({"-c", script});
     jobs_.push_back(job);
   }
 
   bool run(
       int at_once, const std::function<void()>& on_wait = [] {}) {
-    return make_launcher("local", "/bin/sh")
-        ->run(
-            jobs_, at_once,
-            [&](std::size_t i, const LaunchResult& result) { results_[jobs_[i].name] = result; },
-            on_wait);
+    const auto on_end = [&](std::size_t i, const LaunchResult& result) {
+      results_[jobs_[i].name] = result;
+    };
+    return make_launcher("local", {"/bin/sh", {}, {}})
+        ->run(jobs_, {at_once, 1}, {on_end, on_wait, [](const std::string&) {}});
   }
 
   [[nodiscard]] std::string log(const std::string& name) const {
@@ -97,8 +97,8 @@ TEST_F(Launching, AnInterruptStopsTheChildren) {
 }
 
 TEST(Launcher, NamesTheValidOnes) {
-  EXPECT_EQ(testing::error_of([] { return make_launcher("slurm") == nullptr; }),
-            "--launcher: there is no launcher 'slurm'; valid launchers: local");
+  EXPECT_EQ(testing::error_of([] { return make_launcher("cloud") == nullptr; }),
+            "--launcher: there is no launcher 'cloud'; valid launchers: local, slurm");
 }
 
 }  // namespace

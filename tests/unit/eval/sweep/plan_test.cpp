@@ -66,7 +66,7 @@ TEST(SweepPlan, MakesCommandLines) {
                               out + "runs/walls_fast_v_d-x_seed-3", "-c", root + "/fast.yaml",
                               "--set", "a=1", "--set", "b=[1, 2]", "--set", "c.d=x", "--seed", "3",
                               "--duration-s", "0.05", "--repeat", "4", "--threads", "1"),
-                  ElementsAre("eval", out + "runs/walls_fast_v_d-x_seed-3")));
+                  ElementsAre("eval", out + "runs/walls_fast_v_d-x_seed-3", "--threads", "1")));
 }
 
 TEST(SweepPlan, NamesAreUniqueAndFitAFileSystem) {

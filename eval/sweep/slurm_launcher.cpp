@@ -1,0 +1,83 @@
+#include "eval/sweep/slurm_launcher.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <system_error>
+
+#include "core/check.h"
+#include "core/progress.h"
+#include "eval/sweep/child_process.h"
+#include "eval/sweep/slurm_jobs.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kTickMs = 100;
+
+/// Does something now and then: so seldom that it takes a small share of the time, however slow the
+/// file system or the controller of the cluster are.
+class Repeated {
+ public:
+  Repeated(std::chrono::milliseconds period, std::function<void()> work)
+      : period_(period), work_(std::move(work)) {}
+
+  void do_if_due() {
+    const Clock::time_point start = Clock::now();
+    if (start < next_) return;
+    work_();
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max<Clock::duration>(period_, kShare * (end - start));
+  }
+
+ private:
+  static constexpr int kShare = 20;
+  Clock::duration period_;
+  std::function<void()> work_;
+  Clock::time_point next_;
+};
+
+}  // namespace
+
+int SlurmLauncher::usual_at_once(int /*threads*/) const { return LaunchLimits::kAllAtOnce; }
+
+bool SlurmLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
+                        const LaunchEvents& events) {
+  SACCADE_CHECK(limits.at_once >= 1);
+  cluster_->check();
+  LauncherOptions options = options_;
+  // Nodes know neither this process's link to its program nor its working directory.
+  options.program = fs::canonical(options.program);
+  options.folder = fs::absolute(options.folder) / "slurm";
+  const InterruptGuard interrupt;
+  SlurmJobs work(jobs, limits, options, *cluster_, events);
+  if (const std::size_t taken = work.take_over(); taken > 0)
+    show_notice(fmt::format("{} jobs that an earlier call submitted are taken over", taken));
+  Repeated collect(std::chrono::milliseconds(200), [&] { work.collect(); });
+  Repeated look(std::chrono::seconds(1), [&] { work.look(); });
+  Repeated submit(std::chrono::milliseconds(200), [&] { work.submit(); });
+  while (!work.all_ended()) {
+    collect.do_if_due();
+    look.do_if_due();
+    submit.do_if_due();
+    events.on_wait();
+    if (interrupt.signal() == SIGHUP) return false;
+    if (interrupt.requested()) {
+      work.cancel();
+      return false;
+    }
+    ::poll(nullptr, 0, kTickMs);
+  }
+  std::error_code ignored;
+  fs::remove(options.folder, ignored);  // unless something is left in it
+  return true;
+}
+
+}  // namespace saccade

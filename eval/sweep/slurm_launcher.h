@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "eval/sweep/launcher.h"
+#include "eval/sweep/slurm_cluster.h"
+
+namespace saccade {
+
+/// Arrays of Slurm, whose nodes see the same files under the same paths. What is queued or running
+/// outlives this program: SIGKILL and SIGHUP leave it there, and the next call takes it over; SIGINT
+/// and SIGTERM cancel it. A job whose node or script was lost is submitted again, `attempts` times
+/// in all.
+class SlurmLauncher : public Launcher {
+ public:
+  SlurmLauncher(LauncherOptions options, std::unique_ptr<SlurmCluster> cluster)
+      : options_(std::move(options)), cluster_(std::move(cluster)) {}
+
+  [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
+                         const LaunchEvents& events) override;
+  /// As many as the cluster has room for.
+  [[nodiscard]] int usual_at_once(int threads) const override;
+
+ private:
+  LauncherOptions options_;
+  std::unique_ptr<SlurmCluster> cluster_;
+};
+
+}  // namespace saccade
