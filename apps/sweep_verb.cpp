@@ -81,10 +81,11 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
       ->type_name("OPTION")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_option("-j,--jobs", options.sweep.jobs,
-                  "Jobs at a time (default: as many as there are cores for; on Slurm as many as it has "
-                  "room for). Speeds are worth quoting with 1 alone; "
-                  "`timing: true` in the file demands it")
+  verb.add_option(
+          "-j,--jobs", options.sweep.jobs,
+          "Jobs at a time (default: as many as there are cores for; on Slurm as many as it has "
+          "room for). Speeds are worth quoting with 1 alone; "
+          "`timing: true` in the file demands it")
       ->type_name("N")
       ->check(whole_number(1, 4096));
   verb.add_flag("--dry-run", options.dry_run, "Print the command lines and what would be skipped");

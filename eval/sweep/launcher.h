@@ -53,8 +53,8 @@ class Launcher {
   Launcher& operator=(const Launcher&) = delete;
 
   /// Runs all jobs and begins them in their order. Returns false when it was interrupted (SIGINT,
-  /// SIGTERM, SIGHUP): what was running is stopped, or goes on where the launcher can find it again,
-  /// without an on_end.
+  /// SIGTERM, SIGHUP): what was running is stopped, or goes on where the launcher can find it
+  /// again, without an on_end.
   [[nodiscard]] virtual bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
                                  const LaunchEvents& events) = 0;
   /// How many jobs of `threads` >= 0 threads (0: all of a machine) run at a time unless somebody

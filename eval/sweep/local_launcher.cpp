@@ -80,7 +80,8 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
   std::vector<Running> running;
   std::size_t next = 0;
   while (next < jobs.size() || !running.empty()) {
-    for (; next < jobs.size() && running.size() < static_cast<std::size_t>(limits.at_once); ++next) {
+    for (; next < jobs.size() && running.size() < static_cast<std::size_t>(limits.at_once);
+         ++next) {
       write_atomically(jobs[next].log, "");
       running.push_back({next, 0, Clock::now(), begin(program_, jobs[next], 0)});
     }

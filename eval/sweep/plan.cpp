@@ -178,8 +178,8 @@ class Planner {
     Words call{"run", sweep_.module, "--data", job.dataset.string(), "-o", job.output.string()};
     if (configuration.file) append(call, "-c", job.config.string());
     append(call, settings);
-    job.commands = {
-        call, {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
+    job.commands = {call,
+                    {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
     job.settings = "run " + sweep_.module + " " + shell_line(settings);
   }
 

@@ -77,8 +77,7 @@ int SlurmBatch::task_of(std::size_t job) const {
 std::vector<std::string> SlurmBatch::options(int at_once) const {
   std::string tasks = fmt::format("--array=0-{}", this->tasks() - 1);
   if (at_once < this->tasks()) tasks += fmt::format("%{}", at_once);
-  return {"--job-name=" + record_.array, tasks,
-          "--output=" + (folder_ / "task_%a.txt").string()};
+  return {"--job-name=" + record_.array, tasks, "--output=" + (folder_ / "task_%a.txt").string()};
 }
 
 std::optional<SlurmExit> SlurmBatch::exit_of(std::size_t job) const {

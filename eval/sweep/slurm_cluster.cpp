@@ -65,8 +65,7 @@ int SlurmCommands::largest_array() {
   return std::max(1, told ? std::atoi(found[1].str().c_str()) : kUsualLargestArray);
 }
 
-std::string SlurmCommands::submit(const std::filesystem::path& script,
-                                  const SlurmWords& options) {
+std::string SlurmCommands::submit(const std::filesystem::path& script, const SlurmWords& options) {
   SlurmWords words{"sbatch", "--parsable"};
   words.insert(words.end(), options.begin(), options.end());
   words.push_back(script.string());

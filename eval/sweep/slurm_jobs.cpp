@@ -263,9 +263,8 @@ void SlurmJobs::cancel_arrays(const std::vector<std::string>& arrays) {
   const Clock::time_point limit = Clock::now() + kUntilKilled;
   while (Clock::now() < limit) {
     const std::optional<SlurmQueue> queue = cluster_.queue(arrays);
-    if (queue && std::none_of(arrays.begin(), arrays.end(), [&](const std::string& array) {
-          return queue->is_alive(array);
-        }))
+    if (queue && std::none_of(arrays.begin(), arrays.end(),
+                              [&](const std::string& array) { return queue->is_alive(array); }))
       return;
     std::this_thread::sleep_for(kBetweenLooks);
   }

@@ -8,9 +8,9 @@
 namespace saccade {
 
 /// Arrays of Slurm, whose nodes see the same files under the same paths. What is queued or running
-/// outlives this program: SIGKILL and SIGHUP leave it there, and the next call takes it over; SIGINT
-/// and SIGTERM cancel it. A job whose node or script was lost is submitted again, `attempts` times
-/// in all.
+/// outlives this program: SIGKILL and SIGHUP leave it there, and the next call takes it over;
+/// SIGINT and SIGTERM cancel it. A job whose node or script was lost is submitted again, `attempts`
+/// times in all.
 class SlurmLauncher : public Launcher {
  public:
   SlurmLauncher(LauncherOptions options, std::unique_ptr<SlurmCluster> cluster)

@@ -8,8 +8,8 @@
 namespace saccade {
 namespace {
 
-constexpr std::array<std::string_view, 7> kOver{
-    "COMPLETED", "FAILED", "NODE_FAIL", "BOOT_FAIL", "PREEMPTED", "REVOKED", "LAUNCH_FAILED"};
+constexpr std::array<std::string_view, 7> kOver{"COMPLETED", "FAILED",  "NODE_FAIL",    "BOOT_FAIL",
+                                                "PREEMPTED", "REVOKED", "LAUNCH_FAILED"};
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kFinal{{
     {"TIMEOUT", "Slurm's time limit (slurm.time_limit_s, or that of the partition)"},
@@ -29,7 +29,8 @@ std::string_view next_part(std::string_view& rest, char separator) {
 }  // namespace
 
 bool SlurmTask::is_alive() const {
-  return std::find(kOver.begin(), kOver.end(), state) == kOver.end() && final_problem(state).empty();
+  return std::find(kOver.begin(), kOver.end(), state) == kOver.end() &&
+         final_problem(state).empty();
 }
 
 bool SlurmTask::is_running() const { return state == "RUNNING" || state == "COMPLETING"; }

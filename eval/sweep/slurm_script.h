@@ -9,8 +9,8 @@ namespace saccade {
 
 /// The script of an array whose folder is `here`: task N runs HERE/I.sh for its `jobs_per_task`
 /// jobs, one after another, of `jobs` in all. A job leaves I.started ("node call") and, unless it
-/// was killed with its task, I.exit ("status call microseconds"). It refuses to run another build of
-/// `program` than that of now.
+/// was killed with its task, I.exit ("status call microseconds"). It refuses to run another build
+/// of `program` than that of now.
 [[nodiscard]] std::string array_script(const std::filesystem::path& here,
                                        const std::filesystem::path& program, std::size_t jobs,
                                        int jobs_per_task);

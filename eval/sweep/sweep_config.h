@@ -50,7 +50,7 @@ struct SweepConfig {
   std::optional<double> start_s;     ///< window of the runs, as --start-s
   std::optional<double> duration_s;
   std::vector<std::string>
-      metrics;  ///< columns of sweep.md and its pictures; empty: the usual ones
+      metrics;         ///< columns of sweep.md and its pictures; empty: the usual ones
   SlurmOptions slurm;  ///< for the launcher of that name
 };
 

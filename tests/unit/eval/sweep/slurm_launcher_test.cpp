@@ -17,8 +17,8 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using testing::error_of;
+using ::testing::HasSubstr;
 using testing::read_file;
 using testing::TemporaryFolder;
 
@@ -64,8 +64,7 @@ class FakeCluster : public SlurmCluster {
 
   /// What the cluster does when the time has come.
   void run_task(const std::filesystem::path& script, int task) {
-    (void)std::system(
-        fmt::format("SLURM_ARRAY_TASK_ID={} bash {}", task, script.string()).c_str());
+    (void)std::system(fmt::format("SLURM_ARRAY_TASK_ID={} bash {}", task, script.string()).c_str());
   }
 
   std::string refusal;
@@ -96,8 +95,9 @@ class SlurmLaunching : public ::testing::Test {
   }
 
   /// With a cluster that is seen as `cluster_` while it runs.
-  bool run(const LaunchLimits& limits = {LaunchLimits::kAllAtOnce, 1},
-           const std::function<void()>& on_wait = [] {}) {
+  bool run(
+      const LaunchLimits& limits = {LaunchLimits::kAllAtOnce, 1},
+      const std::function<void()>& on_wait = [] {}) {
     /// The launcher owns what forwards to the test's cluster.
     class Forward : public SlurmCluster {
      public:
@@ -188,9 +188,10 @@ TEST_F(SlurmLaunching, SubmitsLostJobsAgainAndGivesUpInTheEnd) {
   EXPECT_EQ(runs_of("once"), "run\n");
   EXPECT_EQ(results_.at("always").problem,
             "was lost before it began (Slurm: NODE_FAIL), in the last of 3 attempts");
-  EXPECT_THAT(notes_,
-              AllOf(HasSubstr("job once was lost before it began (Slurm: NODE_FAIL); attempt 2 of 3"),
-                    HasSubstr("(Slurm: FAILED); attempt 3 of 3 follows")));
+  EXPECT_THAT(
+      notes_,
+      AllOf(HasSubstr("job once was lost before it began (Slurm: NODE_FAIL); attempt 2 of 3"),
+            HasSubstr("(Slurm: FAILED); attempt 3 of 3 follows")));
 }
 
 TEST_F(SlurmLaunching, SaysWhySlurmEndedAJob) {
