@@ -71,6 +71,10 @@ void sweep(const SweepVerbOptions& options) {
     throw std::runtime_error(fmt::format("{} {} failed; what they printed is in {}/NAME/log.txt",
                                          summary.failed, summary.failed == 1 ? "job" : "jobs",
                                          (options.output / "jobs").string()));
+  if (summary.missed > 0)
+    throw std::runtime_error(fmt::format("{} expected {} missed: {}", summary.missed,
+                                         summary.missed == 1 ? "figure was" : "figures were",
+                                         (options.output / "sweep.md").string()));
 }
 
 void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {

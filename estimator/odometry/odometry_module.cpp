@@ -201,8 +201,7 @@ RunSummary run_odometry(const RunRequest& request) {
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;
-  const Start start =
-      start_of(input.dataset, input.camera, events, config.start, input.gyroscope);
+  const Start start = start_of(input.dataset, input.camera, events, config.start, input.gyroscope);
   // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));

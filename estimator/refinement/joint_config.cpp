@@ -36,8 +36,7 @@ void describe(config::Fields& fields, JointRefinementOptions& options) {
   fields.value("outlier", options.outlier, "deviations beyond which an event counts less")
       .range(0.1, 1e6);
   fields.value("hold_px", options.hold_px, "of the correction from none, as image motion").above(0);
-  fields
-      .value("walk_px", options.walk_px, "by which it grows within a second: its random walk")
+  fields.value("walk_px", options.walk_px, "by which it grows within a second: its random walk")
       .above(0);
   fields.value("known_sigma_px", options.known_sigma_px, "of the given poses of the start")
       .above(0);

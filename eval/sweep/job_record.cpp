@@ -89,6 +89,11 @@ Fingerprint JobInputs::of(const SweepJob& job) {
   inputs["the program"] = program_identity();
   inputs["the command"] = job.settings;
   if (!job.is_simulation()) inputs["the dataset"] = dataset(job.dataset);
+  for (const fs::path& run : job.source_runs) {
+    const fs::path record = run / "run.yaml";
+    inputs["the run " + run.filename().string()] =
+        fs::exists(record) ? sha256_of_file(record) : "not there yet";
+  }
   return inputs;
 }
 

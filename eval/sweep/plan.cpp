@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "core/check.h"
 #include "core/shell.h"
 
 namespace saccade {
@@ -146,11 +147,13 @@ class Planner {
   void add_runs(const SweepJob& base) {
     std::vector<SweepVariant> variants = sweep_.variants;
     if (variants.empty()) variants.emplace_back();
-    for (const SweepConfiguration& configuration : sweep_.configurations)
+    for (const SweepConfiguration& configuration : sweep_.configurations) {
+      if (!configuration.runs_over(base.point.dataset)) continue;
       for (const SweepVariant& variant : variants)
         for (const std::vector<std::string>& values : combinations(sweep_.grid))
           for (const auto& seed : seeds_or_default(sweep_.seeds)) {
             SweepJob job = base;
+            job.point.module = module_of(configuration);
             job.point.configuration = configuration.name;
             job.point.variant = variant.name;
             job.point.grid = values;
@@ -158,6 +161,28 @@ class Planner {
             finish_run(job, configuration, variant);
             plan_.runs.push_back(std::move(job));
           }
+    }
+  }
+
+  [[nodiscard]] const std::string& module_of(const SweepConfiguration& configuration) const {
+    return configuration.module.empty() ? sweep_.module : configuration.module;
+  }
+
+  /// Hands the job the run of another configuration at the same point.
+  void take_from(const std::string& configuration, const char* option, SweepJob& job, Words& call) {
+    if (configuration.empty()) return;
+    const auto is_source = [&](const SweepJob& run) {
+      return run.point.configuration == configuration && run.point.dataset == job.point.dataset &&
+             run.point.dataset_seed == job.point.dataset_seed &&
+             run.point.variant == job.point.variant && run.point.grid == job.point.grid &&
+             run.point.seed == job.point.seed;
+    };
+    const auto found = std::find_if(plan_.runs.begin(), plan_.runs.end(), is_source);
+    SACCADE_CHECK(found != plan_.runs.end());
+    append(call, option, found->output.string());
+    job.sources.push_back(static_cast<std::size_t>(found - plan_.runs.begin()));
+    job.source_runs.push_back(found->output);
+    job.wave = std::max(job.wave, found->wave + 1);
   }
 
   void finish_run(SweepJob& job, const SweepConfiguration& configuration,
@@ -173,14 +198,17 @@ class Planner {
     if (job.point.seed) append(settings, "--seed", std::to_string(*job.point.seed));
     if (sweep_.start_s) append(settings, "--start-s", fmt::format("{}", *sweep_.start_s));
     if (sweep_.duration_s) append(settings, "--duration-s", fmt::format("{}", *sweep_.duration_s));
-    append(settings, "--repeat", std::to_string(sweep_.repeat));
+    append(settings, "--repeat", std::to_string(configuration.repeat.value_or(sweep_.repeat)));
     append(settings, "--threads", std::to_string(sweep_.threads));
-    Words call{"run", sweep_.module, "--data", job.dataset.string(), "-o", job.output.string()};
+    Words call{"run", job.point.module, "--data", job.dataset.string(), "-o", job.output.string()};
     if (configuration.file) append(call, "-c", job.config.string());
+    take_from(configuration.from, "--from", job, call);
+    take_from(configuration.poses_from, "--poses-from", job, call);
+    take_from(configuration.depth_from, "--depth-from", job, call);
     append(call, settings);
     job.commands = {call,
                     {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
-    job.settings = "run " + sweep_.module + " " + shell_line(settings);
+    job.settings = "run " + job.point.module + " " + shell_line(settings);
   }
 
   [[nodiscard]] std::string run_name(const SweepJob& job) const {
@@ -205,6 +233,12 @@ class Planner {
 bool SweepPoint::differs_in_seed_only(const SweepPoint& other) const {
   return dataset == other.dataset && configuration == other.configuration &&
          variant == other.variant && grid == other.grid;
+}
+
+int SweepPlan::waves() const {
+  int last = 0;
+  for (const SweepJob& job : runs) last = std::max(last, job.wave);
+  return last + 1;
 }
 
 SweepPlan plan_sweep(const SweepConfig& sweep, const fs::path& folder) {

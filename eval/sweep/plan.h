@@ -15,6 +15,7 @@ namespace saccade {
 struct SweepPoint {
   std::string dataset;
   std::optional<std::uint64_t> dataset_seed;
+  std::string module;             ///< empty: a simulation
   std::string configuration;      ///< empty: a simulation
   std::string variant;            ///< empty: the sweep has none
   std::vector<std::string> grid;  ///< a value for each axis; empty: a simulation
@@ -32,6 +33,9 @@ struct SweepJob {
   std::filesystem::path config;                    ///< the file it reads; empty: none
   std::filesystem::path dataset;                   ///< that it reads; empty: it is a simulation
   std::optional<std::size_t> made_by;              ///< the simulation that makes this dataset
+  std::vector<std::size_t> sources;                ///< runs before it whose results it reads
+  std::vector<std::filesystem::path> source_runs;  ///< their folders
+  int wave = 0;  ///< 0: reads no other run; else one after the last of its sources
   std::vector<std::vector<std::string>> commands;  ///< arguments of `saccade`, in turn
   /// The arguments without the paths: with the contents of the files, all that the result depends
   /// on.
@@ -48,6 +52,8 @@ struct SweepPlan {
   std::vector<std::string> axes;  ///< keys of the grid
   std::vector<SweepJob> simulations;
   std::vector<SweepJob> runs;
+
+  [[nodiscard]] int waves() const;
 
   /// What the table is about: the runs, or the datasets where nothing runs.
   [[nodiscard]] const std::vector<SweepJob>& rows() const {

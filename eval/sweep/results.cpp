@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "eval/evaluate.h"
 #include "eval/run_folder.h"
+#include "eval/sweep/expected.h"
 #include "eval/sweep/figures.h"
 #include "eval/sweep/metric_info.h"
 #include "eval/sweep/tables.h"
@@ -116,13 +117,16 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
   return results;
 }
 
-void write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan, const SweepStates& states,
-                         const std::filesystem::path& folder) {
+std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const SweepStates& states, const std::filesystem::path& folder) {
   const SweepResults results = collect_results(sweep, plan, states);
   warn_of_unknown(results);
   sweep_csv(results).save(folder / "sweep.csv");
   const std::vector<SweepFigure> figures = write_figures(results, folder);
-  write_atomically(folder / "sweep.md", sweep_markdown(results, figures));
+  const std::vector<FigureVerdict> verdicts = judge_expected(results);
+  write_atomically(folder / "sweep.md", sweep_markdown(results, figures, verdicts));
+  return static_cast<std::size_t>(std::count_if(
+      verdicts.begin(), verdicts.end(), [](const FigureVerdict& verdict) { return !verdict.met; }));
 }
 
 }  // namespace saccade

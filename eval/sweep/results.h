@@ -63,8 +63,9 @@ struct SweepResults {
                                            const SweepStates& states);
 
 /// Writes FOLDER/sweep.csv (a row for each job, all its metrics), FOLDER/sweep.md (a row for each
-/// group, `metrics`) and FOLDER/*.png.
-void write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan, const SweepStates& states,
-                         const std::filesystem::path& folder);
+/// group, `metrics`, and what became of the expected figures) and FOLDER/*.png. How many expected
+/// figures were missed.
+std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const SweepStates& states, const std::filesystem::path& folder);
 
 }  // namespace saccade

@@ -69,23 +69,31 @@ void remove_half_written(const fs::path& folder) {
 /// Runs the jobs of one kind that are due.
 class Phase {
  public:
-  Phase(const std::vector<SweepJob>& jobs, const fs::path& folder, std::vector<JobState>& states)
-      : jobs_(jobs), folder_(folder), states_(states) {
-    states_.assign(jobs.size(), JobState::kUnknown);
-  }
+  /// Of `jobs` those of a wave. `states`: one for each of them.
+  Phase(const std::vector<SweepJob>& jobs, int wave, const fs::path& folder,
+        std::vector<JobState>& states)
+      : jobs_(jobs), wave_(wave), folder_(folder), states_(states) {}
 
-  /// Jobs whose dataset could not be made fail with it.
-  void fail_without_dataset(const std::vector<JobState>& simulations) {
-    for (std::size_t i = 0; i < jobs_.size(); ++i)
-      if (jobs_[i].made_by && simulations[*jobs_[i].made_by] == JobState::kFailed)
-        states_[i] = JobState::kFailed;
+  /// Jobs whose dataset or whose source could not be made fail with it.
+  void fail_without_inputs(const std::vector<JobState>& simulations) {
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      const SweepJob& job = jobs_[i];
+      if (job.wave != wave_) continue;
+      const bool no_dataset = job.made_by && simulations[*job.made_by] == JobState::kFailed;
+      const bool no_source =
+          std::any_of(job.sources.begin(), job.sources.end(),
+                      [&](std::size_t run) { return states_[run] == JobState::kFailed; });
+      if (no_dataset || no_source) states_[i] = JobState::kFailed;
+    }
   }
 
   /// False when it was interrupted.
   bool run(Launcher& launcher, const LaunchLimits& limits, const std::string& label) {
     select_due();
     if (due_.empty()) return true;
-    Progress progress(label, jobs_.size(), "jobs", jobs_.size() - due_.size());
+    const auto all = static_cast<std::size_t>(std::count_if(
+        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.wave == wave_; }));
+    Progress progress(label, all, "jobs", all - due_.size());
     const auto on_end = [&](std::size_t i, const LaunchResult& result) {
       finish(i, result, progress);
       progress.add(1);
@@ -99,7 +107,7 @@ class Phase {
   void select_due() {
     JobInputs inputs;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      if (states_[i] == JobState::kFailed) continue;
+      if (jobs_[i].wave != wave_ || states_[i] == JobState::kFailed) continue;
       const SweepJob& job = jobs_[i];
       const fs::path job_folder = folder_ / "jobs" / job.name;
       Fingerprint job_inputs = inputs.of(job);
@@ -141,6 +149,7 @@ class Phase {
   }
 
   const std::vector<SweepJob>& jobs_;
+  int wave_;
   fs::path folder_;
   std::vector<JobState>& states_;
   std::map<std::string, std::string>
@@ -174,6 +183,8 @@ std::size_t count(const SweepStates& states, JobState state) {
 std::string preview(const SweepJob& job, const fs::path& folder, JobInputs& inputs,
                     const std::set<fs::path>& to_be_made) {
   if (to_be_made.contains(job.dataset)) return "its dataset is to be simulated";
+  for (const fs::path& run : job.source_runs)
+    if (to_be_made.contains(run)) return "the run that it starts from is to be made";
   return why_to_run(job, folder / "jobs" / job.name / "job.yaml", inputs.of(job));
 }
 
@@ -187,15 +198,19 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   const FolderLock lock(folder);
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
-  SweepStates states;
-  Phase simulations(plan.simulations, folder, states.simulations);
-  Phase runs(plan.runs, folder, states.runs);
+  SweepStates states{std::vector(plan.simulations.size(), JobState::kUnknown),
+                     std::vector(plan.runs.size(), JobState::kUnknown)};
+  Phase simulations(plan.simulations, 0, folder, states.simulations);
   bool complete = simulations.run(launcher, limits_of_simulations(options, launcher), "simulating");
-  runs.fail_without_dataset(states.simulations);
-  complete = complete && runs.run(launcher, limits_of_runs(sweep, options, launcher), "running");
+  for (int wave = 0; complete && wave < plan.waves(); ++wave) {
+    Phase runs(plan.runs, wave, folder, states.runs);
+    runs.fail_without_inputs(states.simulations);
+    complete = runs.run(launcher, limits_of_runs(sweep, options, launcher),
+                        wave == 0 ? "running" : "running on");
+  }
   SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
-                       count(states, JobState::kFailed), !complete};
-  if (complete) write_sweep_results(sweep, plan, states, folder);
+                       count(states, JobState::kFailed), 0, !complete};
+  if (complete) summary.missed = write_sweep_results(sweep, plan, states, folder);
   return summary;
 }
 
@@ -213,7 +228,7 @@ std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {
                           why.empty() ? "" : ": " + why);
       if (why.empty()) continue;
       ++due;
-      if (job.is_simulation()) to_be_made.insert(job.output);
+      to_be_made.insert(job.output);
       for (const std::vector<std::string>& command : job.commands)
         text += "  " + command_text(command) + "\n";
     }

@@ -18,6 +18,7 @@ struct SweepSummary {
   std::size_t done = 0;     ///< now
   std::size_t skipped = 0;  ///< done before, of the same inputs
   std::size_t failed = 0;
+  std::size_t missed = 0;  ///< expected figures
   bool interrupted = false;
 };
 

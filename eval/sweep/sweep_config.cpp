@@ -1,8 +1,12 @@
 #include "eval/sweep/sweep_config.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
+#include <span>
 
+#include "core/config/suggest.h"
 #include "core/io/folder_name.h"
 
 namespace saccade {
@@ -36,7 +40,69 @@ void expect_no_seed(config::Fields& fields, const char* key, const std::vector<K
   fields.expect(!stated, key, "must not hold 'seed'; state it in 'seeds'");
 }
 
+const SweepConfiguration* find_named(std::span<const SweepConfiguration> configurations,
+                                     const std::string& name) {
+  for (const SweepConfiguration& configuration : configurations)
+    if (configuration.name == name) return &configuration;
+  return nullptr;
+}
+
+/// Whatever it runs over, the configuration named by `from` before it has run over, too.
+void expect_source(config::Fields& fields, const SweepConfig& sweep, std::size_t index,
+                   const char* key, const std::string& from) {
+  if (from.empty()) return;
+  const SweepConfiguration& taker = sweep.configurations[index];
+  const auto before = std::span(sweep.configurations).first(index);
+  const SweepConfiguration* source = find_named(before, from);
+  fields.expect(
+      source != nullptr, "configurations",
+      fmt::format("{}: '{}' of '{}' is no configuration before it", key, from, taker.name));
+  if (source == nullptr) return;
+  for (const SweepDataset& dataset : sweep.datasets)
+    fields.expect(!taker.runs_over(dataset.name) || source->runs_over(dataset.name),
+                  "configurations",
+                  fmt::format("'{}' runs over {}, but '{}', which it starts from, does not",
+                              taker.name, dataset.name, from));
+}
+
+void expect_datasets(config::Fields& fields, const char* key, const SweepConfig& sweep,
+                     const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const SweepDataset& dataset : sweep.datasets) known.push_back(dataset.name);
+  for (const std::string& name : names)
+    fields.expect(std::find(known.begin(), known.end(), name) != known.end(), key,
+                  fmt::format("'{}' is no dataset of the sweep; {}", name,
+                              config::suggestion(name, known, "datasets")));
+}
+
+void check_configurations(config::Fields& fields, const SweepConfig& sweep) {
+  for (std::size_t i = 0; i < sweep.configurations.size(); ++i) {
+    const SweepConfiguration& configuration = sweep.configurations[i];
+    expect_datasets(fields, "configurations", sweep, configuration.datasets);
+    expect_source(fields, sweep, i, "from", configuration.from);
+    expect_source(fields, sweep, i, "poses_from", configuration.poses_from);
+    expect_source(fields, sweep, i, "depth_from", configuration.depth_from);
+  }
+}
+
+void check_expected(config::Fields& fields, const SweepConfig& sweep) {
+  std::vector<std::string> names;
+  for (const SweepConfiguration& configuration : sweep.configurations)
+    names.push_back(configuration.name);
+  for (const ExpectedFigure& figure : sweep.expected) {
+    const bool is_known = find_named(sweep.configurations, figure.configuration) != nullptr;
+    fields.expect(is_known, "expected",
+                  fmt::format("'{}' is no configuration of the sweep; {}", figure.configuration,
+                              config::suggestion(figure.configuration, names, "configurations")));
+    expect_datasets(fields, "expected", sweep, figure.datasets);
+  }
+}
+
 }  // namespace
+
+bool SweepConfiguration::runs_over(const std::string& dataset) const {
+  return datasets.empty() || std::find(datasets.begin(), datasets.end(), dataset) != datasets.end();
+}
 
 void describe(config::Fields& fields, SweepDataset& dataset) {
   fields.value("name", dataset.name, "in tables; default: the folder's or the file's");
@@ -56,12 +122,30 @@ void describe(config::Fields& fields, SweepDataset& dataset) {
 }
 
 void describe(config::Fields& fields, SweepConfiguration& configuration) {
-  fields.value("name", configuration.name, "in tables; default: the file's");
+  fields.value("name", configuration.name, "in tables; default: the file's, after the module");
+  fields.value("module", configuration.module, "what `saccade run` runs; default: the sweep's");
   fields.path("file", configuration.file, "of the module; ~ is its defaults").must_exist();
   fields.value("set", configuration.set, "overrides of it, key.path: value");
   expect_no_seed(fields, "set", configuration.set);
-  if (fields.reading() && configuration.name.empty())
-    configuration.name = configuration.file ? configuration.file->stem().string() : "defaults";
+  fields.value("datasets", configuration.datasets, "names of those it runs over; default: all");
+  fields.value("repeat", configuration.repeat, "repetitions; default: the sweep's")
+      .range(1, 100000);
+  fields.value("from", configuration.from, "configuration before it whose run it starts from");
+  fields.value("poses_from", configuration.poses_from, "or takes the poses of");
+  fields.value("depth_from", configuration.depth_from, "or the depth");
+  if (!fields.reading() || !configuration.name.empty()) return;
+  configuration.name = configuration.file ? configuration.file->stem().string() : "defaults";
+  if (!configuration.module.empty())
+    configuration.name = configuration.module + " " + configuration.name;
+}
+
+void describe(config::Fields& fields, ExpectedFigure& figure) {
+  fields.value("configuration", figure.configuration, "its name").required();
+  fields.value("datasets", figure.datasets, "default: all that it runs over");
+  fields.value("metric", figure.metric, "key of metrics.json").required();
+  fields.value("at_most", figure.at_most, "of the mean over the seeds, of a speed the median");
+  fields.value("at_least", figure.at_least, "the same");
+  fields.expect(figure.at_most || figure.at_least, "metric", "needs 'at_most' or 'at_least'");
 }
 
 void describe(config::Fields& fields, SweepVariant& variant) {
@@ -77,7 +161,8 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}")
       .required()
       .length(1, config::Rule::kAnyLength);
-  fields.list("configurations", sweep.configurations, "each {name, file, set}");
+  fields.list("configurations", sweep.configurations,
+              "each {name, module, file, set, datasets, from}");
   fields.list("variants", sweep.variants, "each {name, set}");
   fields.value("grid", sweep.grid, "key.path: list of values; every combination is run");
   fields.value("seeds", sweep.seeds, "of the runs");
@@ -89,6 +174,8 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
   fields.value("metrics", sweep.metrics, "of metrics.json in sweep.md; default: the usual ones");
   fields.section("slurm", sweep.slurm, "what --launcher slurm asks for each job");
+  fields.list("expected", sweep.expected,
+              "each {configuration, datasets, metric, at_most, at_least}");
   expect_names_differ(fields, "datasets", sweep.datasets);
   expect_names_differ(fields, "configurations", sweep.configurations);
   expect_names_differ(fields, "variants", sweep.variants);
@@ -99,6 +186,9 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.expect(!simulates_only || sweep.grid.empty(), "grid", "needs 'configurations' to vary");
   fields.expect(!simulates_only || sweep.variants.empty(), "variants",
                 "need 'configurations' to vary");
+  if (!fields.reading()) return;
+  check_configurations(fields, sweep);
+  check_expected(fields, sweep);
 }
 
 }  // namespace saccade

@@ -22,9 +22,26 @@ struct SweepDataset {
 };
 
 struct SweepConfiguration {
-  std::string name;                           ///< default: the file without its ending
+  std::string name;    ///< default: the file without its ending, after the module if it has its own
+  std::string module;  ///< default: the sweep's
   std::optional<std::filesystem::path> file;  ///< default: the defaults of the module
   Settings set;
+  std::vector<std::string> datasets;  ///< names of those it runs over; empty: all
+  std::optional<int> repeat;          ///< default: the sweep's
+  /// Names of configurations before it: its run gets theirs of the same dataset, variant, point of
+  /// the grid and seed, as --from, --poses-from and --depth-from. Empty: none.
+  std::string from, poses_from, depth_from;
+
+  [[nodiscard]] bool runs_over(const std::string& dataset) const;
+};
+
+/// A figure that a benchmark is known to reach, as mean over the seeds (of a speed the median).
+struct ExpectedFigure {
+  std::string configuration;
+  std::vector<std::string> datasets;  ///< empty: all that the configuration runs over
+  std::string metric;                 ///< key of metrics.json
+  std::optional<double> at_most;
+  std::optional<double> at_least;
 };
 
 /// A named list of overrides: a row of an ablation.
@@ -52,6 +69,7 @@ struct SweepConfig {
   std::vector<std::string>
       metrics;         ///< columns of sweep.md and its pictures; empty: the usual ones
   SlurmOptions slurm;  ///< for the launcher of that name
+  std::vector<ExpectedFigure> expected;
 };
 
 void describe(config::Fields& fields, SweepConfig& sweep);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "eval/number_text.h"
 #include "eval/sweep/metric_info.h"
@@ -50,15 +51,15 @@ std::string table_line(const Row& cells) {
   return line + "\n";
 }
 
-Row header(const SweepResults& results, const Columns& columns, bool with_dataset) {
+Row header(const SweepResults& results, const Columns& columns, bool with_dataset,
+           const std::vector<std::string>& metrics) {
   Row cells;
   if (with_dataset) cells.emplace_back("dataset");
   if (columns.configuration) cells.emplace_back("configuration");
   if (columns.variant) cells.emplace_back("variant");
   for (const std::string& axis : results.plan.axes) cells.push_back("`" + axis + "`");
   if (columns.seeds) cells.emplace_back("seeds");
-  for (const std::string& metric : results.metrics)
-    cells.push_back(cell_text(metric_info(metric).label));
+  for (const std::string& metric : metrics) cells.push_back(cell_text(metric_info(metric).label));
   return cells;
 }
 
@@ -93,8 +94,9 @@ std::string value_cell(const SweepGroup& group, const std::string& metric,
   return text;
 }
 
-Row body(const SweepResults& results, const Columns& columns, bool with_dataset,
-         const SweepGroup& group, const std::vector<std::optional<double>>& best) {
+/// `best`: by the metric's key.
+Row body(const Columns& columns, bool with_dataset, const SweepGroup& group,
+         const std::vector<std::pair<std::string, std::optional<double>>>& best) {
   Row cells;
   if (with_dataset) cells.push_back(cell_text(group.point.dataset));
   if (columns.configuration) cells.push_back(cell_text(group.point.configuration));
@@ -105,37 +107,93 @@ Row body(const SweepResults& results, const Columns& columns, bool with_dataset,
   if (columns.seeds)
     cells.push_back(failed == 0 ? std::to_string(group.rows.size())
                                 : fmt::format("{} ({} failed)", group.rows.size(), failed));
-  for (std::size_t i = 0; i < results.metrics.size(); ++i)
-    cells.push_back(value_cell(group, results.metrics[i], best[i]));
+  for (const auto& [metric, value] : best) cells.push_back(value_cell(group, metric, value));
   return cells;
 }
 
-std::string table(const SweepResults& results, const std::vector<const SweepGroup*>& groups,
-                  bool with_dataset) {
-  const Columns columns = columns_of(results);
-  const Row head = header(results, columns, with_dataset);
-  std::vector<std::optional<double>> best;
-  // Datasets are not compared with each other.
+using Groups = std::vector<const SweepGroup*>;
+
+/// Of the metrics those that a row of the table has: modules measure different things.
+std::vector<std::string> measured_of(const SweepResults& results, const Groups& groups) {
+  std::vector<std::string> metrics;
   for (const std::string& metric : results.metrics)
-    best.push_back(with_dataset ? std::nullopt : best_of(groups, metric));
+    if (std::any_of(groups.begin(), groups.end(),
+                    [&](const SweepGroup* group) { return summarise(*group, metric).has_value(); }))
+      metrics.push_back(metric);
+  return metrics.empty() ? results.metrics : metrics;
+}
+
+std::string table(const SweepResults& results, const Groups& groups, bool with_dataset) {
+  const Columns columns = columns_of(results);
+  const std::vector<std::string> metrics = measured_of(results, groups);
+  const Row head = header(results, columns, with_dataset, metrics);
+  std::vector<std::pair<std::string, std::optional<double>>> best;
+  // Datasets are not compared with each other.
+  for (const std::string& metric : metrics)
+    best.emplace_back(metric, with_dataset ? std::nullopt : best_of(groups, metric));
   std::string text = table_line(head) + "|";
   for (std::size_t i = 0; i < head.size(); ++i)
-    text += i + results.metrics.size() < head.size() ? "---|" : "---:|";
+    text += i + metrics.size() < head.size() ? "---|" : "---:|";
   text += "\n";
   for (const SweepGroup* group : groups)
-    text += table_line(body(results, columns, with_dataset, *group, best));
+    text += table_line(body(columns, with_dataset, *group, best));
   return text + "\n";
 }
 
 /// The groups of each dataset, in the order of the plan.
-std::vector<std::vector<const SweepGroup*>> by_dataset(const SweepResults& results) {
-  std::vector<std::vector<const SweepGroup*>> parts;
+std::vector<Groups> by_dataset(const SweepResults& results) {
+  std::vector<Groups> parts;
   for (const SweepGroup& group : results.groups) {
     if (parts.empty() || parts.back().front()->point.dataset != group.point.dataset)
       parts.emplace_back();
     parts.back().push_back(&group);
   }
   return parts;
+}
+
+/// The groups of each module, as they come first.
+std::vector<Groups> by_module(const Groups& groups) {
+  std::vector<Groups> parts;
+  for (const SweepGroup* group : groups) {
+    const auto same = std::find_if(parts.begin(), parts.end(), [&](const Groups& part) {
+      return part.front()->point.module == group->point.module;
+    });
+    (same == parts.end() ? parts.emplace_back() : *same).push_back(group);
+  }
+  return parts;
+}
+
+std::string tables_of(const SweepResults& results, const Groups& groups) {
+  std::string text = "## " + groups.front()->point.dataset + "\n";
+  const std::vector<Groups> modules = by_module(groups);
+  for (const Groups& module : modules) {
+    if (modules.size() > 1) text += "### " + module.front()->point.module + "\n";
+    text += table(results, module, false);
+  }
+  return text;
+}
+
+std::string bound_of(const ExpectedFigure& figure) {
+  if (figure.at_most && figure.at_least)
+    return fmt::format("{} to {}", *figure.at_least, *figure.at_most);
+  return figure.at_most ? fmt::format("≤ {}", *figure.at_most)
+                        : fmt::format("≥ {}", *figure.at_least);
+}
+
+std::string expected_table(std::span<const FigureVerdict> verdicts) {
+  if (verdicts.empty()) return "";
+  const auto met = std::count_if(verdicts.begin(), verdicts.end(),
+                                 [](const FigureVerdict& verdict) { return verdict.met; });
+  std::string text =
+      fmt::format("## Expected figures\n{} of {} are met.\n\n", met, verdicts.size());
+  text +=
+      "| configuration | dataset | figure | expected | measured | |\n|---|---|---|---:|---:|---|\n";
+  for (const FigureVerdict& verdict : verdicts)
+    text +=
+        table_line({cell_text(verdict.figure->configuration), cell_text(verdict.dataset),
+                    cell_text(metric_info(verdict.figure->metric).label), bound_of(*verdict.figure),
+                    rounded(verdict.value), verdict.met ? "met" : "**missed**"});
+  return text + "\n";
 }
 
 std::string how_it_was_made(const SweepResults& results) {
@@ -174,7 +232,7 @@ CsvTable sweep_csv(const SweepResults& results) {
     for (const auto& [key, value] : row.metrics.values()) metrics.insert(key);
   std::vector<std::string> columns{"job", "dataset", "dataset_seed"};
   const bool runs = !results.plan.runs.empty();
-  if (runs) columns.insert(columns.end(), {"configuration", "variant"});
+  if (runs) columns.insert(columns.end(), {"module", "configuration", "variant"});
   columns.insert(columns.end(), results.plan.axes.begin(), results.plan.axes.end());
   if (runs) columns.emplace_back("seed");
   columns.emplace_back("status");
@@ -183,7 +241,7 @@ CsvTable sweep_csv(const SweepResults& results) {
   for (const SweepRow& row : results.rows) {
     const SweepPoint& point = row.job->point;
     std::vector<CsvTable::Cell> cells{row.job->name, point.dataset, seed_cell(point.dataset_seed)};
-    if (runs) cells.insert(cells.end(), {point.configuration, point.variant});
+    if (runs) cells.insert(cells.end(), {point.module, point.configuration, point.variant});
     for (const std::string& value : point.grid) cells.emplace_back(value);
     if (runs) cells.push_back(seed_cell(point.seed));
     cells.emplace_back(std::string(row.failed ? "failed" : "ok"));
@@ -194,7 +252,8 @@ CsvTable sweep_csv(const SweepResults& results) {
   return csv;
 }
 
-std::string sweep_markdown(const SweepResults& results, std::span<const SweepFigure> figures) {
+std::string sweep_markdown(const SweepResults& results, std::span<const SweepFigure> figures,
+                           std::span<const FigureVerdict> verdicts) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
   std::string text = "# " + title + "\n\n" + how_it_was_made(results);
   const auto parts = by_dataset(results);
@@ -204,9 +263,9 @@ std::string sweep_markdown(const SweepResults& results, std::span<const SweepFig
     for (const SweepGroup& group : results.groups) all.push_back(&group);
     text += table(results, all, true);
   } else {
-    for (const auto& groups : parts)
-      text += "## " + groups.front()->point.dataset + "\n" + table(results, groups, false);
+    for (const Groups& groups : parts) text += tables_of(results, groups);
   }
+  text += expected_table(verdicts);
   for (const SweepFigure& figure : figures)
     text += fmt::format("![{}]({})\n\n", figure.caption, figure.file);
   return text + failures(results);

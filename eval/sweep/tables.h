@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/io/csv_file.h"
+#include "eval/sweep/expected.h"
 #include "eval/sweep/figures.h"
 #include "eval/sweep/results.h"
 
@@ -14,8 +15,10 @@ namespace saccade {
 [[nodiscard]] CsvTable sweep_csv(const SweepResults& results);
 
 /// The page of a sweep: for each dataset a table with a row for each group, the best value of a
-/// column in bold, then the figures and the jobs that failed.
+/// column in bold, one table for each module where there are several; then the expected figures,
+/// the pictures and the jobs that failed.
 [[nodiscard]] std::string sweep_markdown(const SweepResults& results,
-                                         std::span<const SweepFigure> figures);
+                                         std::span<const SweepFigure> figures,
+                                         std::span<const FigureVerdict> verdicts);
 
 }  // namespace saccade

@@ -52,6 +52,15 @@ TEST_F(Resuming, WhatIsDoneIsSkipped) {
   EXPECT_EQ(why(run_), "");
 }
 
+TEST_F(Resuming, ARunDependsOnTheRunThatItStartsFrom) {
+  SweepJob refined = run_;
+  refined.source_runs = {folder_.path() / "source"};
+  EXPECT_THAT(why(refined), ::testing::HasSubstr("the run source"));
+  const std::string before = identity_of(JobInputs().of(refined));
+  folder_.write("source/run.yaml", "module: odometry\n");
+  EXPECT_NE(identity_of(JobInputs().of(refined)), before);
+}
+
 TEST_F(Resuming, WhatIsNotDoneRuns) {
   SweepJob other = run_;
   other.name = "other";

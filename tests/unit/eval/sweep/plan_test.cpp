@@ -47,6 +47,40 @@ TEST(SweepPlan, ExpandsInTheOrderOfTheFile) {
   EXPECT_EQ(sweep.runs[8].made_by, std::nullopt);
 }
 
+TEST(SweepPlan, ARunThatStartsFromAnotherComesInALaterWave) {
+  const TemporaryFolder folder;
+  const SweepPlan sweep =
+      plan(folder,
+           "datasets: [{simulate: walls.yaml}, {path: recorded}]\n"
+           "configurations:\n"
+           "  - {module: odometry, file: fast.yaml}\n"
+           "  - {name: refined, module: refine, datasets: [recorded], from: odometry fast}\n"
+           "  - {name: deep, module: depth, poses_from: odometry fast, repeat: 3}\n"
+           "seeds: [1, 2]\n");
+  EXPECT_THAT(
+      names(sweep.runs),
+      ElementsAre("walls_odometry-fast_seed-1", "walls_odometry-fast_seed-2", "walls_deep_seed-1",
+                  "walls_deep_seed-2", "recorded_odometry-fast_seed-1",
+                  "recorded_odometry-fast_seed-2", "recorded_refined_seed-1",
+                  "recorded_refined_seed-2", "recorded_deep_seed-1", "recorded_deep_seed-2"));
+  EXPECT_EQ(sweep.waves(), 2);
+  EXPECT_EQ(sweep.runs[4].wave, 0);
+  const SweepJob& refined = sweep.runs[7];
+  EXPECT_EQ(refined.wave, 1);
+  EXPECT_THAT(refined.sources, ElementsAre(5U));
+  EXPECT_THAT(refined.source_runs, ElementsAre(sweep.runs[5].output));
+  const std::vector<std::string>& call = refined.commands.at(0);
+  EXPECT_EQ(call[1], "refine");
+  const auto option = std::find(call.begin(), call.end(), "--from");
+  ASSERT_LT(option + 1, call.end());
+  EXPECT_EQ(option[1], sweep.runs[5].output);
+  const std::vector<std::string>& depth = sweep.runs[3].commands.at(0);
+  EXPECT_NE(std::find(depth.begin(), depth.end(), "--poses-from"), depth.end());
+  const auto repeat = std::find(depth.begin(), depth.end(), "--repeat");
+  ASSERT_LT(repeat + 1, depth.end());
+  EXPECT_EQ(repeat[1], "3");
+}
+
 TEST(SweepPlan, MakesCommandLines) {
   const TemporaryFolder folder;
   const SweepPlan sweep =

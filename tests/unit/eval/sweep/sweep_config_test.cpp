@@ -42,6 +42,41 @@ TEST(SweepConfig, ReadsWhatAFileStates) {
   EXPECT_THAT(sweep.seeds, ElementsAre(4U, 5U));
 }
 
+TEST(SweepConfig, ReadsABenchmark) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(
+      folder,
+      "datasets: [{simulate: walls.yaml}, {path: recorded}]\n"
+      "configurations: [{module: depth, file: fast.yaml, datasets: [walls]}]\n"
+      "expected: [{configuration: depth fast, metric: depth.rel_median, at_most: 0.1}]\n");
+  EXPECT_TRUE(sweep.configurations[0].runs_over("walls"));
+  EXPECT_FALSE(sweep.configurations[0].runs_over("recorded"));
+  EXPECT_EQ(sweep.expected.at(0).at_most, 0.1);
+  EXPECT_EQ(sweep.expected[0].at_least, std::nullopt);
+}
+
+TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& configurations, const std::string& more = "") {
+    return error_of([&] {
+      return read_sweep(folder,
+                        "datasets: [{simulate: walls.yaml}, {path: recorded}]\n"
+                        "configurations: [" +
+                            configurations + "]\n" + more);
+    });
+  };
+  const std::string a = "{name: a, datasets: [walls]}";
+  EXPECT_THAT(error("{name: a, datasets: [wals]}"), HasSubstr("'wals' is no dataset"));
+  EXPECT_THAT(error("{name: b, from: a}, " + a), HasSubstr("no configuration before it"));
+  EXPECT_THAT(error(a + ", {name: b, from: a}"),
+              HasSubstr("'b' runs over recorded, but 'a', which it starts from, does not"));
+  EXPECT_EQ(error(a + ", {name: b, from: a, datasets: [walls]}"), "");
+  EXPECT_THAT(error(a, "expected: [{configuration: c, metric: m, at_most: 1}]\n"),
+              HasSubstr("'c' is no configuration"));
+  EXPECT_THAT(error(a, "expected: [{configuration: a, metric: m}]\n"),
+              HasSubstr("needs 'at_most' or 'at_least'"));
+}
+
 TEST(SweepConfig, NamesADatasetAfterItsFolder) {
   const TemporaryFolder folder;
   for (const char* path : {"recorded", "recorded/", "./recorded"})

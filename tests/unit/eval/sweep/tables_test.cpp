@@ -50,17 +50,17 @@ class SweepTables : public ::testing::Test {
 TEST_F(SweepTables, CsvHoldsOneRowForEachJob) {
   fill("a.b: [1, 2]");
   EXPECT_EQ(sweep_csv(results_).text(),
-            "job,dataset,dataset_seed,configuration,variant,a.b,seed,status,"
+            "job,dataset,dataset_seed,module,configuration,variant,a.b,seed,status,"
             "speed.poses_per_s.median,trajectory.drift_percent,trajectory.dt_rel_percent.mean\n"
-            "recorded_fast_b-1_seed-1,recorded,,fast,,1,1,ok,20000,,0.5\n"
-            "recorded_fast_b-1_seed-2,recorded,,fast,,1,2,ok,30000,,0.7\n"
-            "recorded_fast_b-2_seed-1,recorded,,fast,,2,1,ok,12345,,0.25\n"
-            "recorded_fast_b-2_seed-2,recorded,,fast,,2,2,failed,,,\n");
+            "recorded_fast_b-1_seed-1,recorded,,track,fast,,1,1,ok,20000,,0.5\n"
+            "recorded_fast_b-1_seed-2,recorded,,track,fast,,1,2,ok,30000,,0.7\n"
+            "recorded_fast_b-2_seed-1,recorded,,track,fast,,2,1,ok,12345,,0.25\n"
+            "recorded_fast_b-2_seed-2,recorded,,track,fast,,2,2,failed,,,\n");
 }
 
 TEST_F(SweepTables, MarkdownAveragesOverSeedsAndMarksTheBest) {
   fill("a.b: [1, 2]", "repeat: 5\ntiming: true\ntitle: Mine\n");
-  EXPECT_THAT(sweep_markdown(results_, {}),
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
               AllOf(HasSubstr("# Mine\n"), HasSubstr("medians of 5 repetitions, one run at a time"),
                     HasSubstr("| `a.b` | seeds | dt_rel [%] | poses/s |\n|---|---|---:|---:|\n"
                               "| 1 | 2 | 0.600 (0.500–0.700) | **25,000** |\n"
@@ -71,8 +71,47 @@ TEST_F(SweepTables, MarkdownAveragesOverSeedsAndMarksTheBest) {
 TEST_F(SweepTables, TheSpeedOfALostRunIsNotTheBest) {
   fill("a.b: [1, 2]");
   results_.rows[0].metrics.set("trajectory.lost_s", 0.2);
-  EXPECT_THAT(sweep_markdown(results_, {}),
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
               AllOf(HasSubstr("| 25,000 |"), HasSubstr("| **12,300** |")));
+}
+
+TEST_F(SweepTables, ExpectedFiguresAreMetOrMissed) {
+  fill("a.b: [1]",
+       "expected:\n"
+       "  - {configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 0.61}\n"
+       "  - {configuration: fast, metric: speed.poses_per_s, at_least: 26000}\n"
+       "  - {configuration: fast, metric: trajectory.drift_percent, at_most: 1}\n");
+  const std::vector<FigureVerdict> verdicts = judge_expected(results_);
+  ASSERT_EQ(verdicts.size(), 3U);
+  EXPECT_TRUE(verdicts[0].met) << "the mean of both seeds counts";
+  EXPECT_FALSE(verdicts[1].met);
+  EXPECT_FALSE(verdicts[2].met) << "nothing measured is nothing met";
+  EXPECT_EQ(verdicts[2].value, std::nullopt);
+  EXPECT_THAT(sweep_markdown(results_, {}, verdicts),
+              AllOf(HasSubstr("1 of 3 are met."),
+                    HasSubstr("| fast | recorded | dt_rel [%] | ≤ 0.61 | 0.600 | met |\n"
+                              "| fast | recorded | poses/s | ≥ 26000 | 25,000 | **missed** |\n")));
+}
+
+TEST_F(SweepTables, ARunThatFailedMeetsNothing) {
+  fill("a.b: [1, 2]",
+       "expected: [{configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 9}]\n");
+  const std::vector<FigureVerdict> verdicts = judge_expected(results_);
+  ASSERT_EQ(verdicts.size(), 2U) << "one for each row";
+  EXPECT_TRUE(verdicts[0].met);
+  EXPECT_FALSE(verdicts[1].met);
+}
+
+TEST_F(SweepTables, ModulesHaveTablesOfTheirOwn) {
+  fill("a.b: [1, 2]");
+  plan_.runs[2].point.module = plan_.runs[3].point.module = "depth";
+  results_.rows[2].metrics = {};
+  results_.rows[2].metrics.set("depth.rel_median", 0.01);
+  results_.groups = group_by_seed(results_.rows);
+  results_.metrics.emplace_back("depth.rel_median");
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("## recorded\n### track\n| `a.b` | seeds | dt_rel [%] | poses/s |\n"),
+                    HasSubstr("### depth\n| `a.b` | seeds | median depth error |\n")));
 }
 
 TEST_F(SweepTables, NumbersAreDrawnAsLines) {
@@ -93,7 +132,7 @@ TEST_F(SweepTables, WordsAreDrawnAsBars) {
 TEST_F(SweepTables, ASingleRowIsNotDrawn) {
   fill("a.b: [1]");
   EXPECT_TRUE(write_figures(results_, folder_.path()).empty());
-  EXPECT_THAT(sweep_markdown(results_, {}), Not(HasSubstr("**")));
+  EXPECT_THAT(sweep_markdown(results_, {}, {}), Not(HasSubstr("**")));
 }
 
 TEST(MetricInfo, KnowsWhatIsBetter) {
