@@ -151,7 +151,7 @@ class Planner {
       if (!configuration.runs_over(base.point.dataset)) continue;
       for (const SweepVariant& variant : variants)
         for (const std::vector<std::string>& values : combinations(sweep_.grid))
-          for (const auto& seed : seeds_or_default(sweep_.seeds)) {
+          for (const auto& seed : seeds_or_default(sweep_.seeds_of(configuration))) {
             SweepJob job = base;
             job.point.module = module_of(configuration);
             job.point.configuration = configuration.name;

@@ -58,6 +58,11 @@ void expect_source(config::Fields& fields, const SweepConfig& sweep, std::size_t
       source != nullptr, "configurations",
       fmt::format("{}: '{}' of '{}' is no configuration before it", key, from, taker.name));
   if (source == nullptr) return;
+  const std::vector<std::uint64_t>& given = sweep.seeds_of(*source);
+  for (const std::uint64_t seed : sweep.seeds_of(taker))
+    fields.expect(std::find(given.begin(), given.end(), seed) != given.end(), "configurations",
+                  fmt::format("'{}' has the seed {}, but '{}', which it starts from, does not",
+                              taker.name, seed, from));
   for (const SweepDataset& dataset : sweep.datasets)
     fields.expect(!taker.runs_over(dataset.name) || source->runs_over(dataset.name),
                   "configurations",
@@ -79,6 +84,7 @@ void check_configurations(config::Fields& fields, const SweepConfig& sweep) {
   for (std::size_t i = 0; i < sweep.configurations.size(); ++i) {
     const SweepConfiguration& configuration = sweep.configurations[i];
     expect_datasets(fields, "configurations", sweep, configuration.datasets);
+    expect_seeds_differ(fields, configuration.seeds);
     expect_source(fields, sweep, i, "from", configuration.from);
     expect_source(fields, sweep, i, "poses_from", configuration.poses_from);
     expect_source(fields, sweep, i, "depth_from", configuration.depth_from);
@@ -128,6 +134,7 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
   fields.value("set", configuration.set, "overrides of it, key.path: value");
   expect_no_seed(fields, "set", configuration.set);
   fields.value("datasets", configuration.datasets, "names of those it runs over; default: all");
+  fields.value("seeds", configuration.seeds, "default: the sweep's");
   fields.value("repeat", configuration.repeat, "repetitions; default: the sweep's")
       .range(1, 100000);
   fields.value("from", configuration.from, "configuration before it whose run it starts from");

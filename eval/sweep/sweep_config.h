@@ -27,6 +27,7 @@ struct SweepConfiguration {
   std::optional<std::filesystem::path> file;  ///< default: the defaults of the module
   Settings set;
   std::vector<std::string> datasets;  ///< names of those it runs over; empty: all
+  std::vector<std::uint64_t> seeds;   ///< empty: the sweep's
   std::optional<int> repeat;          ///< default: the sweep's
   /// Names of configurations before it: its run gets theirs of the same dataset, variant, point of
   /// the grid and seed, as --from, --poses-from and --depth-from. Empty: none.
@@ -70,6 +71,11 @@ struct SweepConfig {
       metrics;         ///< columns of sweep.md and its pictures; empty: the usual ones
   SlurmOptions slurm;  ///< for the launcher of that name
   std::vector<ExpectedFigure> expected;
+
+  [[nodiscard]] const std::vector<std::uint64_t>& seeds_of(
+      const SweepConfiguration& configuration) const {
+    return configuration.seeds.empty() ? seeds : configuration.seeds;
+  }
 };
 
 void describe(config::Fields& fields, SweepConfig& sweep);

@@ -81,6 +81,16 @@ TEST(SweepPlan, ARunThatStartsFromAnotherComesInALaterWave) {
   EXPECT_EQ(repeat[1], "3");
 }
 
+TEST(SweepPlan, AConfigurationMayHaveSeedsOfItsOwn) {
+  const TemporaryFolder folder;
+  const SweepPlan sweep = plan(folder,
+                               "datasets: [{path: recorded}]\n"
+                               "configurations: [{file: fast.yaml}, {name: b, seeds: [2]}]\n"
+                               "seeds: [1, 2]\n");
+  EXPECT_THAT(names(sweep.runs),
+              ElementsAre("recorded_fast_seed-1", "recorded_fast_seed-2", "recorded_b_seed-2"));
+}
+
 TEST(SweepPlan, MakesCommandLines) {
   const TemporaryFolder folder;
   const SweepPlan sweep =

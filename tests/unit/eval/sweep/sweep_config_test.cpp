@@ -71,6 +71,8 @@ TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
   EXPECT_THAT(error(a + ", {name: b, from: a}"),
               HasSubstr("'b' runs over recorded, but 'a', which it starts from, does not"));
   EXPECT_EQ(error(a + ", {name: b, from: a, datasets: [walls]}"), "");
+  EXPECT_THAT(error("{name: a, seeds: [1]}, {name: b, from: a, seeds: [2]}"),
+              HasSubstr("'b' has the seed 2, but 'a', which it starts from, does not"));
   EXPECT_THAT(error(a, "expected: [{configuration: c, metric: m, at_most: 1}]\n"),
               HasSubstr("'c' is no configuration"));
   EXPECT_THAT(error(a, "expected: [{configuration: a, metric: m}]\n"),
