@@ -41,6 +41,8 @@ std::string configuration_name(const RunRecord& record) {
       files.empty() ? "defaults" : std::filesystem::path(files.back()).stem().string();
   for (const std::string& setting : option_values(words, "--set"))
     if (!setting.starts_with("seed=")) name += " " + setting;
+  if (!record.poses_from.empty()) name += ", estimated poses";
+  if (!record.depth_from.empty()) name += ", estimated depth";
   return name;
 }
 

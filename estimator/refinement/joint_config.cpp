@@ -25,7 +25,11 @@ void describe_readings(config::Fields& fields, InertialRowsOptions& options) {
 }  // namespace
 
 void describe(config::Fields& fields, JointRefinementOptions& options) {
-  fields.value("knot_spacing_s", options.knot_spacing_s, "of the path and its correction")
+  fields
+      .value("smoothing_s", options.smoothing_s,
+             "spacing of the knots of a spline through the given path")
+      .range(1e-3, 10);
+  fields.value("knot_spacing_s", options.knot_spacing_s, "of the knots of the path's correction")
       .range(1e-3, 10);
   fields.value("window_s", options.window_s, "of the events in which a keyframe's edges are sought")
       .range(1e-3, 100);

@@ -37,8 +37,8 @@ std::vector<std::size_t> evenly(std::size_t count, int most) {
 }
 
 /// The path as a smooth spline, every millisecond.
-Trajectory smooth_path(const JointStart& start, double knot_spacing_s) {
-  const Spline spline = Spline::smooth(start.path, knot_spacing_s);
+Trajectory smooth_path(const JointStart& start, double smoothing_s) {
+  const Spline spline = Spline::smooth(start.path, smoothing_s);
   const double length_s = spline.end_s() - spline.start_s();
   const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kPathStep_s)));
   std::vector<StampedPose> poses;
@@ -275,7 +275,7 @@ JointResult refine_jointly(std::span<const Event> events, const JointStart& star
     if (progress && step > done) progress(step - done);
     done = std::max(done, step);
   };
-  result.path = smooth_path(start, options.knot_spacing_s);
+  result.path = smooth_path(start, options.smoothing_s);
   for (int i = 0; i < options.rounds; ++i) {
     const Trajectory before = result.path;
     std::vector<ViewWindow> windows;

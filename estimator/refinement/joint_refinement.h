@@ -16,7 +16,9 @@
 namespace saccade {
 
 struct JointRefinementOptions {
-  double knot_spacing_s = 0.05;  ///< of the path and of its correction
+  /// Of the knots of a spline through the given path: it keeps a hand's motion and loses jitter.
+  double smoothing_s = 0.025;
+  double knot_spacing_s = 0.05;  ///< of the path's correction, which is slower than the motion
   double window_s = 1.6;         ///< events that a keyframe's edges are sought in, around its view
   int edges = 600;               ///< of a keyframe, at most, evenly chosen
   int events_per_edge = 30;      ///< at most, evenly in time

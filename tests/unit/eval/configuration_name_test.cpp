@@ -23,6 +23,15 @@ TEST(ConfigurationName, HoldsWhatWasSetButNotTheSeed) {
             "best align.samples=9 last.use=false");
 }
 
+TEST(ConfigurationName, SaysWhatWasEstimated) {
+  RunRecord record;
+  record.command = "saccade run reconstruct --data walls -c best.yaml";
+  record.poses_from = "tracked";
+  EXPECT_EQ(configuration_name(record), "best, estimated poses");
+  record.depth_from = "deep";
+  EXPECT_EQ(configuration_name(record), "best, estimated poses, estimated depth");
+}
+
 TEST(ConfigurationName, WithoutAFileIsDefaults) { EXPECT_EQ(name_of("-o run"), "defaults"); }
 
 TEST(ConfigurationName, IsTheHashWhereNoCommandLineMadeTheRun) {
