@@ -31,7 +31,7 @@ struct JointRefinementOptions {
   double hold_px = 30;           ///< of the correction from none, as image motion
   /// By which the correction grows within a second, as image motion: what was tracked errs little
   /// from one knot to the next. It holds the path's ends, where few events do.
-  double walk_px = 1;
+  double walk_px = 0.5;
   double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
   int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most

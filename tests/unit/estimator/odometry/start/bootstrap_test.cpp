@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/imu_sample.h"
 #include "core/random.h"
 #include "tests/support/planar_world.h"
 
@@ -13,10 +14,10 @@ namespace {
 
 constexpr double kEnd_s = 0.2;
 
+const Eigen::Vector3d kRate(0.1, -0.25, 0.3);
+
 /// Sideways with a turn, in front of a corner.
-Rigid3 glide(double t_s) {
-  return {so3_exp({0.1 * t_s, -0.25 * t_s, 0.3 * t_s}), {1.2 * t_s, 0.3 * t_s, 0.1 * t_s}};
-}
+Rigid3 glide(double t_s) { return {so3_exp(t_s * kRate), {1.2 * t_s, 0.3 * t_s, 0.1 * t_s}}; }
 
 const testing::PlanarWorld& world() {
   static const testing::PlanarWorld world = testing::corner_world(160, 120);
@@ -78,6 +79,19 @@ TEST(Bootstrap, FindsThePathUpToScale) {
   const double way = start.path.poses().back().world_from_camera.translation().norm();
   EXPECT_NEAR(start.parallax_px, world().camera().fx * way / options.depth_m, 0.2)
       << "the typical depth is the unit";
+}
+
+TEST(Bootstrap, AGyroscopeTellsTheTurn) {
+  std::vector<ImuSample> readings(2);
+  readings[1].t_ns = ns_from_seconds(kEnd_s);
+  for (ImuSample& reading : readings) reading.angular_velocity = kRate;
+  const Gyroscope gyroscope(readings, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  const Events events = recorded(glide, kEnd_s);
+  const Bootstrap start = find_start(events, world().camera(), quick(), gyroscope);
+  ASSERT_EQ(start.status, Bootstrap::Status::kFound);
+  const Errors errors = errors_of(start.path, glide);
+  EXPECT_LT(errors.turn_rad, 2e-3) << "a tenth of what events alone are held to, and less";
+  EXPECT_LT(errors.position, 5e-3);
 }
 
 TEST(Bootstrap, WaitsUntilTheCameraMoves) {
