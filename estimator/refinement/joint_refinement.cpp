@@ -14,7 +14,6 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/marginal_information.h"
@@ -175,11 +174,7 @@ class Problem {
           nullptr, correction_.data(k));
       ordering_->AddElementToGroup(correction_.data(k), 1);
     }
-    const double walked_px = options_.walk_px * std::sqrt(options_.knot_spacing_s);
-    const Matrix6 per_walk = sigma_of_px(walked_px).cwiseInverse().asDiagonal();
-    for (std::size_t k = 1; k < correction_.knots().controls(); ++k)
-      problem_.AddResidualBlock(new NodeStepCost(per_walk), nullptr, correction_.data(k - 1),
-                                correction_.data(k));
+    hold_slope();
     const Twist sigma = sigma_of_px(options_.known_sigma_px);
     for (const StampedPose& pose : known) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
@@ -189,6 +184,22 @@ class Problem {
                                 correction_.data(place.first), correction_.data(place.first + 1),
                                 correction_.data(place.first + 2),
                                 correction_.data(place.first + 3));
+    }
+  }
+
+  /// c_(k-1) - 2 c_k + c_(k+1) of the correction's controls, whose slope walks.
+  void hold_slope() {
+    const Twist sigma = sigma_of_px(options_.bend_px * std::pow(options_.knot_spacing_s, 1.5));
+    const std::size_t last = correction_.knots().controls() - 4;
+    for (std::size_t k = 0; k <= last + 1; ++k) {
+      // Four controls at a time, the last four twice: three of them count.
+      const bool is_end = k > last;
+      const Eigen::Vector4d weight =
+          is_end ? Eigen::Vector4d(0, 1, -2, 1) : Eigen::Vector4d(1, -2, 1, 0);
+      const std::size_t first = is_end ? last : k;
+      problem_.AddResidualBlock(new KnownPoseCost(Twist::Zero(), weight, sigma), nullptr,
+                                correction_.data(first), correction_.data(first + 1),
+                                correction_.data(first + 2), correction_.data(first + 3));
     }
   }
 

@@ -29,9 +29,10 @@ struct JointRefinementOptions {
   double step_px = 0.5;          ///< of k from 0
   double offset_px = 2;          ///< of c from 0
   double hold_px = 30;           ///< of the correction from none, as image motion
-  /// By which the correction grows within a second, as image motion: what was tracked errs little
-  /// from one knot to the next. It holds the path's ends, where few events do.
-  double walk_px = 0.5;
+  /// By which the correction bends from one knot to the next, as image motion: its slope's random
+  /// walk over a second. What a tracker is off by grows evenly; it holds the path's ends, where few
+  /// events do.
+  double bend_px = 10;
   double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
   int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most
