@@ -42,11 +42,13 @@ SweepConfig load(const SweepVerbOptions& options) {
   return sweep;
 }
 
-void show(const SweepVerbOptions& options, const SweepSummary& summary) {
+void show(const SweepVerbOptions& options, const SweepSummary& summary, bool generates) {
+  const char* table = generates ? "manifest" : "sweep";
+  const char* page = generates ? "json" : "md";
   fmt::print("{}: {} jobs done, {} done before, {} failed\n", options.output.string(), summary.done,
              summary.skipped, summary.failed);
-  fmt::print("wrote {} and {}\n", (options.output / "sweep.md").string(),
-             (options.output / "sweep.csv").string());
+  fmt::print("wrote {} and {}\n", (options.output / table).string() + "." + page,
+             (options.output / table).string() + ".csv");
 }
 
 void sweep(const SweepVerbOptions& options) {
@@ -60,13 +62,14 @@ void sweep(const SweepVerbOptions& options) {
   }
   if (options.output.empty()) throw InputError("-o", "name the folder of the sweep: -o DIR");
   if (options.dry_run) {
-    fmt::print("{}", describe_sweep(config, options.output));
+    fmt::print("{}", config.generate ? estimate_generation(config, options.output, options.sweep)
+                                     : describe_sweep(config, options.output));
     return;
   }
   const SweepSummary summary = run_sweep(config, options.output, *launcher, options.sweep);
   if (summary.interrupted)
     throw std::runtime_error("interrupted; the same command goes on from here");
-  if (!options.quiet) show(options, summary);
+  if (!options.quiet) show(options, summary, config.generate.has_value());
   if (summary.failed > 0)
     throw std::runtime_error(fmt::format("{} {} failed; what they printed is in {}/NAME/log.txt",
                                          summary.failed, summary.failed == 1 ? "job" : "jobs",
@@ -92,7 +95,9 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
           "`timing: true` in the file demands it")
       ->type_name("N")
       ->check(whole_number(1, 4096));
-  verb.add_flag("--dry-run", options.dry_run, "Print the command lines and what would be skipped");
+  verb.add_flag("--dry-run", options.dry_run,
+                "Print the command lines and what would be skipped; of a sweep that generates, an "
+                "estimate of its events, bytes and time from a short pilot");
   verb.add_option("--set", options.overrides,
                   "Override one key of the sweep file, e.g. --set repeat=1 (repeatable)")
       ->type_name("KEY.PATH=VALUE")

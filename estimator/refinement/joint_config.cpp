@@ -40,8 +40,7 @@ void describe(config::Fields& fields, JointRefinementOptions& options) {
   fields.value("outlier", options.outlier, "deviations beyond which an event counts less")
       .range(0.1, 1e6);
   fields.value("hold_px", options.hold_px, "of the correction from none, as image motion").above(0);
-  fields.value("walk_px", options.walk_px, "by which it grows within a second: its random walk")
-      .above(0);
+  fields.value("bend_px", options.bend_px, "of its slope's random walk over a second").above(0);
   fields.value("known_sigma_px", options.known_sigma_px, "of the given poses of the start")
       .above(0);
   fields.value("rounds", options.rounds, "of finding edges, and adjusting them with the path")

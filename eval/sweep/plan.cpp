@@ -106,6 +106,7 @@ class Planner {
   }
 
   SweepPlan plan() {
+    if (sweep_.generate) add_generated(*sweep_.generate);
     for (const SweepDataset& dataset : sweep_.datasets)
       for (const auto& seed : seeds_or_default(dataset.seeds)) {
         SweepJob base = dataset_job(dataset, seed);
@@ -142,6 +143,30 @@ class Planner {
     base.made_by = plan_.simulations.size();
     plan_.simulations.push_back(std::move(simulation));
     return base;
+  }
+
+  /// Into the folder of the sweep: a thousand datasets that differ in everything are of no use to
+  /// other sweeps.
+  void add_generated(const GenerateConfig& generate) {
+    for (int i = 0; i < generate.count; ++i) {
+      const GeneratedDataset dataset =
+          generated_dataset(generate, generate.first + static_cast<std::uint64_t>(i));
+      SweepJob job;
+      job.point.dataset = dataset.name;
+      job.point.dataset_seed = dataset.seed;
+      job.name = file_name_part(dataset.name);
+      job.config = fixed_path(dataset.scene->simulate);
+      job.output = folder_ / "data" / job.name;
+      Words settings;
+      append(settings, dataset.settings);
+      append(settings, "--seed", std::to_string(dataset.seed));
+      job.settings = "simulate " + shell_line(settings);
+      Words call{"simulate", job.config.string(), "-o", job.output.string()};
+      append(call, "--threads", std::to_string(sweep_.threads));
+      append(call, settings);
+      job.commands = {call};
+      plan_.simulations.push_back(std::move(job));
+    }
   }
 
   void add_runs(const SweepJob& base) {

@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kTickMs = 100;
-
 /// Does something now and then: so seldom that it takes a small share of the time, however slow the
 /// file system or the controller of the cluster are.
 class Repeated {
@@ -60,9 +58,9 @@ bool SlurmLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
   SlurmJobs work(jobs, limits, options, *cluster_, events);
   if (const std::size_t taken = work.take_over(); taken > 0)
     show_notice(fmt::format("{} jobs that an earlier call submitted are taken over", taken));
-  Repeated collect(std::chrono::milliseconds(200), [&] { work.collect(); });
-  Repeated look(std::chrono::seconds(1), [&] { work.look(); });
-  Repeated submit(std::chrono::milliseconds(200), [&] { work.submit(); });
+  Repeated collect(pace_, [&] { work.collect(); });
+  Repeated look(5 * pace_, [&] { work.look(); });
+  Repeated submit(pace_, [&] { work.submit(); });
   while (!work.all_ended()) {
     collect.do_if_due();
     look.do_if_due();
@@ -73,7 +71,7 @@ bool SlurmLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
       work.cancel();
       return false;
     }
-    ::poll(nullptr, 0, kTickMs);
+    ::poll(nullptr, 0, static_cast<int>(pace_.count() / 2));
   }
   std::error_code ignored;
   fs::remove(options.folder, ignored);  // unless something is left in it

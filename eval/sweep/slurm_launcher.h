@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 
 #include "eval/sweep/launcher.h"
@@ -13,8 +14,10 @@ namespace saccade {
 /// times in all.
 class SlurmLauncher : public Launcher {
  public:
-  SlurmLauncher(LauncherOptions options, std::unique_ptr<SlurmCluster> cluster)
-      : options_(std::move(options)), cluster_(std::move(cluster)) {}
+  /// `pace`: between two looks for results; the queue is asked at a fifth of it.
+  SlurmLauncher(LauncherOptions options, std::unique_ptr<SlurmCluster> cluster,
+                std::chrono::milliseconds pace = std::chrono::milliseconds(200))
+      : options_(std::move(options)), cluster_(std::move(cluster)), pace_(pace) {}
 
   [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
                          const LaunchEvents& events) override;
@@ -24,6 +27,7 @@ class SlurmLauncher : public Launcher {
  private:
   LauncherOptions options_;
   std::unique_ptr<SlurmCluster> cluster_;
+  std::chrono::milliseconds pace_;
 };
 
 }  // namespace saccade

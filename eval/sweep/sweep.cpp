@@ -6,6 +6,7 @@
 #include <deque>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <set>
 #include <system_error>
 
@@ -16,6 +17,8 @@
 #include "core/shell.h"
 #include "eval/sweep/folder_lock.h"
 #include "eval/sweep/job_record.h"
+#include "eval/sweep/manifest.h"
+#include "eval/sweep/pilot.h"
 #include "eval/sweep/plan.h"
 #include "eval/sweep/results.h"
 
@@ -159,10 +162,14 @@ class Phase {
   std::vector<LaunchJob> launches_;  ///< of the due jobs
 };
 
-/// Each with all cores of its machine.
-LaunchLimits limits_of_simulations(const SweepOptions& options, const Launcher& launcher) {
-  const int usual = launcher.usual_at_once(0);
-  return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, 0};
+/// Each with all cores of its machine; the many of a sweep that generates are better off side by
+/// side.
+LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions& options,
+                                   const Launcher& launcher) {
+  const int threads = sweep.generate ? sweep.threads : 0;
+  const int usual = launcher.usual_at_once(threads);
+  if (sweep.generate && options.jobs > 0) return {options.jobs, threads};
+  return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, threads};
 }
 
 LaunchLimits limits_of_runs(const SweepConfig& sweep, const SweepOptions& options,
@@ -188,6 +195,13 @@ std::string preview(const SweepJob& job, const fs::path& folder, JobInputs& inpu
   return why_to_run(job, folder / "jobs" / job.name / "job.yaml", inputs.of(job));
 }
 
+/// A key that no simulation knows is better told now than by a thousand jobs.
+void check_some(const std::vector<SweepJob>& simulations) {
+  std::vector<const SweepJob*> jobs;
+  for (const SweepJob& job : simulations) jobs.push_back(&job);
+  check_configurations(jobs, *make_launcher("local"));
+}
+
 }  // namespace
 
 SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launcher& launcher,
@@ -198,10 +212,12 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   const FolderLock lock(folder);
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
+  if (sweep.generate) check_some(plan.simulations);
   SweepStates states{std::vector(plan.simulations.size(), JobState::kUnknown),
                      std::vector(plan.runs.size(), JobState::kUnknown)};
   Phase simulations(plan.simulations, 0, folder, states.simulations);
-  bool complete = simulations.run(launcher, limits_of_simulations(options, launcher), "simulating");
+  bool complete =
+      simulations.run(launcher, limits_of_simulations(sweep, options, launcher), "simulating");
   for (int wave = 0; complete && wave < plan.waves(); ++wave) {
     Phase runs(plan.runs, wave, folder, states.runs);
     runs.fail_without_inputs(states.simulations);
@@ -210,8 +226,29 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   }
   SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
                        count(states, JobState::kFailed), 0, !complete};
-  if (complete) summary.missed = write_sweep_results(sweep, plan, states, folder);
+  if (sweep.generate)
+    write_manifest(sweep, plan, states.simulations, folder);
+  else if (complete)
+    summary.missed = write_sweep_results(sweep, plan, states, folder);
   return summary;
+}
+
+std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder,
+                                const SweepOptions& options) {
+  check_folder(folder);
+  const SweepPlan plan = plan_sweep(sweep, folder);
+  JobInputs inputs;
+  std::vector<const SweepJob*> due;
+  for (const SweepJob& job : plan.simulations)
+    if (!preview(job, folder, inputs, {}).empty()) due.push_back(&job);
+  std::string text =
+      fmt::format("{} datasets: {} to simulate, {} done already\n", plan.simulations.size(),
+                  due.size(), plan.simulations.size() - due.size());
+  if (due.empty()) return text;
+  text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
+  const std::unique_ptr<Launcher> here = make_launcher("local");
+  const int at_once = limits_of_simulations(sweep, options, *here).at_once;
+  return text + pilot_text(run_pilot(due, *here), due.size(), at_once);
 }
 
 std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {

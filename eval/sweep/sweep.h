@@ -22,6 +22,8 @@ struct SweepSummary {
   bool interrupted = false;
 };
 
+/// Where the sweep generates: makes its datasets, each with `threads` threads, and a manifest
+/// (write_manifest), which is written when it was interrupted, too. Else:
 /// Makes all datasets, runs and scores that are not there yet, then writes the table over all of
 /// them (write_sweep_results). `folder` holds sweep.yaml, data/NAME, runs/NAME,
 /// jobs/NAME/{job.yaml, log.txt}. Simulations go first and one at a time, because each of them uses
@@ -30,6 +32,12 @@ struct SweepSummary {
 /// is at work in it.
 SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& folder,
                        Launcher& launcher, const SweepOptions& options = {});
+
+/// What a sweep that generates would still make: how many datasets, the first of their command
+/// lines, and what they take, from a pilot on this machine (run_pilot). Writes nothing but that.
+[[nodiscard]] std::string estimate_generation(const SweepConfig& sweep,
+                                              const std::filesystem::path& folder,
+                                              const SweepOptions& options = {});
 
 /// What run_sweep() would do: for each job its name, whether and why it would run, and its command
 /// lines. Writes nothing.

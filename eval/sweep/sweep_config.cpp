@@ -165,9 +165,10 @@ void describe(config::Fields& fields, SweepVariant& variant) {
 void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.value("title", sweep.title, "of sweep.md");
   fields.value("module", sweep.module, "what `saccade run` runs");
-  fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}")
-      .required()
-      .length(1, config::Rule::kAnyLength);
+  fields.section("generate", sweep.generate, "many datasets from ranges, in place of 'datasets'");
+  config::Rule datasets =
+      fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}");
+  if (!sweep.generate) datasets.required().length(1, config::Rule::kAnyLength);
   fields.list("configurations", sweep.configurations,
               "each {name, module, file, set, datasets, from}");
   fields.list("variants", sweep.variants, "each {name, set}");
@@ -175,7 +176,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.value("seeds", sweep.seeds, "of the runs");
   fields.value("repeat", sweep.repeat, "repetitions of each run, for its speed").range(1, 100000);
   fields.value("timing", sweep.timing, "one run at a time on one thread, for a speed to quote");
-  fields.value("threads", sweep.threads, "of one run").range(1, 4096);
+  fields.value("threads", sweep.threads, "of one run or generated dataset").range(1, 4096);
   fields.value("cache", sweep.cache, "simulate into the cache that all sweeps share");
   fields.value("start_s", sweep.start_s, "begin of the window; default: first event");
   fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
@@ -189,6 +190,10 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   expect_seeds_differ(fields, sweep.seeds);
   expect_no_seed(fields, "grid", sweep.grid);
   fields.expect(!sweep.timing || sweep.threads == 1, "threads", "must be 1 where 'timing' is true");
+  const bool generates = sweep.generate.has_value();
+  fields.expect(!generates || sweep.datasets.empty(), "generate", "takes the place of 'datasets'");
+  fields.expect(!generates || sweep.configurations.empty(), "generate",
+                "makes datasets and runs nothing over them; name them by 'path' in another sweep");
   const bool simulates_only = sweep.configurations.empty();
   fields.expect(!simulates_only || sweep.grid.empty(), "grid", "needs 'configurations' to vary");
   fields.expect(!simulates_only || sweep.variants.empty(), "variants",

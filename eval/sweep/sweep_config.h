@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/config/fields.h"
+#include "eval/sweep/generate.h"
 #include "eval/sweep/settings.h"
 #include "eval/sweep/slurm_options.h"
 
@@ -57,13 +58,14 @@ struct SweepConfig {
   std::string title;
   std::string module = "track";
   std::vector<SweepDataset> datasets;
+  std::optional<GenerateConfig> generate;  ///< in place of datasets; nothing runs over them
   std::vector<SweepConfiguration> configurations;
   std::vector<SweepVariant> variants;
   Grid grid;
   std::vector<std::uint64_t> seeds;  ///< of the runs; empty: the one that the configuration states
   int repeat = 1;                    ///< of each run, for its timing
   bool timing = false;               ///< one run at a time, with one thread
-  int threads = 1;                   ///< of one run
+  int threads = 1;                   ///< of one run, or of one dataset that is generated
   bool cache = true;                 ///< simulations go to the cache that all sweeps share
   std::optional<double> start_s;     ///< window of the runs, as --start-s
   std::optional<double> duration_s;

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -169,6 +171,13 @@ std::map<std::string, fs::file_time_type> finished_runs(const fs::path& out) {
   return finished;
 }
 
+/// Runs that were complete are the same files still.
+void expect_kept(const std::map<std::string, fs::file_time_type>& finished, const fs::path& out) {
+  const auto now = finished_runs(out);
+  for (const auto& [name, time] : finished)
+    EXPECT_TRUE(now.contains(name) && now.at(name) == time) << name << " was run again";
+}
+
 /// Kills a process with both texts in its command line, if there is one.
 bool kill_process(const std::string& first, const std::string& second) {
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
@@ -219,33 +228,39 @@ TEST_F(OnSlurm, TheTableIsThatOfThisMachineAlone) {
 }
 
 TEST_F(OnSlurm, NothingIsDoneTwiceWhateverIsKilled) {
+  constexpr int kKills = 8;
   const int jobs = jobs_of_sweep();
-  const fs::path out = folder_.path() / "out";
+  const fs::path out = folder_.path() / "out", log = folder_.path() / "log.txt";
   const std::vector<std::string> words{
       "sweep", write_sweep(jobs, "repeat: 20\n"), "-o", out, "--launcher", "slurm", "--jobs", "2"};
   std::mt19937 random(7);
-  std::map<std::string, fs::file_time_type> before;
-  int exit_code = -1;
-  for (int call = 0; exit_code != 0 && call < jobs; ++call) {
-    Background sweep(words, folder_.path() / "log.txt");
-    const std::size_t until = before.size() + 1 + random() % 4;
-    while (!sweep.is_over() && finished_runs(out).size() < until)
+  auto sweep = std::make_unique<Background>(words, log);
+  std::map<std::string, fs::file_time_type> finished;
+  int calls = 1;
+  for (int turn = 0; turn < kKills; ++turn) {
+    const std::size_t until =
+        finished.size() + 1 + random() % static_cast<unsigned>(std::max(1, jobs / kKills));
+    while (!sweep->is_over() && finished_runs(out).size() < until)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    before = finished_runs(out);
-    const std::string killed = kill_something(call, sweep, out);
-    exit_code = sweep.wait();
-    std::printf("call %d: %s killed when %zu runs were done; exit code %d, %zu done\n", call,
-                killed.c_str(), before.size(), exit_code, finished_runs(out).size());
-    const std::string failure = exit_code == 1 ? sweep.output() : "killed by signal 9";
-    EXPECT_THAT(failure, HasSubstr("killed by signal 9"));
-    const auto after = finished_runs(out);
-    for (const auto& [name, time] : before) {
-      ASSERT_TRUE(after.contains(name)) << name;
-      EXPECT_EQ(after.at(name), time) << name << " was run again";
-    }
+    expect_kept(finished, out);
+    finished = finished_runs(out);
+    const std::string killed = kill_something(turn, *sweep, out);
+    std::printf("%zu of %d runs done: %s killed\n", finished.size(), jobs, killed.c_str());
+    if (!sweep->is_over()) continue;
+    sweep = std::make_unique<Background>(words, log);
+    ++calls;
   }
-  EXPECT_EQ(exit_code, 0);
+  // A job that was killed has failed, and is done by the next call.
+  int exit_code = sweep->wait();
+  for (; exit_code == 1; ++calls) {
+    EXPECT_THAT(sweep->output(), HasSubstr("failed with killed by signal 9"));
+    sweep = std::make_unique<Background>(words, log);
+    exit_code = sweep->wait();
+  }
+  std::printf("%zu runs done by %d calls\n", finished_runs(out).size(), calls);
+  EXPECT_EQ(exit_code, 0) << sweep->output();
   EXPECT_EQ(finished_runs(out).size(), static_cast<std::size_t>(jobs));
+  expect_kept(finished, out);
 }
 
 TEST_F(OnSlurm, SaysWhyAJobFailed) {

@@ -158,6 +158,49 @@ TEST(Sweep, DatasetsAloneAreSimulated) {
   EXPECT_THAT(read_file(out + "/sweep.csv"), HasSubstr("walls-1,walls,1,ok,"));
 }
 
+/// Datasets of a fiftieth of a second with drawn thresholds and motions.
+std::string write_generation(const TemporaryFolder& folder) {
+  return folder.write(
+      "generate.yaml",
+      "generate:\n"
+      "  count: 3\n"
+      "  scenes: [{simulate: " +
+          shipped_config("simulation/walls.yaml") +
+          "}]\n"
+          "  set: {camera: {width: 120, height: 90, fx: 100, fy: 100, cx: 59.5, cy: 44.5}}\n"
+          "  draw:\n"
+          "    events.contrast_on: {uniform: [0.1, 0.3]}\n"
+          "    trajectory: {source: random_6dof, duration_s: 0.02, seed: {integer: [1, 999]}}\n");
+}
+
+TEST(Sweep, GeneratesDatasetsAndListsThem) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out", one = folder.path() / "one";
+  const std::string sweep = write_generation(folder);
+  EXPECT_THAT(saccade_ok({"sweep", sweep, "-o", out, "--dry-run"}),
+              AllOf(HasSubstr("3 datasets: 3 to simulate"), HasSubstr("saccade simulate "),
+                    HasSubstr("estimate for 3 datasets, 0.06")));
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_THAT(saccade_ok({"sweep", sweep, "-o", out}),
+              AllOf(HasSubstr("3 jobs done, 0 done before"), HasSubstr("manifest.json")));
+  const CsvColumns csv(fs::path(out) / "manifest.csv");
+  ASSERT_EQ(csv.rows(), 3U);
+  EXPECT_EQ(csv.text(1, csv.require("path")), "data/dataset-000001");
+  EXPECT_EQ(csv.text(1, csv.require("status")), "ok");
+  EXPECT_GT(csv.number(1, csv.require("events")), 0);
+  const double contrast = csv.number(1, csv.require("events.contrast_on"));
+  EXPECT_TRUE(contrast >= 0.1 && contrast <= 0.3) << contrast;
+  EXPECT_THAT(saccade_ok({"sweep", sweep, "-o", out}), HasSubstr("0 jobs done, 3 done before"));
+  // The second of them alone is the same dataset.
+  saccade_ok({"sweep", sweep, "-o", one, "--set", "generate.first=1", "--set", "generate.count=1"});
+  EXPECT_EQ(read_file(one + "/data/dataset-000001/dataset.yaml"),
+            read_file(out + "/data/dataset-000001/dataset.yaml"));
+  const CommandResult bad =
+      saccade({"sweep", sweep, "-o", one, "--set", "generate.draw={events.noise.hot.rate: 3}"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.output, HasSubstr("did you mean 'rate_hz'?"));
+}
+
 TEST(Sweep, RefusesWhatItCannotDo) {
   const TemporaryFolder folder;
   const std::string sweep = write_sweep(folder, "20");

@@ -118,7 +118,7 @@ class SlurmLaunching : public ::testing::Test {
       FakeCluster& to_;
     };
     SlurmLauncher launcher({"/bin/sh", folder_.path(), options_},
-                           std::make_unique<Forward>(cluster_));
+                           std::make_unique<Forward>(cluster_), std::chrono::milliseconds(10));
     const auto on_end = [&](std::size_t i, const LaunchResult& result) {
       EXPECT_FALSE(results_.contains(jobs_[i].name)) << "told twice";
       results_[jobs_[i].name] = result;
