@@ -6,10 +6,12 @@
 #include <string>
 
 #include "apps/common_options.h"
+#include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "core/io/dataset.h"
 #include "core/io/event_file.h"
+#include "core/io/import/public_sequence.h"
 
 namespace saccade {
 namespace {
@@ -18,6 +20,7 @@ struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
   std::string unit;  ///< empty: the coarsest that keeps every time
+  ImportWindow window;
   CommonOptions common;
 };
 
@@ -35,12 +38,36 @@ TimestampUnit unit_of(const ConvertOptions& options, const Events& events) {
   return microseconds ? TimestampUnit::kMicroseconds : TimestampUnit::kNanoseconds;
 }
 
+/// A sequence of a public benchmark into a dataset folder.
+void convert_sequence(const PublicSequence& sequence, const ConvertOptions& options) {
+  if (!options.unit.empty())
+    throw InputError("--unit", "belongs to event files; a dataset keeps the sequence's unit");
+  const std::uint64_t events = write_as_dataset(sequence, options.output, options.window);
+  if (options.common.quiet) return;
+  fmt::print("{}: {} events of a {} sequence\n", options.output.string(), events, sequence.layout);
+  if (sequence.camera_residual_px > 0)
+    fmt::print("the lens model was replaced by one that differs by at most {:.2g} px\n",
+               sequence.camera_residual_px);
+}
+
+bool names_event_file(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".h5" || ending == ".hdf5" || ending == ".txt";
+}
+
 void convert(const ConvertOptions& options) {
   options.common.apply();
-  const std::string ending = options.output.extension().string();
-  if (ending != ".h5" && ending != ".hdf5" && ending != ".txt")
+  if (!names_event_file(options.output)) {
+    if (std::filesystem::is_directory(options.input))
+      if (const auto sequence = open_public_sequence(options.input))
+        return convert_sequence(*sequence, options);
     throw InputError(options.output.string(),
-                     "cannot tell the format from the ending; valid endings: .h5, .hdf5, .txt");
+                     "cannot tell the format from the ending; valid endings: .h5, .hdf5, .txt; a "
+                     "folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the layout of "
+                     "the Event Camera Dataset is read as it is)");
+  }
+  if (options.window.start_s != 0 || options.window.duration_s)
+    throw InputError("--start-s", "belongs to the conversion of whole sequences");
   const Events events = load(options);
   const std::unique_ptr<EventWriter> writer =
       make_event_writer(options.output, unit_of(options, events));
@@ -53,14 +80,29 @@ void convert(const ConvertOptions& options) {
 
 void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* verb = command.add_subcommand("convert", "Convert events between text and HDF5");
-  verb->add_option("IN", options->input, "Event file (.txt, .h5) or dataset folder")->required();
-  verb->add_option("OUT", options->output, "Event file; its ending names the format")->required();
+  CLI::App* verb = command.add_subcommand(
+      "convert", "Convert events between text and HDF5, or a public sequence into a dataset");
+  verb->add_option("IN", options->input,
+                   "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or "
+                   "TUM-VIE")
+      ->required();
+  verb->add_option("OUT", options->output,
+                   "Event file, whose ending names the format; of a sequence a dataset folder")
+      ->required();
   verb->add_option("--unit", options->unit,
                    "Unit of the times in HDF5 (default: us, or ns where us would round)")
       ->check(CLI::IsMember({"us", "ns"}));
+  verb->add_option("--start-s", options->window.start_s,
+                   "Begin of the part of a sequence, from its first event")
+      ->check(number_between(0, 1e9));
+  verb->add_option("--duration-s", options->window.duration_s, "Length of that part")
+      ->check(positive_number());
   add_common_options(*verb, options->common);
-  verb->footer("Example:\n  saccade convert recording/events.txt events.h5");
+  verb->footer(
+      "Examples:\n"
+      "  saccade convert recording/events.txt events.h5\n"
+      "  saccade convert dsec/interlaken_00_c data/interlaken_00_c\n"
+      "  saccade convert tum_vie/mocap-desk2 data/mocap-desk2 --duration-s 10");
   verb->callback([options] { convert(*options); });
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "estimator/depth/depth_module.h"
+#include "estimator/external/external_module.h"
 #include "estimator/imu/stabilize_module.h"
 #include "estimator/mosaic/mosaic_module.h"
 #include "estimator/odometry/odometry_module.h"
@@ -30,6 +31,8 @@ constexpr Module kModules[] = {
      false, run_mosaic, print_mosaic_config},
     {"rotation", "angular velocity of the camera from events, gyroscope or both", false, false,
      false, run_rotation, print_rotation_config},
+    {"external", "a program of somebody else, which an adapter (-c) says how to run", false, false,
+     false, run_external, print_external_config},
 };
 
 }  // namespace

@@ -74,6 +74,7 @@ std::string to_json(const RunTiming& timing) {
   std::string json = "{\n";
   json += fmt::format("  \"wall_s\": {{\"median\": {}, \"min\": {}, \"max\": {}}},\n",
                       median(timing.wall_s), *low, *high);
+  if (!timing.cpu_s.empty()) json += fmt::format("  \"cpu_s\": {},\n", median(timing.cpu_s));
   json += fmt::format("  \"events\": {},\n", timing.events);
   json += rate("events_per_s", static_cast<double>(timing.events), timing.wall_s);
   if (timing.poses) {
@@ -90,7 +91,7 @@ std::string to_json(const RunTiming& timing) {
     json += fmt::format("{}\"{}\": {}", i == 0 ? "" : ", ", timing.stages_s[i].first,
                         timing.stages_s[i].second);
   json += fmt::format("}},\n  \"io_s\": {},\n  \"peak_memory_mb\": {}\n}}\n", timing.io_s,
-                      peak_memory_mb());
+                      timing.peak_memory_mb.value_or(peak_memory_mb()));
   return json;
 }
 
@@ -107,9 +108,11 @@ RunWriter::RunWriter(const RunRequest& request) : folder_(request.output, "run.y
 
 void RunWriter::finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
                        const RunRecord::Window& window, std::uint64_t seed,
-                       const std::string& config_yaml, const RunTiming& timing) {
+                       const std::string& config_yaml, const RunTiming& timing,
+                       const std::optional<RunRecord::External>& external) {
   RunRecord record;
   record.module = module;
+  record.external = external;
   record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
   record.dataset_sha256 = dataset_hash(dataset);
   if (request.poses_from)

@@ -24,6 +24,8 @@ struct RunTiming {
   std::vector<std::pair<std::string, double>> stages_s;  ///< of the last repetition
   std::vector<double> latency_ms;  ///< of every pose of the last repetition, where it has one
   std::optional<std::size_t> dropped_events;  ///< in the last repetition, where some may be
+  std::vector<double> cpu_s;  ///< of every repetition, where another program did the work
+  std::optional<double> peak_memory_mb;  ///< of that program; default: of this one
 };
 
 /// The JSON text: wall_s, events_per_s, poses_per_s and realtime_factor as median, min and max over
@@ -52,7 +54,7 @@ class RunWriter {
   /// Writes run.yaml and timing.json and gives the folder its name.
   void finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
               const RunRecord::Window& window, std::uint64_t seed, const std::string& config_yaml,
-              const RunTiming& timing);
+              const RunTiming& timing, const std::optional<RunRecord::External>& external = {});
 
  private:
   AtomicFolder folder_;

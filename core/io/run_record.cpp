@@ -11,6 +11,14 @@ void describe(config::Fields& fields, RunRecord::Window& window) {
   fields.expect(window.start_s <= window.end_s, "end_s", "must not be below start_s");
 }
 
+void describe(config::Fields& fields, RunRecord::External& external) {
+  fields.value("name", external.name, "of the method").required();
+  fields.value("version", external.version, "as it states it");
+  fields.value("status", external.status, "how it ended")
+      .one_of({"ok", "crashed", "timed out", "bad output"});
+  fields.value("reason", external.reason, "what went wrong");
+}
+
 void describe(config::Fields& fields, RunRecord& record) {
   fields.value("format_version", record.format_version, "layout of this folder")
       .required()
@@ -29,6 +37,8 @@ void describe(config::Fields& fields, RunRecord& record) {
     fields.value("depth_from", record.depth_from, "whose depth it took in place of the dataset's");
   if (fields.has("from") || (!fields.reading() && !record.from.empty()))
     fields.value("from", record.from, "run that was refined");
+  if (fields.has("external") || (!fields.reading() && record.external))
+    fields.section("external", record.external, "program of somebody else");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);
@@ -37,6 +47,11 @@ void describe(config::Fields& fields, RunRecord& record) {
   fields.value("machine", record.machine, "it ran on");
   if (fields.has("config") || (!fields.reading() && !record.config_yaml.empty()))
     fields.embed("config", record.config_yaml, "resolved configuration");
+}
+
+std::string RunRecord::problem() const {
+  if (!external || external->status == "ok") return {};
+  return external->status + ": " + external->reason;
 }
 
 RunRecord read_run_record(const std::filesystem::path& file) {

@@ -18,6 +18,15 @@ struct RunRecord {
     double end_s = 0;
   };
 
+  /// A program of somebody else that `saccade run external` ran.
+  struct External {
+    std::string name;     ///< of the method
+    std::string version;  ///< as the program states it; empty: not asked for
+    /// "ok", "crashed", "timed out" or "bad output"; without "ok" the run holds no poses.
+    std::string status = "ok";
+    std::string reason;  ///< what went wrong
+  };
+
   int format_version = 1;
   std::string module;                ///< "track", "depth", ...
   std::filesystem::path dataset;     ///< folder; in the file relative to run.yaml, or absolute
@@ -25,6 +34,7 @@ struct RunRecord {
   std::filesystem::path poses_from;  ///< run or trajectory file; empty: not in place of the truth's
   std::filesystem::path depth_from;  ///< depth run; empty: not in place of the dataset's
   std::filesystem::path from;        ///< run that was refined; empty: none
+  std::optional<External> external;  ///< nullopt: one of this program's modules
   std::optional<Window> window;      ///< nullopt: the whole dataset
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0: not stated
@@ -32,6 +42,9 @@ struct RunRecord {
   std::string command;       ///< command line; empty when the library was called
   std::string machine;       ///< processor and operating system
   std::string config_yaml;   ///< the resolved configuration, as text
+
+  /// What is to be said of a run that came to nothing, "timed out: ..."; empty where all is well.
+  [[nodiscard]] std::string problem() const;
 };
 
 void describe(config::Fields& fields, RunRecord& record);

@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "core/check.h"
+#include "core/child_process.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "eval/evaluate.h"
-#include "eval/sweep/child_process.h"
 
 namespace saccade {
 namespace {

@@ -82,17 +82,27 @@ Eigen::Matrix3d best_rotation(const PairMoments& m, Alignment alignment) {
   return rolled(rotation, svd.matrixU().col(0), m.mean_rotation);
 }
 
-}  // namespace
-
-Similarity align(std::span<const PosePair> pairs, Alignment alignment) {
-  if (alignment == Alignment::kNone || pairs.empty()) return {};
-  const PairMoments m = moments_of(pairs);
-  const Eigen::Matrix3d rotation = best_rotation(m, alignment);
+Similarity with_rotation(const PairMoments& m, const Eigen::Matrix3d& rotation,
+                         Alignment alignment) {
   Similarity result;
   if (alignment == Alignment::kSim3) result.scale = best_scale(m, rotation);
   result.rigid = {Eigen::Quaterniond(rotation),
                   m.mean_truth - result.scale * (rotation * m.mean_estimate)};
   return result;
+}
+
+}  // namespace
+
+Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment) {
+  if (alignment == Alignment::kNone || pairs.empty()) return {};
+  const PairMoments m = moments_of(pairs);
+  return with_rotation(m, nearest_rotation(m.covariance), alignment);
+}
+
+Similarity align(std::span<const PosePair> pairs, Alignment alignment) {
+  if (alignment == Alignment::kNone || pairs.empty()) return {};
+  const PairMoments m = moments_of(pairs);
+  return with_rotation(m, best_rotation(m, alignment), alignment);
 }
 
 }  // namespace saccade

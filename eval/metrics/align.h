@@ -32,13 +32,15 @@ struct Similarity {
 ///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
 /// with U D V^T the singular value decomposition of the covariance of truth and estimate,
 ///   R = U diag(1, 1, det U det V) V^T,  s = tr(R^T covariance) / variance(estimate) (1 for SE(3)).
-///
-/// Where the positions leave the rotation open, the orientations decide the rest by their chordal
-/// mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a standstill, the roll
-/// about the main direction on a path that is straight (one singular value) or bends by less than
-/// ten times what the positions are off by, so that they would say the roll to no better than a
-/// tenth radian. An estimate that stands still, or that makes the best scale zero, keeps scale 1.
-/// No pairs, or Alignment::kNone: the identity.
+/// What of R the positions leave open is arbitrary. An estimate that stands still, or that makes
+/// the best scale zero, keeps scale 1. No pairs, or Alignment::kNone: the identity.
+[[nodiscard]] Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment);
+
+/// The same for poses. Where the positions leave the rotation open, the orientations decide the
+/// rest by their chordal mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a
+/// standstill, the roll about the main direction on a path that is straight (one singular value) or
+/// bends by less than ten times what the positions are off by, so that they would say the roll to
+/// no better than a tenth radian.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
 
 }  // namespace saccade

@@ -29,22 +29,42 @@ ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>&
 
 void set_aligned(Metrics& metrics, const std::string& key, std::span<const PosePair> pairs,
                  Alignment alignment) {
-  const Similarity truth_from_estimate = align(pairs, alignment);
+  // The least positions can be off by; a turn about their line is no error of theirs.
+  const Similarity by_positions = align_positions(pairs, alignment);
+  const Similarity by_poses = align(pairs, alignment);
   std::vector<double> trans_m, rot_deg;
   for (const PosePair& pair : pairs) {
-    const Rigid3 aligned = truth_from_estimate * pair.estimated;
-    trans_m.push_back((aligned.translation() - pair.truth.translation()).norm());
-    rot_deg.push_back(kDegreesPerRadian * angle_between(aligned.rotation(), pair.truth.rotation()));
+    trans_m.push_back(
+        (by_positions * pair.estimated.translation() - pair.truth.translation()).norm());
+    rot_deg.push_back(kDegreesPerRadian *
+                      angle_between((by_poses * pair.estimated).rotation(), pair.truth.rotation()));
   }
   std::optional<double> ate, rot, scale;
   if (!pairs.empty()) {
     ate = statistics_of(trans_m).rmse;
     rot = statistics_of(rot_deg).rmse;
-    scale = truth_from_estimate.scale;
+    scale = by_positions.scale;
   }
   metrics.set(key + ".ate_rmse_m", ate);
   metrics.set(key + ".rot_rmse_deg", rot);
   metrics.set(key + ".scale", scale);
+}
+
+/// Of the protocol of Rebecq et al. (BMVC 2017): SE(3) by the poses of the first 5 s alone.
+std::optional<double> error_after_begin_percent(const TrajectoryScoreInput& input,
+                                                const ScoredTime& interval,
+                                                std::span<const PosePair> pairs, double path_m) {
+  constexpr double kBeginS = 5;
+  if (interval.duration() <= kBeginS || path_m <= 0) return std::nullopt;
+  std::size_t begin = 0;
+  for (const StampedPose& pose : input.estimate.poses())
+    if (pose.t_s >= interval.start_s && pose.t_s <= interval.start_s + kBeginS) ++begin;
+  if (begin == 0) return std::nullopt;
+  const Similarity truth_from_estimate = align_positions(pairs.first(begin), Alignment::kSe3);
+  double sum_m = 0;
+  for (const PosePair& pair : pairs)
+    sum_m += (truth_from_estimate * pair.estimated.translation() - pair.truth.translation()).norm();
+  return 100 * sum_m / static_cast<double>(pairs.size()) / path_m;
 }
 
 std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
@@ -105,14 +125,16 @@ Metrics score_trajectory(const TrajectoryScoreInput& input) {
 
   metrics.set("trajectory.poses", static_cast<double>(input.estimate.size()));
   metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
-  std::optional<double> covered, duration, path, lost, reported;
+  std::optional<double> covered, duration, path, lost, reported, after_begin;
   if (interval) {
     duration = interval->duration();
     covered = coverage(input.estimate, *interval);
     if (!samples.t_s.empty()) path = path_lengths(samples).back();
     lost = lost_s(series, *duration);
+    after_begin = error_after_begin_percent(input, *interval, pairs, path.value_or(0));
     if (input.reported) reported = reported_lost_s(*input.reported, *interval);
   }
+  metrics.set("trajectory.se3_5s.mean_percent", after_begin);
   metrics.set("trajectory.coverage", covered);
   metrics.set("trajectory.duration_s", duration);
   metrics.set("trajectory.path_length_m", path);

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "core/check.h"
+#include "core/child_process.h"
 #include "core/io/atomic_file.h"
-#include "eval/sweep/child_process.h"
 
 namespace saccade {
 namespace {

@@ -215,6 +215,7 @@ class Planner {
     job.name = names_.unique(run_name(job));
     job.output = folder_ / "runs" / job.name;
     if (configuration.file) job.config = fixed_path(*configuration.file);
+    if (configuration.adapter) job.config = fixed_path(*configuration.adapter);
     Words settings;
     append(settings, configuration.set);
     append(settings, variant.set);
@@ -225,15 +226,16 @@ class Planner {
     if (sweep_.duration_s) append(settings, "--duration-s", fmt::format("{}", *sweep_.duration_s));
     append(settings, "--repeat", std::to_string(configuration.repeat.value_or(sweep_.repeat)));
     append(settings, "--threads", std::to_string(sweep_.threads));
-    Words call{"run", job.point.module, "--data", job.dataset.string(), "-o", job.output.string()};
-    if (configuration.file) append(call, "-c", job.config.string());
+    const std::string called = configuration.adapter ? "external" : job.point.module;
+    Words call{"run", called, "--data", job.dataset.string(), "-o", job.output.string()};
+    if (!job.config.empty()) append(call, "-c", job.config.string());
     take_from(configuration.from, "--from", job, call);
     take_from(configuration.poses_from, "--poses-from", job, call);
     take_from(configuration.depth_from, "--depth-from", job, call);
     append(call, settings);
     job.commands = {call,
                     {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
-    job.settings = "run " + job.point.module + " " + shell_line(settings);
+    job.settings = "run " + called + " " + shell_line(settings);
   }
 
   [[nodiscard]] std::string run_name(const SweepJob& job) const {

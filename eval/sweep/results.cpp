@@ -39,6 +39,7 @@ SweepRow read_row(const SweepJob& job) {
     return row;
   }
   const RunRecord record = read_run_record(job.output / "run.yaml");
+  row.problem = record.problem();
   row.metrics = read_json_metrics(job.output / "metrics.json");
   row.machine = record.machine;
   row.tool_version = record.tool_version;
@@ -95,9 +96,11 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
 
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
   std::vector<double> values;
-  for (const SweepRow* row : group.rows)
+  for (const SweepRow* row : group.rows) {
+    if (!row->problem.empty()) continue;  // to crash fast is no speed
     if (const std::optional<double> value = speed_value(row->metrics, key))
       values.push_back(*value);
+  }
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();

@@ -27,6 +27,8 @@ struct SweepRow {
   Metrics metrics;      ///< of metrics.json, or facts of the dataset ("dataset.events")
   std::string machine;  ///< it ran on; empty where unknown
   std::string tool_version;
+  /// Why an external program has no poses; the job itself did what it should.
+  std::string problem = {};
 };
 
 /// Reads what the jobs that did not fail left behind.
@@ -40,7 +42,7 @@ struct SweepGroup {
 };
 [[nodiscard]] std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows);
 
-/// Over the rows of a group that have the metric.
+/// Over the rows of a group that have the metric and no problem.
 struct MetricSummary {
   double value = 0;  ///< mean, or median of a speed
   double low = 0;

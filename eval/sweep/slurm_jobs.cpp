@@ -9,9 +9,9 @@
 #include <set>
 #include <thread>
 
+#include "core/child_process.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
-#include "eval/sweep/child_process.h"
 
 namespace saccade {
 namespace {

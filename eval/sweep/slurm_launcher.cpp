@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "core/check.h"
+#include "core/child_process.h"
 #include "core/progress.h"
-#include "eval/sweep/child_process.h"
 #include "eval/sweep/slurm_jobs.h"
 
 namespace saccade {

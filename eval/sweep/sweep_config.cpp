@@ -131,7 +131,10 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
   fields.value("name", configuration.name, "in tables; default: the file's, after the module");
   fields.value("module", configuration.module, "what `saccade run` runs; default: the sweep's");
   fields.path("file", configuration.file, "of the module; ~ is its defaults").must_exist();
+  fields.path("adapter", configuration.adapter, "or of an external program").must_exist();
   fields.value("set", configuration.set, "overrides of it, key.path: value");
+  fields.expect(!configuration.file || !configuration.adapter, "file",
+                "must not be stated beside 'adapter'");
   expect_no_seed(fields, "set", configuration.set);
   fields.value("datasets", configuration.datasets, "names of those it runs over; default: all");
   fields.value("seeds", configuration.seeds, "default: the sweep's");
@@ -141,8 +144,10 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
   fields.value("poses_from", configuration.poses_from, "or takes the poses of");
   fields.value("depth_from", configuration.depth_from, "or the depth");
   if (!fields.reading() || !configuration.name.empty()) return;
-  configuration.name = configuration.file ? configuration.file->stem().string() : "defaults";
-  if (!configuration.module.empty())
+  configuration.name = "defaults";
+  if (configuration.file) configuration.name = configuration.file->stem();
+  if (configuration.adapter) configuration.name = configuration.adapter->stem();
+  if (!configuration.module.empty() && !configuration.adapter)
     configuration.name = configuration.module + " " + configuration.name;
 }
 
@@ -170,7 +175,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
       fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}");
   if (!sweep.generate) datasets.required().length(1, config::Rule::kAnyLength);
   fields.list("configurations", sweep.configurations,
-              "each {name, module, file, set, datasets, from}");
+              "each {name, module, file or adapter, set, datasets, from}");
   fields.list("variants", sweep.variants, "each {name, set}");
   fields.value("grid", sweep.grid, "key.path: list of values; every combination is run");
   fields.value("seeds", sweep.seeds, "of the runs");
@@ -194,6 +199,12 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.expect(!generates || sweep.datasets.empty(), "generate", "takes the place of 'datasets'");
   fields.expect(!generates || sweep.configurations.empty(), "generate",
                 "makes datasets and runs nothing over them; name them by 'path' in another sweep");
+  const bool has_adapters =
+      std::any_of(sweep.configurations.begin(), sweep.configurations.end(),
+                  [](const SweepConfiguration& c) { return c.adapter.has_value(); });
+  fields.expect(!has_adapters || (sweep.grid.empty() && sweep.variants.empty()), "configurations",
+                "must not hold an 'adapter' beside 'grid' or 'variants', which are keys of the "
+                "module");
   const bool simulates_only = sweep.configurations.empty();
   fields.expect(!simulates_only || sweep.grid.empty(), "grid", "needs 'configurations' to vary");
   fields.expect(!simulates_only || sweep.variants.empty(), "variants",

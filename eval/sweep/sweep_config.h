@@ -26,6 +26,9 @@ struct SweepConfiguration {
   std::string name;    ///< default: the file without its ending, after the module if it has its own
   std::string module;  ///< default: the sweep's
   std::optional<std::filesystem::path> file;  ///< default: the defaults of the module
+  /// In its place the adapter of an external program, which runs instead of the module and is
+  /// ranked in its table.
+  std::optional<std::filesystem::path> adapter;
   Settings set;
   std::vector<std::string> datasets;  ///< names of those it runs over; empty: all
   std::vector<std::uint64_t> seeds;   ///< empty: the sweep's

@@ -83,6 +83,8 @@ std::optional<double> best_of(const std::vector<const SweepGroup*>& groups,
   return info.better == Better::kLower ? *eligible.begin() : *eligible.rbegin();
 }
 
+bool has_failed(const SweepRow& row) { return row.failed || !row.problem.empty(); }
+
 std::string value_cell(const SweepGroup& group, const std::string& metric,
                        const std::optional<double>& best) {
   const std::optional<MetricSummary> summary = summarise(group, metric);
@@ -103,7 +105,7 @@ Row body(const Columns& columns, bool with_dataset, const SweepGroup& group,
   if (columns.variant) cells.push_back(cell_text(group.point.variant));
   for (const std::string& value : group.point.grid) cells.push_back(cell_text(value));
   const auto failed = std::count_if(group.rows.begin(), group.rows.end(),
-                                    [](const SweepRow* row) { return row->failed; });
+                                    [](const SweepRow* row) { return has_failed(*row); });
   if (columns.seeds)
     cells.push_back(failed == 0 ? std::to_string(group.rows.size())
                                 : fmt::format("{} ({} failed)", group.rows.size(), failed));
@@ -220,8 +222,16 @@ std::string how_it_was_made(const SweepResults& results) {
 std::string failures(const SweepResults& results) {
   std::string text;
   for (const SweepRow& row : results.rows)
-    if (row.failed) text += fmt::format("- {0}: jobs/{0}/log.txt\n", row.job->name);
+    if (has_failed(row))
+      text += fmt::format("- {0}: {1}\n", row.job->name,
+                          row.failed ? "jobs/" + row.job->name + "/log.txt" : row.problem);
   return text.empty() ? "" : "## Failed jobs\n" + text;
+}
+
+/// "ok", "failed", or "timed out" and the like of an external program.
+std::string status_of(const SweepRow& row) {
+  if (row.failed) return "failed";
+  return row.problem.empty() ? "ok" : row.problem.substr(0, row.problem.find(':'));
 }
 
 }  // namespace
@@ -244,7 +254,7 @@ CsvTable sweep_csv(const SweepResults& results) {
     if (runs) cells.insert(cells.end(), {point.module, point.configuration, point.variant});
     for (const std::string& value : point.grid) cells.emplace_back(value);
     if (runs) cells.push_back(seed_cell(point.seed));
-    cells.emplace_back(std::string(row.failed ? "failed" : "ok"));
+    cells.emplace_back(status_of(row));
     for (const std::string& key : metrics)
       cells.emplace_back(row.metrics.get(key).value_or(std::numeric_limits<double>::quiet_NaN()));
     csv.add(cells);

@@ -74,6 +74,27 @@ TEST(Align, OnANearlyStraightPathTheOrientationsDecideTheRoll) {
   EXPECT_NEAR(found.scale, kTurnedAndScaled.scale, 1e-3);
 }
 
+TEST(Align, PositionsAloneAreAlignedBetterThanWithTheirOrientations) {
+  // Two equal bends with errors across them: the orientations say another roll.
+  std::vector<PosePair> pairs;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 0.1 * i - 1;
+    pairs.push_back({Rigid3(about({1, 0, 0}, 0.2), {x, 0.01 * x * x, 0}),
+                     Rigid3(Quaterniond::Identity(), {x, 0.01 * x * x, 0.004 * std::sin(5 * x)})});
+  }
+  const auto squares = [&](const Similarity& s) {
+    double sum = 0;
+    for (const PosePair& pair : pairs)
+      sum += (s * pair.estimated.translation() - pair.truth.translation()).squaredNorm();
+    return sum;
+  };
+  EXPECT_LT(squares(align_positions(pairs, Alignment::kSe3)),
+            squares(align(pairs, Alignment::kSe3)));
+  expect_same(align_positions(transformed(kSpread, kTurnedAndScaled), Alignment::kSim3),
+              kTurnedAndScaled);
+  expect_same(align_positions({}, Alignment::kSim3), {});
+}
+
 TEST(Align, WhereThePathBendsThePositionsDecideAlone) {
   std::vector<PosePair> pairs = transformed(kSpread, kTurnedAndScaled);
   for (PosePair& pair : pairs)

@@ -91,6 +91,22 @@ TEST(SweepPlan, AConfigurationMayHaveSeedsOfItsOwn) {
               ElementsAre("recorded_fast_seed-1", "recorded_fast_seed-2", "recorded_b_seed-2"));
 }
 
+TEST(SweepPlan, AnAdapterRunsAnExternalProgram) {
+  const TemporaryFolder folder;
+  const SweepPlan sweep = plan(folder,
+                               "datasets: [{path: recorded}]\n"
+                               "configurations: [{file: fast.yaml}, {adapter: accurate.yaml}]\n");
+  ASSERT_THAT(sweep.runs, SizeIs(2));
+  EXPECT_EQ(sweep.runs[0].commands[0][1], "track");
+  const std::string root = folder.path();
+  EXPECT_EQ(sweep.runs[1].name, "recorded_accurate");
+  EXPECT_EQ(sweep.runs[1].point.module, "track") << "the table that it stands in";
+  EXPECT_THAT(sweep.runs[1].commands[0],
+              ElementsAre("run", "external", "--data", root + "/recorded", "-o",
+                          root + "/out/runs/recorded_accurate", "-c", root + "/accurate.yaml",
+                          "--repeat", "1", "--threads", "1"));
+}
+
 TEST(SweepPlan, MakesCommandLines) {
   const TemporaryFolder folder;
   const SweepPlan sweep =

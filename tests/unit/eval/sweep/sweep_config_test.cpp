@@ -70,7 +70,7 @@ TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
   EXPECT_THAT(error("{name: b, from: a}, " + a), HasSubstr("no configuration before it"));
   EXPECT_THAT(error(a + ", {name: b, from: a}"),
               HasSubstr("'b' runs over recorded, but 'a', which it starts from, does not"));
-  EXPECT_EQ(error(a + ", {name: b, from: a, datasets: [walls]}"), "");
+  EXPECT_EQ(error(a + ", {name: b, from: a, datasets: [walls]}"), "no error");
   EXPECT_THAT(error("{name: a, seeds: [1]}, {name: b, from: a, seeds: [2]}"),
               HasSubstr("'b' has the seed 2, but 'a', which it starts from, does not"));
   EXPECT_THAT(error(a, "expected: [{configuration: c, metric: m, at_most: 1}]\n"),
@@ -119,6 +119,10 @@ TEST(SweepConfig, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error("dataset: []\n"), HasSubstr("did you mean 'datasets'?"));
   EXPECT_THAT(error("seeds: [1]\n"), HasSubstr("missing required key 'datasets'"));
   EXPECT_THAT(error("datasets: []\n"), HasSubstr("sweep.yaml:1: datasets"));
+  EXPECT_THAT(error(data + "configurations: [{file: fast.yaml, adapter: fast.yaml}]\n"),
+              HasSubstr("beside 'adapter'"));
+  EXPECT_THAT(error(data + "configurations: [{adapter: fast.yaml}]\ngrid: {a.b: [1]}\n"),
+              HasSubstr("keys of the module"));
   EXPECT_THAT(error("datasets: [{}]\n"), HasSubstr("must be stated, or 'simulate'"));
   EXPECT_THAT(error("datasets: [{path: recorded, simulate: walls.yaml}]\n"), HasSubstr("not both"));
   EXPECT_THAT(error("datasets: [{path: recorded, seeds: [1]}]\n"), HasSubstr("belong to"));

@@ -58,6 +58,15 @@ TEST_F(SweepTables, CsvHoldsOneRowForEachJob) {
             "recorded_fast_b-2_seed-2,recorded,,track,fast,,2,2,failed,,,\n");
 }
 
+TEST_F(SweepTables, AnExternalProgramThatCrashedIsARowWithItsReason) {
+  fill("a.b: [1, 2]");
+  results_.rows[0].problem = "timed out: after 3 s";
+  EXPECT_THAT(sweep_csv(results_).text(), HasSubstr("fast,,1,1,timed out,20000"));
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("| 1 | 2 (1 failed) | 0.700 | **30,000** |"),
+                    HasSubstr("- recorded_fast_b-1_seed-1: timed out: after 3 s\n")));
+}
+
 TEST_F(SweepTables, MarkdownAveragesOverSeedsAndMarksTheBest) {
   fill("a.b: [1, 2]", "repeat: 5\ntiming: true\ntitle: Mine\n");
   EXPECT_THAT(sweep_markdown(results_, {}, {}),

@@ -1,15 +1,18 @@
-#include "eval/sweep/child_process.h"
+#include "core/child_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -31,8 +34,10 @@ void remember(int signal) { interrupted = signal; }
 /// What a child gets instead of what this program has.
 class SpawnSetup {
  public:
-  explicit SpawnSetup(const std::filesystem::path& log) {
+  SpawnSetup(const std::filesystem::path& log, const std::filesystem::path& working_folder) {
     posix_spawn_file_actions_init(&files);
+    if (!working_folder.empty())
+      posix_spawn_file_actions_addchdir_np(&files, working_folder.c_str());
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(),
                                      O_WRONLY | O_CREAT | O_APPEND, 0666);
@@ -61,9 +66,49 @@ void append(const std::filesystem::path& file, const std::string& text) {
   if (!stream) fail_to_write(file, errno);
 }
 
-ChildEnd end_of(int status) {
-  if (WIFEXITED(status)) return {WEXITSTATUS(status), 0};
-  return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+ChildEnd end_of(int status, const rusage& usage) {
+  ChildEnd end;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  end.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024;
+  return end;
+}
+
+/// The high-water mark of a process and of all below it; 0 where there is none (any more).
+double largest_memory_mb(pid_t pid) {
+  const std::string folder = fmt::format("/proc/{}", pid);
+  double largest = 0;
+  std::ifstream status(folder + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) largest = std::strtod(line.c_str() + 6, nullptr) / 1024;
+  std::ifstream children(fmt::format("{}/task/{}/children", folder, pid));
+  for (pid_t child = 0; children >> child;) largest = std::max(largest, largest_memory_mb(child));
+  return largest;
+}
+
+/// "NAME=value" of this program's environment with `changes` in it.
+std::vector<std::string> environment_with(const std::map<std::string, std::string>& changes) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    if (!changes.contains(text.substr(0, text.find('=')))) all.push_back(text);
+  }
+  for (const auto& [name, value] : changes) all.push_back(name + "=" + value);
+  return all;
+}
+
+/// As the system wants a list of texts; valid as long as they are.
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  pointers.reserve(texts.size() + 1);
+  for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
 }
 
 }  // namespace
@@ -74,16 +119,13 @@ std::string ChildEnd::text() const {
 }
 
 ChildProcess::ChildProcess(const std::filesystem::path& program,
-                           const std::vector<std::string>& words,
-                           const std::filesystem::path& log) {
+                           const std::vector<std::string>& words, const std::filesystem::path& log,
+                           const ChildSettings& settings) {
   append(log, "$ " + shell_line(words) + "\n");
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  const SpawnSetup setup(log);
-  const int error =
-      posix_spawn(&pid_, program.c_str(), &setup.files, &setup.attributes, argv.data(), environ);
+  const std::vector<std::string> environment = environment_with(settings.environment);
+  const SpawnSetup setup(log, settings.working_folder);
+  const int error = posix_spawnp(&pid_, program.c_str(), &setup.files, &setup.attributes,
+                                 pointers_to(words).data(), pointers_to(environment).data());
   if (error != 0)
     throw InputError(program.string(),
                      fmt::format("cannot be started: {}", std::generic_category().message(error)));
@@ -112,10 +154,13 @@ ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
 
 std::optional<ChildEnd> ChildProcess::poll_end() {
   int status = 0;
-  if (pid_ < 0 || waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
+  rusage usage{};
+  if (pid_ < 0 || wait4(pid_, &status, WNOHANG, &usage) != pid_) return std::nullopt;
   pid_ = -1;
-  return end_of(status);
+  return end_of(status, usage);
 }
+
+double ChildProcess::memory_mb() const { return pid_ > 0 ? largest_memory_mb(pid_) : 0; }
 
 void ChildProcess::stop() const {
   if (pid_ > 0) ::kill(-pid_, SIGTERM);

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,19 +14,31 @@ namespace saccade {
 struct ChildEnd {
   int exit_code = -1;  ///< -1: by a signal
   int signal = 0;
+  /// Of the process and those below it that it waited for.
+  double cpu_s = 0;
+  /// Of the largest one; at least what this program had taken when it started them, which the
+  /// system counts as theirs.
+  double peak_memory_mb = 0;
 
   /// "exit code 2" or "killed by signal 9 (Killed)".
   [[nodiscard]] std::string text() const;
+};
+
+/// What a process gets that differs from what this program has.
+struct ChildSettings {
+  std::filesystem::path working_folder;            ///< empty: this program's
+  std::map<std::string, std::string> environment;  ///< added to this program's, or in its place
 };
 
 /// A program that runs beside this one, in a process group of its own, so that Ctrl-C in the
 /// terminal reaches it through stop() alone. It reads nothing.
 class ChildProcess {
  public:
-  /// `words`: what the program is called and its arguments. What it prints is appended to `log`,
-  /// behind the words. Throws InputError when it cannot be started or the log not be written.
+  /// `program`: a file, or a name that is looked for in $PATH. `words`: what it is called and its
+  /// arguments. What it prints is appended to `log`, behind the words. Throws InputError when it
+  /// cannot be started or the log not be written.
   ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& words,
-               const std::filesystem::path& log);
+               const std::filesystem::path& log, const ChildSettings& settings = {});
   ~ChildProcess();  ///< kills what is still running
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
@@ -34,6 +47,9 @@ class ChildProcess {
   [[nodiscard]] int descriptor() const { return descriptor_; }
   /// How it ended; nullopt while it runs. An end is told once.
   [[nodiscard]] std::optional<ChildEnd> poll_end();
+  /// The most memory that it, or the largest process below it, has taken so far [MB]; of those that
+  /// run at this moment.
+  [[nodiscard]] double memory_mb() const;
   /// Asks it to end (SIGTERM).
   void stop() const;
 

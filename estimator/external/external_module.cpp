@@ -1,0 +1,167 @@
+#include "estimator/external/external_module.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <span>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/trajectory_file.h"
+#include "core/progress.h"
+#include "core/shell.h"
+#include "estimator/external/adapter_config.h"
+#include "estimator/external/command_template.h"
+#include "estimator/external/external_output.h"
+#include "estimator/external/external_process.h"
+#include "estimator/external/handover.h"
+#include "estimator/run_input.h"
+#include "estimator/run_writer.h"
+#include "estimator/stage_clock.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folders of a run while it is made.
+struct ExternalFolders {
+  fs::path run;
+  fs::path input;  ///< removed at the end
+  fs::path out;
+  fs::path log;
+
+  explicit ExternalFolders(const fs::path& folder)
+      : run(fs::absolute(folder)),
+        input(run / "input"),
+        out(run / "output"),
+        log(run / "log.txt") {}
+};
+
+ExternalCall call_of(const AdapterConfig& config, const std::string& command,
+                     const Placeholders& values, const ExternalFolders& folders) {
+  ExternalCall call;
+  call.words = filled_words(command, values);
+  for (const auto& [name, value] : config.environment)
+    call.environment[name] = filled(value, values);
+  call.working_folder = folders.out;
+  call.log = folders.log;
+  call.timeout_s = config.timeout_s;
+  return call;
+}
+
+/// The first line that the version command prints.
+std::string version_of(const AdapterConfig& config, const Placeholders& values,
+                       const ExternalFolders& folders) {
+  if (config.version_command.empty()) return {};
+  ExternalCall call = call_of(config, config.version_command, values, folders);
+  call.log = folders.run / "version.txt";
+  const ExternalEnd end = run_external_program(call);
+  std::ifstream file(call.log);
+  std::string words, version;
+  std::getline(file, words);
+  std::getline(file, version);
+  file.close();
+  fs::remove(call.log);
+  if (end.timed_out || end.end.exit_code != 0)
+    throw InputError("version_command", "failed: " + shell_line(call.words));
+  return version;
+}
+
+/// Runs the program `repeat` times or until it fails; its status.
+RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfig& config,
+                                    int repeat, RunTiming& timing) {
+  RunRecord::External external;
+  external.name = config.name;
+  Progress progress(config.name, static_cast<std::uint64_t>(repeat), "repetitions");
+  for (int i = 0; i < repeat; ++i) {
+    fs::remove_all(call.working_folder);
+    fs::create_directories(call.working_folder);
+    const ExternalEnd end = run_external_program(call);
+    timing.wall_s.push_back(end.wall_s);
+    timing.cpu_s.push_back(end.end.cpu_s);
+    timing.peak_memory_mb = std::max(timing.peak_memory_mb.value_or(0), end.peak_memory_mb);
+    progress.add(1);
+    if (end.timed_out) {
+      external.status = "timed out";
+      external.reason = fmt::format("after {:g} s", config.timeout_s);
+    } else if (end.end.exit_code != 0) {
+      external.status = "crashed";
+      external.reason = end.end.text();
+    }
+    if (external.status == "ok") continue;
+    if (const std::string words = last_words(call.log); !words.empty())
+      external.reason += "; log: " + words;
+    break;
+  }
+  return external;
+}
+
+/// Takes its poses into the run, or states why there are none.
+std::size_t take_output(const ExternalFolders& folders, const AdapterConfig& config,
+                        RunRecord::External& external) {
+  if (external.status == "ok") try {
+      return take_external_output(folders.out, config.output, folders.run);
+    } catch (const InputError& error) {
+      external.status = "bad output";
+      external.reason = error.what();
+      // The folder has its final name only later.
+      const std::string prefix = folders.out.string() + "/";
+      if (const auto at = external.reason.find(prefix); at != std::string::npos)
+        external.reason.erase(at, prefix.size());
+    }
+  write_tum_trajectory(folders.run / "trajectory.txt", {});
+  return 0;
+}
+
+/// Throws InputError where there is nothing to run.
+void check_program(const AdapterConfig& config) {
+  if (shell_words(config.command).empty())
+    throw InputError("command", "the adapter must state the program's command line (-c ADAPTER)");
+  for (const auto& [name, file] : config.files)
+    if (!fs::exists(file))
+      throw InputError("files." + name, "no such file '" + file.string() + "'");
+}
+
+}  // namespace
+
+RunSummary run_external(const RunRequest& request) {
+  const AdapterConfig config = read_config<AdapterConfig>(request);
+  RunWriter writer(request);
+  const ExternalFolders folders(writer.path());
+  RunTiming timing;
+  std::optional<StageClock> io(timing.io_s);
+  const Dataset dataset = Dataset::open(request.dataset);
+  check_program(config);
+  const Events events = load_events(request, dataset);
+  Handover handover = write_handover(folders.input, config, request, dataset, events);
+  for (const auto& [name, file] : config.files) handover.values[name] = fs::absolute(file);
+  handover.values["out"] = folders.out;
+  fs::create_directories(folders.out);
+  io.reset();
+  timing.events = events.size();
+  timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
+
+  const std::string version = version_of(config, handover.values, folders);
+  RunRecord::External external = run_repetitions(
+      call_of(config, config.command, handover.values, folders), config, request.repeat, timing);
+  external.version = version;
+  io.emplace(timing.io_s);
+  timing.poses = take_output(folders, config, external);
+  fs::remove_all(folders.input);
+  io.reset();
+  writer.finish("external", request, dataset, handover.window, config.seed, config::print(config),
+                timing, external);
+  RunSummary summary = summary_of(timing, fmt::format("{} poses", *timing.poses));
+  if (external.status != "ok")
+    show_notice(fmt::format("{} {}: {}", config.name, external.status, external.reason));
+  return summary;
+}
+
+std::string print_external_config(const config::Document& document) {
+  return config::print_documented(config::read<AdapterConfig>(document));
+}
+
+}  // namespace saccade

@@ -1,0 +1,42 @@
+#include "estimator/external/command_template.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/config/config.h"
+#include "tests/support/error_of.h"
+
+namespace saccade {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::error_of;
+using ::testing::HasSubstr;
+
+TEST(CommandTemplate, PutsValuesIntoWords) {
+  const Placeholders values{{"events", "/a folder/events.txt"}, {"out", "/out"}};
+  EXPECT_THAT(filled_words("run --in={events} '{out}/a b' {{x}}", values),
+              ElementsAre("run", "--in=/a folder/events.txt", "/out/a b", "{x}"));
+}
+
+TEST(CommandTemplate, KnowsWhatItHolds) {
+  EXPECT_TRUE(uses_placeholder("a {imu} b", "imu"));
+  EXPECT_FALSE(uses_placeholder("a {{imu}} {imux}", "imu"));
+}
+
+TEST(AdapterConfig, NamesTheWrongPlaceholder) {
+  const auto error = [](const std::string& yaml) {
+    return error_of([&] { return config::read<AdapterConfig>(config::parse(yaml, "t.yaml")); });
+  };
+  EXPECT_THAT(error("{command: 'x {event}'}"), HasSubstr("did you mean 'events'?"));
+  EXPECT_THAT(error("{command: 'x {nowhere_near}'}"), HasSubstr("valid placeholders: events"));
+  EXPECT_THAT(error("{command: 'x {events'}"), HasSubstr("{{ or }}"));
+  EXPECT_THAT(error("{command: 'x {groundtruth_start}'}"), HasSubstr("groundtruth_start_s"));
+  EXPECT_THAT(error("{environment: {A: '{programm}'}, files: {program: x.py}}"),
+              HasSubstr("did you mean 'program'?"));
+  EXPECT_THAT(error("{output: {trajectory: {columns: kitti}}}"), HasSubstr("tum"));
+  EXPECT_EQ(error("{command: '{program} {events} {out}', files: {program: x.py}}"), "no error");
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,117 @@
+#include "estimator/external/external_module.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "core/error.h"
+#include "core/io/dataset.h"
+#include "core/io/run_record.h"
+#include "core/io/trajectory_file.h"
+#include "core/progress.h"
+#include "tests/support/error_of.h"
+#include "tests/support/fake_run.h"
+#include "tests/support/shared_folder.h"
+#include "tests/unit/estimator/run_request.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::read_file;
+using ::testing::StartsWith;
+
+/// A small dataset, over which shell scripts are the estimators.
+class External : public testing::SharedFolder<External> {
+ public:
+  static void fill() { testing::write_corner_dataset(path("data"), "corner", 0.2, 60); }
+
+ protected:
+  /// Runs `sh -c SCRIPT`; what run.yaml says.
+  [[nodiscard]] RunRecord run(const std::string& script, const std::string& more = "") const {
+    set_progress_quiet(true);
+    fs::remove_all(output());
+    const RunRequest request =
+        testing::run_request(path("data"), output(), "command: sh -c \"" + script + "\"\n" + more);
+    static_cast<void>(run_external(request));
+    return read_run_record(output() / "run.yaml");
+  }
+  [[nodiscard]] static fs::path output() { return path("run"); }
+};
+
+TEST_F(External, TakesThePosesOfAProgram) {
+  const RunRecord record =
+      run("printf '0.1 1 2 3 0 0 0 1\\\\n0.2 1 2 4 0 0 0 1\\\\n' > {out}/trajectory.txt; "
+          "echo said",
+          "name: a script\nversion_command: echo v7\n");
+  ASSERT_TRUE(record.external);
+  EXPECT_EQ(record.module, "external");
+  EXPECT_EQ(record.external->name, "a script");
+  EXPECT_EQ(record.external->version, "v7");
+  EXPECT_EQ(record.external->status, "ok");
+  EXPECT_EQ(record.problem(), "");
+  const Trajectory poses = read_tum_trajectory(output() / "trajectory.txt");
+  EXPECT_EQ(poses.size(), 2U);
+  EXPECT_THAT(read_file(output() / "log.txt"), AllOf(StartsWith("$ sh -c"), HasSubstr("said")));
+  EXPECT_THAT(read_file(output() / "timing.json"),
+              AllOf(HasSubstr("\"cpu_s\""), HasSubstr("\"poses\": 2"), HasSubstr("peak_memory")));
+  EXPECT_FALSE(fs::exists(output() / "input"));
+}
+
+TEST_F(External, HandsOverTheStartOfTheTruthAndScoresWhatFollows) {
+  const RunRecord record =
+      run("cp {groundtruth_start} {out}/trajectory.txt; ls {input} > {out}/listing; "
+          "head -n 1 {events} > {out}/event; cp {calib} {out}",
+          "groundtruth_start_s: 0.05\ninput: {events: csv}\n");
+  const Trajectory truth = Dataset::open(path("data")).groundtruth();
+  const Trajectory start = read_tum_trajectory(output() / "trajectory.txt");
+  EXPECT_LT(start.size(), truth.size() / 2);
+  EXPECT_NEAR(start.end_s(), 0.05, 0.01);
+  ASSERT_TRUE(record.window);
+  EXPECT_EQ(record.window->start_s, start.end_s());
+  EXPECT_EQ(read_file(output() / "output/listing"),
+            "calib.txt\ncamera.yaml\nevents.csv\ngroundtruth.txt\n");
+  EXPECT_EQ(read_file(output() / "output/event"), "t_us,x,y,p\n");
+}
+
+TEST_F(External, WhatGoesWrongIsAStatusWithoutPoses) {
+  const auto problem = [&](const std::string& script, const std::string& more = "") {
+    const std::string text = run(script, more).problem();
+    EXPECT_EQ(read_file(output() / "trajectory.txt"), "");
+    return text;
+  };
+  EXPECT_EQ(problem("echo one; echo two; exit 3"), "crashed: exit code 3; log: one / two");
+  EXPECT_THAT(problem("kill -SEGV $$"), StartsWith("crashed: killed by signal 11"));
+  EXPECT_EQ(problem("sleep 60", "timeout_s: 0.1\n"), "timed out: after 0.1 s");
+  EXPECT_EQ(problem("true"),
+            "bad output: trajectory.txt: was not written, which output.trajectory.file promises");
+  EXPECT_THAT(problem("echo 0.1 nan 0 0 0 0 0 1 > {out}/trajectory.txt"),
+              AllOf(StartsWith("bad output: trajectory.txt:1"), HasSubstr("finite")));
+  EXPECT_THAT(problem("printf '0.2 0 0 0 0 0 0 1\\\\n0.1 0 0 0 0 0 0 1' > {out}/trajectory.txt"),
+              HasSubstr("times must increase"));
+}
+
+TEST_F(External, WhatCannotBeginIsAnError) {
+  const auto error = [&](const std::string& yaml) {
+    const RunRequest request = testing::run_request(path("data"), path("none"), yaml);
+    return error_of([&] { return run_external(request).poses; });
+  };
+  EXPECT_THAT(error("command: no_such_program {events}"), HasSubstr("cannot be started"));
+  EXPECT_THAT(error("{}"), HasSubstr("command"));
+  EXPECT_THAT(error("{command: ls, files: {a: nowhere.py}}"), HasSubstr("nowhere.py"));
+  EXPECT_THAT(error("{command: ls, version_command: 'false'}"), HasSubstr("version_command"));
+  EXPECT_FALSE(fs::exists(path("none")));
+}
+
+TEST_F(External, AProgramGetsItsEnvironment) {
+  const RunRecord record = run("echo $WORKERS; exit 1", "environment: {WORKERS: '{threads}'}\n");
+  EXPECT_EQ(record.problem(), "crashed: exit code 1; log: 1");
+}
+
+}  // namespace
+}  // namespace saccade
