@@ -12,12 +12,14 @@ if(CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-# saccade_embed_assets(<room> <folder> <header> <file>...): `header` declares saccade::assets::<file with _ for .>.
+# saccade_embed_assets(<room> <folder> <header> <file>...): `header` declares saccade::assets::<file with _ for .>. The files
+# lie in ${PROJECT_BINARY_DIR}/generated/<folder>, where a bundler wrote them.
 function(saccade_embed_assets room folder header)
   set(output ${PROJECT_BINARY_DIR}/generated/${folder}.cpp)
-  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/${folder}/ OUTPUT_VARIABLE files)
+  set(made ${PROJECT_BINARY_DIR}/generated/${folder})
+  list(TRANSFORM ARGN PREPEND ${made}/ OUTPUT_VARIABLE files)
   add_custom_command(OUTPUT ${output} DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/SaccadeAssets.cmake
-    COMMAND ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/${folder} -DHEADER=${header} "-DNAMES=${ARGN}" -DOUTPUT=${output}
+    COMMAND ${CMAKE_COMMAND} -DFOLDER=${made} -DHEADER=${header} "-DNAMES=${ARGN}" -DOUTPUT=${output}
             -P ${PROJECT_SOURCE_DIR}/cmake/SaccadeAssets.cmake
     COMMENT "Embedding ${folder}" VERBATIM)
   target_sources(saccade_${room} PRIVATE ${output})

@@ -73,19 +73,20 @@ std::string key_numbers(const RunData& data) {
 std::string views(const RunData& data) {
   if (data.samples.t_s.empty()) return "";
   const auto plot = [&](const char* name, const char* title) {
-    return fmt::format("<div><h4>{}</h4><div class=\"plot\" data-plot=\"{}/{}\"></div></div>\n",
-                       title, data.id, name);
+    return fmt::format("<div><h4>{}</h4><div data-plot=\"{}/{}\"></div></div>\n", title, data.id,
+                       name);
   };
   std::string html = fmt::format(
       "<div class=\"grid\"><figure class=\"space3d\" data-space=\"{}\">"
-      "<canvas role=\"img\" aria-label=\"Trajectory in 3-D\"></canvas>"
+      "<canvas role=\"img\" tabindex=\"0\" aria-label=\"Trajectory in 3-D\"></canvas>"
       "<label><output></output><input type=\"range\" min=\"0\" max=\"6\" value=\"0\" "
       "aria-label=\"Exaggerate the deviation\"></label>"
-      "<figcaption>Drag to turn.<i class=\"swatch\" style=\"background:var(--truth)\"></i>truth"
+      "<label hidden><input type=\"checkbox\">map</label>"
+      "<figcaption>Drag to turn, click and scroll to zoom."
+      "<i class=\"swatch\" style=\"background:var(--truth)\"></i>truth"
       "<i class=\"swatch\" style=\"background:var(--estimate)\"></i>estimate. The slider "
-      "multiplies the "
-      "deviation from the truth; dots mark the starts.</figcaption></figure>\n<div "
-      "class=\"plots\">",
+      "multiplies the deviation from the truth; dots mark the starts.</figcaption></figure>\n"
+      "<div class=\"plots\">",
       data.id);
   if (!data.errors.dt_rel_percent.empty())
     html += plot("dt_rel", "&Delta;t<sub>rel</sub> [% of the mean scene depth]");

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "eval/metrics/statistics.h"
+#include "eval/report/html.h"
 
 namespace saccade {
 namespace {
@@ -14,6 +16,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMaxCurvePoints = 1600;
 constexpr std::size_t kMaxPathPoints = 800;
+constexpr std::size_t kMaxCloudPoints = 4000;
+constexpr double kCloudSteps = 65535;
 
 /// Five significant digits are more than a screen shows.
 double rounded(double value) {
@@ -43,6 +47,35 @@ std::vector<std::size_t> peaks(std::span<const double> values) {
   return kept;
 }
 
+/// At 0, 1, ..., 100 %: the nearest of the values.
+Json percentiles(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  Json quantiles = Json::array();
+  for (std::size_t percent = 0; percent <= 100 && !sorted.empty(); ++percent)
+    quantiles.push_back(rounded(sorted[(percent * (sorted.size() - 1) + 50) / 100]));
+  return quantiles;
+}
+
+/// At most kMaxCloudPoints of the points in 16-bit steps, little-endian, between their extremes.
+Json cloud(std::span<const Eigen::Vector3f> points) {
+  const std::size_t stride = (points.size() + kMaxCloudPoints - 1) / kMaxCloudPoints;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& point : points) box.extend(point.cast<double>());
+  const Eigen::Vector3d unit = (box.sizes() / kCloudSteps).cwiseMax(1e-9);
+  std::string bytes;
+  for (std::size_t i = 0; i < points.size(); i += stride)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double steps = (points[i].cast<double>() - box.min())[axis] / unit[axis];
+      const auto whole = static_cast<unsigned>(std::lround(steps));
+      bytes += static_cast<char>(whole & 0xFF);
+      bytes += static_cast<char>(whole >> 8);
+    }
+  return {{"origin", {box.min().x(), box.min().y(), box.min().z()}},
+          {"unit", {unit.x(), unit.y(), unit.z()}},
+          {"points", base64(bytes)}};
+}
+
 Json series(const char* label, const char* unit, std::span<const double> t_s,
             std::span<const double> values) {
   Json t = Json::array(), v = Json::array();
@@ -55,8 +88,13 @@ Json series(const char* label, const char* unit, std::span<const double> t_s,
   else
     for (const std::size_t i : peaks(values)) keep(i);
   const Statistics s = statistics_of(values);
-  return {{"label", label},          {"unit", unit},         {"t", t}, {"v", v},
-          {"mean", rounded(s.mean)}, {"max", rounded(s.max)}};
+  return {{"label", label},
+          {"unit", unit},
+          {"t", t},
+          {"v", v},
+          {"mean", rounded(s.mean)},
+          {"max", rounded(s.max)},
+          {"quantiles", percentiles(values)}};
 }
 
 Json position(const Rigid3& pose) {
@@ -85,7 +123,11 @@ Json gaps(const RunData& data) {
 
 Json run_json(const RunData& data) {
   const ScoredSamples& s = data.samples;
-  Json run{{"id", data.id}, {"span", {to_tenth_ms(s.t_s.front()), to_tenth_ms(s.t_s.back())}}};
+  Json run{{"id", data.id},
+           {"name", data.run.name()},
+           {"dataset", data.dataset},
+           {"span", {to_tenth_ms(s.t_s.front()), to_tenth_ms(s.t_s.back())}}};
+  if (!data.map.empty()) run["cloud"] = cloud(data.map);
   const std::size_t stride = (s.t_s.size() + kMaxPathPoints - 1) / kMaxPathPoints;
   for (const char* name : {"times", "truth", "estimate"}) run[name] = Json::array();
   for (std::size_t i = 0; i < s.t_s.size(); i += stride) {

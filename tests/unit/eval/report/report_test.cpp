@@ -1,5 +1,6 @@
 #include "eval/report/report.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 #include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
 #include "eval/report/run_series.h"
+#include "tests/support/html_page.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {
@@ -36,7 +38,8 @@ TEST_F(Report, NeedsNothingBesideIt) {
   const std::string page = written({run()});
   EXPECT_EQ(count(page, "src=\""), count(page, "src=\"data:image/png;base64,"));
   EXPECT_GT(count(page, "src=\""), 3U);
-  for (const char* outside : {"<link", "@import", "url(", "src=\"http", "href=\"http", "fetch("})
+  EXPECT_THAT(testing::external_references(page), ::testing::IsEmpty());
+  for (const char* outside : {"<link", "@import", "fetch("})
     EXPECT_EQ(count(page, outside), 0U) << outside;
   EXPECT_EQ(count(page, "{{"), 0U);
 }
@@ -122,6 +125,9 @@ TEST_F(Report, LongSeriesKeepTheirPeaks) {
   const auto& dt = json["runs"][0]["series"]["dt"];
   EXPECT_LE(dt["v"].size(), 1700U);
   EXPECT_EQ(dt["max"], 7000);
+  EXPECT_EQ(dt["quantiles"].size(), 101U);
+  EXPECT_EQ(dt["quantiles"][99], 1);
+  EXPECT_EQ(dt["quantiles"][100], 7000);
   const std::vector<double> values = dt["v"];
   const auto peak = std::find(values.begin(), values.end(), 7000.0);
   ASSERT_NE(peak, values.end());

@@ -1,0 +1,13 @@
+import "uplot/dist/uPlot.min.css";
+import "../style.css";
+import { drawAll } from "./lazy.js";
+import { showRun } from "./run_views.js";
+import { startTheme } from "./theme.js";
+
+const data = JSON.parse(document.getElementById("report-data").textContent);
+
+// Before the theme's own listener: what is drawn only now takes the light colours at once with the rest.
+addEventListener("beforeprint", () => drawAll());
+startTheme();
+data.runs.forEach(showRun);
+document.documentElement.dataset.ready = "yes";

@@ -1,0 +1,116 @@
+// usage: report_page.mjs CHROMIUM PAGE.html [PICTURES]
+// Opens a page of `saccade report` in a real browser and fails where it is not what docs/report.md promises. With a folder
+// for pictures, what was seen is left there: light, dark, on a phone and on paper.
+import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { Chromium } from "./chromium.mjs";
+
+const [program, page, pictures] = process.argv.slice(2);
+const errors = [], requests = [];
+
+function record(method, params) {
+  if (method === "Runtime.exceptionThrown") errors.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
+  if (method === "Runtime.consoleAPICalled" && ["error", "warning"].includes(params.type)) errors.push(JSON.stringify(params.args));
+  if (method === "Log.entryAdded" && params.entry.level === "error") errors.push(params.entry.text);
+  if (method === "Network.requestWillBeSent") requests.push(params.request.url);
+}
+
+async function keepPicture(browser, name, whole) {
+  if (!pictures) return;
+  const { data } = await browser.send("Page.captureScreenshot", { captureBeyondViewport: whole });
+  writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
+}
+
+// What a canvas shows, in as many colours as it has.
+const kCanvasColours = `(canvas) => {
+  const copy = document.createElement("canvas");
+  Object.assign(copy, { width: canvas.width, height: canvas.height });
+  const g = copy.getContext("2d", { willReadFrequently: true });
+  g.drawImage(canvas, 0, 0);
+  return new Set(new Uint32Array(g.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
+}`;
+
+async function checkOpening(browser) {
+  await browser.open(pathToFileURL(page).href);
+  assert.equal(await browser.evaluate("document.documentElement.dataset.ready"), "yes", "the script did not end");
+  const ms = await browser.evaluate("performance.getEntriesByType('navigation')[0].loadEventEnd");
+  console.log(`opened in ${Math.round(ms)} ms`);
+}
+
+async function checkPaper(browser) {
+  const { data } = await browser.send("Page.printToPDF", { printBackground: true, preferCSSPageSize: true });
+  if (pictures) writeFileSync(join(pictures, "paper.pdf"), Buffer.from(data, "base64"));
+}
+
+// Printing has drawn all; what is hidden then has been drawn nowhere and need not be.
+async function checkDrawings(browser) {
+  const drawings = await browser.evaluate(`[...document.querySelectorAll("[data-plot], [data-space]")].filter((box) => box.offsetParent)
+    .map((box) => ({ name: box.dataset.plot ?? box.dataset.space, drawn: box.dataset.drawn,
+                     colours: (${kCanvasColours})(box.querySelector("canvas")) }))`);
+  assert.ok(drawings.length > 0, "the page has no charts");
+  for (const { name, drawn, colours } of drawings) assert.ok(drawn === "yes" && colours > 3, `${name} is not drawn (${drawn}, ${colours} colours)`);
+  console.log(`${drawings.length} drawings`);
+}
+
+// Every button of a kind is pressed; the files it offers are kept from being saved and looked into.
+async function checkDownloads(browser) {
+  const files = await browser.evaluate(`(async () => {
+    const blobs = [];
+    const real = URL.createObjectURL;
+    URL.createObjectURL = (blob) => (blobs.push(blob), real(blob));
+    HTMLAnchorElement.prototype.click = () => {};
+    document.querySelectorAll(".tools button").forEach((button) => /^(SVG|CSV|LaTeX)$/.test(button.textContent) && button.offsetParent && button.click());
+    URL.createObjectURL = real;
+    delete HTMLAnchorElement.prototype.click;
+    return Promise.all(blobs.map(async (blob) => {
+      const text = await blob.text();
+      const broken = blob.type.includes("svg") && new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror");
+      return { type: blob.type, size: text.length, broken: Boolean(broken) || /NaN|undefined/.test(text) };
+    }));
+  })()`);
+  assert.ok(files.length > 0, "nothing can be downloaded");
+  for (const file of files) assert.ok(file.size > 40 && !file.broken, `a file of ${file.type} is broken`);
+  console.log(`${files.length} files offered`);
+}
+
+async function checkPhone(browser) {
+  await browser.resize(360, 740);
+  const wide = await browser.evaluate(`[document.documentElement.scrollWidth, [...document.querySelectorAll("body *")]
+    .filter((e) => e.offsetParent && !e.closest(".scroll, pre") && e.getBoundingClientRect().right > 361).map((e) => e.outerHTML.slice(0, 80))]`);
+  assert.ok(wide[0] <= 360, `on a phone the page is ${wide[0]} px wide: ${wide[1].slice(0, 3)}`);
+  await keepPicture(browser, "phone", true);
+  await browser.resize(1280, 900);
+}
+
+async function checkColours(browser) {
+  const ground = () => browser.evaluate("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)[0]");
+  assert.ok(await ground() > 200, "light is not light");
+  await keepPicture(browser, "light", true);
+  await browser.colourScheme("dark");
+  assert.ok(await ground() < 60, "dark is not dark");
+  await keepPicture(browser, "dark", true);
+  await browser.evaluate("document.getElementById('theme').click()");
+  assert.ok(await ground() > 200, "the switch does nothing");
+  await browser.colourScheme("light");
+}
+
+const browser = new Chromium(program);
+try {
+  browser.listen(record);
+  await browser.newPage();
+  await browser.resize(1280, 900);
+  await browser.colourScheme("light");
+  await checkOpening(browser);
+  await keepPicture(browser, "top", false);
+  await checkPaper(browser);
+  await checkDrawings(browser);
+  await checkDownloads(browser);
+  await checkColours(browser);
+  await checkPhone(browser);
+  assert.deepEqual(errors, [], "the console has errors");
+  assert.deepEqual(requests.filter((url) => !/^(file|data|blob|about):/.test(url)), [], "the page asks the network");
+} finally {
+  await browser.close();
+}
