@@ -32,7 +32,7 @@ struct JointRefinementOptions {
   /// By which the correction bends from one knot to the next, as image motion: its slope's random
   /// walk over a second. What a tracker is off by grows evenly; it holds the path's ends, where few
   /// events do.
-  double bend_px = 10;
+  double bend_px = 30;
   double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
   int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most

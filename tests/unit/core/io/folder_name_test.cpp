@@ -13,6 +13,8 @@ TEST(FolderName, IsTheLastPartHoweverItIsWritten) {
   EXPECT_EQ(folder_name("."), std::filesystem::current_path().filename().string());
 }
 
+TEST(FolderName, OfNothingIsNothing) { EXPECT_EQ(folder_name(""), ""); }
+
 TEST(FolderName, ANamedFolderIsAbsolute) {
   EXPECT_EQ(named_folder("walls/"), std::filesystem::current_path() / "walls");
 }
