@@ -6,8 +6,8 @@
 namespace saccade {
 
 /// `folder`, absolute and without a slash or "/." at its end, so that its parent_path() and
-/// filename() are what a person would call so. "." is the
-/// working directory, "" stays what it is.
+/// filename() are what a person would call so. "." is the working directory, "" stays
+/// what it is.
 [[nodiscard]] inline std::filesystem::path named_folder(const std::filesystem::path& folder) {
   if (folder.empty()) return {};
   const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
