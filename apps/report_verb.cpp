@@ -33,6 +33,12 @@ void add_report_verb(CLI::App& command) {
   verb->add_option("RUN", options->runs, "Run folders, in the order of the page")->required();
   verb->add_option("-o,--output", options->output, "The page")->required()->type_name("FILE.html");
   verb->add_option("--title", options->report.title, "Title of the page")->capture_default_str();
+  verb->add_option("--published", options->report.published,
+                   "Scores of other methods for the leaderboard, such as reports/published.yaml")
+      ->type_name("FILE.yaml");
+  verb->add_option("--export", options->report.exports,
+                   "Folder for the leaderboard's tables as LaTeX and CSV")
+      ->type_name("DIR");
   add_common_options(*verb, options->common);
   verb->footer("Example:\n  saccade report runs/walls runs/planes -o report.html");
   verb->callback([options] { report(*options); });

@@ -9,6 +9,7 @@
 #include "core/version.h"
 #include "eval/report/assets.h"
 #include "eval/report/html.h"
+#include "eval/report/leaderboard_section.h"
 #include "eval/report/run_data.h"
 #include "eval/report/run_section.h"
 #include "eval/report/run_series.h"
@@ -46,7 +47,8 @@ std::string sections(const std::vector<RunData>& runs) {
 /// Links to the tables that are there and to every run.
 std::string contents(const std::vector<RunData>& runs, const std::string& tables) {
   std::string html;
-  for (const auto& [id, name] : {std::pair{"accuracy", "Accuracy"},
+  for (const auto& [id, name] : {std::pair{"leaderboard", "Leaderboard"},
+                                 {"accuracy", "Accuracy"},
                                  {"depth", "Depth"},
                                  {"datasets", "Datasets"},
                                  {"speed", "Speed"}})
@@ -66,8 +68,10 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   for (const std::filesystem::path& folder : run_folders)
     runs.push_back(gather_run(folder, runs.size() + 1));
   compare_with_refined(runs);
-  const std::string tables =
-      accuracy_table(runs) + depth_table(runs) + dataset_table(runs) + speed_table(runs);
+  const std::vector<ReportTable> boards = leaderboard_tables(runs, options.published);
+  const std::string tables = (runs.size() > 1 ? leaderboard_section(boards) : "") +
+                             accuracy_table(runs) + depth_table(runs) + dataset_table(runs) +
+                             speed_table(runs);
   const std::string page = fill_page(
       assets::page_html,
       {{"title", escape_html(options.title)},
@@ -84,6 +88,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
         fmt::format("Written by saccade {} ({}). Definitions of all scores: docs/metrics.md.",
                     version(), git_commit())}});
   write_atomically(output, page);
+  if (!options.exports.empty()) export_tables(boards, options.exports);
 }
 
 }  // namespace saccade

@@ -1,0 +1,110 @@
+#include "eval/report/leaderboard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace saccade {
+namespace {
+
+constexpr const char* kError = "trajectory.dt_rel_percent.mean";
+
+LeaderboardEntry scored(const std::string& method, const std::string& sequence, double value,
+                        const char* key = kError) {
+  LeaderboardEntry entry{method, sequence, {}, "", ""};
+  entry.metrics.set(key, value);
+  return entry;
+}
+
+std::vector<std::string> methods_of(const Leaderboard& board) {
+  std::vector<std::string> names;
+  for (const LeaderboardRow& row : board.rows) names.push_back(row.method);
+  return names;
+}
+
+TEST(Pooled, OneValueHasNoInterval) {
+  const PooledValue value = pooled(std::vector{2.0});
+  EXPECT_EQ(value.mean, 2);
+  EXPECT_FALSE(value.low);
+  EXPECT_EQ(value.count, 1U);
+}
+
+// Of 1, 2, 3: s = 1, and Student's t at 97.5 % with 2 degrees of freedom is 4.303.
+TEST(Pooled, FewValuesByStudentsT) {
+  const PooledValue value = pooled(std::vector{1.0, 2.0, 3.0});
+  EXPECT_DOUBLE_EQ(value.mean, 2);
+  EXPECT_NEAR(value.low.value(), 2 - 4.303 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(value.high.value(), 2 + 4.303 / std::sqrt(3.0), 1e-12);
+}
+
+TEST(Pooled, ManyValuesByBootstrap) {
+  const PooledValue value = pooled(std::vector{1.0, 1.1, 0.9, 1.2, 0.8, 1.05, 0.95, 1.0});
+  EXPECT_NEAR(value.mean, 1, 1e-12);
+  EXPECT_LT(value.low.value(), 1);
+  EXPECT_GT(value.low.value(), 0.8);
+  EXPECT_GT(value.high.value(), 1);
+  EXPECT_LT(value.high.value(), 1.2);
+}
+
+TEST(Leaderboard, PoolsSeedsAndRanksByTheGeometricMean) {
+  const std::vector<LeaderboardEntry> entries{scored("a", "walls", 1),  scored("a", "walls", 3),
+                                              scored("a", "desk", 8),   scored("b", "walls", 1),
+                                              scored("b", "desk", 1),   scored("b", "walls", 1),
+                                              scored("c", "walls", 0.1)};
+  const std::vector<Leaderboard> boards = leaderboards(entries);
+  ASSERT_EQ(boards.size(), 1U);
+  EXPECT_EQ(boards[0].sequences, (std::vector<std::string>{"walls", "desk"}));
+  EXPECT_EQ(methods_of(boards[0]), (std::vector<std::string>{"b", "a", "c"}));
+  const LeaderboardRow& a = boards[0].rows[1];
+  EXPECT_EQ(a.rank, 2);
+  EXPECT_EQ(a.scores[0].value->mean, 2);
+  EXPECT_EQ(a.scores[0].value->count, 2U);
+  EXPECT_NEAR(a.overall->mean, 4, 1e-12);
+  EXPECT_EQ(boards[0].rows[2].rank, 0);
+  EXPECT_EQ(boards[0].rows[2].complete, 1U);
+}
+
+TEST(Leaderboard, WhereHigherIsBetterTheHighestIsFirst) {
+  const std::vector<LeaderboardEntry> entries{scored("a", "walls", 0.5, "reconstruction.ssim"),
+                                              scored("b", "walls", 0.9, "reconstruction.ssim")};
+  EXPECT_EQ(methods_of(leaderboards(entries).at(0)), (std::vector<std::string>{"b", "a"}));
+}
+
+TEST(Leaderboard, AScoreOfZeroHasNoGeometricMean) {
+  const LeaderboardRow row = leaderboards(std::vector{scored("a", "walls", 0)}).at(0).rows.at(0);
+  EXPECT_FALSE(row.overall);
+  EXPECT_EQ(row.rank, 0);
+}
+
+TEST(Leaderboard, FailuresStandWithTheirReasonAndAreNotRanked) {
+  std::vector<LeaderboardEntry> entries{scored("a", "walls", 1), scored("b", "walls", 0.5)};
+  entries.push_back({"b", "walls", {}, "timed out: after 5 s", ""});
+  entries.push_back({"c", "walls", {}, "crashed: signal 11", ""});
+  const Leaderboard board = leaderboards(entries).at(0);
+  EXPECT_EQ(methods_of(board), (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(board.rows[0].rank, 1);
+  EXPECT_EQ(board.rows[1].rank, 0);
+  const ReportTable table = leaderboard_table(board);
+  EXPECT_EQ(table.rows[1][2].note, "1 of 2 failed");
+  EXPECT_EQ(table.rows[2][2].text, "crashed: signal 11");
+}
+
+TEST(Leaderboard, TheTableHasTheBestOfEveryColumnInBold) {
+  const std::vector<LeaderboardEntry> entries{scored("a", "walls", 1), scored("a", "desk", 2),
+                                              scored("b", "walls", 2), scored("b", "desk", 3),
+                                              scored("c", "desk", 1)};
+  const ReportTable table = leaderboard_table(leaderboards(entries).at(0));
+  EXPECT_EQ(table.name, "leaderboard_trajectory_dt_rel_percent_mean");
+  EXPECT_EQ(table.columns,
+            (std::vector<std::string>{"method", "rank", "overall", "walls", "desk"}));
+  EXPECT_TRUE(table.rows[0][2].best);
+  EXPECT_TRUE(table.rows[0][3].best);
+  EXPECT_FALSE(table.rows[0][4].best);
+  EXPECT_TRUE(table.rows[2][4].best);
+  EXPECT_EQ(table.rows[2][1].text, "1 of 2");
+  EXPECT_FALSE(table.rows[2][2].best);
+}
+
+}  // namespace
+}  // namespace saccade
