@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/io/csv_reader.h"
+#include "core/io/folder_name.h"
 #include "core/io/text_table.h"
 #include "core/io/trajectory_file.h"
 
@@ -49,10 +50,7 @@ RunFolder RunFolder::open(const std::filesystem::path& folder) {
   return run;
 }
 
-std::string RunFolder::name() const {
-  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
-  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
-}
+std::string RunFolder::name() const { return folder_name(folder); }
 
 PointCloud RunFolder::load_map() const {
   const std::filesystem::path file = folder / "map.ply";
