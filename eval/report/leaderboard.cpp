@@ -51,6 +51,8 @@ bool is_shown_failure(const LeaderboardEntry& entry, const std::string& key) {
   return !entry.problem.empty() && key.starts_with("trajectory.");
 }
 
+constexpr std::size_t kLeastSequences = 3;  ///< for an interval over them
+
 /// Geometric mean of the scores; nullopt where there is none or one is not above 0.
 std::optional<PooledValue> geometric_mean(const LeaderboardRow& row) {
   std::vector<double> logs;
@@ -61,8 +63,10 @@ std::optional<PooledValue> geometric_mean(const LeaderboardRow& row) {
   }
   if (logs.empty()) return std::nullopt;
   const PooledValue mean = pooled(logs);
-  const auto exponential = [](const std::optional<double>& end) {
-    return end ? std::optional(std::exp(*end)) : std::nullopt;
+  // Two sequences say next to nothing of a third: their interval spans decades.
+  const bool has_interval = logs.size() >= kLeastSequences;
+  const auto exponential = [&](const std::optional<double>& end) {
+    return end && has_interval ? std::optional(std::exp(*end)) : std::nullopt;
   };
   return PooledValue{std::exp(mean.mean), exponential(mean.low), exponential(mean.high),
                      mean.count};

@@ -57,7 +57,8 @@ struct Leaderboard {
 /// One per metric that any of the entries has, in a fixed order; runs that came to nothing stand in
 /// those of trajectories. Scores are pooled over seeds as they are; over sequences, which differ in
 /// difficulty by factors, as logarithms:
-///   overall = exp(mean of ln score),  interval = exp(interval of the mean of ln score).
+///   overall = exp(mean of ln score),  interval = exp(interval of the mean of ln score),
+/// the interval from three sequences on.
 [[nodiscard]] std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries);
 
 [[nodiscard]] ReportTable leaderboard_table(const Leaderboard& board);

@@ -54,6 +54,24 @@ async function checkDrawings(browser) {
   console.log(`${drawings.length} drawings`);
 }
 
+// A press on a column's head sorts by it, a second one the other way round; what has no number stays behind.
+async function checkSorting(browser) {
+  const orders = await browser.evaluate(`[...document.querySelectorAll("table.sortable")].map((table) => {
+    const head = table.tHead.rows[0].cells[table.tHead.rows[0].cells.length - 1];
+    const order = () => [...table.tBodies[0].rows].map((row) => row.cells[head.cellIndex].dataset.value ?? "");
+    return [0, 1].map(() => (head.click(), order()));
+  })`);
+  assert.ok(orders.length > 0, "the page has no leaderboard");
+  for (const [up, down] of orders) {
+    const numbers = up.filter(Boolean).map(Number), rest = up.slice(numbers.length);
+    assert.ok(numbers.length > 1, "nothing to sort");
+    assert.deepEqual(rest.filter(Boolean), [], "a row without a number stands before one with");
+    assert.deepEqual(numbers, numbers.toSorted((a, b) => a - b));
+    assert.deepEqual(down.slice(0, numbers.length).map(Number), numbers.toReversed());
+  }
+  console.log(`${orders.length} tables sorted`);
+}
+
 // Every button of a kind is pressed; the files it offers are kept from being saved and looked into.
 async function checkDownloads(browser) {
   const files = await browser.evaluate(`(async () => {
@@ -106,6 +124,7 @@ try {
   await keepPicture(browser, "top", false);
   await checkPaper(browser);
   await checkDrawings(browser);
+  await checkSorting(browser);
   await checkDownloads(browser);
   await checkColours(browser);
   await checkPhone(browser);

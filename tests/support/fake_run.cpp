@@ -101,7 +101,7 @@ void write_corner_dataset(const std::filesystem::path& folder, const std::string
 }
 
 void write_fake_run(const std::filesystem::path& folder, const std::filesystem::path& dataset,
-                    const FakeErrors& errors) {
+                    const FakeErrors& errors, const std::string& configuration) {
   const Dataset data = Dataset::open(dataset);
   AtomicFolder target(folder, "run.yaml");
   const double duration_s = data.groundtruth().end_s();
@@ -128,7 +128,7 @@ void write_fake_run(const std::filesystem::path& folder, const std::filesystem::
   record.seed = 1;
   record.threads = 1;
   record.tool_version = "0.1.0 (test)";
-  record.command = "saccade run track --data corner -c accurate.yaml -o run";
+  record.command = "saccade run track --data corner -c " + configuration + ".yaml -o run";
   record.machine = "a machine, 2 cores";
   record.config_yaml = "samples: 500\niterations: 30\nevent_map_ratio: 0.4\n";
   write_run_record(target.path() / "run.yaml", record);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/rigid3.h"
 
@@ -24,8 +25,9 @@ struct FakeErrors {
 
 /// Writes a run folder "by" the module `track` over that dataset: run.yaml, trajectory.txt,
 /// poses.csv, timing.json and map.ply (edge points of the first frame with their depth).
+/// `configuration`: name of the file that it states.
 void write_fake_run(const std::filesystem::path& folder, const std::filesystem::path& dataset,
-                    const FakeErrors& errors = {});
+                    const FakeErrors& errors = {}, const std::string& configuration = "accurate");
 
 /// Makes such a run one of odometry: `count` keyframes every 20 ms from 20 ms on, in force from 10
 /// ms after their view on and each alone, with the true depth and log intensity and an equal share

@@ -61,6 +61,7 @@ TEST(Leaderboard, PoolsSeedsAndRanksByTheGeometricMean) {
   EXPECT_EQ(a.scores[0].value->mean, 2);
   EXPECT_EQ(a.scores[0].value->count, 2U);
   EXPECT_NEAR(a.overall->mean, 4, 1e-12);
+  EXPECT_FALSE(a.overall->low) << "two sequences say next to nothing of a third";
   EXPECT_EQ(boards[0].rows[2].rank, 0);
   EXPECT_EQ(boards[0].rows[2].complete, 1U);
 }
