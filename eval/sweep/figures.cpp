@@ -138,6 +138,17 @@ bool varies(const SweepResults& results) {
 
 }  // namespace
 
+namespace {
+
+/// They measure different things, which no bars compare.
+bool has_several_modules(const SweepResults& results) {
+  return std::any_of(results.groups.begin(), results.groups.end(), [&](const SweepGroup& group) {
+    return group.point.module != results.groups.front().point.module;
+  });
+}
+
+}  // namespace
+
 std::vector<SweepFigure> write_figures(const SweepResults& results,
                                        const std::filesystem::path& folder) {
   std::vector<SweepFigure> figures;
@@ -148,7 +159,7 @@ std::vector<SweepFigure> write_figures(const SweepResults& results,
       figures.push_back({file_of(key), "Over " + key});
       write_png(folder / figures.back().file, draw(line_chart(results, axis), kLightTheme));
     }
-  if (!figures.empty()) return figures;
+  if (!figures.empty() || has_several_modules(results)) return figures;
   figures.push_back({"compared.png", "All rows compared"});
   write_png(folder / figures.back().file, draw(bar_chart(results), kLightTheme));
   return figures;
