@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <regex>
 
 #include "core/error.h"
 #include "core/shell.h"
@@ -58,11 +57,12 @@ void SlurmCommands::check() {
 
 int SlurmCommands::largest_array() {
   const SlurmAnswer answer = ask({"scontrol", "show", "config"});
-  std::smatch found;
-  const bool told =
-      std::regex_search(answer.text, found, std::regex("MaxArraySize\\s*=\\s*([0-9]{1,8})"));
-  // It is one above the highest number of a task.
-  return std::max(1, told ? std::atoi(found[1].str().c_str()) : kUsualLargestArray);
+  // "MaxArraySize            = 1001", one above the highest number of a task.
+  const std::size_t key = answer.text.find("MaxArraySize");
+  const std::size_t value =
+      key == std::string::npos ? key : answer.text.find_first_of("0123456789\n", key);
+  const int told = value == std::string::npos ? 0 : std::atoi(answer.text.c_str() + value);
+  return told > 0 ? told : kUsualLargestArray;
 }
 
 std::string SlurmCommands::submit(const std::filesystem::path& script, const SlurmWords& options) {
