@@ -75,7 +75,8 @@ TEST(Command, MissingArgumentsAreBadUsage) {
 std::vector<std::string> print_call(const fs::path& config) {
   const std::string folder = config.parent_path().filename();
   if (folder == "simulation") return {"simulate", config.string(), "--print-config"};
-  if (folder == "sweeps") return {"sweep", config.string(), "--print-config"};
+  if (folder == "sweeps" || folder == "benchmark")
+    return {"sweep", config.string(), "--print-config"};
   if (folder == "tracking") return {"run", "track", "-c", config.string(), "--print-config"};
   if (folder == "depth") return {"run", "depth", "-c", config.string(), "--print-config"};
   if (folder == "reconstruction")
