@@ -1,6 +1,7 @@
 #include "eval/metrics/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/check.h"
@@ -27,6 +28,15 @@ Statistics statistics_of(std::span<const double> samples) {
     squared_deviations += (sample - result.mean) * (sample - result.mean);
   result.sigma = std::sqrt(squared_deviations / n);
   return result;
+}
+
+double student_95(std::size_t freedom) {
+  SACCADE_CHECK(freedom >= 1);
+  constexpr std::array kFirst{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262};
+  if (freedom <= kFirst.size()) return kFirst[freedom - 1];
+  // Expansion about the normal distribution's quantile.
+  const auto n = static_cast<double>(freedom);
+  return 1.960 + 2.372 / n + 2.823 / (n * n);
 }
 
 void set_statistics(Metrics& metrics, const std::string& key, std::span<const double> samples) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 
@@ -18,6 +19,10 @@ struct Statistics {
 
 /// `samples`: at least one.
 [[nodiscard]] Statistics statistics_of(std::span<const double> samples);
+
+/// 97.5 % quantile of Student's t with `freedom` >= 1 degrees of freedom, to 0.003: the 95 %
+/// interval of a mean of n values is mean +- student_95(n - 1) s / sqrt(n).
+[[nodiscard]] double student_95(std::size_t freedom);
 
 /// Sets `key`.{mean,sigma,max,rmse}; all null where `samples` is empty.
 void set_statistics(Metrics& metrics, const std::string& key, std::span<const double> samples);

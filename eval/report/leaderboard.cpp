@@ -9,6 +9,7 @@
 #include "core/check.h"
 #include "eval/evaluate.h"
 #include "eval/gate/bootstrap.h"
+#include "eval/metrics/statistics.h"
 #include "eval/sweep/metric_info.h"
 
 namespace saccade {
@@ -34,9 +35,6 @@ constexpr std::array<BoardMetric, 12> kBoardMetrics{{
     {"sharpness.stabilized", "sharpness of the steady view"},
     {"speed.realtime_factor", "speed [x real time]"},
 }};
-
-/// 97.5 % quantiles of Student's t for 1 to 4 degrees of freedom.
-constexpr std::array<double, kLeastForBootstrap - 2> kStudent{12.706, 4.303, 3.182, 2.776};
 
 std::optional<double> score_of(const Metrics& metrics, const std::string& key) {
   return key.starts_with("speed.") ? speed_value(metrics, key) : metrics.get(key);
@@ -151,7 +149,7 @@ PooledValue pooled(std::span<const double> values) {
   if (values.size() == 1) return result;
   double squares = 0;
   for (const double value : values) squares += (value - result.mean) * (value - result.mean);
-  const double half = kStudent[values.size() - 2] * std::sqrt(squares / (n - 1) / n);
+  const double half = student_95(values.size() - 1) * std::sqrt(squares / (n - 1) / n);
   result.low = result.mean - half;
   result.high = result.mean + half;
   return result;

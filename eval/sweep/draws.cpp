@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "core/config/convert.h"
 #include "core/config/suggest.h"
 #include "core/random.h"
+#include "eval/sweep/settings.h"
 
 namespace saccade {
 namespace {
@@ -114,18 +114,6 @@ void check_value(const Node& root, const Node& node, const std::string& name) {
     check_value(root, entry.value, name + "." + entry.key);
 }
 
-/// As in Settings: a text that begins with ./ or ../ is relative to the file.
-void fix_paths(Node& node) {
-  const bool is_path = node.kind == Node::Kind::kScalar &&
-                       (node.text.starts_with("./") || node.text.starts_with("../"));
-  if (is_path && node.place.source)
-    node.text = std::filesystem::absolute(node.place.source->folder / node.text)
-                    .lexically_normal()
-                    .string();
-  for (Node& item : node.items) fix_paths(item);
-  for (config::Entry& entry : node.entries) fix_paths(entry.value);
-}
-
 /// FNV-1a: which stream of random numbers a path has.
 std::uint64_t stream_of(const std::string& path) {
   std::uint64_t hash = 14695981039346656037ULL;
@@ -195,7 +183,7 @@ void from_node(const Node& node, const std::string& name, Draws& draws) {
   for (const config::Entry& entry : config::entries_of(node, name)) {
     check_value(node, entry.value, name + "." + entry.key);
     draws.keys.entries.push_back(entry);
-    fix_paths(draws.keys.entries.back().value);
+    make_paths_absolute(draws.keys.entries.back().value);
   }
 }
 

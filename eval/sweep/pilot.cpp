@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -19,6 +18,7 @@
 #include "core/config/document.h"
 #include "core/error.h"
 #include "core/io/dataset_record.h"
+#include "eval/metrics/statistics.h"
 #include "eval/number_text.h"
 
 namespace saccade {
@@ -29,10 +29,6 @@ using Words = std::vector<std::string>;
 
 constexpr std::size_t kPilots = 8;
 constexpr double kWindowS = 0.025;
-
-/// Two-sided 95 % of Student's t, by degrees of freedom; beyond them the normal distribution's.
-constexpr std::array kStudent{12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365};
-constexpr double kNormal95 = 1.96;
 
 /// A folder for the pilot's datasets, removed with it.
 class PilotFolder {
@@ -169,10 +165,8 @@ Estimate scaled_estimate(const std::vector<double>& sample, std::size_t count) {
   if (sample.size() < 2 || sample.size() == count) return estimate;
   double squares = 0;
   for (const double value : sample) squares += (value - mean) * (value - mean);
-  const std::size_t freedom = sample.size() - 1;
-  const double t = freedom <= kStudent.size() ? kStudent[freedom - 1] : kNormal95;
-  const double error = std::sqrt(squares / (n - 1) / n);
-  return {estimate.value, t * error * static_cast<double>(count)};
+  const double error = student_95(sample.size() - 1) * std::sqrt(squares / (n - 1) / n);
+  return {estimate.value, error * static_cast<double>(count)};
 }
 
 void check_configurations(const std::vector<const SweepJob*>& jobs, Launcher& launcher) {

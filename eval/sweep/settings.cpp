@@ -15,16 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using config::Node;
 
-/// A value cannot tell whether it is a path, so that only a text that says so itself is one.
-void make_paths_absolute(Node& node) {
-  const bool is_path = node.kind == Node::Kind::kScalar &&
-                       (node.text.starts_with("./") || node.text.starts_with("../"));
-  if (is_path && node.place.source)
-    node.text = fs::absolute(node.place.source->folder / node.text).lexically_normal().string();
-  for (Node& item : node.items) make_paths_absolute(item);
-  for (config::Entry& entry : node.entries) make_paths_absolute(entry.value);
-}
-
 std::string value_text(Node node) {
   make_paths_absolute(node);
   return config::to_flow_yaml(node);
@@ -40,6 +30,15 @@ Node value_node(const std::string& yaml) {
 }
 
 }  // namespace
+
+void make_paths_absolute(Node& node) {
+  const bool is_path = node.kind == Node::Kind::kScalar &&
+                       (node.text.starts_with("./") || node.text.starts_with("../"));
+  if (is_path && node.place.source)
+    node.text = fs::absolute(node.place.source->folder / node.text).lexically_normal().string();
+  for (Node& item : node.items) make_paths_absolute(item);
+  for (config::Entry& entry : node.entries) make_paths_absolute(entry.value);
+}
 
 void from_node(const Node& node, const std::string& name, Settings& settings) {
   settings.clear();

@@ -8,8 +8,7 @@
 namespace saccade {
 
 /// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line; a text that begins with ./
-/// or
-/// ../ was relative to the sweep file and is an absolute path here.
+/// or ../ was relative to the sweep file and is an absolute path here.
 struct Setting {
   std::string key;
   std::string value;
@@ -25,6 +24,11 @@ struct GridAxis {
 };
 
 using Grid = std::vector<GridAxis>;
+
+/// Makes every text in a value that begins with ./ or ../ an absolute path, from the folder of the
+/// file that it stands in. A value cannot tell whether it is a path: only a text that says so is
+/// one.
+void make_paths_absolute(config::Node& value);
 
 // In the namespace of the types, where the templates of Fields find them. InputError at the node's
 // place for an axis without values or with one value twice.

@@ -35,5 +35,13 @@ TEST(Statistics, NothingIsNull) {
   EXPECT_EQ(metrics.get("k.mean"), std::nullopt);
 }
 
+TEST(Statistics, StudentsQuantileIsThatOfTheTables) {
+  EXPECT_NEAR(student_95(1), 12.7062, 1e-3);
+  EXPECT_NEAR(student_95(9), 2.2622, 1e-3);
+  EXPECT_NEAR(student_95(10), 2.2281, 3e-3);
+  EXPECT_NEAR(student_95(20), 2.0860, 3e-3);
+  EXPECT_NEAR(student_95(100), 1.9840, 3e-3);
+}
+
 }  // namespace
 }  // namespace saccade
