@@ -8,7 +8,6 @@ namespace saccade {
 namespace {
 
 constexpr float kMaxDrift_px = 2.5F;  ///< of an edge from its seed
-constexpr float kSameDepth = 0.01F;
 constexpr float kSamePlanes = 3;  ///< of the sweep, that an edge nearby with more votes rules out
 constexpr int kSlabsOnTheWay = 12;
 constexpr int kMaxStages = 6;
@@ -114,11 +113,6 @@ std::optional<FittedEdge> EdgeRefiner::confirm(const RayEdge& edge, const Expect
     return std::nullopt;
   result.sigma = std::min(sigma, expected.max_sigma);
   return accepted(next, result, events);
-}
-
-void EdgeRefiner::restart(const std::vector<FittedEdge>& edges, double spacing_px) {
-  found_ = FoundEdges(camera_, static_cast<float>(spacing_px));
-  for (const FittedEdge& fitted : edges) found_.add(fitted.edge);
 }
 
 FittedEdge EdgeRefiner::accepted(const RayEdge& edge, const RegressionResult& result,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/camera.h"
@@ -35,6 +36,9 @@ struct Expectation {
 /// other: where an edge was found, later seeds of the same edge are skipped.
 class EdgeRefiner {
  public:
+  /// Edges at one place whose inverse depths differ by less, relatively, are one.
+  static constexpr float kSameDepth = 0.01F;
+
   /// `rays` and `options` outlive it.
   EdgeRefiner(const EventRays& rays, const RefinerOptions& options, const DepthLimits& limits,
               const PinholeCamera& camera);
@@ -52,8 +56,8 @@ class EdgeRefiner {
   [[nodiscard]] bool has_found(const RayEdge& edge, float tolerance) const {
     return found_.holds(edge, tolerance);
   }
-  /// Forgets what was found, but for these; from now on edges keep another distance.
-  void restart(const std::vector<FittedEdge>& edges, double spacing_px);
+  /// From now on these, and no others, are what was found.
+  void restart(FoundEdges found) { found_ = std::move(found); }
 
  private:
   [[nodiscard]] bool is_plausible(const RayEdge& edge, const Eigen::Vector2f& start) const;

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <utility>
 
 #include "core/image.h"
+#include "core/parallel.h"
 #include "estimator/depth/ray_votes.h"
 
 namespace saccade {
@@ -80,20 +82,23 @@ class SeedFinder {
     }
   }
 
-  std::vector<EdgeSeed> find(const std::vector<SweepPlane>& sweep) {
-    for (std::size_t k = 0; k < sweep.size(); ++k) {
+  /// The ridges of the planes [first, last) of a sweep; their shares are those of best().
+  std::vector<EdgeSeed> find(std::span<const SweepPlane> sweep, std::size_t first,
+                             std::size_t last) {
+    // A ridge is stronger than the planes on both sides, which may be others' to collect.
+    const std::size_t begin = first > 0 ? first - 1 : 0;
+    const std::size_t end = std::min(last + 1, sweep.size());
+    for (std::size_t k = begin; k < end; ++k) {
       vote(sweep[k], planes_[2]);
-      if (k > 0) collect();
+      if (k > first) collect();
       std::swap(planes_[0], planes_[1]);
       std::swap(planes_[1], planes_[2]);
     }
-    std::vector<EdgeSeed> kept;
-    for (EdgeSeed& seed : seeds_) {
-      seed.share = seed.score / best_near(seed.pixel);
-      if (seed.share >= static_cast<float>(options_.min_share)) kept.push_back(seed);
-    }
-    return kept;
+    return std::move(seeds_);
   }
+
+  /// Most that any of the planes has at each pixel.
+  [[nodiscard]] const ImageF& best() const { return best_; }
 
  private:
   void vote(const SweepPlane& at, Plane& plane) {
@@ -161,12 +166,6 @@ class SeedFinder {
                       parallax_px, planes_[1].at});
   }
 
-  [[nodiscard]] float best_near(const Eigen::Vector2f& pixel) const {
-    const int x = static_cast<int>(std::lround(pixel.x()));
-    const int y = static_cast<int>(std::lround(pixel.y()));
-    return best_(std::clamp(x, 0, best_.width() - 1), std::clamp(y, 0, best_.height() - 1));
-  }
-
   const EventRays& rays_;
   const SeedOptions& options_;
   ParallaxSpread parallax_;
@@ -174,6 +173,34 @@ class SeedFinder {
   ImageF best_;                  ///< over all planes
   std::vector<EdgeSeed> seeds_;
 };
+
+float value_near(const ImageF& image, const Eigen::Vector2f& pixel) {
+  const int x = static_cast<int>(std::lround(pixel.x()));
+  const int y = static_cast<int>(std::lround(pixel.y()));
+  return image(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1));
+}
+
+/// Where to cut a sweep into parts of about as much work: 0, ..., its size.
+std::vector<std::size_t> cut(std::span<const SweepPlane> sweep, int parts) {
+  constexpr int kBlurSlabs = 4;  // as long as the blur of a plane takes
+  const auto work = [](const SweepPlane& plane) {
+    return plane.last_slab - plane.first_slab + kBlurSlabs;
+  };
+  int left = 0;
+  for (const SweepPlane& plane : sweep) left += work(plane);
+  std::vector<std::size_t> cuts{0};
+  int done = 0;
+  for (std::size_t k = 0; k < sweep.size(); ++k) {
+    done += work(sweep[k]);
+    const auto parts_left = parts - static_cast<int>(cuts.size()) + 1;
+    if (parts_left < 2 || done * parts_left < left) continue;
+    cuts.push_back(k + 1);
+    left -= done;
+    done = 0;
+  }
+  if (cuts.back() < sweep.size()) cuts.push_back(sweep.size());
+  return cuts;
+}
 
 }  // namespace
 
@@ -208,7 +235,26 @@ std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera&
 std::vector<EdgeSeed> find_seeds(const EventRays& rays, const PinholeCamera& camera,
                                  const DepthLimits& limits, const SeedOptions& options) {
   if (rays.size() == 0) return {};
-  return SeedFinder(rays, camera, options).find(sweep_planes(rays, camera, limits, options));
+  const std::vector<SweepPlane> sweep = sweep_planes(rays, camera, limits, options);
+  // Each thread a part of the sweep: where it is cut, planes are voted for twice, and nothing else
+  // changes.
+  const std::vector<std::size_t> cuts = cut(sweep, thread_count());
+  const std::size_t parts = cuts.size() - 1;
+  std::vector<SeedFinder> finders(parts, SeedFinder(rays, camera, options));
+  std::vector<std::vector<EdgeSeed>> found(parts);
+  parallel_for(parts,
+               [&](std::size_t i) { found[i] = finders[i].find(sweep, cuts[i], cuts[i + 1]); });
+  ImageF best(camera.width, camera.height);
+  for (const SeedFinder& finder : finders)
+    for (std::size_t i = 0; i < best.size(); ++i)
+      best.pixels()[i] = std::max(best.pixels()[i], finder.best().pixels()[i]);
+  std::vector<EdgeSeed> seeds;
+  for (const std::vector<EdgeSeed>& part : found)
+    for (EdgeSeed seed : part) {
+      seed.share = seed.score / value_near(best, seed.pixel);
+      if (seed.share >= static_cast<float>(options.min_share)) seeds.push_back(seed);
+    }
+  return seeds;
 }
 
 }  // namespace saccade

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/parallel.h"
 
 namespace saccade {
 namespace {
@@ -44,6 +45,45 @@ class Views {
   Eigen::Matrix3d k_inverse_;
 };
 
+/// Rays of the events of one piece.
+class RayMaker {
+ public:
+  /// `from` and `to`: the views at `from_s` and one piece later.
+  RayMaker(const PinholeCamera& camera, double from_s, const View& from, const View& to)
+      : focal_(camera.fx, camera.fy),
+        principal_(camera.cx, camera.cy),
+        from_s_(from_s),
+        from_(from),
+        turn_((to.homography - from.homography) / seconds_from_ns(kPieceNs)),
+        velocity_((to.centre - from.centre) / seconds_from_ns(kPieceNs)) {}
+
+  void make(const Event& event, const Eigen::Vector2f& undistorted, RayLine& line,
+            RayRise& rise) const {
+    const double t_s = seconds_from_ns(event.t_ns) - from_s_;
+    const Eigen::Vector3d pixel = undistorted.cast<double>().homogeneous();
+    const Eigen::Vector3d change = turn_ * pixel;
+    const Eigen::Vector3d h = from_.homography * pixel + t_s * change;
+    const Eigen::Vector3d o = from_.centre + t_s * velocity_;
+    const Eigen::Vector2d a = h.hnormalized();
+    const Eigen::Vector2d a_rate = (change.head<2>() - a * change.z()) / h.z();
+    const Eigen::Vector2d b = focal_.cwiseProduct(o.head<2>()) - o.z() * (a - principal_);
+    const Eigen::Vector2d b_rate = focal_.cwiseProduct(velocity_.head<2>()) -
+                                   velocity_.z() * (a - principal_) - o.z() * a_rate;
+    const double p = event.polarity;
+    line = {static_cast<float>(a.x()), static_cast<float>(a.y()), static_cast<float>(b.x()),
+            static_cast<float>(b.y())};
+    rise = {static_cast<float>(p * a_rate.x()), static_cast<float>(p * a_rate.y()),
+            static_cast<float>(p * b_rate.x()), static_cast<float>(p * b_rate.y())};
+  }
+
+ private:
+  Eigen::Vector2d focal_, principal_;
+  double from_s_;
+  View from_;
+  Eigen::Matrix3d turn_;      ///< of the homography [1/s]
+  Eigen::Vector3d velocity_;  ///< of the centre [m/s]
+};
+
 int cell_of(float pixel, int cells) {
   const float cell = (pixel + EventRays::kCellOrigin_px) / EventRays::kCell_px;
   return static_cast<int>(std::clamp(cell, 0.F, static_cast<float>(cells - 1)));
@@ -78,41 +118,21 @@ EventRays::EventRays(const ViewWindow& window, const PinholeCamera& camera,
   line.resize(events.size());
   rise.resize(events.size());
 
+  std::vector<std::size_t> pieces{0};
+  for (std::size_t i = 1; i < events.size(); ++i)
+    if (events[i].t_ns - events[pieces.back()].t_ns >= kPieceNs) pieces.push_back(i);
+  pieces.push_back(events.size());
   const Views views(window, camera);
-  const Eigen::Vector2d focal(camera.fx, camera.fy);
-  const Eigen::Vector2d principal(camera.cx, camera.cy);
-  for (std::size_t begin = 0; begin < events.size();) {
-    const TimeNs start_ns = events[begin].t_ns;
-    std::size_t end = begin + 1;
-    while (end < events.size() && events[end].t_ns - start_ns < kPieceNs) ++end;
+  parallel_for(pieces.size() - 1, [&](std::size_t k) {
     // The last piece reaches back instead of beyond the poses.
     const double piece_s = seconds_from_ns(kPieceNs);
-    const double from_s = std::min(seconds_from_ns(start_ns), window.trajectory->end_s() - piece_s);
-    const View from = views.at(from_s);
-    const View to = views.at(from_s + piece_s);
-    const double per_s = 1 / piece_s;
-    const Eigen::Matrix3d turn = (to.homography - from.homography) * per_s;
-    const Eigen::Vector3d velocity = (to.centre - from.centre) * per_s;
-    for (std::size_t i = begin; i < end; ++i) {
-      const double t_s = seconds_from_ns(events[i].t_ns) - from_s;
-      const Eigen::Vector3d pixel =
-          undistortion(events[i].x, events[i].y).cast<double>().homogeneous();
-      const Eigen::Vector3d change = turn * pixel;
-      const Eigen::Vector3d h = from.homography * pixel + t_s * change;
-      const Eigen::Vector3d o = from.centre + t_s * velocity;
-      const Eigen::Vector2d a = h.hnormalized();
-      const Eigen::Vector2d a_rate = (change.head<2>() - a * change.z()) / h.z();
-      const Eigen::Vector2d b = focal.cwiseProduct(o.head<2>()) - o.z() * (a - principal);
-      const Eigen::Vector2d b_rate =
-          focal.cwiseProduct(velocity.head<2>()) - velocity.z() * (a - principal) - o.z() * a_rate;
-      const double p = events[i].polarity;
-      line[places[i]] = {static_cast<float>(a.x()), static_cast<float>(a.y()),
-                         static_cast<float>(b.x()), static_cast<float>(b.y())};
-      rise[places[i]] = {static_cast<float>(p * a_rate.x()), static_cast<float>(p * a_rate.y()),
-                         static_cast<float>(p * b_rate.x()), static_cast<float>(p * b_rate.y())};
-    }
-    begin = end;
-  }
+    const double from_s =
+        std::min(seconds_from_ns(events[pieces[k]].t_ns), window.trajectory->end_s() - piece_s);
+    const RayMaker maker(camera, from_s, views.at(from_s), views.at(from_s + piece_s));
+    for (std::size_t i = pieces[k]; i < pieces[k + 1]; ++i)
+      maker.make(events[i], undistortion(events[i].x, events[i].y), line[places[i]],
+                 rise[places[i]]);
+  });
 }
 
 void EventRays::make_slabs(const ViewWindow& window, const PinholeCamera& camera, int count) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "estimator/depth/edge_seeds.h"
 #include "estimator/depth/event_ownership.h"
 #include "estimator/depth/event_rays.h"
+#include "estimator/depth/local_planes.h"
 #include "estimator/depth/planar_fusion.h"
 
 namespace saccade {
@@ -50,6 +52,9 @@ struct RayEdges {
   std::vector<std::pair<std::string, double>> stages_s;
 };
 
+/// Seeds by horizontal strips of the view, which are worked on side by side.
+using SeedStrips = std::vector<std::vector<EdgeSeed>>;
+
 /// Depth of edges from the rays of all events at once. No reference image: seeds come from a space
 /// sweep, and each seed's inverse depth from a regression over the rays that pass near it, first
 /// those near the reference time, then, as the depth gets better, over the whole window.
@@ -64,11 +69,10 @@ class RayDepth : public DepthEstimator {
   [[nodiscard]] DepthResult fuse(const RayEdges& edges) const;
 
  private:
-  [[nodiscard]] std::vector<FittedEdge> fit(EdgeRefiner& refiner,
-                                            const std::vector<EdgeSeed>& seeds,
-                                            EdgeEvents& events) const;
-  void propagate(EdgeRefiner& refiner, const std::vector<EdgeSeed>& seeds,
-                 std::vector<FittedEdge>& edges, EdgeEvents& events) const;
+  void fit(const EventRays& rays, const SeedStrips& strips, RayEdges& found) const;
+  void propagate(const EventRays& rays, const SeedStrips& strips, RayEdges& found) const;
+  [[nodiscard]] std::optional<FittedEdge> confirm(const EdgeSeed& seed, LocalPlanes& planes,
+                                                  EdgeRefiner& refiner, EdgeEvents& events) const;
   [[nodiscard]] std::vector<EdgeDepth> points_of(const std::vector<FittedEdge>& edges) const;
 
   RayDepthOptions options_;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/random.h"
 #include "core/spline.h"
 #include "estimator/depth/sweep_depth.h"
 #include "estimator/reconstruction/point_surface.h"
@@ -55,6 +56,22 @@ ViewWindow window_of(std::span<const Event> events, const Trajectory& poses,
   return window;
 }
 
+/// The events of a share of the pixels, so that about `most` are left. All events of a pixel or
+/// none: which step of its brightness an event is shows in those before it.
+std::vector<Event> thinned(std::span<const Event> events, std::size_t most,
+                           const PinholeCamera& camera) {
+  const Random random(0);
+  const double share = static_cast<double>(most) / static_cast<double>(events.size());
+  ImageU8 is_kept(camera.width, camera.height);
+  for (std::size_t i = 0; i < is_kept.size(); ++i)
+    is_kept.pixels()[i] = random.uniform(i, 0) < share ? 1 : 0;
+  std::vector<Event> kept;
+  kept.reserve(most + most / 8);
+  for (const Event& event : events)
+    if (is_kept(event.x, event.y) != 0) kept.push_back(event);
+  return kept;
+}
+
 void append(MapPoints& points, const Eigen::Vector3d& point) {
   points.x.push_back(static_cast<float>(point.x()));
   points.y.push_back(static_cast<float>(point.y()));
@@ -78,6 +95,9 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   keyframe.start_s = seconds_from_ns(window.events.front().t_ns);
   keyframe.end_s = seconds_from_ns(window.events.back().t_ns);
   keyframe.events = window.events.size();
+  const auto most = static_cast<std::size_t>(options_.thinned_to);
+  std::vector<Event> some;
+  if (window.events.size() > most) window.events = some = thinned(window.events, most, camera_);
   window.reference_s = options_.view == MappingOptions::View::kEnd
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;

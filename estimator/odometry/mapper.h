@@ -19,8 +19,10 @@ struct MappingOptions {
   enum class Edges { kGradient, kDepth };
   enum class View { kMiddle, kEnd };
 
-  int events = 200000;          ///< N_map: at most so many, the newest
-  double duration_s = 0.4;      ///< ... and of at most so long
+  int events = 200000;      ///< N_map: at most so many, the newest
+  double duration_s = 0.4;  ///< ... and of at most so long
+  /// Depth is found from so many of them, about, those of some of the pixels; the image from all.
+  int thinned_to = 1000000000;
   View view = View::kEnd;       ///< where in its events the view lies
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
   bool image = true;  ///< made for people where the edges do not need it, after the last event

@@ -87,8 +87,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
       result.latency_ms.push_back(clock.age_ms(pose->last_ns));
     if (progress) progress(stream.done - before);
     take_pose(*pose, result);
-    if (!job_ && !is_lost_ && wants_keyframe(known_.back().world_from_camera))
-      begin_mapping(events.first(stream.done), now_s);
+    if (!job_ && !is_lost_ && wants_keyframe()) begin_mapping(events.first(stream.done), now_s);
     if (job_ && is_due(now_s)) end_mapping(now_s, result);
   }
   if (job_) end_mapping(known_.back().t_s, result);
@@ -171,14 +170,17 @@ void Odometry::start_from(std::span<const Event> events, const KnownPath& start)
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
   typical_depth_m_ = first.typical_depth_m;
   if (!is_settled(start)) take_mapped_poses(mapping);
-  last_keyframe_at_ = known_.back().world_from_camera;
-  map_.add(std::move(first), last_keyframe_at_);
+  last_keyframe_ = known_.back();
+  map_.add(std::move(first), last_keyframe_.world_from_camera);
   tracker_.set_map(map_.points());
-  tracker_.reset(ns_from_seconds(start.poses.end_s()), last_keyframe_at_);
+  tracker_.reset(ns_from_seconds(start.poses.end_s()), last_keyframe_.world_from_camera);
 }
 
-bool Odometry::wants_keyframe(const Rigid3& world_from_camera) const {
-  const double way = (world_from_camera.translation() - last_keyframe_at_.translation()).norm();
+bool Odometry::wants_keyframe() const {
+  if (known_.back().t_s < last_keyframe_.t_s + options_.keyframe.interval_s) return false;
+  const Rigid3& world_from_camera = known_.back().world_from_camera;
+  const double way =
+      (world_from_camera.translation() - last_keyframe_.world_from_camera.translation()).norm();
   if (way >= options_.keyframe.distance * typical_depth_m_) return true;
   return options_.keyframe.min_visible > 0 &&
          map_.visible_share(map_.keyframes().back(), world_from_camera) <
@@ -188,7 +190,7 @@ bool Odometry::wants_keyframe(const Rigid3& world_from_camera) const {
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_ = std::make_unique<Job>();
   job_->made_s = now_s;
-  last_keyframe_at_ = known_.back().world_from_camera;
+  last_keyframe_ = known_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   const std::span<const Event> mapped = events.subspan(count_until(events, mapped_from_s_));
   job_->mapping =

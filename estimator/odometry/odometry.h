@@ -28,6 +28,8 @@ struct KeyframeOptions {
   double distance = 0.1;
   /// A keyframe is made, too, when less than this share of the last one's edges is in view.
   double min_visible = 0;
+  /// Least time from one's begin to the next's: what mapping costs is bounded by it.
+  double interval_s = 0;
   /// From the last event that it is made of to the last that is tracked without it. What is tracked
   /// meanwhile is tracked by the map before, beside the mapping; 0: tracking waits for it.
   double handover_s = 0;
@@ -147,7 +149,7 @@ class Odometry {
   void take_pose(TrackedPose pose, OdometryResult& result);
   void forget_astray(const TrackedPose& found, OdometryResult& result);
   [[nodiscard]] std::optional<TrackedPose> find_again();
-  [[nodiscard]] bool wants_keyframe(const Rigid3& world_from_camera) const;
+  [[nodiscard]] bool wants_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
   void begin_mapping(std::span<const Event> events, double now_s);
   void end_mapping(double now_s, OdometryResult& result);
@@ -165,7 +167,7 @@ class Odometry {
   bool is_lost_ = false;
   double last_search_s_ = -std::numeric_limits<double>::infinity();
   std::optional<MountedImu> imu_;
-  Rigid3 last_keyframe_at_;  ///< where the camera was when the last one was begun
+  StampedPose last_keyframe_;  ///< the camera when the last one was begun
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;
 };

@@ -48,6 +48,7 @@ void describe_keyframe(config::Fields& fields, OdometryOptions& options) {
       .value("min_visible", keyframe.min_visible,
              "it is made, too, when less than this share of the last one's edges is in view")
       .range(0, 1);
+  fields.value("interval_s", keyframe.interval_s, "least time from one to the next").range(0, 1e3);
   fields
       .value(
           "handover_s", keyframe.handover_s,
@@ -79,6 +80,10 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
         "steep", [&](config::Fields& f) { describe(f, options.steep); },
         "which pixels those are (4.4)");
   if (options.edges == Edges::kDepth) {
+    fields
+        .value("thinned_to", options.thinned_to,
+               "depth is found from so many of them, about: those of some of the pixels")
+        .range(100, 1e9);
     fields
         .value("max_sigma", options.max_sigma,
                "deviation of a point's depth up to which it is tracked, relative")

@@ -11,6 +11,7 @@
 
 #include <ceres/ceres.h>
 
+#include "core/parallel.h"
 #include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/coarse_surface.h"
 #include "estimator/refinement/edge_fit.h"
@@ -23,6 +24,7 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kLeastEdges = 30;
+constexpr std::size_t kGrain = 16;  ///< edges that a thread takes at a time
 
 EdgeUnknowns unknowns_of(const FittedEdge& edge) {
   return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};
@@ -115,12 +117,16 @@ class WindowProblem {
     const std::size_t all = edges_.edges.size();
     const std::size_t count = std::min(all, static_cast<std::size_t>(options_.edges));
     chosen_.resize(count);
+    const auto fitted_at = [&](std::size_t k) -> const FittedEdge& {
+      return edges_.edges[k * all / count];
+    };
+    parallel_for(
+        count, [&](std::size_t k) { chosen_[k].events = observed_.of(fitted_at(k)); }, kGrain);
     for (std::size_t k = 0; k < count; ++k) {
-      const FittedEdge& fitted = edges_.edges[k * all / count];
+      const FittedEdge& fitted = fitted_at(k);
       ChosenEdge& edge = chosen_[k];
       edge.pixel = fitted.edge.pixel.cast<double>();
       edge.unknowns = unknowns_of(fitted);
-      edge.events = observed_.of(fitted);
       const double weight = 1 / noise_px(fitted);
       for (std::size_t i = 0; i < edge.events.size();) {
         // One that is left alone is paired with nothing.
@@ -193,7 +199,7 @@ class WindowProblem {
   }
 
   /// The event's observation after the correction.
-  [[nodiscard]] EdgeObservation moved(const ChosenEvent& event) {
+  [[nodiscard]] EdgeObservation moved(const ChosenEvent& event) const {
     EdgeObservation observation = event.observation;
     const auto twist = [&](int node) { return Eigen::Map<const Twist>(correction_.data(node)); };
     observation.view_from_camera =
@@ -229,17 +235,27 @@ class WindowProblem {
     result.trajectory = Trajectory(std::move(poses));
     const Rigid3 now_from_view = result.trajectory.at_clamped(window_.reference_s).inverse() *
                                  window_.world_from_reference();
+    std::vector<std::optional<FittedEdge>> fitted(edges_.edges.size());
+    parallel_for(
+        fitted.size(),
+        [&](std::size_t k) {
+          if (const auto edge = fitted_to_path(edges_.edges[k]))
+            fitted[k] = seen_by(now_from_view, *edge, observed_.camera());
+        },
+        kGrain);
     result.edges.edges.clear();
+    for (const std::optional<FittedEdge>& edge : fitted)
+      if (edge) result.edges.edges.push_back(*edge);
+  }
+
+  /// The edge in the view as it was, by its events from the corrected path.
+  [[nodiscard]] std::optional<FittedEdge> fitted_to_path(const FittedEdge& fitted) const {
     std::vector<EdgeObservation> events;
-    for (const FittedEdge& fitted : edges_.edges) {
-      events.clear();
-      for (const ChosenEvent& event : observed_.of(fitted)) events.push_back(moved(event));
-      const auto unknowns = fit_edge(events, observed_.camera(), unknowns_of(fitted),
-                                     prior_of(fitted), noise_px(fitted), options_.outlier);
-      if (!unknowns) continue;
-      if (auto edge = seen_by(now_from_view, corrected(fitted, *unknowns), observed_.camera()))
-        result.edges.edges.push_back(*edge);
-    }
+    for (const ChosenEvent& event : observed_.of(fitted)) events.push_back(moved(event));
+    const auto unknowns = fit_edge(events, observed_.camera(), unknowns_of(fitted),
+                                   prior_of(fitted), noise_px(fitted), options_.outlier);
+    if (!unknowns) return std::nullopt;
+    return corrected(fitted, *unknowns);
   }
 
   const ViewWindow& window_;

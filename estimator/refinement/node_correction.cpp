@@ -27,9 +27,7 @@ std::pair<int, double> NodeCorrection::before(double t_s) const {
 
 Twist NodeCorrection::at(double t_s) const {
   const auto [node, share] = before(t_s);
-  const auto twist = [&](int i) {
-    return Eigen::Map<const Twist>(nodes_[static_cast<std::size_t>(i)].data());
-  };
+  const auto twist = [&](int i) { return Eigen::Map<const Twist>(data(i)); };
   return (1 - share) * twist(node) + share * twist(node + 1);
 }
 

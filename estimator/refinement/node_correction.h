@@ -23,6 +23,9 @@ class NodeCorrection {
   [[nodiscard]] double time_s(int node) const { return start_s_ + node * spacing_s_; }
   /// The six numbers of a node.
   [[nodiscard]] double* data(int node) { return nodes_[static_cast<std::size_t>(node)].data(); }
+  [[nodiscard]] const double* data(int node) const {
+    return nodes_[static_cast<std::size_t>(node)].data();
+  }
   /// The node before a time and the share s of the one after it; times beyond the ends are theirs.
   [[nodiscard]] std::pair<int, double> before(double t_s) const;
   [[nodiscard]] Twist at(double t_s) const;

@@ -22,19 +22,26 @@ ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
       correction_(correction),
       most_(2 * static_cast<std::size_t>(pairs)),
       view_from_world_(window.world_from_reference().inverse()),
-      steps_(event_steps(window.events, camera)) {}
+      steps_(event_steps(window.events, camera)) {
+  for (int node = 1; node < correction.count(); ++node) {
+    const auto next =
+        std::partition_point(window.events.begin(), window.events.end(), [&](const Event& event) {
+          return correction.before(seconds_from_ns(event.t_ns)).first < node;
+        });
+    node_end_.push_back(static_cast<std::uint32_t>(next - window.events.begin()));
+  }
+}
 
 std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
   std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
                                     edges_.events.event.begin() + edge.last);
   std::sort(events.begin(), events.end());
   const double mean = mean_step(steps_, events);
-  const auto node_of = [&](std::uint32_t e) { return correction_.before(time_s(e)).first; };
   std::vector<ChosenEvent> chosen;
   for (auto first = events.begin(); first != events.end();) {
-    const auto last = std::partition_point(
-        first, events.end(),
-        [&, node = node_of(*first)](std::uint32_t e) { return node_of(e) == node; });
+    // By index, since an edge's events lie all over the window's.
+    const auto end = *std::upper_bound(node_end_.begin(), node_end_.end(), *first);
+    const auto last = std::lower_bound(first, events.end(), end);
     const auto count = static_cast<std::size_t>(last - first);
     const std::size_t taken = std::min(most_, count);
     for (std::size_t i = 0; i < taken; ++i) {
@@ -46,14 +53,10 @@ std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
   return chosen;
 }
 
-double ObservedEdges::time_s(std::uint32_t event) const {
-  return seconds_from_ns(window_.events[event].t_ns);
-}
-
 ChosenEvent ObservedEdges::observed(const FittedEdge& edge, double mean_step,
                                     std::uint32_t index) const {
   const Event& event = window_.events[index];
-  const double t_s = time_s(index);
+  const double t_s = seconds_from_ns(event.t_ns);
   EdgeObservation observation;
   observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
   observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));

@@ -34,7 +34,6 @@ class ObservedEdges {
   [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
 
  private:
-  [[nodiscard]] double time_s(std::uint32_t event) const;
   [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
                                      std::uint32_t index) const;
 
@@ -46,6 +45,8 @@ class ObservedEdges {
   std::size_t most_;
   Rigid3 view_from_world_;
   std::vector<std::uint8_t> steps_;  ///< of every event of the window
+  /// Of every node but the last, the index behind its events, those until the next node.
+  std::vector<std::uint32_t> node_end_;
 };
 
 }  // namespace saccade

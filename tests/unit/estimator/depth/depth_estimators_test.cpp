@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "tests/support/planar_world.h"
 
@@ -108,6 +109,20 @@ TEST_P(EveryDepthMethod, DependsOnTheWindowAlone) {
     EXPECT_EQ(first.points[i].x_px, again.points[i].x_px);
     EXPECT_EQ(first.points[i].inverse_depth, again.points[i].inverse_depth);
     EXPECT_EQ(first.points[i].sigma, again.points[i].sigma);
+  }
+}
+
+TEST_P(EveryDepthMethod, IsTheSameForAnyNumberOfThreads) {
+  set_thread_count(1);
+  const DepthResult one = estimate(recording().window(kEnd_s / 2));
+  set_thread_count(3);
+  const DepthResult three = estimate(recording().window(kEnd_s / 2));
+  set_thread_count(0);
+  ASSERT_EQ(one.points.size(), three.points.size());
+  for (std::size_t i = 0; i < one.points.size(); ++i) {
+    EXPECT_EQ(one.points[i].x_px, three.points[i].x_px);
+    EXPECT_EQ(one.points[i].inverse_depth, three.points[i].inverse_depth);
+    EXPECT_EQ(one.points[i].sigma, three.points[i].sigma);
   }
 }
 

@@ -115,7 +115,7 @@ TEST(EdgeRefiner, ConfirmsAnExpectedDepthButNoOther) {
   Refined refined(glide_recording().events);
   const std::vector<FittedEdge> edges = refined.edges;
   const auto confirmed = [&](float factor, float gap_share) {
-    refined.refiner.restart({}, 0);
+    refined.refiner.restart(FoundEdges(glide_recording().world.camera(), 0));
     std::size_t count = 0;
     for (const FittedEdge& fitted : edges) {
       RayEdge edge = fitted.edge;

@@ -105,6 +105,30 @@ TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
   expect_glide(run);
 }
 
+TEST_F(OdometryModule, TheEventsOfSomeOfThePixelsWillDo) {
+  std::string yaml =
+      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  (void)run_odometry(request("all", yaml));
+  yaml.replace(yaml.find("duration_s: 0.3"), 15, "duration_s: 0.3, thinned_to: 120000");
+  (void)run_odometry(request("some", yaml));
+  expect_glide(folder_.path() / "some");
+  const auto all = read_keyframe_list(folder_.path() / "all" / "keyframes.yaml");
+  const auto some = read_keyframe_list(folder_.path() / "some" / "keyframes.yaml");
+  ASSERT_GT(all.front().events, 30000) << "there is something to thin";
+  EXPECT_EQ(some.front().events, all.front().events) << "the window is as long";
+  EXPECT_LT(some.front().edges, all.front().edges);
+}
+
+TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
+  std::string yaml = kQuick;
+  yaml.replace(yaml.find("distance: 0.05"), 14, "distance: 0.05, interval_s: 0.1");
+  (void)run_odometry(request("run", yaml));
+  const auto keyframes = read_keyframe_list(folder_.path() / "run" / "keyframes.yaml");
+  ASSERT_GE(keyframes.size(), 3U);
+  for (std::size_t i = 2; i < keyframes.size(); ++i)
+    EXPECT_GE(keyframes[i].made_s, keyframes[i - 1].made_s + 0.099) << i;
+}
+
 TEST_F(OdometryModule, GivenPosesMayBeStampedLate) {
   constexpr double kLate_s = 0.05;  // 40 mm of way
   std::vector<StampedPose> late = poses_until(kEnd_s);
