@@ -39,6 +39,7 @@ void describe_command(CLI::App& command) {
   add_cache_verb(command);
   add_render_verb(command);
   add_info_verb(command);
+  add_statistics_verb(command);
   add_convert_verb(command);
 }
 

@@ -26,7 +26,7 @@ class LinePlot {
         theme_(theme),
         x_(values(panel, false), false),
         y_(values(panel, true), true) {
-    draw_frame(chart.x_label);
+    draw_frame(panel.x_label.empty() ? chart.x_label : panel.x_label);
     for (std::size_t i = 0; i < panel.lines.size(); ++i) draw_line(i);
   }
 

@@ -18,6 +18,7 @@ struct LineChart {
   struct Panel {
     std::string title;                      ///< quantity and unit
     std::vector<std::vector<Point>> lines;  ///< one for each name, ascending in x; may be empty
+    std::string x_label = {};               ///< where it is not the chart's
   };
 
   std::string x_label;

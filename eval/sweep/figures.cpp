@@ -98,23 +98,29 @@ LineChart line_chart(const SweepResults& results, std::size_t axis) {
   return chart;
 }
 
+/// Rows are labels or datasets, whichever there are more of; the others are the bars of a row,
+/// which are told apart by colour.
 BarChart bar_chart(const SweepResults& results) {
   BarChart chart;
-  std::vector<std::string> categories, names;
+  std::vector<std::string> labels, datasets;
   for (const SweepGroup& group : results.groups) {
-    index_in(categories, label_of(results, group.point, std::nullopt));
-    index_in(names, group.point.dataset);
+    index_in(labels, label_of(results, group.point, std::nullopt));
+    index_in(datasets, group.point.dataset);
   }
-  chart.categories = categories;
-  chart.names = names;
+  const bool by_dataset = datasets.size() > labels.size();
+  chart.categories = by_dataset ? datasets : labels;
+  chart.names = by_dataset ? labels : datasets;
   for (const std::string& metric : drawn_metrics(results)) {
     BarChart::Panel panel{metric_info(metric).label, {}};
-    panel.bars.assign(categories.size(),
-                      std::vector<std::optional<ChartValue>>(names.size(), std::nullopt));
+    panel.bars.assign(chart.categories.size(),
+                      std::vector<std::optional<ChartValue>>(chart.names.size(), std::nullopt));
     for (const SweepGroup& group : results.groups)
-      if (const std::optional<MetricSummary> summary = summarise(group, metric))
-        panel.bars[index_in(categories, label_of(results, group.point, std::nullopt))]
-                  [index_in(names, group.point.dataset)] = chart_value(*summary);
+      if (const std::optional<MetricSummary> summary = summarise(group, metric)) {
+        const std::size_t label = index_in(labels, label_of(results, group.point, std::nullopt));
+        const std::size_t dataset = index_in(datasets, group.point.dataset);
+        panel.bars[by_dataset ? dataset : label][by_dataset ? label : dataset] =
+            chart_value(*summary);
+      }
     chart.panels.push_back(std::move(panel));
   }
   return chart;

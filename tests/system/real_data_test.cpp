@@ -16,6 +16,7 @@ namespace saccade::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// Several depths and a narrow field of view: translation and yaw look alike, so the scores are
@@ -43,6 +44,17 @@ TEST(RealData, SliderIsTrackedFromItsOwnFrame) {
   EXPECT_TRUE(fs::exists(run + ".png"));
   saccade_ok({"report", run, "-o", run + ".html"});
   EXPECT_TRUE(fs::exists(run + ".html"));
+}
+
+/// Of docs/realism.md: the blind time of a real pixel.
+TEST(RealData, SliderIsBlindForMillisecondsAfterAnEvent) {
+  SACCADE_SHARED_DATA_OR_SKIP(recording, "slider_depth");
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "statistics").string();
+  EXPECT_THAT(saccade_ok({"statistics", recording.string(), "-o", out}),
+              AllOf(HasSubstr("0.1 % of gaps are below [us]"), HasSubstr("2,590")));
+  for (const char* file : {"statistics.csv", "rates.csv", "gaps.csv", "statistics.png"})
+    EXPECT_TRUE(fs::exists(fs::path(out) / file)) << file;
 }
 
 /// Books, a box and balls before a board on a wall.

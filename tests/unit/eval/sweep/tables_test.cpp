@@ -138,6 +138,19 @@ TEST_F(SweepTables, WordsAreDrawnAsBars) {
   EXPECT_EQ(figures[0].file, "compared.png");
 }
 
+TEST_F(SweepTables, ManyDatasetsAreDrawnAsRows) {
+  fill("a.b: [dense, sparse]");
+  (void)write_figures(results_, folder_.path());
+  const int of_one_dataset = read_image_rgb(folder_.path() / "compared.png").height();
+  plan_.runs[1].point.dataset = "second";
+  plan_.runs[3].point.dataset = "third";
+  results_.groups = group_by_seed(results_.rows);
+  (void)write_figures(results_, folder_.path());
+  // Three rows for two bars each; two rows for three bars would be lower by the gap of a row.
+  const int of_three = read_image_rgb(folder_.path() / "compared.png").height();
+  EXPECT_EQ(of_three - of_one_dataset, 3 * 38 - 2 * 25);
+}
+
 TEST_F(SweepTables, ASingleRowIsNotDrawn) {
   fill("a.b: [1]");
   EXPECT_TRUE(write_figures(results_, folder_.path()).empty());

@@ -1,0 +1,55 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/common_options.h"
+#include "apps/option_checks.h"
+#include "apps/verbs.h"
+#include "eval/statistics_report.h"
+
+namespace saccade {
+namespace {
+
+struct StatisticsOptions {
+  std::vector<std::filesystem::path> paths;
+  std::optional<std::filesystem::path> output;
+  RecordingPart part;
+  CommonOptions common;
+};
+
+void show_statistics(const StatisticsOptions& options) {
+  options.common.apply();
+  std::vector<NamedStatistics> recordings;
+  for (const std::filesystem::path& path : options.paths)
+    recordings.push_back(statistics_of_recording(path, options.part));
+  fmt::print("{}", statistics_table(recordings));
+  if (!options.output) return;
+  write_statistics(recordings, *options.output);
+  if (!options.common.quiet) fmt::print("wrote {}\n", options.output->string());
+}
+
+}  // namespace
+
+void add_statistics_verb(CLI::App& command) {
+  const auto options = std::make_shared<StatisticsOptions>();
+  CLI::App* verb = command.add_subcommand(
+      "statistics", "Hold the events of recordings against each other: rates, gaps, noise");
+  verb->add_option("PATH", options->paths, "Dataset folders or event files")->required();
+  verb->add_option("-o,--output", options->output, "Folder for tables (.csv) and a picture")
+      ->type_name("FOLDER");
+  verb->add_option("--start-s", options->part.start_s,
+                   "Begin of the part that counts (default: first event)")
+      ->check(finite_number());
+  verb->add_option("--duration-s", options->part.duration_s, "Length of the part that counts")
+      ->check(positive_number());
+  add_common_options(*verb, options->common);
+  verb->footer(
+      "Example:\n"
+      "  saccade statistics data/slider_depth data/slider_like -o realism --duration-s 0.17");
+  verb->callback([options] { show_statistics(*options); });
+}
+
+}  // namespace saccade
