@@ -210,7 +210,7 @@ class Problem {
     alignment.interval_s = options_.imu.interval_s;
     const InertialAlignment aligned = align_inertially(path_, *start.imu, alignment);
     if (!(aligned.gravity.norm() > 0))
-      throw InputError({},
+      throw InputError("joint.imu.use",
                        "the readings of imu.txt cover too little of the path, or do not fit it");
     const bool knows_scale = aligned.status == InertialAlignment::Status::kOk;
     // Neighbouring events err alike and count for less than their number says; readings do not.

@@ -16,35 +16,46 @@ constexpr std::size_t kFewest = 100;  ///< pixels of a view that is scored
 constexpr int kRadius = 5;
 constexpr double kSigma = 1.5;
 
-/// First and second moments of two series.
-struct SeriesMoments {
-  double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0;
+/// First and second moments of two series, summed from the place of a first pair: what is constant
+/// has a variance of 0, and little is lost where the mean is large against the deviation.
+class SeriesMoments {
+ public:
+  SeriesMoments(double first_a, double first_b) : first_a_(first_a), first_b_(first_b) {}
 
-  void add(double x, double y, double weight = 1) {
-    n += weight;
-    a += weight * x;
-    b += weight * y;
-    aa += weight * x * x;
-    ab += weight * x * y;
-    bb += weight * y * y;
+  void add(double a, double b, double weight = 1) {
+    const double x = a - first_a_, y = b - first_b_;
+    n_ += weight;
+    a_ += weight * x;
+    b_ += weight * y;
+    aa_ += weight * x * x;
+    ab_ += weight * x * y;
+    bb_ += weight * y * y;
   }
-  [[nodiscard]] double mean_a() const { return a / n; }
-  [[nodiscard]] double mean_b() const { return b / n; }
-  [[nodiscard]] double var_a() const { return std::max(aa / n - mean_a() * mean_a(), 0.0); }
-  [[nodiscard]] double var_b() const { return std::max(bb / n - mean_b() * mean_b(), 0.0); }
-  [[nodiscard]] double covariance() const { return ab / n - mean_a() * mean_b(); }
+  [[nodiscard]] double weight() const { return n_; }
+  [[nodiscard]] double mean_a() const { return first_a_ + a_ / n_; }
+  [[nodiscard]] double mean_b() const { return first_b_ + b_ / n_; }
+  [[nodiscard]] double var_a() const { return std::max(aa_ / n_ - a_ / n_ * (a_ / n_), 0.0); }
+  [[nodiscard]] double var_b() const { return std::max(bb_ / n_ - b_ / n_ * (b_ / n_), 0.0); }
+  [[nodiscard]] double covariance() const { return ab_ / n_ - a_ / n_ * (b_ / n_); }
   [[nodiscard]] double correlation() const {
     const double product = var_a() * var_b();
     return product > 0 ? covariance() / std::sqrt(product) : 0;
   }
+
+ private:
+  double first_a_, first_b_;
+  double n_ = 0, a_ = 0, b_ = 0, aa_ = 0, ab_ = 0, bb_ = 0;
 };
 
 SeriesMoments moments_of(const ImageF& a, const ImageF& b, const ImageU8& mask) {
-  SeriesMoments moments;
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask.pixels()[i] != 0)
-      moments.add(static_cast<double>(a.pixels()[i]), static_cast<double>(b.pixels()[i]));
-  return moments;
+  std::optional<SeriesMoments> moments;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask.pixels()[i] == 0) continue;
+    const auto x = static_cast<double>(a.pixels()[i]), y = static_cast<double>(b.pixels()[i]);
+    if (!moments) moments.emplace(x, y);
+    moments->add(x, y);
+  }
+  return moments.value_or(SeriesMoments(0, 0));
 }
 
 double range_of(const ImageF& image, const ImageU8& mask) {
@@ -67,7 +78,7 @@ std::array<double, kRadius + 1> window_weights() {
 
 SeriesMoments window_around(const ImageF& a, const ImageF& b, const ImageU8& mask, int x, int y) {
   static const auto weights = window_weights();
-  SeriesMoments moments;
+  SeriesMoments moments(static_cast<double>(a(x, y)), static_cast<double>(b(x, y)));
   for (int v = std::max(y - kRadius, 0); v <= std::min(y + kRadius, a.height() - 1); ++v)
     for (int u = std::max(x - kRadius, 0); u <= std::min(x + kRadius, a.width() - 1); ++u)
       if (mask(u, v) != 0)
@@ -122,7 +133,7 @@ double structural_similarity(const ImageF& a, const ImageF& b, const ImageU8& ma
 std::optional<ImageScores> score_image(const ImageComparison& c) {
   SACCADE_CHECK(c.estimate.size() == c.truth.size() && c.truth.size() == c.mask.size());
   const SeriesMoments m = moments_of(c.estimate, c.truth, c.mask);
-  if (m.n < kFewest || !(m.var_b() > 0)) return std::nullopt;
+  if (m.weight() < kFewest || !(m.var_b() > 0)) return std::nullopt;
   ImageScores scores;
   scores.observed = c.observed;
   scores.scale = m.var_a() > 0 ? m.covariance() / m.var_a() : 0;

@@ -30,9 +30,9 @@ struct ImageScores {
 };
 
 /// Structural similarity (Wang et al. 2004) of b with a: windows of 11 x 11 Gaussian weights, sigma
-/// 1.5, k1 = 0.01, k2 = 0.03, range = max - min of `a` on the mask; averaged over the pixels of the
-/// mask. Beyond the image, and off the mask, windows are cut off: weights of what is left sum to
-/// one.
+/// 1.5, k1 = 0.01, k2 = 0.03, range = max - min of `a` on the mask, > 0; moments of the weights,
+/// not of a sample (divided by their sum); averaged over the pixels of the mask. Beyond the image,
+/// and off the mask, windows are cut off: weights of what is left sum to one.
 [[nodiscard]] double structural_similarity(const ImageF& a, const ImageF& b, const ImageU8& mask);
 
 /// nullopt where the mask holds fewer than 100 pixels or the truth is constant on it.

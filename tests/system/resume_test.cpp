@@ -235,6 +235,28 @@ TEST_F(Resume, ARigGoesOnWithTheCameraItWasAt) {
               HasSubstr("all files match"));
 }
 
+TEST_F(Resume, ADatasetOfTheCacheGoesOnWhereItWas) {
+  const OwnCache cache;
+  const auto unfinished_images = [&] {
+    std::error_code error;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(cache.path() / "datasets", error))
+      return files_in(entry.path() / ".walls.unfinished/content/images");
+    return std::size_t{0};
+  };
+  {
+    Background run(simulation(data(), {"--cached"}));
+    while (run.is_running() && unfinished_images() <= 4)
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+    run.kill();
+    ASSERT_TRUE(run.was_killed());
+  }
+  EXPECT_FALSE(fs::exists(data()));
+  EXPECT_THAT(saccade_ok(simulation(data(), {"--cached"})), HasSubstr("resuming at"));
+  EXPECT_EQ(hash_files(data()), hash_files(reference()));
+  EXPECT_THAT(saccade_ok(simulation(data(), {"--cached"})), HasSubstr("simulated before"));
+}
+
 TEST_F(Resume, AnotherConfigurationStartsClean) {
   kill_at(0.5);
   const std::string output = saccade_ok(simulation(data(), {"--set", "imu.rate_hz=500"}));

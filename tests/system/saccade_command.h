@@ -13,14 +13,24 @@
 
 namespace saccade::testing {
 
-/// The tests of a program share a cache of datasets of their own, and leave the user's alone.
+/// A cache of datasets that is in force while this lives, in place of the one before.
 class OwnCache {
  public:
-  OwnCache() { setenv("SACCADE_CACHE", folder_.path().c_str(), 1); }
+  OwnCache() {
+    if (const char* before = std::getenv("SACCADE_CACHE")) before_ = before;
+    setenv("SACCADE_CACHE", folder_.path().c_str(), 1);
+  }
+  ~OwnCache() { setenv("SACCADE_CACHE", before_.c_str(), 1); }
+  OwnCache(const OwnCache&) = delete;
+  OwnCache& operator=(const OwnCache&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
   TemporaryFolder folder_;
+  std::string before_;
 };
+/// The tests of a program share one, and leave the user's alone.
 inline const OwnCache kOwnCache;
 
 /// Runs the command of this build.

@@ -115,7 +115,7 @@ TEST(JointRefinement, SaysThatReadingsDoNotFit) {
   MountedImu imu = readings_of_glide();
   imu.samples.resize(20);
   EXPECT_THAT(testing::error_of([&] { return refined(1, {}, imu); }),
-              ::testing::HasSubstr("imu.txt"));
+              ::testing::StartsWith("joint.imu.use: the readings of imu.txt"));
 }
 
 TEST(JointRefinement, IsTheSameForAnyNumberOfThreads) {

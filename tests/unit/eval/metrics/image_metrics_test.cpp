@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace saccade {
@@ -68,6 +69,32 @@ TEST(ImageMetrics, WhatIsOffTheMaskDoesNotCount) {
   EXPECT_NEAR(s->gradient_pearson, 1, 1e-5);
   c.mask.fill(0);
   EXPECT_FALSE(score_image(c));
+}
+
+TEST(ImageMetrics, AConstantEstimateExplainsNothing) {
+  // 0.1 is no sum of powers of two: naive sums of squares would leave a variance, and so a scale.
+  ImageComparison c = affine(1, 0);
+  c.estimate.fill(0.1F);
+  const auto s = score_image(c);
+  ASSERT_TRUE(s);
+  EXPECT_EQ(s->scale, 0);
+  EXPECT_EQ(s->pearson, 0);
+  EXPECT_EQ(s->gradient_pearson, 0);
+  double mean = 0;
+  for (const float value : c.truth.pixels())
+    mean += static_cast<double>(value) / static_cast<double>(c.truth.size());
+  EXPECT_NEAR(s->offset, mean, 1e-12);
+}
+
+TEST(ImageMetrics, AConstantTruthOrTooFewPixelsHaveNoScore) {
+  ImageComparison c = affine(1, 0);
+  c.truth.fill(0.1F);
+  EXPECT_FALSE(score_image(c));
+  c = affine(1, 0);
+  std::fill(c.mask.pixels().begin() + 99, c.mask.pixels().end(), std::uint8_t{0});
+  EXPECT_FALSE(score_image(c));
+  c.mask.pixels()[99] = 1;
+  EXPECT_TRUE(score_image(c));
 }
 
 TEST(ImageMetrics, NothingToScoreIsNull) {

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <map>
+#include <thread>
 
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -73,6 +74,32 @@ TEST_F(Launching, RunsAsManyAtOnceAsAllowed) {
   EXPECT_TRUE(run(2));
   EXPECT_TRUE(results_.at("reads").succeeded);
   EXPECT_TRUE(results_.at("writes").succeeded);
+}
+
+TEST_F(Launching, NeverRunsMoreAtOnceThanAllowed) {
+  // A job counts those that run with it by the folders that each makes and removes.
+  const std::string here = (folder_.path() / "running").string();
+  std::filesystem::create_directory(here);
+  for (int i = 0; i < 12; ++i)
+    add(std::to_string(i),
+        {"mkdir " + here + "/$$; sleep 0.02; ls " + here + " | wc -l; rmdir " + here + "/$$"});
+  EXPECT_TRUE(run(3));
+  for (const LaunchJob& job : jobs_) {
+    const std::string text = log(job.name);
+    EXPECT_LE(std::stoi(text.substr(text.find('\n') + 1)), 3) << text;
+  }
+}
+
+TEST(LocalLauncher, JobsTimesThreadsNeverExceedTheCores) {
+  const auto launcher = make_launcher("local");
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  for (int threads = 1; threads <= cores; ++threads) {
+    const int at_once = launcher->usual_at_once(threads);
+    EXPECT_LE(at_once * threads, cores);
+    EXPECT_GT((at_once + 1) * threads, cores) << "cores are left idle";
+  }
+  EXPECT_EQ(launcher->usual_at_once(0), 1);
+  EXPECT_EQ(launcher->usual_at_once(cores + 1), 1) << "one job must run all the same";
 }
 
 TEST_F(Launching, OneAtATimeKeepsTheOrder) {
