@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "apps/common_options.h"
 #include "apps/verbs.h"
 #include "eval/report/report.h"
@@ -20,7 +21,9 @@ struct ReportVerbOptions {
 
 void report(const ReportVerbOptions& options) {
   options.common.apply();
-  write_report(options.runs, options.output, options.report);
+  ReportOptions report = options.report;
+  report.command = command_line();
+  write_report(options.runs, options.output, report);
   if (!options.common.quiet) fmt::print("wrote {}\n", options.output.string());
 }
 
@@ -36,11 +39,18 @@ void add_report_verb(CLI::App& command) {
   verb->add_option("--published", options->report.published,
                    "Scores of other methods for the leaderboard, such as reports/published.yaml")
       ->type_name("FILE.yaml");
+  verb->add_option("--against", options->report.against,
+                   "Run folders of another build or configuration, with which the runs are paired")
+      ->type_name("RUN");
   verb->add_option("--export", options->report.exports,
-                   "Folder for the leaderboard's tables as LaTeX and CSV")
+                   "Folder for the tables of the leaderboard and of --against as LaTeX and CSV")
       ->type_name("DIR");
+  verb->add_flag("--video", options->report.film, "A short film of every run, by ffmpeg");
   add_common_options(*verb, options->common);
-  verb->footer("Example:\n  saccade report runs/walls runs/planes -o report.html");
+  verb->footer(
+      "Examples:\n"
+      "  saccade report runs/walls runs/planes -o report.html\n"
+      "  saccade report new/* -o change.html --against old/*");
   verb->callback([options] { report(*options); });
 }
 

@@ -4,10 +4,8 @@
 
 #include "core/error.h"
 #include "core/io/folder_name.h"
-#include "core/io/run_record.h"
 #include "core/shell.h"
 #include "eval/configuration_name.h"
-#include "eval/metrics/metrics.h"
 
 namespace saccade {
 namespace {
@@ -29,13 +27,26 @@ bool is_kept(const std::string& key) {
 
 }  // namespace
 
-std::string GateKey::sequence() const { return dataset + ", " + module + " " + config; }
+std::string GateKey::sequence() const {
+  return dataset + ", " + module + (config.empty() ? "" : " " + config);
+}
 
 std::string GateKey::text() const { return sequence() + ", seed " + std::to_string(seed); }
 
 std::optional<double> GateRun::get(const std::string& metric) const {
   const auto found = metrics.find(metric);
   return found == metrics.end() ? std::nullopt : found->second;
+}
+
+GateRun gate_run(const RunRecord& record, const Metrics& metrics) {
+  GateRun run;
+  run.key = {folder_name(record.dataset), record.module, configuration_name(record), record.seed};
+  run.machine = machine_kind(record.machine);
+  run.threads = record.threads;
+  run.tool_version = record.tool_version;
+  for (const auto& [key, value] : metrics.values())
+    if (is_kept(key)) run.metrics.emplace(key, value);
+  return run;
 }
 
 GateRun read_gate_run(const fs::path& folder) {
@@ -45,15 +56,7 @@ GateRun read_gate_run(const fs::path& folder) {
     throw InputError(folder.string(),
                      "has not been scored; first: " + shell_line(std::array<std::string, 3>{
                                                           "saccade", "eval", folder.string()}));
-  GateRun run;
-  run.key = {folder_name(record.dataset), record.module, configuration_name(record), record.seed};
-  run.machine = machine_kind(record.machine);
-  run.threads = record.threads;
-  run.tool_version = record.tool_version;
-  const Metrics metrics = read_json_metrics(scores);
-  for (const auto& [key, value] : metrics.values())
-    if (is_kept(key)) run.metrics.emplace(key, value);
-  return run;
+  return gate_run(record, read_json_metrics(scores));
 }
 
 std::vector<GateRun> read_gate_runs(const std::vector<fs::path>& folders) {

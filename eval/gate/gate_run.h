@@ -6,7 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+
 #include <vector>
+#include "core/io/run_record.h"
+#include "eval/metrics/metrics.h"
 
 namespace saccade {
 
@@ -14,7 +17,7 @@ namespace saccade {
 struct GateKey {
   std::string dataset;  ///< name of its folder
   std::string module;   ///< "track", "depth", ...
-  std::string config;   ///< name of the configuration's file and what was --set
+  std::string config;   ///< name of the configuration's file and what was --set; empty: any
   std::uint64_t seed = 0;
 
   [[nodiscard]] auto operator<=>(const GateKey&) const = default;
@@ -36,6 +39,9 @@ struct GateRun {
   /// The number at `metric`; nullopt where it is null or absent.
   [[nodiscard]] std::optional<double> get(const std::string& metric) const;
 };
+
+/// A run by its record and its scores.
+[[nodiscard]] GateRun gate_run(const RunRecord& record, const Metrics& metrics);
 
 /// Reads run.yaml and metrics.json. Throws InputError for a folder that is no run, or one that has
 /// not been scored.

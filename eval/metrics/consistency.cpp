@@ -1,6 +1,7 @@
 #include "eval/metrics/consistency.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace saccade {
 
@@ -20,6 +21,11 @@ std::optional<double> nees(std::span<const StampedCovariance> covariances,
   }
   if (count == 0) return std::nullopt;
   return sum / count;
+}
+
+double nees_factor(double nees) {
+  constexpr double kDegreesOfFreedom = 6;
+  return std::max(nees / kDegreesOfFreedom, kDegreesOfFreedom / nees);
 }
 
 }  // namespace saccade

@@ -11,7 +11,7 @@
 namespace saccade {
 
 /// Writes `count` > 0 frames of one size as a video (VideoWriter), with progress; `fps` > 0.
-void write_film(const std::filesystem::path& output, std::size_t count, double fps,
+void write_film(const std::filesystem::path& output, std::size_t count, double fps, int crf,
                 const std::function<ImageRgb8(std::size_t)>& frame);
 
 /// A film of a stretch of time, `options.slow_motion` times as long, by default of 30 frames per

@@ -22,6 +22,7 @@ struct RenderOptions {
   int upscale = 3;  ///< screen pixels per sensor pixel, 1..8
   /// Frame rate of a video, 1..240; nullopt: 30, of views and growth 3.
   std::optional<double> fps = std::nullopt;
+  int crf = 18;  ///< of a video: H.264's constant rate factor, 0..51, more is smaller and worse
   double slow_motion = 10;  ///< seconds of video per second of recording, > 0
   bool dark = true;         ///< on a dark or a light background
   /// A picture that hangs in the world, over events and frames without lens distortion; each frame

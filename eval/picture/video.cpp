@@ -32,7 +32,7 @@ std::filesystem::path find_program(const std::string& name) {
 }
 
 std::vector<std::string> arguments_for(const std::filesystem::path& file, int width, int height,
-                                       double fps) {
+                                       double fps, int crf) {
   // Frames of odd size get one more row or column: H.264 halves the resolution of colour.
   return {"ffmpeg",      "-y",
           "-loglevel",   "error",
@@ -43,7 +43,7 @@ std::vector<std::string> arguments_for(const std::filesystem::path& file, int wi
           "-i",          "pipe:0",
           "-vf",         "pad=ceil(iw/2)*2:ceil(ih/2)*2",
           "-c:v",        "libx264",
-          "-crf",        "18",
+          "-crf",        std::to_string(crf),
           "-preset",     "medium",
           "-pix_fmt",    "yuv420p",
           "-movflags",   "+faststart",
@@ -68,16 +68,17 @@ int start(const std::filesystem::path& program, std::vector<std::string> argumen
 
 }  // namespace
 
-VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double fps)
+VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double fps,
+                         int crf)
     : file_(file), width_(width), height_(height) {
-  SACCADE_CHECK(width > 0 && height > 0 && fps > 0);
+  SACCADE_CHECK(width > 0 && height > 0 && fps > 0 && crf >= 0 && crf <= 51);
   const std::filesystem::path program = find_program("ffmpeg");
   // A socket instead of a pipe: when ffmpeg dies, send() returns an error and no signal is raised.
   int ends[2];
   SACCADE_CHECK(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0);
   socket_ = ends[0];
   try {
-    process_ = start(program, arguments_for(file_.path(), width, height, fps), ends[1]);
+    process_ = start(program, arguments_for(file_.path(), width, height, fps, crf), ends[1]);
   } catch (...) {
     close(ends[0]);
     close(ends[1]);

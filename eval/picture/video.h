@@ -12,8 +12,9 @@ namespace saccade {
 /// appears under its name when finish() is done.
 class VideoWriter {
  public:
-  /// Throws InputError where ffmpeg is not on the PATH; `fps` > 0.
-  VideoWriter(const std::filesystem::path& file, int width, int height, double fps);
+  /// `crf`: H.264's constant rate factor, 0..51, more is smaller and worse. Throws InputError where
+  /// ffmpeg is not on the PATH; `fps` > 0.
+  VideoWriter(const std::filesystem::path& file, int width, int height, double fps, int crf);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

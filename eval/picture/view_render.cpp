@@ -65,7 +65,7 @@ void write_growth_film(const std::vector<GrowthStep>& steps,
                        const std::filesystem::path& output, const RenderOptions& options) {
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
   const int factor = truth ? options.upscale : 1;
-  write_film(output, steps.size(), options.fps.value_or(kViewFps), [&](std::size_t i) {
+  write_film(output, steps.size(), options.fps.value_or(kViewFps), options.crf, [&](std::size_t i) {
     std::vector<CaptionedPicture> pictures = {
         {grouped(steps[i].events) + " events", upscale(read_image_rgb(steps[i].file), factor)}};
     if (truth) pictures.push_back(*truth);
@@ -93,7 +93,7 @@ void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictur
                   views.pictures(view, options.events.value_or(0), options.upscale, theme));
   };
   if (film)
-    return write_film(output, shown.size(), fps, [&](std::size_t i) {
+    return write_film(output, shown.size(), fps, options.crf, [&](std::size_t i) {
       Sheet sheet(title, theme);
       add_row(sheet, shown[i]);
       return sheet.draw();

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/check.h"
-#include "core/io/image_file.h"
+#include "core/io/webp_file.h"
 #include "eval/picture/canvas.h"
 
 namespace saccade {
@@ -50,9 +50,18 @@ std::string base64(std::string_view bytes) {
 
 std::string figure(const ImageRgb8& picture, std::string_view caption, std::string_view alt) {
   return fmt::format(
-      "<figure><img src=\"data:image/png;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
+      "<figure><img loading=\"lazy\" src=\"data:image/webp;base64,{}\" width=\"{}\" height=\"{}\" "
+      "alt=\"{}\">"
       "<figcaption>{}</figcaption></figure>\n",
-      base64(encode_png(picture)), picture.width(), picture.height(), escape_html(alt), caption);
+      base64(encode_webp(picture)), picture.width(), picture.height(), escape_html(alt), caption);
+}
+
+std::string repeat_html(const std::vector<std::string>& commands) {
+  std::string lines;
+  for (const std::string& command : commands)
+    if (!command.empty()) lines += escape_html(command) + "\n";
+  if (lines.empty()) return "";
+  return "<details class=\"repeat\"><summary>Repeat</summary><pre>" + lines + "</pre></details>\n";
 }
 
 std::string upscaled_figure(const ImageRgb8& picture, std::string_view caption,

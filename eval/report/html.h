@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/image.h"
 
@@ -14,10 +15,13 @@ namespace saccade {
 /// RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-/// An image with caption; the picture is a PNG inside the page. `caption` is HTML, `alt` plain
-/// text.
+/// An image with caption; the picture is a lossless WebP inside the page. `caption` is HTML, `alt`
+/// plain text.
 [[nodiscard]] std::string figure(const ImageRgb8& picture, std::string_view caption,
                                  std::string_view alt);
+
+/// Command lines that make a part of the page again, folded; empty without any that is known.
+[[nodiscard]] std::string repeat_html(const std::vector<std::string>& commands);
 
 /// Side of the square that an upscaled figure draws for a pixel: sensors are small [px].
 inline constexpr int kUpscale = 2;

@@ -9,11 +9,15 @@
 #include "core/check.h"
 #include "eval/evaluate.h"
 #include "eval/gate/bootstrap.h"
+#include "eval/metrics/consistency.h"
 #include "eval/metrics/statistics.h"
+#include "eval/number_text.h"
 #include "eval/sweep/metric_info.h"
 
 namespace saccade {
 namespace {
+
+constexpr const char* kNees = "trajectory.nees";
 
 struct BoardMetric {
   const char* key;
@@ -21,11 +25,12 @@ struct BoardMetric {
 };
 
 /// The main scores of every kind of run: a recording without depth has ATE alone.
-constexpr std::array<BoardMetric, 12> kBoardMetrics{{
+constexpr std::array<BoardMetric, 13> kBoardMetrics{{
     {"trajectory.dt_rel_percent.mean", "dt_rel, mean [%]"},
     {"trajectory.dtheta_deg.mean", "dtheta, mean [deg]"},
     {"trajectory.se3.ate_rmse_m", "ATE after SE(3), RMSE [m]"},
     {"trajectory.se3_5s.mean_percent", "error after SE(3) by the first 5 s, mean [% of the path]"},
+    {kNees, "poses' covariance, factor that NEES is off"},
     {"depth.rel_median", "depth, median relative error"},
     {"depth.completeness", "depth, completeness"},
     {"reconstruction.ssim", "images, SSIM"},
@@ -37,7 +42,10 @@ constexpr std::array<BoardMetric, 12> kBoardMetrics{{
 }};
 
 std::optional<double> score_of(const Metrics& metrics, const std::string& key) {
-  return key.starts_with("speed.") ? speed_value(metrics, key) : metrics.get(key);
+  if (key.starts_with("speed.")) return speed_value(metrics, key);
+  const std::optional<double> value = metrics.get(key);
+  if (key != kNees || !value) return value;
+  return *value > 0 ? std::optional(nees_factor(*value)) : std::nullopt;
 }
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
@@ -47,6 +55,12 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 /// Whether an entry without the score is shown all the same.
 bool is_shown_failure(const LeaderboardEntry& entry, const std::string& key) {
   return !entry.problem.empty() && key.starts_with("trajectory.");
+}
+
+/// The NEES behind its factor: above 6 the estimator is surer than its errors allow.
+std::string nees_note(std::span<const double> nees) {
+  const double mean = pooled(nees).mean;
+  return fmt::format("NEES {}, {}", rounded(mean), mean > 6 ? "too sure" : "too cautious");
 }
 
 constexpr std::size_t kLeastSequences = 3;  ///< for an interval over them
@@ -75,16 +89,18 @@ LeaderboardRow board_row(const std::string& method, std::span<const LeaderboardE
   LeaderboardRow row{method, {}, {}, {}, 0, 0};
   for (const std::string& sequence : board.sequences) {
     LeaderboardScore score;
-    std::vector<double> values;
+    std::vector<double> values, nees;
     for (const LeaderboardEntry& entry : entries) {
       if (entry.method != method || entry.sequence != sequence) continue;
       row.source = entry.source;
-      if (const std::optional<double> value = score_of(entry.metrics, board.key))
-        values.push_back(*value);
-      else if (is_shown_failure(entry, board.key) && ++score.failed == 1)
+      const std::optional<double> value = score_of(entry.metrics, board.key);
+      if (value) values.push_back(*value);
+      if (value && board.key == kNees) nees.push_back(*entry.metrics.get(kNees));
+      if (!value && is_shown_failure(entry, board.key) && ++score.failed == 1)
         score.problem = entry.problem;
     }
     if (!values.empty()) score.value = pooled(values);
+    if (!nees.empty()) score.note = nees_note(nees);
     row.complete += score.complete() ? 1 : 0;
     row.scores.push_back(std::move(score));
   }
@@ -114,7 +130,7 @@ std::string board_caption(const Leaderboard& board) {
 
 ReportTable::Cell score_cell(const LeaderboardScore& score) {
   if (!score.value) return {score.failed > 0 ? score.problem : "–", {}};
-  if (score.failed == 0) return {"", score.value};
+  if (score.failed == 0) return {"", score.value, score.note};
   return {"", score.value,
           fmt::format("{} of {} failed", score.failed, score.failed + score.value->count)};
 }

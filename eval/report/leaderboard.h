@@ -25,6 +25,7 @@ struct LeaderboardScore {
   std::optional<PooledValue> value;  ///< over the seeds that have one
   std::size_t failed = 0;            ///< runs that came to nothing
   std::string problem;               ///< of the first of these
+  std::string note;                  ///< what the value does not say by itself
 
   /// A score that no failed run spoils.
   [[nodiscard]] bool complete() const { return value && failed == 0; }
@@ -54,9 +55,10 @@ struct Leaderboard {
 /// none. Contract: at least one, all finite.
 [[nodiscard]] PooledValue pooled(std::span<const double> values);
 
-/// One per metric that any of the entries has, in a fixed order; runs that came to nothing stand in
-/// those of trajectories. Scores are pooled over seeds as they are; over sequences, which differ in
-/// difficulty by factors, as logarithms:
+/// One per metric that any of the entries has, in a fixed order; `trajectory.nees`, best at 6, as
+/// the factor that it is off (nees_factor(), eval/metrics/consistency.h); runs that came to nothing
+/// stand in those of trajectories. Scores are pooled over seeds as they are; over sequences, which
+/// differ in difficulty by factors, as logarithms:
 ///   overall = exp(mean of ln score),  interval = exp(interval of the mean of ln score),
 /// the interval from three sequences on.
 [[nodiscard]] std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries);

@@ -4,18 +4,13 @@
 
 #include <algorithm>
 
-#include "eval/configuration_name.h"
 #include "eval/published_rows.h"
-#include "eval/report/leaderboard.h"
 
 namespace saccade {
 namespace {
 
 LeaderboardEntry run_entry(const RunData& data) {
-  const RunRecord& record = data.run.record;
-  const std::string method =
-      record.external ? record.external->name : record.module + " " + configuration_name(record);
-  return {method, data.dataset, data.metrics, record.problem(), ""};
+  return {data.method, data.dataset, data.metrics, data.run.record.problem(), ""};
 }
 
 LeaderboardEntry published_entry(const PublishedRow& row) {
@@ -26,8 +21,8 @@ LeaderboardEntry published_entry(const PublishedRow& row) {
 
 }  // namespace
 
-std::vector<ReportTable> leaderboard_tables(std::span<const RunData> runs,
-                                            const std::filesystem::path& published) {
+std::vector<Leaderboard> leaderboards_of(std::span<const RunData> runs,
+                                         const std::filesystem::path& published) {
   std::vector<LeaderboardEntry> entries;
   for (const RunData& data : runs) entries.push_back(run_entry(data));
   if (!published.empty())
@@ -35,9 +30,7 @@ std::vector<ReportTable> leaderboard_tables(std::span<const RunData> runs,
       if (std::any_of(runs.begin(), runs.end(),
                       [&](const RunData& data) { return data.dataset == row.sequence; }))
         entries.push_back(published_entry(row));
-  std::vector<ReportTable> tables;
-  for (const Leaderboard& board : leaderboards(entries)) tables.push_back(leaderboard_table(board));
-  return tables;
+  return leaderboards(entries);
 }
 
 std::string leaderboard_section(std::span<const ReportTable> tables) {

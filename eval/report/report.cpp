@@ -4,15 +4,18 @@
 
 #include <vector>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/version.h"
+#include "eval/report/against_section.h"
 #include "eval/report/assets.h"
+#include "eval/report/compared_section.h"
 #include "eval/report/html.h"
 #include "eval/report/leaderboard_section.h"
+#include "eval/report/page_data.h"
 #include "eval/report/run_data.h"
 #include "eval/report/run_section.h"
-#include "eval/report/run_series.h"
 #include "eval/report/tables.h"
 
 namespace saccade {
@@ -34,12 +37,12 @@ std::vector<std::vector<const RunData*>> by_dataset(const std::vector<RunData>& 
   return groups;
 }
 
-std::string sections(const std::vector<RunData>& runs) {
+std::string sections(const std::vector<RunData>& runs, bool film) {
   std::string html;
   for (const auto& group : by_dataset(runs)) {
     html += fmt::format("<h2>{}</h2>\n", escape_html(group.front()->dataset));
     html += dataset_pictures(*group.front());
-    for (const RunData* data : group) html += run_section(*data);
+    for (const RunData* data : group) html += run_section(*data, film);
   }
   return html;
 }
@@ -47,7 +50,9 @@ std::string sections(const std::vector<RunData>& runs) {
 /// Links to the tables that are there and to every run.
 std::string contents(const std::vector<RunData>& runs, const std::string& tables) {
   std::string html;
-  for (const auto& [id, name] : {std::pair{"leaderboard", "Leaderboard"},
+  for (const auto& [id, name] : {std::pair{"against", "A against B"},
+                                 {"leaderboard", "Leaderboard"},
+                                 {"compared", "Compared"},
                                  {"accuracy", "Accuracy"},
                                  {"depth", "Depth"},
                                  {"datasets", "Datasets"},
@@ -59,36 +64,71 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
   return html;
 }
 
+std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders) {
+  std::vector<RunData> runs;
+  for (const std::filesystem::path& folder : folders)
+    runs.push_back(gather_run(folder, runs.size() + 1));
+  compare_with_refined(runs);
+  return runs;
+}
+
+std::string summary(const std::vector<RunData>& runs) {
+  return fmt::format(
+      "{} {} scored against ground truth, beside the numbers of the thesis (T. Horstschaefer, "
+      "University of Zurich, 2016).",
+      runs.size(), runs.size() == 1 ? "run" : "runs");
+}
+
+/// The parts, each with the command that makes the page at its end.
+std::string with_repeat(const std::vector<std::string>& parts, const std::string& command) {
+  constexpr std::string_view kEnd = "</section>\n";
+  std::string html;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    SACCADE_CHECK(part.ends_with(kEnd));
+    html += part.substr(0, part.size() - kEnd.size());
+    html += repeat_html({command}) + std::string(kEnd);
+  }
+  return html;
+}
+
 }  // namespace
 
 void write_report(std::span<const std::filesystem::path> run_folders,
                   const std::filesystem::path& output, const ReportOptions& options) {
   if (run_folders.empty()) throw InputError("report", "needs at least one run folder");
-  std::vector<RunData> runs;
-  for (const std::filesystem::path& folder : run_folders)
-    runs.push_back(gather_run(folder, runs.size() + 1));
-  compare_with_refined(runs);
-  const std::vector<ReportTable> boards = leaderboard_tables(runs, options.published);
-  const std::string tables = (runs.size() > 1 ? leaderboard_section(boards) : "") +
-                             accuracy_table(runs) + depth_table(runs) + dataset_table(runs) +
-                             speed_table(runs);
+  const std::vector<RunData> runs = gather_runs(run_folders);
+  const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
+  std::vector<ReportTable> exported;
+  for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));
+  ChartSection compared = compared_section(runs, boards);
+  std::vector<std::string> parts{runs.size() > 1 ? leaderboard_section(exported) : "",
+                                 compared.html};
+  if (!options.against.empty()) {
+    const std::vector<RunData> before = gather_runs(options.against);
+    const Sides sides = compare_sides(before, runs);
+    const ChartSection against = against_section(sides);
+    parts.insert(parts.begin(), against.html);
+    compared.charts.insert(compared.charts.end(), against.charts.begin(), against.charts.end());
+    exported.push_back(against_table(sides));
+  }
+  for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
+    parts.push_back(table(runs));
+  const std::string tables = with_repeat(parts, options.command);
   const std::string page = fill_page(
       assets::page_html,
       {{"title", escape_html(options.title)},
-       {"summary",
-        fmt::format("{} {} scored against ground truth, beside the numbers of the thesis "
-                    "(T. Horstschaefer, University of Zurich, 2016).",
-                    runs.size(), runs.size() == 1 ? "run" : "runs")},
+       {"summary", summary(runs)},
        {"contents", contents(runs, tables)},
        {"style", std::string(assets::report_css)},
-       {"body", tables + sections(runs)},
-       {"data", run_series(runs)},
+       {"body", tables + sections(runs, options.film)},
+       {"data", page_data(runs, compared.charts)},
        {"script", std::string(assets::report_js)},
        {"footer",
         fmt::format("Written by saccade {} ({}). Definitions of all scores: docs/metrics.md.",
                     version(), git_commit())}});
   write_atomically(output, page);
-  if (!options.exports.empty()) export_tables(boards, options.exports);
+  if (!options.exports.empty()) export_tables(exported, options.exports);
 }
 
 }  // namespace saccade

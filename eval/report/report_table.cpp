@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "core/check.h"
@@ -40,14 +41,20 @@ std::string small_html(const std::string& text) {
   return text.empty() ? "" : "<span class=\"ref\">" + escape_html(text) + "</span>";
 }
 
+std::string marked_html(const std::string& html, const ReportTable::Cell& cell) {
+  if (cell.mark == ReportTable::Mark::kNone) return cell.best ? "<b>" + html + "</b>" : html;
+  return fmt::format("<span class=\"{}\">{}</span>",
+                     cell.mark == ReportTable::Mark::kBetter ? "better" : "worse", html);
+}
+
 std::string cell_html(const ReportTable::Cell& cell) {
   if (!cell.value)
-    return fmt::format("<td class=\"name\">{}{}</td>", escape_html(cell.text),
+    return fmt::format("<td class=\"name\">{}{}</td>", marked_html(escape_html(cell.text), cell),
                        small_html(cell.note));
   const std::string shown = cell.text.empty() ? rounded(cell.value->mean) : escape_html(cell.text);
   return fmt::format("<td data-value=\"{}\">{}{}{}</td>", cell.value->mean,
-                     cell.best ? "<b>" + shown + "</b>" : shown,
-                     small_html(interval_text(*cell.value)), small_html(cell.note));
+                     marked_html(shown, cell), small_html(interval_text(*cell.value)),
+                     small_html(cell.note));
 }
 
 std::string cell_latex(const ReportTable::Cell& cell) {
@@ -67,19 +74,26 @@ std::vector<bool> with_interval(const ReportTable& table) {
   return has;
 }
 
+/// Whether no row has a number in the column.
+bool is_text(const ReportTable& table, std::size_t column) {
+  return std::none_of(table.rows.begin(), table.rows.end(),
+                      [&](const auto& row) { return row[column].value.has_value(); });
+}
+
 }  // namespace
 
 std::string table_html(const ReportTable& table) {
+  for (const auto& row : table.rows) SACCADE_CHECK(row.size() == table.columns.size());
   std::string html = fmt::format(
       "<h4>{}</h4>\n<div class=\"scroll\"><table class=\"wide sortable\" data-name=\"{}\" "
       "data-csv=\"{}\" data-latex=\"{}\"><thead><tr>",
       escape_html(table.caption), escape_html(table.name), escape_html(table_csv(table)),
       escape_html(table_latex(table)));
-  for (const std::string& column : table.columns)
-    html += fmt::format("<th>{}</th>", escape_html(column));
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    html += fmt::format("<th{}>{}</th>", is_text(table, i) ? " class=\"name\"" : "",
+                        escape_html(table.columns[i]));
   html += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
-    SACCADE_CHECK(row.size() == table.columns.size());
     html += "<tr>";
     for (const ReportTable::Cell& cell : row) html += cell_html(cell);
     html += "</tr>\n";

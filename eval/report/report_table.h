@@ -18,11 +18,14 @@ struct PooledValue {
 
 /// One table of numbers for the page and, as LaTeX and CSV, for papers.
 struct ReportTable {
+  enum class Mark { kNone, kBetter, kWorse };
+
   struct Cell {
     std::string text;                  ///< plain; empty: the value, rounded, with its interval
     std::optional<PooledValue> value;  ///< sorts the column, and stands unrounded in the CSV
     std::string note = {};             ///< plain, small below it; on the page alone
     bool best = false;                 ///< in bold
+    Mark mark = Mark::kNone;           ///< in its colour; on the page alone
   };
 
   std::string name;     ///< of its files, without extension

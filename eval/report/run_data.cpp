@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/io/event_file.h"
+#include "eval/configuration_name.h"
 #include "eval/evaluate.h"
 #include "eval/refined_ratio.h"
 
@@ -46,11 +47,14 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   RunData data;
   data.id = "run" + std::to_string(index);
   data.run = RunFolder::open(folder);
+  const RunRecord& record = data.run.record;
+  data.method =
+      record.external ? record.external->name : record.module + " " + configuration_name(record);
   data.fast = data.run.name().find("fast") != std::string::npos;
   data.metrics = data.run.metrics;
-  data.dataset = data.run.record.dataset.filename().string();
-  if (!std::filesystem::is_directory(data.run.record.dataset)) {
-    data.missing = data.run.record.dataset.string() + " is not there";
+  data.dataset = record.dataset.filename().string();
+  if (!std::filesystem::is_directory(record.dataset)) {
+    data.missing = record.dataset.string() + " is not there";
     return data;
   }
   data.data = data.run.open_dataset();

@@ -23,7 +23,9 @@ struct DatasetNumbers {
 struct RunData {
   std::string id;       ///< unique on the page, an HTML id
   std::string dataset;  ///< name
-  bool fast = false;    ///< its name says it used the thesis's fast setting
+  /// Module with its configuration's name, or what an external estimator is called.
+  std::string method;
+  bool fast = false;  ///< its name says it used the thesis's fast setting
   RunFolder run;
   std::optional<Dataset> data;  ///< nullopt: the folder is gone, `missing` says why
   std::string missing;

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include "core/io/event_file.h"
+#include "core/shell.h"
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/report/depth_section.h"
+#include "eval/report/film_section.h"
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
 #include "eval/report/keyframe_section.h"
@@ -226,6 +228,18 @@ std::string provenance(const RunData& data) {
   return html + "</details>\n";
 }
 
+/// The run, its scores, its picture and its film.
+std::vector<std::string> commands(const RunData& data) {
+  const std::string folder = data.run.folder.string();
+  std::vector<std::string> lines{data.run.record.command};
+  lines.push_back(shell_line(std::vector<std::string>{"saccade", "eval", folder}));
+  if (data.data)
+    for (const char* ending : {".png", ".mp4"})
+      lines.push_back(shell_line(
+          std::vector<std::string>{"saccade", "render", folder, "-o", data.run.name() + ending}));
+  return lines;
+}
+
 }  // namespace
 
 std::string dataset_pictures(const RunData& data) {
@@ -249,19 +263,19 @@ std::string dataset_pictures(const RunData& data) {
   return html + "</div>\n";
 }
 
-std::string run_section(const RunData& data) {
+std::string run_section(const RunData& data, bool film) {
   std::string html =
       fmt::format("<section id=\"{}\"><h3>{}</h3>\n", data.id, escape_html(data.run.name()));
   if (!data.data)
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));
-  html += key_numbers(data) + views(data);
+  html += key_numbers(data) + views(data) + (film ? film_section(data) : "");
   if (data.data) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
     html += mosaic_section(data) + stabilization_section(data) + rotation_section(data);
   }
   return html + step_section(data) + accuracy_details(data) + stages(data) + provenance(data) +
-         "</section>\n";
+         repeat_html(commands(data)) + "</section>\n";
 }
 
 }  // namespace saccade

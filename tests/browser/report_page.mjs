@@ -44,12 +44,15 @@ async function checkPaper(browser) {
   if (pictures) writeFileSync(join(pictures, "paper.pdf"), Buffer.from(data, "base64"));
 }
 
-// Printing has drawn all; what is hidden then has been drawn nowhere and need not be.
+// Printing has drawn all; what is folded away then is drawn when it is opened.
 async function checkDrawings(browser) {
-  const drawings = await browser.evaluate(`[...document.querySelectorAll("[data-plot], [data-space]")].filter((box) => box.offsetParent)
-    .map((box) => ({ name: box.dataset.plot ?? box.dataset.space, drawn: box.dataset.drawn,
+  await browser.evaluate(`document.querySelectorAll("details").forEach((details) => (details.open = true))`);
+  await browser.evaluate("new Promise((resolve) => setTimeout(resolve, 300))");
+  const drawings = await browser.evaluate(`[...document.querySelectorAll("[data-plot], [data-chart], [data-space]")].filter((box) => box.offsetParent)
+    .map((box) => ({ name: box.dataset.plot ?? box.dataset.chart ?? box.dataset.space, drawn: box.dataset.drawn,
                      colours: (${kCanvasColours})(box.querySelector("canvas")) }))`);
-  assert.ok(drawings.length > 0, "the page has no charts");
+  for (const kind of ["plot", "chart", "space"])
+    assert.ok(await browser.evaluate(`document.querySelector("[data-${kind}]")`), `the page has no [data-${kind}]`);
   for (const { name, drawn, colours } of drawings) assert.ok(drawn === "yes" && colours > 3, `${name} is not drawn (${drawn}, ${colours} colours)`);
   console.log(`${drawings.length} drawings`);
 }

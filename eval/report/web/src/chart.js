@@ -1,15 +1,23 @@
 import uPlot from "uplot";
 import { buttons, download, fileName } from "./download.js";
 import { chartSvg } from "./chart_svg.js";
+import { besidePoints } from "./labels.js";
 import { whenNear } from "./lazy.js";
 import { logTicks, short } from "./number.js";
 import { colour, onTheme } from "./theme.js";
 
 // A chart is described once, for the screen (uPlot) and as a vector file (chart_svg.js):
-//   {title, height, x: {label, log}, y: {label, log, zero}, sync, onTime(t or null),
-//    series: [{name, colour, x: [...], y: [...], points, line, dash, width, step, label}],
-//    gaps: [[from, to]], levels: [{y, label}]}
-// x of a series ascends; colours are names of style.css; `label` stands beside the last point.
+//   {title, x: {label, log}, y: {label, log, zero, range: [low, high]}, sync, onTime(t or null),
+//    series: [{name, colour, x: [...], y: [...], points, dash, step, label}],
+//    gaps: [[from, to]], levels: [y]}
+// x of a series ascends; colours are names of style.css. A series is a line, in steps with `step`, or with `points` those alone;
+// `label` stands beside its last point. The legend names the series that have a name and no label.
+
+const kHeight = 210;
+// Of an axis of logarithms: an error that begins at nearly nothing leaves room for the rest.
+const kMaxDecades = 1e4;
+
+const isNamed = (one) => one.name && !one.label;
 
 const axis = (spec, colours) => ({
   label: spec.label,
@@ -28,7 +36,8 @@ const axis = (spec, colours) => ({
 
 const scale = (spec) => ({
   time: false,
-  ...(spec.log ? { distr: 3, range: (u, low, high) => [low / 1.6, high * 1.6] }
+  ...(spec.log ? { distr: 3, range: (u, low, high) => [Math.max(low / 1.6, high / kMaxDecades), high * 1.6] }
+    : spec.range ? { range: spec.range }
     : spec.zero && { range: (u, low, high) => [0, Math.max(high * 1.06, 1e-9)] }),
 });
 
@@ -45,7 +54,7 @@ function drawMarks(u, spec, colours) {
   g.lineWidth = devicePixelRatio;
   g.setLineDash([4 * devicePixelRatio, 4 * devicePixelRatio]);
   for (const level of spec.levels || []) {
-    const y = u.valToPos(level.y, "y", true);
+    const y = u.valToPos(level, "y", true);
     g.beginPath();
     g.moveTo(left, y);
     g.lineTo(left + width, y);
@@ -57,15 +66,23 @@ function drawMarks(u, spec, colours) {
 function drawLabels(u, spec, colours) {
   const g = u.ctx;
   g.save();
+  g.scale(devicePixelRatio, devicePixelRatio);
   g.fillStyle = colours.text;
-  g.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  g.font = "12px system-ui, sans-serif";
   g.textBaseline = "middle";
-  for (const one of spec.series) {
-    if (!one.label || !one.x.length) continue;
-    const x = u.valToPos(one.x.at(-1), "x", true), y = u.valToPos(one.y.at(-1), "y", true);
-    const right = x + g.measureText(one.label).width + 12 * devicePixelRatio < u.bbox.left + u.bbox.width;
-    g.textAlign = right ? "left" : "right";
-    g.fillText(one.label, x + (right ? 8 : -8) * devicePixelRatio, y);
+  g.textAlign = "left";
+  const labels = spec.series.filter((one) => one.label).map((one) => ({
+    text: one.label,
+    x: u.valToPos(one.x.at(-1), "x", true) / devicePixelRatio,
+    y: u.valToPos(one.y.at(-1), "y", true) / devicePixelRatio,
+    width: g.measureText(one.label).width,
+  }));
+  // A halo keeps them readable over lines.
+  g.strokeStyle = colours.ground;
+  g.lineWidth = 4;
+  for (const { text, left, y } of besidePoints(labels, (u.bbox.left + u.bbox.width) / devicePixelRatio)) {
+    g.strokeText(text, left, y);
+    g.fillText(text, left, y);
   }
   g.restore();
 }
@@ -74,19 +91,25 @@ function options(spec, width, colours, drawn) {
   const live = spec.series.length === 1;
   return {
     width,
-    height: spec.height || 210,
+    height: kHeight,
     scales: { x: scale(spec.x), y: scale(spec.y) },
     axes: [{ ...axis(spec.x, colours), size: 28 }, { ...axis(spec.y, colours), size: 54 }],
-    legend: { show: !spec.noLegend, live },
-    cursor: { sync: spec.sync ? { key: spec.sync } : undefined, drag: { x: true, y: false }, points: { size: 7 } },
+    legend: { show: spec.series.some(isNamed), live },
+    // Of several lines the one that is pointed at stands out.
+    focus: { alpha: live ? 1 : 0.25 },
+    cursor: {
+      sync: spec.sync ? { key: spec.sync } : undefined,
+      drag: { x: true, y: false },
+      points: { size: 7 },
+      focus: { prox: live ? -1 : 16 },
+    },
     series: [{ label: spec.x.label, value: (u, v) => short(v, 4) }, ...spec.series.map((one) => ({
       label: one.name,
       stroke: colour(one.colour),
-      fill: one.points && !one.line ? colour(one.colour) : undefined,
-      width: one.line === false ? 0 : one.width || 1.4,
+      width: 1.4,
       dash: one.dash,
       spanGaps: true,
-      paths: one.line === false ? () => null : one.step ? uPlot.paths.stepped({ align: 1 }) : uPlot.paths.linear(),
+      paths: one.points ? () => null : one.step ? uPlot.paths.stepped({ align: -1 }) : uPlot.paths.linear(),
       points: { show: Boolean(one.points), size: 8, fill: colour(one.colour) },
       value: (u, v) => short(v),
     }))],
@@ -110,7 +133,7 @@ export class Chart {
     box.setAttribute("role", "img");
     box.setAttribute("aria-label", spec.title);
     this.frame = document.createElement("div");
-    this.frame.style.minHeight = `${spec.height || 210}px`;
+    this.frame.style.minHeight = `${kHeight}px`;
     box.replaceChildren(this.frame, buttons({ SVG: () => this.save() }));
     whenNear(box, () => {
       this.draw();
@@ -122,7 +145,7 @@ export class Chart {
   draw() {
     if (!this.frame.isConnected) return;
     this.plot?.destroy();
-    const colours = Object.fromEntries(["muted", "line", "text", "gap"].map((name) => [name, colour(name)]));
+    const colours = Object.fromEntries(["muted", "line", "text", "gap", "ground"].map((name) => [name, colour(name)]));
     const data = uPlot.join(this.spec.series.map((one) => [one.x, one.y]));
     this.width = Math.max(200, this.frame.clientWidth);
     this.plot = new uPlot(options(this.spec, this.width, colours, () => (this.box.dataset.drawn = "yes")), data, this.frame);
@@ -132,7 +155,7 @@ export class Chart {
     const width = Math.max(200, this.frame.clientWidth);
     if (width === this.width) return;
     this.width = width;
-    this.plot.setSize({ width, height: this.spec.height || 210 });
+    this.plot.setSize({ width, height: kHeight });
   }
 
   save() {

@@ -1,8 +1,9 @@
+import { besidePoints } from "./labels.js";
 import { colour } from "./theme.js";
 
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 
-const kWidth = 640, kHeight = 360, kLeft = 66, kRight = 14, kTop = 14, kBottom = 46;
+const kWidth = 640, kCharacter = 6.6, kHeight = 360, kLeft = 66, kRight = 14, kTop = 14, kBottom = 46;
 
 // From a value to a coordinate, by the limits that the plot on the screen has.
 function position(scale, from, to) {
@@ -26,39 +27,39 @@ function frame(spec, plot, x, y, ink) {
   for (const [v, text] of ticks(plot.axes[0]))
     svg += `<path d="M${x(v)} ${kTop}V${bottom}" stroke="${ink("line")}"/><text x="${x(v)}" y="${bottom + 18}" text-anchor="middle">${escape(text)}</text>`;
   for (const level of spec.levels || [])
-    svg += `<path d="M${kLeft} ${y(level.y)}H${right}" stroke="${ink("muted")}" stroke-dasharray="4 4"/>`;
+    svg += `<path d="M${kLeft} ${y(level)}H${right}" stroke="${ink("muted")}" stroke-dasharray="4 4"/>`;
   svg += `<text x="${(kLeft + right) / 2}" y="${kHeight - 6}" text-anchor="middle">${escape(spec.x.label)}</text>`;
   return svg + `<text transform="translate(14 ${(kTop + bottom) / 2}) rotate(-90)" text-anchor="middle">${escape(spec.y.label)}</text>`;
 }
 
 function curve(one, x, y, ink) {
   const at = one.x.map((v, i) => [x(v).toFixed(2), y(one.y[i]).toFixed(2)]);
-  let svg = "";
-  if (one.line !== false && at.length) {
-    const path = one.step ? at.map(([a, b], i) => (i ? `H${a}V${b}` : `M${a} ${b}`)).join("") : `M${at.map((p) => p.join(" ")).join("L")}`;
-    svg += `<path d="${path}" fill="none" stroke="${ink(one.colour)}" stroke-width="${one.width || 1.4}" stroke-linejoin="round"${one.dash ? ` stroke-dasharray="${one.dash.join(" ")}"` : ""}/>`;
-  }
-  if (one.points) svg += at.map(([a, b]) => `<circle cx="${a}" cy="${b}" r="4" fill="${ink(one.colour)}"/>`).join("");
-  if (one.label && at.length) {
-    const [a, b] = at.at(-1).map(Number), left = a < kWidth - 200;
-    svg += `<text class="label" x="${a + (left ? 8 : -8)}" y="${b + 4}" text-anchor="${left ? "start" : "end"}">${escape(one.label)}</text>`;
-  }
-  return svg;
+  if (one.points) return at.map(([a, b]) => `<circle cx="${a}" cy="${b}" r="4" fill="${ink(one.colour)}"/>`).join("");
+  const path = one.step ? at.map(([a, b], i) => (i ? `V${b}H${a}` : `M${a} ${b}`)).join("") : `M${at.map((p) => p.join(" ")).join("L")}`;
+  return `<path d="${path}" fill="none" stroke="${ink(one.colour)}" stroke-width="1.4" stroke-linejoin="round"${one.dash ? ` stroke-dasharray="${one.dash.join(" ")}"` : ""}/>`;
+}
+
+// The width of a text is known to nobody before it is drawn.
+function labels(series, x, y) {
+  const points = series.filter((one) => one.label).map((one) => ({
+    text: one.label, x: x(one.x.at(-1)), y: y(one.y.at(-1)), width: kCharacter * one.label.length }));
+  return besidePoints(points, kWidth - kRight).map(({ text, left, y: at }) =>
+    `<text class="label" x="${left.toFixed(1)}" y="${(at + 4).toFixed(1)}">${escape(text)}</text>`).join("");
 }
 
 /// The chart as it is on the screen, zoom included, in light colours: a text of SVG for papers.
 export function chartSvg(spec, plot) {
   const ink = (name) => colour(name, "light");
   const x = position(plot.scales.x, kLeft, kWidth - kRight), y = position(plot.scales.y, kHeight - kBottom, kTop);
-  const named = spec.noLegend || spec.series.length < 2 ? [] : spec.series.filter((one) => one.name);
+  const named = spec.series.length < 2 ? [] : spec.series.filter((one) => one.name && !one.label);
   const height = kHeight + 18 * named.length;
   let svg = frame(spec, plot, x, y, ink);
   svg += `<clipPath id="inside"><rect x="${kLeft}" y="${kTop}" width="${kWidth - kLeft - kRight}" height="${kHeight - kTop - kBottom}"/></clipPath>`;
-  svg += `<g clip-path="url(#inside)">${spec.series.map((one) => curve(one, x, y, ink)).join("")}</g>`;
+  svg += `<g clip-path="url(#inside)">${spec.series.map((one) => curve(one, x, y, ink)).join("")}</g>${labels(spec.series, x, y)}`;
   named.forEach((one, i) => {
     const at = kHeight + 18 * i;
     svg += `<rect x="${kLeft}" y="${at}" width="12" height="12" fill="${ink(one.colour)}"/><text x="${kLeft + 20}" y="${at + 10}">${escape(one.name)}</text>`;
   });
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${kWidth} ${height}" width="${kWidth}" height="${height}" font-family="sans-serif" font-size="12" fill="${ink("muted")}">` +
-    `<title>${escape(spec.title)}</title><style>.label{fill:${ink("text")}}</style>${svg}</svg>\n`;
+    `<title>${escape(spec.title)}</title><style>.label{fill:${ink("text")};stroke:#fff;stroke-width:4;paint-order:stroke}</style>${svg}</svg>\n`;
 }

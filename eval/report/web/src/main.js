@@ -1,5 +1,6 @@
 import "uplot/dist/uPlot.min.css";
 import "../style.css";
+import { Chart } from "./chart.js";
 import { drawAll } from "./lazy.js";
 import { showRun } from "./run_views.js";
 import { startTable } from "./tables.js";
@@ -12,4 +13,5 @@ addEventListener("beforeprint", () => drawAll());
 startTheme();
 document.querySelectorAll("table.sortable").forEach(startTable);
 data.runs.forEach(showRun);
+for (const spec of data.charts) new Chart(document.querySelector(`[data-chart="${CSS.escape(spec.id)}"]`), spec);
 document.documentElement.dataset.ready = "yes";

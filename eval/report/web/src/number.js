@@ -19,11 +19,11 @@ export function nearest(times, t) {
   return Math.abs(times[low] - t) <= Math.abs(times[high] - t) ? low : high;
 }
 
-/// 1, 2 and 5 times the powers of ten within [low, high]: the ticks of a logarithmic axis.
+/// 1, 2 and 5 times the powers of ten within [low, high], over many decades those alone: the ticks of a logarithmic axis.
 export function logTicks(low, high) {
-  const ticks = [];
+  const ticks = [], steps = high / low > 200 ? [1] : [1, 2, 5];
   for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e)
-    for (const m of [1, 2, 5]) {
+    for (const m of steps) {
       const tick = m * 10 ** e;
       if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) ticks.push(tick);
     }

@@ -18,7 +18,7 @@ export const errorChart = (run, series, more) => ({
   y: { label: `${series.label} [${series.unit}]`, zero: true },
   series: [{ name: `${series.label} [${series.unit}]`, colour: "error", x: series.t, y: series.v }],
   gaps: run.gaps,
-  levels: [{ y: series.mean, label: "mean" }],
+  levels: [series.mean],
   ...more,
 });
 

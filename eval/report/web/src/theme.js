@@ -18,9 +18,6 @@ export function colour(name, scheme = "") {
   return getComputedStyle(probe).color;
 }
 
-/// The colour of the i-th of several methods; they repeat after eight.
-export const seriesColour = (i) => `s${i % 8}`;
-
 export function startTheme() {
   const button = document.getElementById("theme");
   const system = matchMedia("(prefers-color-scheme: dark)");

@@ -114,7 +114,7 @@ TEST_F(Render, AVideoOfARun) {
 TEST_F(Render, AnUnfinishedVideoLeavesNothing) {
   if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not here";
   {
-    VideoWriter video(folder.path() / "x.mp4", 32, 32, 30);
+    VideoWriter video(folder.path() / "x.mp4", 32, 32, 30, 18);
     video.add(ImageRgb8(32, 32));
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));

@@ -107,5 +107,19 @@ TEST(Leaderboard, TheTableHasTheBestOfEveryColumnInBold) {
   EXPECT_FALSE(table.rows[2][2].best);
 }
 
+// 6 is what a covariance promises, 3 is half and 60 ten times that.
+TEST(Leaderboard, RanksNeesByTheFactorThatItIsOff) {
+  constexpr const char* kKey = "trajectory.nees";
+  const std::vector<LeaderboardEntry> entries{
+      scored("sure", "walls", 60, kKey), scored("cautious", "walls", 3, kKey),
+      scored("right", "walls", 6, kKey), scored("nothing", "walls", 0, kKey)};
+  const std::vector<Leaderboard> boards = leaderboards(entries);
+  ASSERT_EQ(boards.size(), 1U);
+  EXPECT_EQ(methods_of(boards[0]), (std::vector<std::string>{"right", "cautious", "sure"}));
+  EXPECT_DOUBLE_EQ(boards[0].rows[1].scores[0].value->mean, 2);
+  EXPECT_EQ(boards[0].rows[1].scores[0].note, "NEES 3.00, too cautious");
+  EXPECT_EQ(boards[0].rows[2].scores[0].note, "NEES 60.0, too sure");
+}
+
 }  // namespace
 }  // namespace saccade

@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
-#include "eval/report/run_series.h"
+#include "eval/report/page_data.h"
 #include "tests/support/html_page.h"
 #include "tests/unit/eval/fake_folders.h"
 
@@ -36,7 +37,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 TEST_F(Report, NeedsNothingBesideIt) {
   const std::string page = written({run()});
-  EXPECT_EQ(count(page, "src=\""), count(page, "src=\"data:image/png;base64,"));
+  EXPECT_EQ(count(page, "src=\""), count(page, "src=\"data:image/webp;base64,"));
   EXPECT_GT(count(page, "src=\""), 3U);
   EXPECT_THAT(testing::external_references(page), ::testing::IsEmpty());
   for (const char* outside : {"<link", "@import", "fetch("})
@@ -121,18 +122,94 @@ TEST_F(Report, LongSeriesKeepTheirPeaks) {
     data.errors.dtheta_deg.push_back(1);
   }
   data.errors.t_s = data.samples.t_s;
-  const auto json = nlohmann::json::parse(run_series(std::span(&data, 1)));
+  const auto json = nlohmann::json::parse(page_data(std::span(&data, 1), {}));
   const auto& dt = json["runs"][0]["series"]["dt"];
   EXPECT_LE(dt["v"].size(), 1700U);
-  EXPECT_EQ(dt["max"], 7000);
-  EXPECT_EQ(dt["quantiles"].size(), 101U);
-  EXPECT_EQ(dt["quantiles"][99], 1);
-  EXPECT_EQ(dt["quantiles"][100], 7000);
   const std::vector<double> values = dt["v"];
   const auto peak = std::find(values.begin(), values.end(), 7000.0);
   ASSERT_NE(peak, values.end());
   EXPECT_EQ(dt["t"][static_cast<std::size_t>(peak - values.begin())], 12.345);
   EXPECT_EQ(json["runs"][0]["gaps"].size(), 1U);
+}
+
+/// The chart of the page's data with that id.
+nlohmann::json chart_of(const std::string& page, const std::string& id) {
+  const std::string open = "id=\"report-data\">";
+  const std::size_t begin = page.find(open) + open.size();
+  const auto data =
+      nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  for (const auto& chart : data["charts"])
+    if (chart["id"] == id) return chart;
+  return {};
+}
+
+TEST_F(Report, OneMethodIsComparedWithNothing) {
+  const std::string page = written({run(), run()});
+  EXPECT_EQ(count(page, "id=\"compared\""), 0U);
+  EXPECT_EQ(count(page, "<div data-chart="), 0U);
+}
+
+TEST_F(Report, ComparesTheMethodsOfASequence) {
+  testing::FakeErrors errors;
+  errors.slow_m = 0.02;
+  testing::write_fake_run(folder.path() / "walls_fast", dataset(), errors, "fast");
+  const std::string page = written({run(), run(), folder.path() / "walls_fast"});
+  EXPECT_EQ(count(page, "id=\"compared\""), 1U);
+  for (const char* id :
+       {"walls/dt_rel/time", "walls/dt_rel/shares", "walls/dtheta/time", "walls/dtheta/shares",
+        "/trajectory.dt_rel_percent.mean/speed", "walls/trajectory.dt_rel_percent.mean/speed"})
+    EXPECT_EQ(count(page, "data-chart=\"" + std::string(id) + "\""), 1U) << id;
+  const auto shares = chart_of(page, "walls/dt_rel/shares");
+  ASSERT_EQ(shares["series"].size(), 2U) << "runs of one method are pooled";
+  EXPECT_EQ(shares["series"][0]["name"], "track accurate");
+  EXPECT_EQ(shares["series"][1]["name"], "track fast");
+  EXPECT_LT(shares["series"][0]["x"][50], shares["series"][1]["x"][50]);
+  EXPECT_EQ(chart_of(page, "/trajectory.dt_rel_percent.mean/speed")["series"].size(), 3U)
+      << "the front and two methods";
+}
+
+TEST_F(Report, SaysHowEveryPartIsRepeated) {
+  ReportOptions options;
+  options.command = "saccade report a b -o c.html --title \"<x>\"";
+  const fs::path file = folder.path() / "report.html";
+  write_report(std::vector{run(), run()}, file, options);
+  const std::string page = testing::read_file(file);
+  EXPECT_EQ(count(page, "</section>"), count(page, "<summary>Repeat</summary>"));
+  EXPECT_GE(count(page, "saccade report a b -o c.html --title &quot;&lt;x&gt;&quot;\n</pre>"), 3U);
+  EXPECT_GE(count(page, "saccade render " + run().string() + " -o walls_accurate.mp4"), 2U);
+}
+
+TEST_F(Report, ShowsAFilmOfARunThatHasOne) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "needs ffmpeg";
+  ReportOptions options;
+  options.film = true;
+  const fs::path file = folder.path() / "report.html";
+  write_report(std::vector{run()}, file, options);
+  const std::string page = testing::read_file(file);
+  EXPECT_EQ(count(page, "<video "), 1U);
+  EXPECT_EQ(count(page, "src=\"data:video/mp4;base64,"), 1U);
+  EXPECT_EQ(count(page, "poster=\"data:image/webp;base64,"), 1U);
+  EXPECT_THAT(testing::external_references(page), ::testing::IsEmpty());
+}
+
+TEST_F(Report, HoldsRunsAgainstOthers) {
+  const fs::path before = folder.path() / "walls_accurate";
+  testing::FakeErrors errors;
+  errors.slow_m = 0.02;
+  testing::write_fake_run(before, dataset(), errors, "accurate");
+  const fs::path file = folder.path() / "against.html";
+  ReportOptions options;
+  options.against = {before};
+  options.exports = folder.path() / "tables";
+  write_report(std::vector{run()}, file, options);
+  const std::string page = testing::read_file(file);
+  EXPECT_EQ(count(page, "<h2>A against B</h2>"), 1U);
+  EXPECT_GE(count(page, "<span class=\"better\">better</span>"), 1U);
+  const auto chart = chart_of(page, "against/data, track accurate/dt_rel/time");
+  ASSERT_EQ(chart["series"].size(), 2U);
+  EXPECT_EQ(chart["series"][0]["name"], "A: before");
+  EXPECT_THAT(testing::read_file(folder.path() / "tables/against.csv"),
+              ::testing::HasSubstr("trajectory.dt_rel_percent.mean,1,"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "eval/report/run_series.h"
+#include "eval/report/page_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,44 +18,6 @@ constexpr std::size_t kMaxCurvePoints = 1600;
 constexpr std::size_t kMaxPathPoints = 800;
 constexpr std::size_t kMaxCloudPoints = 4000;
 constexpr double kCloudSteps = 65535;
-
-/// Five significant digits are more than a screen shows.
-double rounded(double value) {
-  if (value == 0 || !std::isfinite(value)) return 0;
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 4);
-  return std::round(value / unit) * unit;
-}
-
-double to_tenth_ms(double t_s) { return std::round(t_s * 1e4) / 1e4; }
-
-/// Indices of the smallest and largest value of each of at most kMaxCurvePoints / 2 stretches.
-std::vector<std::size_t> peaks(std::span<const double> values) {
-  std::vector<std::size_t> kept;
-  const std::size_t stretch =
-      std::max<std::size_t>(1, (2 * values.size() + kMaxCurvePoints - 1) / kMaxCurvePoints);
-  for (std::size_t begin = 0; begin < values.size(); begin += stretch) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last =
-        values.begin() + static_cast<std::ptrdiff_t>(std::min(begin + stretch, values.size()));
-    const auto [low, high] = std::minmax_element(first, last);
-    auto a = static_cast<std::size_t>(low - values.begin());
-    auto b = static_cast<std::size_t>(high - values.begin());
-    if (a > b) std::swap(a, b);
-    kept.push_back(a);
-    if (b != a) kept.push_back(b);
-  }
-  return kept;
-}
-
-/// At 0, 1, ..., 100 %: the nearest of the values.
-Json percentiles(std::span<const double> values) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  Json quantiles = Json::array();
-  for (std::size_t percent = 0; percent <= 100 && !sorted.empty(); ++percent)
-    quantiles.push_back(rounded(sorted[(percent * (sorted.size() - 1) + 50) / 100]));
-  return quantiles;
-}
 
 /// At most kMaxCloudPoints of the points in 16-bit steps, little-endian, between their extremes.
 Json cloud(std::span<const Eigen::Vector3f> points) {
@@ -78,23 +40,12 @@ Json cloud(std::span<const Eigen::Vector3f> points) {
 
 Json series(const char* label, const char* unit, std::span<const double> t_s,
             std::span<const double> values) {
-  Json t = Json::array(), v = Json::array();
-  const auto keep = [&](std::size_t i) {
-    t.push_back(to_tenth_ms(t_s[i]));
-    v.push_back(rounded(values[i]));
-  };
-  if (values.size() <= kMaxCurvePoints)
-    for (std::size_t i = 0; i < values.size(); ++i) keep(i);
-  else
-    for (const std::size_t i : peaks(values)) keep(i);
-  const Statistics s = statistics_of(values);
+  const CurvePoints points = thinned(t_s, values, kMaxCurvePoints);
   return {{"label", label},
           {"unit", unit},
-          {"t", t},
-          {"v", v},
-          {"mean", rounded(s.mean)},
-          {"max", rounded(s.max)},
-          {"quantiles", percentiles(values)}};
+          {"t", points.x},
+          {"v", points.y},
+          {"mean", five_digits(statistics_of(values).mean)}};
 }
 
 Json position(const Rigid3& pose) {
@@ -110,7 +61,7 @@ Json gaps(const RunData& data) {
   double covered_until = data.samples.t_s.front();
   const auto add = [&](double until) {
     if (until > covered_until + kScoreStepS)
-      result.push_back({to_tenth_ms(covered_until), to_tenth_ms(std::min(until, end_s))});
+      result.push_back({tenth_ms(covered_until), tenth_ms(std::min(until, end_s))});
   };
   for (const StampedPose& pose : data.input.estimate.poses()) {
     if (pose.t_s > end_s) break;
@@ -123,15 +74,12 @@ Json gaps(const RunData& data) {
 
 Json run_json(const RunData& data) {
   const ScoredSamples& s = data.samples;
-  Json run{{"id", data.id},
-           {"name", data.run.name()},
-           {"dataset", data.dataset},
-           {"span", {to_tenth_ms(s.t_s.front()), to_tenth_ms(s.t_s.back())}}};
+  Json run{{"id", data.id}, {"name", data.run.name()}};
   if (!data.map.empty()) run["cloud"] = cloud(data.map);
   const std::size_t stride = (s.t_s.size() + kMaxPathPoints - 1) / kMaxPathPoints;
   for (const char* name : {"times", "truth", "estimate"}) run[name] = Json::array();
   for (std::size_t i = 0; i < s.t_s.size(); i += stride) {
-    run["times"].push_back(to_tenth_ms(s.t_s[i]));
+    run["times"].push_back(tenth_ms(s.t_s[i]));
     run["truth"].push_back(position(s.truth[i]));
     run["estimate"].push_back(position(s.estimated[i]));
   }
@@ -153,8 +101,9 @@ Json run_json(const RunData& data) {
 
 }  // namespace
 
-std::string run_series(std::span<const RunData> runs) {
-  Json root{{"runs", Json::array()}};
+std::string page_data(std::span<const RunData> runs, std::span<const PageChart> charts) {
+  Json root{{"runs", Json::array()}, {"charts", Json::array()}};
+  for (const PageChart& chart : charts) root["charts"].push_back(chart_json(chart));
   for (const RunData& data : runs)
     if (!data.samples.t_s.empty()) root["runs"].push_back(run_json(data));
   std::string text = root.dump();
