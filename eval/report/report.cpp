@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <set>
 #include <vector>
 
 #include "core/check.h"
@@ -64,10 +66,13 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
   return html;
 }
 
+/// A run that patterns of a shell name twice is one run, not two of a kind.
 std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders) {
   std::vector<RunData> runs;
+  std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& folder : folders)
-    runs.push_back(gather_run(folder, runs.size() + 1));
+    if (seen.insert(std::filesystem::weakly_canonical(folder)).second)
+      runs.push_back(gather_run(folder, runs.size() + 1));
   compare_with_refined(runs);
   return runs;
 }

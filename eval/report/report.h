@@ -25,8 +25,9 @@ struct ReportOptions {
 /// is more than one run, methods against each other in charts, the runs against others, tables
 /// against the thesis, and for every run its trajectory in 3-D, errors over time, pictures, speed
 /// and provenance. Runs are scored anew against their datasets; where a dataset is gone, the page
-/// shows what metrics.json holds. At least one run. Throws InputError for a folder that is no run,
-/// or where none of the runs has a partner among the others.
+/// shows what metrics.json holds. At least one run; a folder that is named twice is shown once.
+/// Throws InputError for a folder that is no run, or where none of the runs has a partner among the
+/// others.
 void write_report(std::span<const std::filesystem::path> run_folders,
                   const std::filesystem::path& output, const ReportOptions& options = {});
 

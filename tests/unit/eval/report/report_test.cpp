@@ -26,6 +26,14 @@ class Report : public testing::FakeFolders {
     return testing::read_file(folder.path() / "report.html");
   }
 
+  /// Another run with the same scores.
+  [[nodiscard]] fs::path twin() const {
+    const fs::path copy = folder.path() / "twin" / run().filename();
+    fs::create_directories(copy.parent_path());
+    fs::copy(run(), copy, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    return copy;
+  }
+
   TemporaryFolder folder;
 };
 
@@ -60,7 +68,7 @@ void expect_links_lead_somewhere(const std::string& page) {
   }
 }
 
-TEST_F(Report, EveryLinkLeadsToASection) { expect_links_lead_somewhere(written({run(), run()})); }
+TEST_F(Report, EveryLinkLeadsToASection) { expect_links_lead_somewhere(written({run(), twin()})); }
 
 TEST_F(Report, ShowsTheAngularVelocityOfARunThatFoundOne) {
   EXPECT_EQ(count(written({run()}), "Angular velocity</h4>"), 0U);
@@ -143,8 +151,12 @@ nlohmann::json chart_of(const std::string& page, const std::string& id) {
   return {};
 }
 
+TEST_F(Report, ARunThatIsNamedTwiceIsShownOnce) {
+  EXPECT_EQ(written({run(), run() / "."}), written({run()}));
+}
+
 TEST_F(Report, OneMethodIsComparedWithNothing) {
-  const std::string page = written({run(), run()});
+  const std::string page = written({run(), twin()});
   EXPECT_EQ(count(page, "id=\"compared\""), 0U);
   EXPECT_EQ(count(page, "<div data-chart="), 0U);
 }
@@ -153,7 +165,7 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
   testing::FakeErrors errors;
   errors.slow_m = 0.02;
   testing::write_fake_run(folder.path() / "walls_fast", dataset(), errors, "fast");
-  const std::string page = written({run(), run(), folder.path() / "walls_fast"});
+  const std::string page = written({run(), twin(), folder.path() / "walls_fast"});
   EXPECT_EQ(count(page, "id=\"compared\""), 1U);
   for (const char* id :
        {"walls/dt_rel/time", "walls/dt_rel/shares", "walls/dtheta/time", "walls/dtheta/shares",
@@ -172,7 +184,7 @@ TEST_F(Report, SaysHowEveryPartIsRepeated) {
   ReportOptions options;
   options.command = "saccade report a b -o c.html --title \"<x>\"";
   const fs::path file = folder.path() / "report.html";
-  write_report(std::vector{run(), run()}, file, options);
+  write_report(std::vector{run(), twin()}, file, options);
   const std::string page = testing::read_file(file);
   EXPECT_EQ(count(page, "</section>"), count(page, "<summary>Repeat</summary>"));
   EXPECT_GE(count(page, "saccade report a b -o c.html --title &quot;&lt;x&gt;&quot;\n</pre>"), 3U);
