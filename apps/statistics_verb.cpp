@@ -1,8 +1,11 @@
 #include <fmt/core.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/common_options.h"
@@ -13,6 +16,8 @@
 namespace saccade {
 namespace {
 
+constexpr double kLongest_s = 4e9;  ///< whose nanoseconds a clock can count
+
 struct StatisticsOptions {
   std::vector<std::filesystem::path> paths;
   std::optional<std::filesystem::path> output;
@@ -20,11 +25,21 @@ struct StatisticsOptions {
   CommonOptions common;
 };
 
+/// Recordings whose names are alike are named as they were given.
+void name_apart(std::vector<NamedStatistics>& recordings,
+                const std::vector<std::filesystem::path>& paths) {
+  std::map<std::string, int> count;
+  for (const NamedStatistics& recording : recordings) ++count[recording.name];
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    if (count[recordings[i].name] > 1) recordings[i].name = paths[i].string();
+}
+
 void show_statistics(const StatisticsOptions& options) {
   options.common.apply();
   std::vector<NamedStatistics> recordings;
   for (const std::filesystem::path& path : options.paths)
     recordings.push_back(statistics_of_recording(path, options.part));
+  name_apart(recordings, options.paths);
   fmt::print("{}", statistics_table(recordings));
   if (!options.output) return;
   write_statistics(recordings, *options.output);
@@ -42,9 +57,9 @@ void add_statistics_verb(CLI::App& command) {
       ->type_name("FOLDER");
   verb->add_option("--start-s", options->part.start_s,
                    "Begin of the part that counts (default: first event)")
-      ->check(finite_number());
+      ->check(number_between(-kLongest_s, kLongest_s));
   verb->add_option("--duration-s", options->part.duration_s, "Length of the part that counts")
-      ->check(positive_number());
+      ->check(number_between(1e-9, kLongest_s));
   add_common_options(*verb, options->common);
   verb->footer(
       "Example:\n"

@@ -1,5 +1,7 @@
 #include "eval/recording_statistics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -9,6 +11,12 @@
 namespace saccade {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr double kLongest_s = 86400;
+
+std::string seconds_text(const Event& event) {
+  return fmt::format("{:.6f} s", seconds_from_ns(event.t_ns));
+}
 
 TimeWindow window_of(const fs::path& file, const RecordingPart& part) {
   TimeWindow window;
@@ -42,6 +50,10 @@ NamedStatistics statistics_of_recording(const fs::path& path, const RecordingPar
   const Events events = read_events(file, size, window_of(file, part));
   if (events.empty() || events.front().t_ns == events.back().t_ns)
     throw InputError(file.string(), "holds no two events at different times in this part");
+  if (seconds_from_ns(events.back().t_ns - events.front().t_ns) > kLongest_s)
+    throw InputError(file.string(), "spans more than a day, from " + seconds_text(events.front()) +
+                                        " to " + seconds_text(events.back()) +
+                                        "; --start-s and --duration-s choose a part");
   if (size.width == 0) size = extent(events);
   // "data/walls/" has an empty file name.
   const fs::path name = path.has_filename() ? path.filename() : path.parent_path().filename();

@@ -1,5 +1,6 @@
 #include "core/io/webp_file.h"
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace saccade {
 
 std::string encode_webp(const ImageRgb8& image) {
-  SACCADE_CHECK(!image.empty());
+  SACCADE_CHECK(!image.empty() && std::max(image.width(), image.height()) <= kMostWebpSide);
   constexpr int kLossless = 101;  // a quality above 100
   const cv::Mat rgb(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
   cv::Mat bgr;

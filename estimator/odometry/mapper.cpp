@@ -97,7 +97,9 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   keyframe.events = window.events.size();
   const auto most = static_cast<std::size_t>(options_.thinned_to);
   std::vector<Event> some;
-  if (window.events.size() > most) window.events = some = thinned(window.events, most, camera_);
+  if (options_.edges == MappingOptions::Edges::kDepth && window.events.size() > most)
+    window.events = some = thinned(window.events, most, camera_);
+  if (window.events.empty()) return mapping;
   window.reference_s = options_.view == MappingOptions::View::kEnd
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;

@@ -21,7 +21,9 @@ struct MappingOptions {
 
   int events = 200000;      ///< N_map: at most so many, the newest
   double duration_s = 0.4;  ///< ... and of at most so long
-  /// Depth is found from so many of them, about, those of some of the pixels; the image from all.
+  /// Of kDepth: depth is found from so many of them, about, those of some of the pixels; from all
+  /// of them what is made after the last event, the image and, after an adjustment of the whole,
+  /// the depth anew.
   int thinned_to = 1000000000;
   View view = View::kEnd;       ///< where in its events the view lies
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth

@@ -81,8 +81,9 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
         "which pixels those are (4.4)");
   if (options.edges == Edges::kDepth) {
     fields
-        .value("thinned_to", options.thinned_to,
-               "depth is found from so many of them, about: those of some of the pixels")
+        .value(
+            "thinned_to", options.thinned_to,
+            "depth is found from about so many of the window's events: those of some of the pixels")
         .range(100, 1e9);
     fields
         .value("max_sigma", options.max_sigma,

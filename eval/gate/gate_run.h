@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
-
 #include <vector>
+
 #include "core/io/run_record.h"
 #include "eval/metrics/metrics.h"
 

@@ -23,9 +23,6 @@ std::optional<double> nees(std::span<const StampedCovariance> covariances,
   return sum / count;
 }
 
-double nees_factor(double nees) {
-  constexpr double kDegreesOfFreedom = 6;
-  return std::max(nees / kDegreesOfFreedom, kDegreesOfFreedom / nees);
-}
+double nees_factor(double nees) { return std::max(nees / kNeesOfTruth, kNeesOfTruth / nees); }
 
 }  // namespace saccade

@@ -15,6 +15,8 @@ namespace saccade {
 [[nodiscard]] std::optional<double> nees(std::span<const StampedCovariance> covariances,
                                          const TrajectoryScoreInput& input);
 
+constexpr double kNeesOfTruth = 6;  ///< of errors as large as the covariances say
+
 /// The factor by which a NEES is off the 6 of errors as large as the covariances say, whichever
 /// way: max(NEES / 6, 6 / NEES), 1 at best. `nees` > 0.
 [[nodiscard]] double nees_factor(double nees);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -49,8 +50,9 @@ ReportTable::Cell verdict_cell(const GateRow& row) {
 std::vector<PageChart> pair_charts(const Sides& sides, const RunPair& pair) {
   const std::vector<std::pair<ChartCurve, const RunData*>> both{{{"A: " + sides.a, "s0"}, pair.a},
                                                                 {{"B: " + sides.b, "s1"}, pair.b}};
+  const std::array runs{pair.a, pair.b};
   std::vector<PageChart> charts;
-  for (const TimedError& error : timed_errors(*pair.b)) {
+  for (const TimedError& error : timed_errors(runs)) {
     PageChart chart = chart_over_time(error, pair.scope, both);
     // The same sequence and error may stand in the comparison of methods.
     chart.id = "against/" + chart.id;

@@ -94,7 +94,7 @@ std::vector<PageChart> compared_errors(std::span<const RunData* const> runs,
   const std::vector<MethodRuns> methods = by_method(runs, styles);
   std::vector<PageChart> charts;
   if (methods.size() < 2) return charts;
-  for (const TimedError& error : timed_errors(*runs.front())) {
+  for (const TimedError& error : timed_errors(runs)) {
     charts.push_back(over_time(methods, error));
     charts.push_back(shares_of_time(methods, error));
   }

@@ -20,6 +20,17 @@ std::vector<std::string> names(std::span<const RunData> runs, std::string RunDat
   return result;
 }
 
+/// Of the runs, then those that have published scores alone.
+std::vector<std::string> all_methods(std::span<const RunData> runs,
+                                     std::span<const Leaderboard> boards) {
+  std::vector<std::string> methods = names(runs, &RunData::method);
+  for (const Leaderboard& board : boards)
+    for (const LeaderboardRow& row : board.rows)
+      if (std::find(methods.begin(), methods.end(), row.method) == methods.end())
+        methods.push_back(row.method);
+  return methods;
+}
+
 std::string sequence_part(const std::string& sequence, std::span<const RunData> runs,
                           std::span<const Leaderboard> boards, const MethodStyles& styles,
                           std::vector<PageChart>& all) {
@@ -38,7 +49,7 @@ std::string sequence_part(const std::string& sequence, std::span<const RunData> 
 
 ChartSection compared_section(std::span<const RunData> runs, std::span<const Leaderboard> boards) {
   ChartSection section;
-  const MethodStyles styles(names(runs, &RunData::method));
+  const MethodStyles styles(all_methods(runs, boards));
   std::string html = chart_grid(compared_speed(boards, "", styles), section.charts);
   if (!html.empty())
     html =

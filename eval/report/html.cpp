@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/check.h"
+#include "core/io/image_file.h"
 #include "core/io/webp_file.h"
 #include "eval/picture/canvas.h"
 
@@ -49,11 +52,12 @@ std::string base64(std::string_view bytes) {
 }
 
 std::string figure(const ImageRgb8& picture, std::string_view caption, std::string_view alt) {
+  const bool is_webp = std::max(picture.width(), picture.height()) <= kMostWebpSide;
   return fmt::format(
-      "<figure><img loading=\"lazy\" src=\"data:image/webp;base64,{}\" width=\"{}\" height=\"{}\" "
-      "alt=\"{}\">"
-      "<figcaption>{}</figcaption></figure>\n",
-      base64(encode_webp(picture)), picture.width(), picture.height(), escape_html(alt), caption);
+      "<figure><img loading=\"lazy\" src=\"data:image/{};base64,{}\" width=\"{}\" height=\"{}\" "
+      "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+      is_webp ? "webp" : "png", base64(is_webp ? encode_webp(picture) : encode_png(picture)),
+      picture.width(), picture.height(), escape_html(alt), caption);
 }
 
 std::string repeat_html(const std::vector<std::string>& commands) {

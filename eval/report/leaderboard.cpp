@@ -60,7 +60,8 @@ bool is_shown_failure(const LeaderboardEntry& entry, const std::string& key) {
 /// The NEES behind its factor: above 6 the estimator is surer than its errors allow.
 std::string nees_note(std::span<const double> nees) {
   const double mean = pooled(nees).mean;
-  return fmt::format("NEES {}, {}", rounded(mean), mean > 6 ? "too sure" : "too cautious");
+  return fmt::format("NEES {}, {}", rounded(mean),
+                     mean > kNeesOfTruth ? "too sure" : "too cautious");
 }
 
 constexpr std::size_t kLeastSequences = 3;  ///< for an interval over them

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "core/error.h"
 
@@ -30,11 +31,10 @@ RunsByKey by_key(std::span<const RunData> runs, bool with_config) {
 }
 
 bool has_pair(std::span<const RunData> before, std::span<const RunData> after, bool with_config) {
-  return std::any_of(before.begin(), before.end(), [&](const RunData& a) {
-    return std::any_of(after.begin(), after.end(), [&](const RunData& b) {
-      return key_of(a, with_config) == key_of(b, with_config);
-    });
-  });
+  std::set<GateKey> keys;
+  for (const RunData& run : before) keys.insert(key_of(run, with_config));
+  return std::any_of(after.begin(), after.end(),
+                     [&](const RunData& run) { return keys.contains(key_of(run, with_config)); });
 }
 
 std::vector<GateRun> gate_runs(const RunsByKey& runs) {

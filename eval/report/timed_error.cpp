@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace saccade {
@@ -33,11 +34,14 @@ std::vector<double> TimedError::values_of(const RunData& run) const {
 
 std::string TimedError::axis() const { return fmt::format("{} [{}]", label, unit); }
 
-std::vector<TimedError> timed_errors(const RunData& run) {
+std::vector<TimedError> timed_errors(std::span<const RunData* const> runs) {
   const TimedError absolute{"dt", "position error", "mm", 1e3, &ErrorSeries::dt_m};
   const TimedError relative{"dt_rel", "relative position error", "%", 1,
                             &ErrorSeries::dt_rel_percent};
-  return {run.input.mean_depth_m ? relative : absolute,
+  const bool all_know = std::all_of(runs.begin(), runs.end(), [](const RunData* run) {
+    return run->errors.t_s.empty() || run->input.mean_depth_m;
+  });
+  return {all_know ? relative : absolute,
           {"dtheta", "rotation error", "deg", 1, &ErrorSeries::dtheta_deg}};
 }
 

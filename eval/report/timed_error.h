@@ -24,8 +24,9 @@ struct TimedError {
   [[nodiscard]] std::string axis() const;
 };
 
-/// Of the position, relative to the sequence's mean depth where that is known, and the rotation.
-[[nodiscard]] std::vector<TimedError> timed_errors(const RunData& run);
+/// Of the position, relative to the sequence's mean depth where all of the runs know that, and the
+/// rotation.
+[[nodiscard]] std::vector<TimedError> timed_errors(std::span<const RunData* const> runs);
 
 /// One chart of the error of several runs of `scope`, each in its style; over a logarithmic axis,
 /// since methods differ by factors. Runs without the error are left out.

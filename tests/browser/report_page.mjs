@@ -47,7 +47,12 @@ async function checkPaper(browser) {
 // Printing has drawn all; what is folded away then is drawn when it is opened.
 async function checkDrawings(browser) {
   await browser.evaluate(`document.querySelectorAll("details").forEach((details) => (details.open = true))`);
-  await browser.evaluate("new Promise((resolve) => setTimeout(resolve, 300))");
+  await browser.evaluate(`new Promise((resolve) => {
+    const missing = () => [...document.querySelectorAll("[data-plot], [data-chart], [data-space]")].some((box) => box.offsetParent && box.dataset.drawn !== "yes");
+    const end = Date.now() + 20000;
+    const look = () => (missing() && Date.now() < end ? setTimeout(look, 50) : resolve());
+    look();
+  })`);
   const drawings = await browser.evaluate(`[...document.querySelectorAll("[data-plot], [data-chart], [data-space]")].filter((box) => box.offsetParent)
     .map((box) => ({ name: box.dataset.plot ?? box.dataset.chart ?? box.dataset.space, drawn: box.dataset.drawn,
                      colours: (${kCanvasColours})(box.querySelector("canvas")) }))`);

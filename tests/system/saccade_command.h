@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,7 +21,12 @@ class OwnCache {
     if (const char* before = std::getenv("SACCADE_CACHE")) before_ = before;
     setenv("SACCADE_CACHE", folder_.path().c_str(), 1);
   }
-  ~OwnCache() { setenv("SACCADE_CACHE", before_.c_str(), 1); }
+  ~OwnCache() {
+    if (before_)
+      setenv("SACCADE_CACHE", before_->c_str(), 1);
+    else
+      unsetenv("SACCADE_CACHE");
+  }
   OwnCache(const OwnCache&) = delete;
   OwnCache& operator=(const OwnCache&) = delete;
 
@@ -28,7 +34,7 @@ class OwnCache {
 
  private:
   TemporaryFolder folder_;
-  std::string before_;
+  std::optional<std::string> before_;
 };
 /// The tests of a program share one, and leave the user's alone.
 inline const OwnCache kOwnCache;

@@ -7,7 +7,8 @@ export function besidePoints(points, end) {
   const placed = [];
   for (const { text, x, y, width } of points.toSorted((a, b) => a.y - b.y)) {
     const left = x + kGap + width < end ? x + kGap : x - kGap - width;
-    const inTheWay = (at) => placed.find((other) => Math.abs(other.y - at) < kLine && other.left < left + width && left < other.left + other.width);
+    // With some room, so that rounding lets none stay in the way of a text that was put just below it.
+    const inTheWay = (at) => placed.find((other) => Math.abs(other.y - at) < kLine - 0.01 && other.left < left + width && left < other.left + other.width);
     let at = y - kRise;
     for (let other = inTheWay(at); other; other = inTheWay(at)) at = other.y + kLine;
     placed.push({ text, left, y: at, width });

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <csignal>
+#include <string>
 #include <utility>
 
 #include "tests/support/command.h"
@@ -23,15 +24,19 @@ class Signal {
     if (::pipe(ends_.data()) != 0) ADD_FAILURE() << "no pipe";
   }
   ~Signal() {
-    for (const int end : ends_) ::close(end);
+    for (const int end : ends_)
+      if (end >= 0) ::close(end);
   }
   Signal(const Signal&) = delete;
   Signal& operator=(const Signal&) = delete;
 
+  /// Each process keeps one end, so that who waits for one that has died is not left waiting.
+  void keep_sender() { ::close(std::exchange(ends_[0], -1)); }
+  void keep_receiver() { ::close(std::exchange(ends_[1], -1)); }
   void send() const { EXPECT_EQ(::write(ends_[1], "!", 1), 1); }
   void wait() const {
     char sign = 0;
-    EXPECT_EQ(::read(ends_[0], &sign, 1), 1);
+    EXPECT_EQ(::read(ends_[0], &sign, 1), 1) << "the other process has died";
   }
 
  private:
@@ -43,11 +48,21 @@ class Signal {
 class OtherProcess {
  public:
   explicit OtherProcess(const fs::path& file) : child_(fork()) {
-    if (child_ != 0) return;
-    go_.wait();
-    const FileLock lock = FileLock::wait_for(file);
-    has_lock_.send();
-    for (;;) pause();
+    if (child_ != 0) {
+      go_.keep_sender();
+      has_lock_.keep_receiver();
+      return;
+    }
+    go_.keep_receiver();
+    has_lock_.keep_sender();
+    try {
+      go_.wait();
+      const FileLock lock = FileLock::wait_for(file);
+      has_lock_.send();
+      for (;;) pause();
+    } catch (...) {  // must not go on as a second program of tests
+    }
+    _exit(1);
   }
   ~OtherProcess() { end(); }
   OtherProcess(const OtherProcess&) = delete;
@@ -55,6 +70,16 @@ class OtherProcess {
 
   void ask_for_lock() const { go_.send(); }
   void wait_until_it_has_the_lock() const { has_lock_.wait(); }
+  /// Until it waits for the lock: a file that it has opened.
+  void wait_until_it_has_opened(const fs::path& file) const {
+    const fs::path descriptors = "/proc/" + std::to_string(child_) + "/fd";
+    for (bool found = false; !found;) {
+      std::error_code gone;
+      for (const fs::directory_entry& entry : fs::directory_iterator(descriptors, gone))
+        found = found || fs::read_symlink(entry, gone) == file;
+      ASSERT_FALSE(::waitpid(child_, nullptr, WNOHANG) == child_) << "the other process has died";
+    }
+  }
   void end() {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
@@ -97,6 +122,7 @@ TEST_F(Locking, AFileRemovedByItsOwnerIsLockedAnew) {
   const OtherProcess other(file());
   std::optional<FileLock> mine = FileLock::try_take(file());
   other.ask_for_lock();
+  other.wait_until_it_has_opened(file());
   fs::remove_all(file().parent_path());
   mine.reset();
   other.wait_until_it_has_the_lock();

@@ -114,19 +114,28 @@ TEST_F(OdometryModule, TheEventsOfSomeOfThePixelsWillDo) {
   expect_glide(folder_.path() / "some");
   const auto all = read_keyframe_list(folder_.path() / "all" / "keyframes.yaml");
   const auto some = read_keyframe_list(folder_.path() / "some" / "keyframes.yaml");
-  ASSERT_GT(all.front().events, 30000) << "there is something to thin";
+  ASSERT_GT(all.front().events, 120000) << "there is something to thin";
   EXPECT_EQ(some.front().events, all.front().events) << "the window is as long";
   EXPECT_LT(some.front().edges, all.front().edges);
+  yaml.replace(yaml.find("thinned_to: 120000"), 18, "thinned_to: 100");
+  EXPECT_THAT(error_of([&] { return run_odometry(request("hardly any", yaml)); }),
+              HasSubstr("show no edges in depth"));
 }
 
 TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
-  std::string yaml = kQuick;
-  yaml.replace(yaml.find("distance: 0.05"), 14, "distance: 0.05, interval_s: 0.1");
-  (void)run_odometry(request("run", yaml));
-  const auto keyframes = read_keyframe_list(folder_.path() / "run" / "keyframes.yaml");
-  ASSERT_GE(keyframes.size(), 3U);
-  for (std::size_t i = 2; i < keyframes.size(); ++i)
-    EXPECT_GE(keyframes[i].made_s, keyframes[i - 1].made_s + 0.099) << i;
+  const auto shortest_s = [&](const std::string& name, const std::string& keyframe) {
+    std::string yaml = kQuick;
+    yaml.replace(yaml.find("distance: 0.05"), 14, keyframe);
+    (void)run_odometry(request(name, yaml));
+    const auto keyframes = read_keyframe_list(folder_.path() / name / "keyframes.yaml");
+    EXPECT_GE(keyframes.size(), 3U);
+    double shortest = kEnd_s;
+    for (std::size_t i = 2; i < keyframes.size(); ++i)
+      shortest = std::min(shortest, keyframes[i].made_s - keyframes[i - 1].made_s);
+    return shortest;
+  };
+  EXPECT_LT(shortest_s("any", "distance: 0.02"), 0.08);
+  EXPECT_GE(shortest_s("apart", "distance: 0.02, interval_s: 0.1"), 0.099);
 }
 
 TEST_F(OdometryModule, GivenPosesMayBeStampedLate) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace saccade {
@@ -39,7 +40,8 @@ TEST(CurvePoints, SharesAscendToAHundredPercent) {
 TEST(CurvePoints, OfEqualValuesTheLargestShareHolds) {
   const CurvePoints points = shares_at_most({3, 1, 1, 1, 1});
   EXPECT_EQ(points.x, (std::vector<double>{1, 3}));
-  EXPECT_EQ(points.y, (std::vector<double>{87, 100}));
+  EXPECT_EQ(points.y, (std::vector<double>{80, 100}));
+  EXPECT_EQ(shares_at_most({2, std::nan("")}).y, (std::vector<double>{100}));
   EXPECT_TRUE(shares_at_most({}).x.empty());
   EXPECT_TRUE(shares_at_most({0, 0}).x.empty());
 }

@@ -180,6 +180,24 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
       << "the front and two methods";
 }
 
+TEST_F(Report, APublishedSpeedStandsInTheChart) {
+  const auto table = [](const std::string& metric, const std::string& value) {
+    return "  - {dataset: D, metric: " + metric +
+           ", protocol: p, citation: c, url: \"https://example.org\", methods: [{name: M, "
+           "sensors: events, paper: \"https://example.org\"}], sequences: {walls: [" +
+           value + "]}}\n";
+  };
+  ReportOptions options;
+  options.published =
+      folder.write("published.yaml", "tables:\n" + table("trajectory.dt_rel_percent.mean", "0.5") +
+                                         table("speed.realtime_factor", "3"));
+  const fs::path file = folder.path() / "report.html";
+  write_report(std::vector{run()}, file, options);
+  const auto chart =
+      chart_of(testing::read_file(file), "walls/trajectory.dt_rel_percent.mean/speed");
+  EXPECT_EQ(chart["series"].size(), 3U) << "the front, the run's method and the published one";
+}
+
 TEST_F(Report, SaysHowEveryPartIsRepeated) {
   ReportOptions options;
   options.command = "saccade report a b -o c.html --title \"<x>\"";
