@@ -57,8 +57,8 @@ Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
   const DepthConfig config;
   const RayDepth depth(config.rays, config.limits, keyframe_recording().world.camera());
   AdjustmentOptions options;
-  options.edges =
-      3000;  // all: of some hundred, chance in which are chosen moves the result by a third
+  // All: of some hundred, chance in which are chosen moves the result by a third.
+  options.edges = 3000;
   options.node_spacing_s = 0.02;
   return adjust(window, depth.find_edges(window), keyframe_recording().world.camera(),
                 {kKnown_s, kCornerDepth_m, {}}, options);
