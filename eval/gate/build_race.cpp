@@ -1,7 +1,6 @@
 #include "eval/gate/build_race.h"
 
 #include <poll.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "core/child_process.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
+#include "core/io/scratch_folder.h"
 #include "eval/evaluate.h"
 
 namespace saccade {
@@ -23,28 +23,21 @@ using Clock = std::chrono::steady_clock;
 constexpr int kWaitMs = 200;
 constexpr std::size_t kShownOfLog = 2000;  // characters
 
-/// A file for what the programs print, removed at the end.
+/// What the programs print, gone with the object.
 class RaceLog {
  public:
-  RaceLog() : file_(fs::temp_directory_path() / fs::path(unique_name())) { clear(); }
-  ~RaceLog() {
-    std::error_code ignored;
-    fs::remove(file_, ignored);
-  }
-  RaceLog(const RaceLog&) = delete;
-  RaceLog& operator=(const RaceLog&) = delete;
+  RaceLog() { clear(); }
 
-  [[nodiscard]] const fs::path& file() const { return file_; }
-  void clear() const { write_atomically(file_, ""); }
+  [[nodiscard]] fs::path file() const { return folder_.path() / "race.log"; }
+  void clear() const { write_atomically(file(), ""); }
   [[nodiscard]] std::string end() const {
-    std::ifstream in(file_, std::ios::binary);
+    std::ifstream in(file(), std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     return text.size() > kShownOfLog ? text.substr(text.size() - kShownOfLog) : text;
   }
 
  private:
-  static std::string unique_name() { return "saccade_gate_" + std::to_string(::getpid()) + ".log"; }
-  fs::path file_;
+  ScratchFolder folder_;
 };
 
 /// The folder that the arguments have a run written to; empty where they are none of `run`.

@@ -52,7 +52,8 @@ std::vector<PageChart> compared_speed(std::span<const Leaderboard> boards,
   std::vector<PageChart> charts;
   if (speeds == boards.end()) return charts;
   for (const Leaderboard& board : boards) {
-    if (&board == &*speeds) continue;
+    const bool drawn_as_mean = !sequence.empty() && board.sequences.size() == 1;
+    if (&board == &*speeds || drawn_as_mean) continue;
     const std::vector<SpeedAndScore> points = speeds_and_scores(
         board, *speeds, sequence.empty() ? board.sequences : std::vector{sequence});
     if (points.size() > 1) charts.push_back(speed_chart(board, points, sequence, styles));

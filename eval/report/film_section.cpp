@@ -1,8 +1,6 @@
 #include "eval/report/film_section.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -10,6 +8,7 @@
 
 #include "core/io/file_bytes.h"
 #include "core/io/image_file.h"
+#include "core/io/scratch_folder.h"
 #include "core/io/webp_file.h"
 #include "eval/mosaic_view.h"
 #include "eval/picture/render.h"
@@ -27,25 +26,6 @@ constexpr int kSmallFilm = 37;  ///< of RenderOptions::crf: noise of events goes
 constexpr int kPictureWidth = 480;
 constexpr std::size_t kLeastViews = 8;  ///< fewer make no film
 
-/// A file of this process alone, gone with the object.
-class ScratchFile {
- public:
-  explicit ScratchFile(const std::string& ending)
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("saccade-film-{}{}", getpid(), ending)) {}
-  ~ScratchFile() {
-    std::error_code error;
-    std::filesystem::remove(path_, error);
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 TimeSpan span_of(const RunData& data) {
   TimeSpan span = time_span(*data.data);
   if (const auto& window = data.run.record.window) {
@@ -57,17 +37,19 @@ TimeSpan span_of(const RunData& data) {
 
 /// H.264
 std::string film_bytes(const RunData& data, const RenderOptions& options) {
-  const ScratchFile file(".mp4");
-  render(data.run.folder, file.path(), options);
-  const std::vector<std::byte> bytes = read_file_bytes(file.path());
+  const ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "film.mp4";
+  render(data.run.folder, file, options);
+  const std::vector<std::byte> bytes = read_file_bytes(file);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// The moment `options.time_s` as WebP.
 std::string poster_bytes(const RunData& data, const RenderOptions& options) {
-  const ScratchFile file(".png");
-  render(data.run.folder, file.path(), options);
-  return encode_webp(read_image_rgb(file.path()));
+  const ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "poster.png";
+  render(data.run.folder, file, options);
+  return encode_webp(read_image_rgb(file));
 }
 
 /// nullopt where the film would hold next to nothing: of a few views or of a finished mosaic.

@@ -43,6 +43,7 @@ std::span<const MetricInfo> usual_metrics() {
       {"speed.poses_per_s", "poses/s", Better::kHigher, true, true},
       {"speed.events_per_s", "events/s", Better::kHigher, true, false},
       {"speed.realtime_factor", "x real time", Better::kHigher, true, false},
+      {"speed.events", "processed events", Better::kNeither, false, false},
       {"dataset.events", "events", Better::kNeither, false, true},
       {"dataset.duration_s", "duration [s]", Better::kNeither, false, false},
       {"dataset.mean_scene_depth_m", "mean depth [m]", Better::kNeither, false, false},

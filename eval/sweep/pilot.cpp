@@ -1,7 +1,6 @@
 #include "eval/sweep/pilot.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,6 +17,7 @@
 #include "core/config/document.h"
 #include "core/error.h"
 #include "core/io/dataset_record.h"
+#include "core/io/scratch_folder.h"
 #include "eval/metrics/statistics.h"
 #include "eval/number_text.h"
 
@@ -29,22 +29,6 @@ using Words = std::vector<std::string>;
 
 constexpr std::size_t kPilots = 8;
 constexpr double kWindowS = 0.025;
-
-/// A folder for the pilot's datasets, removed with it.
-class PilotFolder {
- public:
-  PilotFolder() : path_(fs::temp_directory_path() / fmt::format("saccade_pilot_{}", ::getpid())) {}
-  ~PilotFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PilotFolder(const PilotFolder&) = delete;
-  PilotFolder& operator=(const PilotFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
@@ -170,13 +154,13 @@ Estimate scaled_estimate(const std::vector<double>& sample, std::size_t count) {
 }
 
 void check_configurations(const std::vector<const SweepJob*>& jobs, Launcher& launcher) {
-  const PilotFolder folder;
+  const ScratchFolder folder;
   (void)print_configurations(evenly_spread(jobs), folder.path(), launcher);
 }
 
 PilotResult run_pilot(const std::vector<const SweepJob*>& jobs, Launcher& launcher) {
   const auto start = std::chrono::steady_clock::now();
-  const PilotFolder folder;
+  const ScratchFolder folder;
   const std::vector<const SweepJob*> chosen = evenly_spread(jobs);
   const std::vector<double> durations_s = durations_of(chosen, folder.path(), launcher);
   const double shortest_s = *std::min_element(durations_s.begin(), durations_s.end());

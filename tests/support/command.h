@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/io/scratch_folder.h"
+
 namespace saccade::testing {
 
 struct CommandResult {
@@ -18,17 +20,12 @@ struct CommandResult {
 /// A folder of its own below the system's temporary folder, removed at the end.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
   /// Writes a text file, with the folders above it, and returns its path.
   std::filesystem::path write(const std::string& name, const std::string& text) const;
 
  private:
-  std::filesystem::path path_;
+  ScratchFolder folder_;
 };
 
 /// The whole file as text; fails the running test when it cannot be read.
