@@ -152,7 +152,8 @@ std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path
   for (int i = 0; i < options_.adjust_rounds; ++i) {
     edges = depth.find_edges(window);
     Adjustment adjustment =
-        adjust(window, *edges, camera_, {known.settled_until_s, typical_depth_m, known.landmarks},
+        adjust(window, *edges, camera_,
+               {known.settled_until_s, known.given_until_s, typical_depth_m, known.landmarks},
                options_.adjustment);
     if (!adjustment.ok) break;
     path = std::move(adjustment.trajectory);

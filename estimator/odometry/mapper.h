@@ -51,6 +51,7 @@ struct MappingOptions {
 struct KnownPath {
   Trajectory poses;
   double settled_until_s = 0;             ///< poses until then do not change any more
+  double given_until_s = kNothingGiven;   ///< those until then were given, and tell the scale
   std::optional<double> typical_depth_m;  ///< of the scene; nullopt: a space sweep finds it
   std::vector<Landmark> landmarks;        ///< edges known from events before those of the window
 };

@@ -63,6 +63,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
   OdometryResult result;
   known_.assign(start.poses.poses().begin(), start.poses.poses().end());
   settled_until_s_ = start.settled_until_s;
+  given_until_s_ = start.given_until_s;
   result.poses = found_poses(start);
   Stream stream{events, count_until(events, start.poses.end_s())};
   {
@@ -193,11 +194,12 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   last_keyframe_ = known_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   const std::span<const Event> mapped = events.subspan(count_until(events, mapped_from_s_));
-  job_->mapping =
-      std::async(policy, [this, mapped, seconds = &job_->seconds,
-                          path = KnownPath{Trajectory(known_), settled_until_s_, typical_depth_m_,
-                                           map_.landmarks(now_s - options_.mapping.duration_s,
-                                                          known_.back().world_from_camera)}] {
+  job_->mapping = std::async(
+      policy,
+      [this, mapped, seconds = &job_->seconds,
+       path = KnownPath{
+           Trajectory(known_), settled_until_s_, given_until_s_, typical_depth_m_,
+           map_.landmarks(now_s - options_.mapping.duration_s, known_.back().world_from_camera)}] {
         const StageClock clock(*seconds);
         return mapper_.map(mapped, path);
       });

@@ -163,6 +163,7 @@ class Odometry {
   Tracker tracker_;
   std::vector<StampedPose> known_;  ///< the start, then what was tracked, as last adjusted
   double settled_until_s_ = 0;
+  double given_until_s_ = kNothingGiven;
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
   double last_search_s_ = -std::numeric_limits<double>::infinity();

@@ -111,6 +111,10 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
   fields.value("pairs", adjustment.pairs, "of an edge's events between two nodes, at most")
       .range(1, 1e6);
   fields
+      .value("given_pairs", adjustment.given_pairs,
+             "the same while the poses are given, which tells the scale")
+      .range(1, 1e6);
+  fields
       .value(
           "landmark_px", adjustment.landmark_px,
           "what an edge is off by from that of an older keyframe on which it lies; 0: those hold "

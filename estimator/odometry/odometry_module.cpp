@@ -76,14 +76,17 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
   Start start;
   if (options.truth_s > 0) {
     start.path.poses = start_poses(dataset, events, options);
-    start.path.settled_until_s = start.from_s = start.path.poses.end_s();
+    start.from_s = start.path.poses.end_s();
+    start.path.settled_until_s = start.path.given_until_s = start.from_s;
     return start;
   }
   const StageClock clock(start.seconds);
   start.found = found_start(dataset, camera, events, options, gyroscope);
   start.from_s = start.found->path.start_s();
   // All but the first pose may change.
-  start.path = {start.found->path, start.from_s, options.found.depth_m, {}};
+  start.path.poses = start.found->path;
+  start.path.settled_until_s = start.from_s;
+  start.path.typical_depth_m = options.found.depth_m;
   return start;
 }
 

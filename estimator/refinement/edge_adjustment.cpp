@@ -72,7 +72,8 @@ class WindowProblem {
         landmarks_(known.landmarks, window.world_from_reference().inverse(), camera.undistorted()),
         correction_(seconds_from_ns(window.events.front().t_ns),
                     seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
-        observed_(window, edges, camera, correction_, options.pairs),
+        observed_(window, edges, camera, correction_,
+                  {options.pairs, options.given_pairs, known.given_until_s}),
         surface_(observed_.camera(), options.surface_spacing_px, 1 / known.typical_depth_m) {}
 
   Adjustment solve() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "core/camera.h"
@@ -18,9 +19,11 @@ struct AdjustmentOptions {
   double node_spacing_s = 0.04;  ///< the correction of the poses is linear between nodes
   int edges = 1000;              ///< at most so many, evenly chosen
   int pairs = 1;                 ///< of an edge's events between two nodes, at most, evenly in time
-  double noise_px = 0.1;         ///< least deviation of an event from its edge
-  double outlier = 2;            ///< deviations beyond which it counts less (Cauchy)
-  int iterations = 10;           ///< of Levenberg-Marquardt, at most
+  /// The same where the poses are given: there events tell the scale, so that more of them count.
+  int given_pairs = 1;
+  double noise_px = 0.1;  ///< least deviation of an event from its edge
+  double outlier = 2;     ///< deviations beyond which it counts less (Cauchy)
+  int iterations = 10;    ///< of Levenberg-Marquardt, at most
   /// What is assumed of an edge's unknowns; of its inverse depth hardly anything.
   double offset_px = 2;        ///< of c from 0
   double tilt_sigma = 0.3;     ///< of m from 0
@@ -40,9 +43,13 @@ struct AdjustmentOptions {
   double surface_spacing_px = 15;  ///< of the surface's nodes
 };
 
+/// A time before all others.
+inline constexpr double kNothingGiven = std::numeric_limits<double>::lowest();
+
 /// What is known beside the window.
 struct KnownScene {
-  double until_s = 0;  ///< the poses until then
+  double until_s = 0;                    ///< the poses until then
+  double given_until_s = kNothingGiven;  ///< those until then are exact
   double typical_depth_m = 1;
   std::span<const Landmark> landmarks;
 };

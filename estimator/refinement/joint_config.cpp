@@ -35,6 +35,10 @@ void describe(config::Fields& fields, JointRefinementOptions& options) {
       .range(1e-3, 100);
   fields.value("edges", options.edges, "of a keyframe, at most").range(30, 1e7);
   fields.value("events_per_edge", options.events_per_edge, "at most").range(5, 1e6);
+  fields
+      .value("known_events_per_edge", options.known_events_per_edge,
+             "at most, beside them, while the poses are given")
+      .range(5, 1e6);
   fields.value("noise_px", options.noise_px, "least deviation of an event from its edge")
       .range(1e-3, 10);
   fields.value("outlier", options.outlier, "deviations beyond which an event counts less")

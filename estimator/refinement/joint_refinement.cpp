@@ -69,6 +69,7 @@ class Problem {
         undistorted_(camera.undistorted()),
         options_(options),
         depth_m_(start.typical_depth_m),
+        known_until_s_(start.known.size() > 1 ? start.known.back().t_s : path.start_s()),
         correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
     steps_.resize(windows.size());
     parallel_for(windows.size(),
@@ -133,17 +134,31 @@ class Problem {
     double* unknowns = adjusted.unknowns.data();
     const std::vector<std::uint8_t>& steps = steps_[adjusted.keyframe];
     const double mean = mean_step(steps, events);
-    for (const std::size_t i : evenly(events.size(), options_.events_per_edge)) {
-      const std::uint32_t e = events[i];
+    for (const std::uint32_t e : choose_events(windows_[adjusted.keyframe], events))
       add_event(windows_[adjusted.keyframe], e, steps[e] > 0 ? steps[e] - mean : 0, fitted,
                 unknowns);
-    }
     const double rho = adjusted.unknowns[0];
     // Of the depth hardly any hold: where a window says nothing of an edge.
     const SteppedEdge sigma(rho, options_.offset_px, options_.tilt_sigma, options_.hysteresis_px,
                             options_.step_px);
     problem_.AddResidualBlock(new HeldCost<5>(adjusted.unknowns, sigma), nullptr, unknowns);
     ordering_->AddElementToGroup(unknowns, 0);
+  }
+
+  /// Some of an edge's events, given and returned in order of time.
+  [[nodiscard]] std::vector<std::uint32_t> choose_events(
+      const ViewWindow& window, const std::vector<std::uint32_t>& events) const {
+    const auto is_known = [&](std::uint32_t e) {
+      return seconds_from_ns(window.events[e].t_ns) <= known_until_s_;
+    };
+    const auto first_open = std::partition_point(events.begin(), events.end(), is_known);
+    const auto known = static_cast<std::size_t>(first_open - events.begin());
+    std::vector<std::uint32_t> chosen;
+    for (const std::size_t i : evenly(known, options_.known_events_per_edge))
+      chosen.push_back(events[i]);
+    for (const std::size_t i : evenly(events.size() - known, options_.events_per_edge))
+      chosen.push_back(events[known + i]);
+    return chosen;
   }
 
   /// `step`: by which its step of a run is above the mean of the edge.
@@ -243,6 +258,7 @@ class Problem {
   PinholeCamera undistorted_;
   const JointRefinementOptions& options_;
   double depth_m_;
+  double known_until_s_;
   PathCorrection correction_;
   std::vector<std::vector<std::uint8_t>> steps_;  ///< of the windows' events
   std::vector<Adjusted> adjusted_;

@@ -22,13 +22,16 @@ struct JointRefinementOptions {
   double window_s = 1.6;         ///< events that a keyframe's edges are sought in, around its view
   int edges = 600;               ///< of a keyframe, at most, evenly chosen
   int events_per_edge = 30;      ///< at most, evenly in time
-  double noise_px = 0.1;         ///< least deviation of an event from its edge
-  double outlier = 2;            ///< deviations beyond which an event counts less (Cauchy)
-  double tilt_sigma = 0.3;       ///< of an edge's tilt m from 0
-  double hysteresis_px = 0.5;    ///< of h from 0
-  double step_px = 0.5;          ///< of k from 0
-  double offset_px = 2;          ///< of c from 0
-  double hold_px = 30;           ///< of the correction from none, as image motion
+  /// Beside them, of the start's: only while the poses are known do events say how far away an edge
+  /// is in the unit of the path, and so what the path's scale is.
+  int known_events_per_edge = 100;
+  double noise_px = 0.1;       ///< least deviation of an event from its edge
+  double outlier = 2;          ///< deviations beyond which an event counts less (Cauchy)
+  double tilt_sigma = 0.3;     ///< of an edge's tilt m from 0
+  double hysteresis_px = 0.5;  ///< of h from 0
+  double step_px = 0.5;        ///< of k from 0
+  double offset_px = 2;        ///< of c from 0
+  double hold_px = 30;         ///< of the correction from none, as image motion
   /// By which the correction bends from one knot to the next, as image motion: its slope's random
   /// walk over a second. What a tracker is off by grows evenly; it holds the path's ends, where few
   /// events do.

@@ -14,13 +14,12 @@ constexpr double kFirstLag = 0.25;
 
 ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
                              const PinholeCamera& camera, const NodeCorrection& correction,
-                             int pairs)
+                             const EventShares& shares)
     : window_(window),
       edges_(edges),
       camera_(camera),
       undistorted_(camera.undistorted()),
       correction_(correction),
-      most_(2 * static_cast<std::size_t>(pairs)),
       view_from_world_(window.world_from_reference().inverse()),
       steps_(event_steps(window.events, camera)) {
   for (int node = 1; node < correction.count(); ++node) {
@@ -28,7 +27,9 @@ ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
         std::partition_point(window.events.begin(), window.events.end(), [&](const Event& event) {
           return correction.before(seconds_from_ns(event.t_ns)).first < node;
         });
-    node_end_.push_back(static_cast<std::uint32_t>(next - window.events.begin()));
+    const bool is_given = correction.time_s(node - 1) < shares.given_until_s;
+    nodes_.push_back({static_cast<std::uint32_t>(next - window.events.begin()),
+                      2 * static_cast<std::size_t>(is_given ? shares.given_pairs : shares.pairs)});
   }
 }
 
@@ -40,10 +41,12 @@ std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
   std::vector<ChosenEvent> chosen;
   for (auto first = events.begin(); first != events.end();) {
     // By index, since an edge's events lie all over the window's.
-    const auto end = *std::upper_bound(node_end_.begin(), node_end_.end(), *first);
-    const auto last = std::lower_bound(first, events.end(), end);
+    const NodeEvents& node = *std::upper_bound(
+        nodes_.begin(), nodes_.end(), *first,
+        [](std::uint32_t event, const NodeEvents& other) { return event < other.end; });
+    const auto last = std::lower_bound(first, events.end(), node.end);
     const auto count = static_cast<std::size_t>(last - first);
-    const std::size_t taken = std::min(most_, count);
+    const std::size_t taken = std::min(node.most, count);
     for (std::size_t i = 0; i < taken; ++i) {
       const std::size_t at = (2 * i + 1) * count / (2 * taken);
       chosen.push_back(observed(edge, mean, *(first + static_cast<std::ptrdiff_t>(at))));

@@ -20,13 +20,19 @@ struct ChosenEvent {
   double share;  ///< of the later
 };
 
+/// How many of an edge's events count between two nodes of a correction, at most, in pairs.
+struct EventShares {
+  int pairs = 1;        ///< >= 1
+  int given_pairs = 1;  ///< >= 1, after nodes that are before `given_until_s`
+  double given_until_s = 0;
+};
+
 /// The edges of a window with the events that speak for them.
 class ObservedEdges {
  public:
-  /// All but `camera`, which may have a lens, outlive it. `pairs` >= 1 of an edge's events count
-  /// between two nodes, at most.
+  /// All but `camera`, which may have a lens, outlive it.
   ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
-                const NodeCorrection& correction, int pairs);
+                const NodeCorrection& correction, const EventShares& shares);
 
   /// In order of time, evenly spread.
   [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdge& edge) const;
@@ -42,11 +48,14 @@ class ObservedEdges {
   PinholeCamera camera_;
   PinholeCamera undistorted_;
   const NodeCorrection& correction_;
-  std::size_t most_;
   Rigid3 view_from_world_;
   std::vector<std::uint8_t> steps_;  ///< of every event of the window
-  /// Of every node but the last, the index behind its events, those until the next node.
-  std::vector<std::uint32_t> node_end_;
+  /// The events between a node and the next one.
+  struct NodeEvents {
+    std::uint32_t end;  ///< index behind the last
+    std::size_t most;   ///< count of an edge, at most
+  };
+  std::vector<NodeEvents> nodes_;  ///< of all but the last
 };
 
 }  // namespace saccade

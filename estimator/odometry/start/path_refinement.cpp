@@ -1,7 +1,6 @@
 #include "estimator/odometry/start/path_refinement.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -43,9 +42,9 @@ FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory&
     result.events = 0;
     for (const FittedEdge& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
-    const Adjustment adjustment = adjust(
-        window, edges, camera_, {-std::numeric_limits<double>::infinity(), median_depth(edges), {}},
-        options_.adjustment);
+    const Adjustment adjustment =
+        adjust(window, edges, camera_, {kNothingGiven, kNothingGiven, median_depth(edges), {}},
+               options_.adjustment);
     if (!adjustment.ok) return result;
     result.residual_px = adjustment.residual_after_px;
     result.poses = scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges));

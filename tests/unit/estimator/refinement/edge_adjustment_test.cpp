@@ -61,7 +61,7 @@ Adjustment adjusted(const Trajectory& start, double reference_s = 0.15) {
   options.edges = 3000;
   options.node_spacing_s = 0.02;
   return adjust(window, depth.find_edges(window), keyframe_recording().world.camera(),
-                {kKnown_s, kCornerDepth_m, {}}, options);
+                {kKnown_s, kNothingGiven, kCornerDepth_m, {}}, options);
 }
 
 /// From the true path.
@@ -90,8 +90,8 @@ TEST(EdgeAdjustment, DoesNotShrinkThePicture) {
 TEST(EdgeAdjustment, TooFewEdgesChangeNothing) {
   const Trajectory start = trajectory_of(corner_glide, kAdjustedEnd_s);
   const ViewWindow window{keyframe_recording().events, &start, 0.15};
-  const Adjustment result =
-      adjust(window, {}, keyframe_recording().world.camera(), {kKnown_s, kCornerDepth_m, {}}, {});
+  const Adjustment result = adjust(window, {}, keyframe_recording().world.camera(),
+                                   {kKnown_s, kNothingGiven, kCornerDepth_m, {}}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.trajectory.size(), start.size());
 }

@@ -53,7 +53,7 @@ MountedImu readings_of_glide() {
 }
 
 JointResult refined(int rounds, const std::function<void(std::size_t)>& progress = {},
-                    const std::optional<MountedImu>& imu = {}) {
+                    const std::optional<MountedImu>& imu = {}, int known_events_per_edge = 100) {
   const PinholeCamera& camera = joint_recording().world.camera();
   JointStart start;
   for (double t_s = 0; t_s <= kJointEnd_s + 1e-9; t_s += 2e-3) {
@@ -66,6 +66,7 @@ JointResult refined(int rounds, const std::function<void(std::size_t)>& progress
   options.window_s = 0.3;
   options.edges = 300;
   options.events_per_edge = 20;
+  options.known_events_per_edge = known_events_per_edge;
   options.rounds = rounds;
   options.imu.use = imu.has_value();
   options.imu.interval_s = 0.04;
@@ -109,6 +110,20 @@ TEST(JointRefinement, AnInertialSensorSaysWhereDownIsAndHoldsThePath) {
     return angle_between(corner_glide(0.38).rotation(), result.path.at_clamped(0.38).rotation());
   };
   EXPECT_LT(error_rad(with), error_rad(without));
+}
+
+TEST(JointRefinement, EventsOfTheStartCountBesideTheOthers) {
+  const JointResult few = refined(1, {}, {}, 5), many = refined(1, {}, {}, 100);
+  EXPECT_GT(many.observations, few.observations * 3 / 2);
+  const auto scale_error = [](const JointResult& result) {
+    const auto way = [](const Rigid3& from, const Rigid3& to) {
+      return (to.translation() - from.translation()).norm();
+    };
+    return std::abs(way(result.path.at_clamped(0.05), result.path.at_clamped(0.38)) /
+                        way(corner_glide(0.05), corner_glide(0.38)) -
+                    1);
+  };
+  EXPECT_LT(scale_error(many), scale_error(few));
 }
 
 TEST(JointRefinement, SaysThatReadingsDoNotFit) {
