@@ -17,6 +17,7 @@
 #include "eval/gate/build_race.h"
 #include "eval/gate/comparison.h"
 #include "eval/gate/gate_report.h"
+#include "eval/store/result_store.h"
 
 namespace saccade {
 namespace {
@@ -69,8 +70,10 @@ void finish(const GateVerbOptions& options, const GateResult& result) {
 void gate_runs(const GateVerbOptions& options) {
   if (options.baseline.empty())
     throw InputError("--baseline", "name the baseline: --baseline FILE");
-  if (options.words.empty()) throw InputError("gate", "name at least one run folder");
-  const std::vector<GateRun> runs = read_gate_runs({options.words.begin(), options.words.end()});
+  const std::vector<std::filesystem::path> words(options.words.begin(), options.words.end());
+  const std::vector<std::filesystem::path> folders = without_store(words);
+  if (folders.empty()) throw InputError("gate", "name at least one run folder");
+  const std::vector<GateRun> runs = read_gate_runs(folders);
   if (options.update) return update(options, runs);
   if (!std::filesystem::exists(options.baseline))
     throw InputError(options.baseline.string(), "does not exist; --update writes it");

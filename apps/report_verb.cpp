@@ -8,6 +8,7 @@
 #include "apps/common_options.h"
 #include "apps/verbs.h"
 #include "eval/report/report.h"
+#include "eval/store/result_store.h"
 
 namespace saccade {
 namespace {
@@ -23,7 +24,8 @@ void report(const ReportVerbOptions& options) {
   options.common.apply();
   ReportOptions report = options.report;
   report.command = command_line();
-  write_report(options.runs, options.output, report);
+  report.against = without_store(report.against);
+  write_report(without_store(options.runs), options.output, report);
   if (!options.common.quiet) fmt::print("wrote {}\n", options.output.string());
 }
 

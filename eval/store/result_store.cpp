@@ -178,6 +178,15 @@ fs::path result_store_beside(const fs::path& run_folder) {
   return run.parent_path() / kResultStoreName;
 }
 
+std::vector<fs::path> without_store(std::span<const fs::path> named) {
+  std::vector<fs::path> runs(named.begin(), named.end());
+  // Its journal, while somebody writes, is called "results.sqlite-...".
+  std::erase_if(runs, [](const fs::path& path) {
+    return path.filename().string().starts_with(kResultStoreName) && fs::is_regular_file(path);
+  });
+  return runs;
+}
+
 ResultStore::ResultStore(const fs::path& file) : database_(file, Database::Access::kWrite) {
   Transaction transaction(database_);  // another program may be creating it
   if (is_empty(database_)) database_.run(schema());

@@ -19,6 +19,10 @@ constexpr const char* kResultStoreName = "results.sqlite";
 /// results.sqlite beside a run folder.
 [[nodiscard]] std::filesystem::path result_store_beside(const std::filesystem::path& run_folder);
 
+/// The run folders as `runs/*` names them: without the store that lies among them.
+[[nodiscard]] std::vector<std::filesystem::path> without_store(
+    std::span<const std::filesystem::path> named);
+
 /// Writes rows to a store, creates it where there is none. Several processes may write at once.
 class ResultStore {
  public:

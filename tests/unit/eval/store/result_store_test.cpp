@@ -189,6 +189,17 @@ TEST(ResultStore, OtherFilesAreLeftAlone) {
               HasSubstr("saccade results --scan"));
 }
 
+TEST(ResultStore, IsNoRunAmongThoseBesideIt) {
+  const TemporaryFolder folder;
+  const fs::path run = write_stored_run(folder.path(), {.name = "a"});
+  store_result(run);
+  const fs::path store = folder.path() / kResultStoreName;
+  const fs::path called_so = folder.path() / "more" / kResultStoreName;
+  fs::create_directories(called_so);
+  EXPECT_EQ(without_store(std::vector{run, store, called_so}), (std::vector{run, called_so}));
+  EXPECT_TRUE(without_store(std::vector{store}).empty());
+}
+
 TEST(Database, AReaderChangesNothing) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / kResultStoreName;
