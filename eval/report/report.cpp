@@ -4,11 +4,14 @@
 
 #include <filesystem>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "core/check.h"
 #include "core/error.h"
 #include "core/io/atomic_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
 #include "core/version.h"
 #include "eval/report/against_section.h"
 #include "eval/report/assets.h"
@@ -39,14 +42,22 @@ std::vector<std::vector<const RunData*>> by_dataset(const std::vector<RunData>& 
   return groups;
 }
 
+std::string dataset_heading(const RunData& data) {
+  return fmt::format("<h2>{}</h2>\n", escape_html(data.dataset)) + dataset_pictures(data);
+}
+
 std::string sections(const std::vector<RunData>& runs, bool film) {
-  std::string html;
-  for (const auto& group : by_dataset(runs)) {
-    html += fmt::format("<h2>{}</h2>\n", escape_html(group.front()->dataset));
-    html += dataset_pictures(*group.front());
-    for (const RunData* data : group) html += run_section(*data, film);
-  }
-  return html;
+  std::vector<std::pair<const RunData*, bool>> order;  // whether it is a dataset's first
+  for (const auto& group : by_dataset(runs))
+    for (const RunData* data : group) order.emplace_back(data, data == group.front());
+  std::vector<std::string> parts(order.size());
+  Progress progress("drawing", order.size(), "runs");
+  parallel_for(order.size(), [&](std::size_t i) {
+    const auto& [data, is_first] = order[i];
+    parts[i] = (is_first ? dataset_heading(*data) : "") + run_section(*data, film);
+    progress.add(1);
+  });
+  return fmt::format("{}", fmt::join(parts, ""));
 }
 
 /// Links to the tables that are there and to every run.
@@ -68,11 +79,17 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
 
 /// A run that patterns of a shell name twice is one run, not two of a kind.
 std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders) {
-  std::vector<RunData> runs;
+  std::vector<std::filesystem::path> once;
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& folder : folders)
-    if (seen.insert(std::filesystem::weakly_canonical(folder)).second)
-      runs.push_back(gather_run(folder, runs.size() + 1));
+    if (seen.insert(std::filesystem::weakly_canonical(folder)).second) once.push_back(folder);
+  std::vector<RunData> runs(once.size());
+  Progress progress("reading", once.size(), "runs");
+  parallel_for(once.size(), [&](std::size_t i) {
+    runs[i] = gather_run(once[i], i + 1);
+    progress.add(1);
+  });
+  progress.finish();
   compare_with_refined(runs);
   return runs;
 }
