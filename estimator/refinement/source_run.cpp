@@ -33,10 +33,14 @@ SourceRun SourceRun::open(const RunRequest& request, const Dataset& dataset) {
   if (!std::filesystem::exists(record))
     throw InputError(run.folder.string(), "is no run folder: it holds no run.yaml (--from)");
   run.record = read_run_record(record);
-  if (!run.record.dataset_sha256.empty() && run.record.dataset_sha256 != dataset_hash(dataset))
-    throw InputError(run.folder.string(),
-                     fmt::format("is a run over {}, which is not the dataset {} (--from)",
-                                 run.record.dataset.string(), dataset.folder().string()));
+  if (!run.record.dataset_sha256.empty() && run.record.dataset_sha256 != dataset_hash(dataset)) {
+    const std::string then = run.record.dataset.string(), now = dataset.folder().string();
+    throw InputError(
+        run.folder.string(),
+        then == now
+            ? fmt::format("is a run over {}, which was written anew since (--from)", now)
+            : fmt::format("is a run over {}, which is not the dataset {} (--from)", then, now));
+  }
   return run;
 }
 

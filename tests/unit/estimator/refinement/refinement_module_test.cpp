@@ -188,7 +188,10 @@ TEST_F(RefinementModule, SaysWhatIsWrongWithTheRun) {
   const std::size_t at = record.find("sha256: ") + 8;
   record[at + 1] = record[at + 1] == '0' ? '1' : '0';
   std::ofstream(broken / "run.yaml") << record;
-  EXPECT_THAT(error(broken), HasSubstr("not the dataset"));
+  EXPECT_THAT(error(broken), HasSubstr("written anew since"));
+  record.replace(record.find(dataset().string()), dataset().string().size(), "/elsewhere");
+  std::ofstream(broken / "run.yaml") << record;
+  EXPECT_THAT(error(broken), HasSubstr("a run over /elsewhere, which is not the dataset"));
 }
 
 TEST_F(RefinementModule, OtherModulesRefineNothing) {
