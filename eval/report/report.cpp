@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -51,11 +52,12 @@ std::string sections(const std::vector<RunData>& runs, bool film) {
   for (const auto& group : by_dataset(runs))
     for (const RunData* data : group) order.emplace_back(data, data == group.front());
   std::vector<std::string> parts(order.size());
-  Progress progress("drawing", order.size(), "runs");
+  std::optional<Progress> progress;
+  if (order.size() > 1) progress.emplace("drawing", order.size(), "runs");
   parallel_for(order.size(), [&](std::size_t i) {
     const auto& [data, is_first] = order[i];
     parts[i] = (is_first ? dataset_heading(*data) : "") + run_section(*data, film);
-    progress.add(1);
+    if (progress) progress->add(1);
   });
   return fmt::format("{}", fmt::join(parts, ""));
 }
@@ -84,12 +86,13 @@ std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders)
   for (const std::filesystem::path& folder : folders)
     if (seen.insert(std::filesystem::weakly_canonical(folder)).second) once.push_back(folder);
   std::vector<RunData> runs(once.size());
-  Progress progress("reading", once.size(), "runs");
+  std::optional<Progress> progress;
+  if (once.size() > 1) progress.emplace("reading", once.size(), "runs");
   parallel_for(once.size(), [&](std::size_t i) {
     runs[i] = gather_run(once[i], i + 1);
-    progress.add(1);
+    if (progress) progress->add(1);
   });
-  progress.finish();
+  if (progress) progress->finish();
   compare_with_refined(runs);
   return runs;
 }
