@@ -21,7 +21,7 @@ ScratchFolder::ScratchFolder() {
                      "the folder for temporary files: " + error.message() + "; set TMPDIR");
   }
   std::string name = (parent / "saccade_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) fail_to_write(name, errno);
+  if (::mkdtemp(name.data()) == nullptr) fail_to_write(parent, errno);
   path_ = name;
 }
 

@@ -52,13 +52,15 @@ std::string sections(const std::vector<RunData>& runs, bool film) {
   for (const auto& group : by_dataset(runs))
     for (const RunData* data : group) order.emplace_back(data, data == group.front());
   std::vector<std::string> parts(order.size());
+  // Films show their own progress and are encoded with all threads: one after the other.
   std::optional<Progress> progress;
-  if (order.size() > 1) progress.emplace("drawing", order.size(), "runs");
-  parallel_for(order.size(), [&](std::size_t i) {
+  if (order.size() > 1 && !film) progress.emplace("drawing", order.size(), "runs");
+  const auto draw = [&](std::size_t i) {
     const auto& [data, is_first] = order[i];
     parts[i] = (is_first ? dataset_heading(*data) : "") + run_section(*data, film);
     if (progress) progress->add(1);
-  });
+  };
+  parallel_for(order.size(), draw, film ? order.size() : 1);
   return fmt::format("{}", fmt::join(parts, ""));
 }
 

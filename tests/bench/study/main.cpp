@@ -3,8 +3,6 @@
 //   sampling_study ablation CONFIG [KEY=VALUE...]
 //   sampling_study speed RUNS CONFIG [KEY=VALUE...]
 //   sampling_study record RUNS CONFIG [KEY=VALUE...]
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/io/scratch_folder.h"
 #include "core/progress.h"
 #include "simulator/recording_loop.h"
 #include "simulator/sensor/event_camera.h"
@@ -41,8 +40,8 @@ void print_speed(int runs, const Scenario& scenario) {
   SimulationConfig config = scenario.config;
   config.frames.rate_hz = 0;
   config.groundtruth.depth_rate_hz = 0;
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("sampling_study_" + std::to_string(getpid()));
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path() / "events";
   std::vector<double> seconds;
   double events = 0;
   EventStatistics statistics;
@@ -73,8 +72,8 @@ void print_speed(int runs, const Scenario& scenario) {
 /// Senses and logs the events again and again, for a profiler.
 void record(int runs, const Scenario& scenario) {
   const SimulationConfig& config = scenario.config;
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("sampling_study_" + std::to_string(getpid()));
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path() / "events";
   for (int k = 0; k < runs; ++k) {
     EventCamera camera(scenario.scene, scenario.motion, config.camera, config.events, config.seed);
     EventLog log(folder);

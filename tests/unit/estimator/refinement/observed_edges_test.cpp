@@ -42,8 +42,9 @@ std::map<int, std::size_t> most_after_nodes(const EventShares& shares) {
 }
 
 TEST(ObservedEdges, AsManyEventsCountBetweenTwoNodesAsArePaired) {
-  for (const auto& [node, count] : most_after_nodes({1, 1, kGivenUntil_s}))
-    EXPECT_EQ(count, 2U) << node;
+  const std::map<int, std::size_t> most = most_after_nodes({1, 1, kGivenUntil_s});
+  ASSERT_EQ(most.size(), 6U);
+  for (const auto& [node, count] : most) EXPECT_EQ(count, 2U) << node;
 }
 
 TEST(ObservedEdges, MoreOfThemCountWhileThePosesAreGiven) {
