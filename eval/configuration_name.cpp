@@ -1,6 +1,5 @@
 #include "eval/configuration_name.h"
 
-#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -25,7 +24,17 @@ std::vector<std::string> option_values(const std::vector<std::string>& words,
   return values;
 }
 
+/// The last one counts.
+std::filesystem::path last_file(const std::vector<std::string>& words) {
+  const std::vector<std::string> files = option_values(words, "--config", "-c");
+  return files.empty() ? "" : files.back();
+}
+
 }  // namespace
+
+std::filesystem::path configuration_file(const RunRecord& record) {
+  return last_file(shell_words(record.command));
+}
 
 std::string configuration_sha256(const RunRecord& record) {
   const std::string& text = record.config_yaml;
@@ -36,9 +45,8 @@ std::string configuration_name(const RunRecord& record) {
   constexpr std::size_t kShown = 8;
   if (record.command.empty()) return configuration_sha256(record).substr(0, kShown);
   const std::vector<std::string> words = shell_words(record.command);
-  const std::vector<std::string> files = option_values(words, "--config", "-c");
-  std::string name =
-      files.empty() ? "defaults" : std::filesystem::path(files.back()).stem().string();
+  const std::filesystem::path file = last_file(words);
+  std::string name = file.empty() ? "defaults" : file.stem().string();
   for (const std::string& setting : option_values(words, "--set"))
     if (!setting.starts_with("seed=")) name += " " + setting;
   if (!record.poses_from.empty()) name += ", estimated poses";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/io/run_record.h"
@@ -12,6 +13,9 @@ namespace saccade {
 /// took the place of the truth's. A run that no command line made is called by the first eight
 /// digits of the SHA-256 of its resolved configuration.
 [[nodiscard]] std::string configuration_name(const RunRecord& record);
+
+/// The configuration file that the command names, as it names it; empty for none.
+[[nodiscard]] std::filesystem::path configuration_file(const RunRecord& record);
 
 /// SHA-256 of the resolved configuration; empty where the record holds none.
 [[nodiscard]] std::string configuration_sha256(const RunRecord& record);

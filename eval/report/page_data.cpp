@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "core/check.h"
 #include "eval/metrics/statistics.h"
 #include "eval/report/html.h"
 
@@ -72,7 +73,24 @@ Json gaps(const RunData& data) {
   return result;
 }
 
-Json run_json(const RunData& data) {
+/// A script element ends at its first "</", wherever that stands.
+std::string inside_script(const Json& json) {
+  std::string text = json.dump();
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
+    text.insert(at + 1, 1, '\\');
+  return text;
+}
+
+}  // namespace
+
+std::string charts_data(std::span<const PageChart> charts) {
+  Json all = Json::array();
+  for (const PageChart& chart : charts) all.push_back(chart_json(chart));
+  return inside_script(all);
+}
+
+std::string run_page_data(const RunData& data) {
+  SACCADE_CHECK(!data.samples.t_s.empty());
   const ScoredSamples& s = data.samples;
   Json run{{"id", data.id}, {"name", data.run.name()}};
   if (!data.map.empty()) run["cloud"] = cloud(data.map);
@@ -96,21 +114,7 @@ Json run_json(const RunData& data) {
   all["dtheta"] = series("rotation error", "deg", e.t_s, e.dtheta_deg);
   if (const ReprojectionSeries& r = data.reprojection; !r.t_s.empty())
     all["reprojection"] = series("reprojection error", "px", r.t_s, r.rms_px);
-  return run;
-}
-
-}  // namespace
-
-std::string page_data(std::span<const RunData> runs, std::span<const PageChart> charts) {
-  Json root{{"runs", Json::array()}, {"charts", Json::array()}};
-  for (const PageChart& chart : charts) root["charts"].push_back(chart_json(chart));
-  for (const RunData& data : runs)
-    if (!data.samples.t_s.empty()) root["runs"].push_back(run_json(data));
-  std::string text = root.dump();
-  // A script element ends at its first "</", wherever that stands.
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.insert(at + 1, 1, '\\');
-  return text;
+  return inside_script(run);
 }
 
 }  // namespace saccade

@@ -124,20 +124,23 @@ std::string with_repeat(const std::vector<std::string>& parts, const std::string
 void write_report(std::span<const std::filesystem::path> run_folders,
                   const std::filesystem::path& output, const ReportOptions& options) {
   if (run_folders.empty()) throw InputError("report", "needs at least one run folder");
-  const std::vector<RunData> runs = gather_runs(run_folders);
+  std::vector<RunData> runs = gather_runs(run_folders);
+  const std::vector<RunData> before = gather_runs(options.against);
+  std::optional<Sides> sides;
+  // The same method's file may lie elsewhere on the other side.
+  if (!before.empty()) sides = compare_sides(before, runs);
+  tell_methods_apart(runs);
   const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
   std::vector<ReportTable> exported;
   for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));
   ChartSection compared = compared_section(runs, boards);
   std::vector<std::string> parts{runs.size() > 1 ? leaderboard_section(exported) : "",
                                  compared.html};
-  if (!options.against.empty()) {
-    const std::vector<RunData> before = gather_runs(options.against);
-    const Sides sides = compare_sides(before, runs);
-    const ChartSection against = against_section(sides);
+  if (sides) {
+    const ChartSection against = against_section(*sides);
     parts.insert(parts.begin(), against.html);
     compared.charts.insert(compared.charts.end(), against.charts.begin(), against.charts.end());
-    exported.push_back(against_table(sides));
+    exported.push_back(against_table(*sides));
   }
   for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
     parts.push_back(table(runs));
@@ -149,7 +152,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
        {"contents", contents(runs, tables)},
        {"style", std::string(assets::report_css)},
        {"body", tables + sections(runs, options.film)},
-       {"data", page_data(runs, compared.charts)},
+       {"charts", charts_data(compared.charts)},
        {"script", std::string(assets::report_js)},
        {"footer",
         fmt::format("Written by saccade {} ({}). Definitions of all scores: docs/metrics.md.",

@@ -1,6 +1,11 @@
 #include "eval/report/run_data.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/io/event_file.h"
@@ -75,6 +80,23 @@ void compare_with_refined(std::vector<RunData>& runs) {
     const Metrics ratios = refined_ratios(data.metrics, optimum.metrics);
     for (const auto& [key, value] : ratios.values()) data.metrics.set(key, value);
   }
+}
+
+void tell_methods_apart(std::vector<RunData>& runs) {
+  const auto file_of = [](const RunData& data) {
+    return configuration_file(data.run.record).lexically_normal();
+  };
+  std::map<std::tuple<std::string, std::uint64_t, std::string>, std::set<std::filesystem::path>>
+      files;
+  for (const RunData& data : runs)
+    if (!data.run.record.external)
+      files[{data.dataset, data.run.record.seed, data.method}].insert(file_of(data));
+  std::set<std::string> ambiguous;
+  for (const auto& [key, of_method] : files)
+    if (of_method.size() > 1) ambiguous.insert(std::get<2>(key));
+  for (RunData& data : runs)
+    if (ambiguous.contains(data.method))
+      data.method += fmt::format(" ({})", file_of(data).parent_path().generic_string());
 }
 
 }  // namespace saccade

@@ -13,6 +13,7 @@
 #include "eval/report/image_section.h"
 #include "eval/report/keyframe_section.h"
 #include "eval/report/mosaic_section.h"
+#include "eval/report/page_data.h"
 #include "eval/report/rotation_section.h"
 #include "eval/report/stabilization_section.h"
 #include "eval/report/step_section.h"
@@ -100,7 +101,8 @@ std::string views(const RunData& data) {
   return html +
          "<p class=\"note\">Dashed: the mean. Shaded: no pose within 20 ms; the last one is "
          "held.</p>"
-         "</div></div>\n";
+         "</div></div>\n<script type=\"application/json\" data-run=\"" +
+         data.id + "\">" + run_page_data(data) + "</script>\n";
 }
 
 std::string swatch(const Rgb8& colour, const char* name) {
@@ -264,8 +266,8 @@ std::string dataset_pictures(const RunData& data) {
 }
 
 std::string run_section(const RunData& data, bool film) {
-  std::string html =
-      fmt::format("<section id=\"{}\"><h3>{}</h3>\n", data.id, escape_html(data.run.name()));
+  std::string html = fmt::format("<section id=\"{}\" class=\"run\"><h3>{}</h3>\n", data.id,
+                                 escape_html(data.run.name()));
   if (!data.data)
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));

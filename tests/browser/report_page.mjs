@@ -39,6 +39,17 @@ async function checkOpening(browser) {
   console.log(`opened in ${Math.round(ms)} ms`);
 }
 
+// What is left for later when the page opens is there in the end.
+async function checkSettled(browser) {
+  const hidden = await browser.evaluate(`new Promise((resolve) => {
+    const count = () => [...document.querySelectorAll(".run")].filter((run) => getComputedStyle(run).contentVisibility !== "visible").length;
+    const end = Date.now() + 20000;
+    const look = () => (count() && Date.now() < end ? setTimeout(look, 50) : resolve(count()));
+    look();
+  })`);
+  assert.equal(hidden, 0, "runs are never laid out");
+}
+
 async function checkPaper(browser) {
   const { data } = await browser.send("Page.printToPDF", { printBackground: true, preferCSSPageSize: true });
   if (pictures) writeFileSync(join(pictures, "paper.pdf"), Buffer.from(data, "base64"));
@@ -131,6 +142,7 @@ try {
   await checkOpening(browser);
   await keepPicture(browser, "top", false);
   await checkPaper(browser);
+  await checkSettled(browser);
   await checkDrawings(browser);
   await checkSorting(browser);
   await checkDownloads(browser);

@@ -34,6 +34,13 @@ TEST(ConfigurationName, SaysWhatWasEstimated) {
 
 TEST(ConfigurationName, WithoutAFileIsDefaults) { EXPECT_EQ(name_of("-o run"), "defaults"); }
 
+TEST(ConfigurationName, TheFileIsAsTheCommandNamesIt) {
+  RunRecord record;
+  EXPECT_EQ(configuration_file(record), "");
+  record.command = "saccade run track --data walls -c a/best.yaml -c b/best.yaml";
+  EXPECT_EQ(configuration_file(record), "b/best.yaml");
+}
+
 TEST(ConfigurationName, IsTheHashWhereNoCommandLineMadeTheRun) {
   RunRecord record;
   record.config_yaml = "seed: 1\n";

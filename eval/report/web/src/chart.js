@@ -124,22 +124,24 @@ function options(spec, width, colours, drawn) {
   };
 }
 
-/// Draws `spec` in the element `box` when it comes near the window, with a button for the vector file.
+/// Draws what `spec()` says in the element `box` when it comes near the window, with a button for the vector file.
 export class Chart {
   constructor(box, spec) {
     this.box = box;
-    this.spec = spec;
     box.classList.add("chart");
     box.setAttribute("role", "img");
-    box.setAttribute("aria-label", spec.title);
     this.frame = document.createElement("div");
     this.frame.style.minHeight = `${kHeight}px`;
     box.replaceChildren(this.frame, buttons({ SVG: () => this.save() }));
-    whenNear(box, () => {
-      this.draw();
-      onTheme(() => this.draw());
-      new ResizeObserver(() => this.fit()).observe(this.frame);
-    });
+    whenNear(box, () => this.start(spec()));
+  }
+
+  start(spec) {
+    this.spec = spec;
+    this.box.setAttribute("aria-label", spec.title);
+    this.draw();
+    onTheme(() => this.draw());
+    new ResizeObserver(() => this.fit()).observe(this.frame);
   }
 
   draw() {

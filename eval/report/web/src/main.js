@@ -3,15 +3,16 @@ import "../style.css";
 import { Chart } from "./chart.js";
 import { drawAll } from "./lazy.js";
 import { showRun } from "./run_views.js";
+import { settle } from "./settle.js";
 import { startTable } from "./tables.js";
 import { startTheme } from "./theme.js";
-
-const data = JSON.parse(document.getElementById("report-data").textContent);
 
 // Before the theme's own listener: what is drawn only now takes the light colours at once with the rest.
 addEventListener("beforeprint", () => drawAll());
 startTheme();
 document.querySelectorAll("table.sortable").forEach(startTable);
-data.runs.forEach(showRun);
-for (const spec of data.charts) new Chart(document.querySelector(`[data-chart="${CSS.escape(spec.id)}"]`), spec);
+document.querySelectorAll("script[data-run]").forEach(showRun);
+for (const spec of JSON.parse(document.getElementById("charts").textContent))
+  new Chart(document.querySelector(`[data-chart="${CSS.escape(spec.id)}"]`), () => spec);
+settle();
 document.documentElement.dataset.ready = "yes";

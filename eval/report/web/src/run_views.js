@@ -22,15 +22,17 @@ export const errorChart = (run, series, more) => ({
   ...more,
 });
 
-/// The charts and the view in 3-D of one run; pointing at an instant in a chart shows it in all.
-export function showRun(run) {
-  let view;
-  const space = document.querySelector(`[data-space="${run.id}"]`);
-  if (space)
-    view = new SpaceView(space, { title: `${run.name} in 3-D`, times: run.times, truth: run.truth, cloud: unpackCloud(run.cloud),
-      paths: [{ name: run.name, colour: "estimate", points: run.estimate }] });
-  for (const box of document.querySelectorAll(`[data-plot^="${run.id}/"]`)) {
-    const series = run.series[box.dataset.plot.split("/")[1]];
-    new Chart(box, errorChart(run, series, { sync: run.id, onTime: (t) => view?.showTime(t) }));
-  }
+const spaceContent = (run) => ({ title: `${run.name} in 3-D`, times: run.times, truth: run.truth, cloud: unpackCloud(run.cloud),
+  paths: [{ name: run.name, colour: "estimate", points: run.estimate }] });
+
+/// The charts and the view in 3-D of the run whose numbers stand in `script`; pointing at an instant in a chart shows it in all.
+export function showRun(script) {
+  const id = script.dataset.run;
+  let read;
+  // A page of a hundred runs has ten megabytes of numbers: they are read when the first drawing of their run is.
+  const run = () => (read ??= JSON.parse(script.textContent));
+  const space = document.querySelector(`[data-space="${id}"]`);
+  const view = space && new SpaceView(space, () => spaceContent(run()));
+  for (const box of document.querySelectorAll(`[data-plot^="${id}/"]`))
+    new Chart(box, () => errorChart(run(), run().series[box.dataset.plot.split("/")[1]], { sync: id, onTime: (t) => view?.showTime(t) }));
 }

@@ -47,22 +47,22 @@ function withoutFar(cloud) {
   return cloud.filter((p) => bounds.every(([low, high], k) => p[k] >= low && p[k] <= high));
 }
 
-/// Paths and a map in 3-D, without perspective and with equal axes, turned by dragging:
+/// Paths and a map in 3-D, without perspective and with equal axes, turned by dragging. `content()` says what:
 ///   {title, times, truth: [[x, y, z]], paths: [{name, colour, points}], cloud: [[x, y, z]]}
 /// `points` of a path stand at `times`, as do those of `truth`.
 export class SpaceView {
   constructor(box, content) {
     this.box = box;
-    this.content = { ...content, cloud: withoutFar(content.cloud || []) };
     this.time = null;
     this.canvas = box.querySelector("canvas");
     this.slider = box.querySelector("input[type=range]");
     this.map = box.querySelector("input[type=checkbox]");
-    if (this.map) this.map.closest("label").hidden = !this.content.cloud.length;
-    whenNear(box, () => this.start());
+    whenNear(box, () => this.start(content()));
   }
 
-  start() {
+  start(content) {
+    this.content = { ...content, cloud: withoutFar(content.cloud || []) };
+    if (this.map) this.map.closest("label").hidden = !this.content.cloud.length;
     if (!sharedRenderer()) {
       this.box.dataset.drawn = "no";
       this.canvas.replaceWith(Object.assign(document.createElement("p"), { className: "note", textContent: "The view in 3-D needs WebGL, which this browser does not offer." }));

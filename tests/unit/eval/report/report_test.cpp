@@ -130,23 +130,23 @@ TEST_F(Report, LongSeriesKeepTheirPeaks) {
     data.errors.dtheta_deg.push_back(1);
   }
   data.errors.t_s = data.samples.t_s;
-  const auto json = nlohmann::json::parse(page_data(std::span(&data, 1), {}));
-  const auto& dt = json["runs"][0]["series"]["dt"];
+  const auto json = nlohmann::json::parse(run_page_data(data));
+  const auto& dt = json["series"]["dt"];
   EXPECT_LE(dt["v"].size(), 1700U);
   const std::vector<double> values = dt["v"];
   const auto peak = std::find(values.begin(), values.end(), 7000.0);
   ASSERT_NE(peak, values.end());
   EXPECT_EQ(dt["t"][static_cast<std::size_t>(peak - values.begin())], 12.345);
-  EXPECT_EQ(json["runs"][0]["gaps"].size(), 1U);
+  EXPECT_EQ(json["gaps"].size(), 1U);
 }
 
 /// The chart of the page's data with that id.
 nlohmann::json chart_of(const std::string& page, const std::string& id) {
-  const std::string open = "id=\"report-data\">";
+  const std::string open = "id=\"charts\">";
   const std::size_t begin = page.find(open) + open.size();
-  const auto data =
+  const auto charts =
       nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
-  for (const auto& chart : data["charts"])
+  for (const auto& chart : charts)
     if (chart["id"] == id) return chart;
   return {};
 }
@@ -179,6 +179,25 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
   EXPECT_LT(shares["series"][0]["x"][50], shares["series"][1]["x"][50]);
   EXPECT_EQ(chart_of(page, "/trajectory.dt_rel_percent.mean/speed")["series"].size(), 3U)
       << "the front and two methods";
+}
+
+TEST_F(Report, TwoFilesOfOneNameAreTwoMethods) {
+  testing::write_fake_run(folder.path() / "mine", dataset(), {}, "mine/accurate");
+  testing::write_fake_run(folder.path() / "theirs", dataset(), {}, "theirs/accurate");
+  const std::string page = written({folder.path() / "mine", folder.path() / "theirs"});
+  const auto chart = chart_of(page, "walls/dt_rel/time");
+  ASSERT_EQ(chart["series"].size(), 2U);
+  EXPECT_EQ(chart["series"][0]["name"], "track accurate (mine)");
+  EXPECT_EQ(chart["series"][1]["name"], "track accurate (theirs)");
+}
+
+TEST_F(Report, OneFileIsOneMethodWhereverElseItsRunsWereMade) {
+  testing::write_fake_run(folder.path() / "before", dataset(), {}, "old/accurate");
+  const fs::path file = folder.path() / "against.html";
+  ReportOptions options;
+  options.against = {folder.path() / "before"};
+  write_report(std::vector{run()}, file, options);
+  EXPECT_EQ(count(testing::read_file(file), "<h2>A against B</h2>"), 1U);
 }
 
 TEST_F(Report, APublishedSpeedStandsInTheChart) {
