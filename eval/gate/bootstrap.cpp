@@ -109,15 +109,15 @@ BootstrapMean bootstrap_mean(std::span<const double> values, const ResampleOptio
 BootstrapRatio bootstrap_median_ratio(std::span<const double> of, std::span<const double> to,
                                       const ResampleOptions& options) {
   check_options(options);
-  SACCADE_CHECK(!of.empty() && !to.empty());
+  SACCADE_CHECK(!of.empty() && of.size() == to.size());
   for (const std::span<const double> values : {of, to})
     for (const double value : values) SACCADE_CHECK(std::isfinite(value) && value > 0);
-  const Random first(options.seed), second(options.seed + 1);
+  const Random random(options.seed);
   std::vector<double> drawn_of, drawn_to, ratios;
   for (int i = 0; i < options.resamples; ++i) {
     const auto number = static_cast<std::uint64_t>(i);
-    resample(first, number, of, drawn_of);
-    resample(second, number, to, drawn_to);
+    resample(random, number, of, drawn_of);
+    resample(random, number, to, drawn_to);
     ratios.push_back(median_of(drawn_of) / median_of(drawn_to));
   }
   std::sort(ratios.begin(), ratios.end());

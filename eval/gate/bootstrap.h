@@ -44,8 +44,9 @@ struct BootstrapRatio {
   double high = 1;
 };
 
-/// The percentile interval of median(of) / median(to), each side resampled by itself.
-/// Contract: neither is empty, all are finite and above 0.
+/// The percentile interval of median(of) / median(to), where of[i] and to[i] were measured one
+/// after the other: pairs are resampled, since what slowed one of them mostly slowed the other.
+/// Contract: as many of each, at least one; all are finite and above 0.
 [[nodiscard]] BootstrapRatio bootstrap_median_ratio(std::span<const double> of,
                                                     std::span<const double> to,
                                                     const ResampleOptions& options = {});
