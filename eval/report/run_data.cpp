@@ -86,17 +86,25 @@ void tell_methods_apart(std::vector<RunData>& runs) {
   const auto file_of = [](const RunData& data) {
     return configuration_file(data.run.record).lexically_normal();
   };
-  std::map<std::tuple<std::string, std::uint64_t, std::string>, std::set<std::filesystem::path>>
-      files;
-  for (const RunData& data : runs)
-    if (!data.run.record.external)
-      files[{data.dataset, data.run.record.seed, data.method}].insert(file_of(data));
+  struct Sources {
+    std::set<std::filesystem::path> files;
+    std::set<std::string> values;  ///< SHA-256
+  };
+  std::map<std::tuple<std::string, std::uint64_t, std::string>, Sources> sources;
+  for (const RunData& data : runs) {
+    if (data.run.record.external) continue;
+    Sources& same = sources[{data.dataset, data.run.record.seed, data.method}];
+    same.files.insert(file_of(data));
+    same.values.insert(configuration_sha256(data.run.record));
+  }
   std::set<std::string> ambiguous;
-  for (const auto& [key, of_method] : files)
-    if (of_method.size() > 1) ambiguous.insert(std::get<2>(key));
-  for (RunData& data : runs)
-    if (ambiguous.contains(data.method))
-      data.method += fmt::format(" ({})", file_of(data).parent_path().generic_string());
+  for (const auto& [key, same] : sources)
+    if (same.files.size() > 1 && same.values.size() > 1) ambiguous.insert(std::get<2>(key));
+  for (RunData& data : runs) {
+    if (!ambiguous.contains(data.method)) continue;
+    const std::string folder = file_of(data).parent_path().generic_string();
+    data.method += fmt::format(" ({})", folder.empty() ? "." : folder);
+  }
 }
 
 }  // namespace saccade

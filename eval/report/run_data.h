@@ -45,8 +45,8 @@ struct RunData {
 /// refined_ratio.* of every run that has a run of refine beside it.
 void compare_with_refined(std::vector<RunData>& runs);
 
-/// Two files of one name are two methods: where runs of one dataset and seed say the same method of
-/// different files, the method of each is followed by its file's folder.
+/// Two files of one name are two methods: where runs of one dataset and seed have the same method
+/// by different files, and not the same values, the method is followed by its file's folder.
 void tell_methods_apart(std::vector<RunData>& runs);
 
 [[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);

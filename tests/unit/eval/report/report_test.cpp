@@ -182,12 +182,18 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
 }
 
 TEST_F(Report, TwoFilesOfOneNameAreTwoMethods) {
-  testing::write_fake_run(folder.path() / "mine", dataset(), {}, "mine/accurate");
+  testing::write_fake_run(folder.path() / "mine", dataset(), {}, "accurate");
   testing::write_fake_run(folder.path() / "theirs", dataset(), {}, "theirs/accurate");
-  const std::string page = written({folder.path() / "mine", folder.path() / "theirs"});
-  const auto chart = chart_of(page, "walls/dt_rel/time");
+  const std::vector<fs::path> runs{folder.path() / "mine", folder.path() / "theirs"};
+  EXPECT_EQ(count(written(runs), "id=\"compared\""), 0U) << "the same values";
+  std::string record = testing::read_file(runs[1] / "run.yaml");
+  const std::string value = "event_map_ratio: 0.4";
+  ASSERT_EQ(count(record, value), 1U);
+  record.replace(record.find(value), value.size(), "event_map_ratio: 0.5");
+  folder.write("theirs/run.yaml", record);
+  const auto chart = chart_of(written(runs), "walls/dt_rel/time");
   ASSERT_EQ(chart["series"].size(), 2U);
-  EXPECT_EQ(chart["series"][0]["name"], "track accurate (mine)");
+  EXPECT_EQ(chart["series"][0]["name"], "track accurate (.)");
   EXPECT_EQ(chart["series"][1]["name"], "track accurate (theirs)");
 }
 
