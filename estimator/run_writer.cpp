@@ -10,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/io/sha256.h"
+#include "core/median.h"
 #include "core/version.h"
 
 namespace saccade {
@@ -60,13 +61,6 @@ std::string dataset_hash(const Dataset& dataset) {
   const std::filesystem::path record = dataset.folder() / "dataset.yaml";
   if (std::filesystem::exists(record)) return sha256_of_file(record);
   return dataset.events_file().empty() ? std::string() : sha256_of_file(dataset.events_file());
-}
-
-double median(std::vector<double> values) {
-  SACCADE_CHECK(!values.empty());
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 std::string to_json(const RunTiming& timing) {

@@ -32,9 +32,6 @@ struct RunTiming {
 /// the repetitions.
 [[nodiscard]] std::string to_json(const RunTiming& timing);
 
-/// Median of a list that is not empty.
-[[nodiscard]] double median(std::vector<double> values);
-
 /// What there is to say about a run that found `found`.
 [[nodiscard]] RunSummary summary_of(const RunTiming& timing, const std::string& found);
 

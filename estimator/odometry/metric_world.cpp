@@ -6,6 +6,7 @@
 #include "core/check.h"
 #include "core/config/config.h"
 #include "core/io/atomic_file.h"
+#include "core/median.h"
 #include "estimator/run_writer.h"
 
 namespace saccade {

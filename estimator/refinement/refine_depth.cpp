@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/io/ply_file.h"
 #include "core/io/view_list.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"

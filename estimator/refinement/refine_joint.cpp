@@ -8,6 +8,7 @@
 #include "core/io/covariance_file.h"
 #include "core/io/keyframe_list.h"
 #include "core/io/view_list.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "estimator/depth/depth_output.h"

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/io/covariance_file.h"
+#include "core/median.h"
 #include "core/progress.h"
 #include "estimator/run_input.h"
 #include "estimator/stage_clock.h"

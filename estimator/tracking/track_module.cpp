@@ -10,6 +10,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "core/progress.h"
 #include "estimator/run_input.h"
 #include "estimator/run_writer.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "core/random.h"
 
 namespace saccade {
@@ -39,11 +40,6 @@ Estimate estimate(std::span<const double> values) {
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return {mean, std::sqrt(squares / (n - 1) / n)};
-}
-
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 /// The sorted value with a share `tail` of all at it or above.
@@ -106,23 +102,22 @@ BootstrapMean bootstrap_mean(std::span<const double> values, const ResampleOptio
           (1 + static_cast<double>(below)) * least};
 }
 
-BootstrapRatio bootstrap_median_ratio(std::span<const double> of, std::span<const double> to,
+BootstrapRatio bootstrap_paired_ratio(std::span<const double> of, std::span<const double> to,
                                       const ResampleOptions& options) {
   check_options(options);
   SACCADE_CHECK(!of.empty() && of.size() == to.size());
   for (const std::span<const double> values : {of, to})
     for (const double value : values) SACCADE_CHECK(std::isfinite(value) && value > 0);
+  std::vector<double> ratios, drawn, medians;
+  for (std::size_t i = 0; i < of.size(); ++i) ratios.push_back(of[i] / to[i]);
   const Random random(options.seed);
-  std::vector<double> drawn_of, drawn_to, ratios;
   for (int i = 0; i < options.resamples; ++i) {
-    const auto number = static_cast<std::uint64_t>(i);
-    resample(random, number, of, drawn_of);
-    resample(random, number, to, drawn_to);
-    ratios.push_back(median_of(drawn_of) / median_of(drawn_to));
+    resample(random, static_cast<std::uint64_t>(i), ratios, drawn);
+    medians.push_back(median(drawn));
   }
-  std::sort(ratios.begin(), ratios.end());
-  return {median_of({of.begin(), of.end()}), median_of({to.begin(), to.end()}),
-          lower_quantile(ratios, options.tail), upper_quantile(ratios, options.tail)};
+  std::sort(medians.begin(), medians.end());
+  return {median(ratios), lower_quantile(medians, options.tail),
+          upper_quantile(medians, options.tail)};
 }
 
 }  // namespace saccade

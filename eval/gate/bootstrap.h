@@ -36,18 +36,18 @@ struct BootstrapMean {
 [[nodiscard]] BootstrapMean bootstrap_mean(std::span<const double> values,
                                            const ResampleOptions& options = {});
 
-/// Two medians and the interval of their ratio.
+/// A ratio with its interval.
 struct BootstrapRatio {
-  double median_of = 1;
-  double median_to = 1;
+  double ratio = 1;
   double low = 1;
   double high = 1;
 };
 
-/// The percentile interval of median(of) / median(to), where of[i] and to[i] were measured one
-/// after the other: pairs are resampled, since what slowed one of them mostly slowed the other.
-/// Contract: as many of each, at least one; all are finite and above 0.
-[[nodiscard]] BootstrapRatio bootstrap_median_ratio(std::span<const double> of,
+/// The median of of[i] / to[i] and its percentile interval, where of[i] and to[i] were measured one
+/// after the other: what slows a machine for a while slows both, and a change of its speed spoils
+/// the pair that it falls into, not a side. Contract: as many of each, at least one; all are finite
+/// and above 0.
+[[nodiscard]] BootstrapRatio bootstrap_paired_ratio(std::span<const double> of,
                                                     std::span<const double> to,
                                                     const ResampleOptions& options = {});
 

@@ -15,6 +15,7 @@ struct BuildRace {
   int repeats = 10;                    ///< timed runs of each, >= 2
 };
 
+/// What each run took [s]; those of one index were one after the other, in either order.
 struct RaceTimes {
   std::vector<double> first_s;
   std::vector<double> second_s;

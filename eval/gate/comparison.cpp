@@ -8,6 +8,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "eval/gate/bootstrap.h"
 #include "eval/gate/effect.h"
 
@@ -151,15 +152,16 @@ GateResult compare_runs(std::span<const GateRun> baseline, std::span<const GateR
 GateResult compare_times(std::span<const double> first_s, std::span<const double> second_s,
                          const GateOptions& options) {
   options.check();
+  SACCADE_CHECK(!first_s.empty() && first_s.size() == second_s.size());
   const ResampleOptions bootstrap = bootstrap_options(1, options);
-  const BootstrapRatio found = bootstrap_median_ratio(second_s, first_s, bootstrap);
+  const BootstrapRatio found = bootstrap_paired_ratio(second_s, first_s, bootstrap);
   GateRow row;
   row.metric = "wall time [s]";
   row.scope = "second build against the first";
   row.pairs = first_s.size();
-  row.before = found.median_to;
-  row.after = found.median_of;
-  row.change = found.median_of / found.median_to - 1;
+  row.before = median({first_s.begin(), first_s.end()});
+  row.after = median({second_s.begin(), second_s.end()});
+  row.change = found.ratio - 1;
   row.low = found.low - 1;
   row.high = found.high - 1;
   row.verdict =

@@ -56,7 +56,8 @@ struct GateResult {
 [[nodiscard]] GateResult compare_runs(std::span<const GateRun> baseline,
                                       std::span<const GateRun> runs, const GateOptions& options);
 
-/// Holds the times of a second build against those of a first: both [s], > 0, not empty.
+/// Holds the times of a second build against those of a first, [s], > 0, as many of each and at
+/// least one; first_s[i] and second_s[i] were measured one after the other.
 [[nodiscard]] GateResult compare_times(std::span<const double> first_s,
                                        std::span<const double> second_s,
                                        const GateOptions& options);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "core/median.h"
+
 namespace saccade {
 namespace {
 
@@ -86,10 +88,8 @@ std::optional<double> share_within(std::span<const DepthError> errors, double si
   return static_cast<double>(within) / static_cast<double>(known);
 }
 
-std::optional<double> median_of(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+std::optional<double> median_of(const std::vector<double>& values) {
+  return values.empty() ? std::nullopt : std::optional(median(values));
 }
 
 void set_errors(Metrics& metrics, const std::string& prefix, std::span<const DepthError> errors) {

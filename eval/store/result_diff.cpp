@@ -12,6 +12,7 @@
 
 #include "core/config/suggest.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "eval/sweep/metric_info.h"
 
 namespace saccade {
@@ -135,12 +136,6 @@ void add_pairs(const Rows& rows, const MetricTable& table, const Groups& groups_
   for (const auto& [key, runs] : groups_b) add_alone(runs);
 }
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return (values[(n - 1) / 2] + values[n / 2]) / 2;
-}
-
 void count_direction(const MetricChange& change, Better better, ChangeSummary& summary) {
   if (better == Better::kNeither || change.a == change.b) return;
   const bool rises = change.b > change.a;
@@ -163,7 +158,7 @@ ChangeSummary summary_of(const ResultDiff& diff, std::size_t metric) {
   }
   summary.a /= static_cast<double>(summary.pairs);
   summary.b /= static_cast<double>(summary.pairs);
-  summary.median_percent = percents.empty() ? kNothing : median_of(std::move(percents));
+  summary.median_percent = percents.empty() ? kNothing : median(std::move(percents));
   return summary;
 }
 
