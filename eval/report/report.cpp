@@ -125,11 +125,10 @@ void write_report(std::span<const std::filesystem::path> run_folders,
                   const std::filesystem::path& output, const ReportOptions& options) {
   if (run_folders.empty()) throw InputError("report", "needs at least one run folder");
   std::vector<RunData> runs = gather_runs(run_folders);
+  tell_methods_apart(runs);
   const std::vector<RunData> before = gather_runs(options.against);
   std::optional<Sides> sides;
-  // The same method's file may lie elsewhere on the other side.
   if (!before.empty()) sides = compare_sides(before, runs);
-  tell_methods_apart(runs);
   const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
   std::vector<ReportTable> exported;
   for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <tuple>
+#include <span>
+#include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/io/event_file.h"
+#include "core/io/sha256.h"
 #include "eval/configuration_name.h"
 #include "eval/evaluate.h"
 #include "eval/refined_ratio.h"
@@ -27,6 +30,21 @@ void score(RunData& data) {
   data.keyframes = KeyframeHistory::load(data.run);
   data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
   data.metrics = score_run(data.run, *data.data, data.input.mean_depth_m);
+}
+
+/// The run's configuration but for the seed, which every run has of its own.
+std::string values_of(const RunRecord& record) {
+  std::string values;
+  std::istringstream lines(record.config_yaml);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("seed:")) values += line + "\n";
+  return values;
+}
+
+/// The first eight digits of the SHA-256.
+std::string short_hash(const std::string& text) {
+  constexpr std::size_t kShown = 8;
+  return sha256(std::as_bytes(std::span(text))).substr(0, kShown);
 }
 
 }  // namespace
@@ -83,27 +101,30 @@ void compare_with_refined(std::vector<RunData>& runs) {
 }
 
 void tell_methods_apart(std::vector<RunData>& runs) {
-  const auto file_of = [](const RunData& data) {
-    return configuration_file(data.run.record).lexically_normal();
+  const auto folder_of = [](const RunData& data) {
+    const std::filesystem::path file = configuration_file(data.run.record).lexically_normal();
+    const std::string folder = file.parent_path().generic_string();
+    return folder.empty() ? "." : folder;
   };
-  struct Sources {
-    std::set<std::filesystem::path> files;
-    std::set<std::string> values;  ///< SHA-256
-  };
-  std::map<std::tuple<std::string, std::uint64_t, std::string>, Sources> sources;
-  for (const RunData& data : runs) {
-    if (data.run.record.external) continue;
-    Sources& same = sources[{data.dataset, data.run.record.seed, data.method}];
-    same.files.insert(file_of(data));
-    same.values.insert(configuration_sha256(data.run.record));
+  // Of every dataset and method its values, and the folder where they were first met.
+  std::map<std::pair<std::string, std::string>, std::map<std::string, std::string>> sources;
+  for (const RunData& data : runs)
+    if (!data.run.record.external)
+      sources[{data.dataset, data.method}].emplace(values_of(data.run.record), folder_of(data));
+  std::set<std::string> ambiguous, of_one_folder;
+  for (const auto& [work, folders] : sources) {
+    if (folders.size() < 2) continue;
+    ambiguous.insert(work.second);
+    std::set<std::string> different;
+    for (const auto& [values, folder] : folders) different.insert(folder);
+    if (different.size() < folders.size()) of_one_folder.insert(work.second);
   }
-  std::set<std::string> ambiguous;
-  for (const auto& [key, same] : sources)
-    if (same.files.size() > 1 && same.values.size() > 1) ambiguous.insert(std::get<2>(key));
   for (RunData& data : runs) {
-    if (!ambiguous.contains(data.method)) continue;
-    const std::string folder = file_of(data).parent_path().generic_string();
-    data.method += fmt::format(" ({})", folder.empty() ? "." : folder);
+    if (data.run.record.external || !ambiguous.contains(data.method)) continue;
+    const std::string values = values_of(data.run.record);
+    const std::string& folder = sources.at({data.dataset, data.method}).at(values);
+    data.method +=
+        fmt::format(" ({})", of_one_folder.contains(data.method) ? short_hash(values) : folder);
   }
 }
 

@@ -23,7 +23,8 @@ struct DatasetNumbers {
 struct RunData {
   std::string id;       ///< unique on the page, an HTML id
   std::string dataset;  ///< name
-  /// Module with its configuration's name, or what an external estimator is called.
+  /// Module with its configuration's name, or what an external estimator is called; with what tells
+  /// it from another of that name (tell_methods_apart).
   std::string method;
   bool fast = false;  ///< its name says it used the thesis's fast setting
   RunFolder run;
@@ -45,8 +46,9 @@ struct RunData {
 /// refined_ratio.* of every run that has a run of refine beside it.
 void compare_with_refined(std::vector<RunData>& runs);
 
-/// Two files of one name are two methods: where runs of one dataset and seed have the same method
-/// by different files, and not the same values, the method is followed by its file's folder.
+/// Two configurations of one name are two methods: where runs of one dataset have the same method
+/// with other values, the seed apart, the method is followed by the folder of its configuration
+/// file, of equal values the first; where folders do not tell them apart, by a hash of the values.
 void tell_methods_apart(std::vector<RunData>& runs);
 
 [[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);

@@ -129,7 +129,6 @@ export class Chart {
   constructor(box, spec) {
     this.box = box;
     box.classList.add("chart");
-    box.setAttribute("role", "img");
     this.frame = document.createElement("div");
     this.frame.style.minHeight = `${kHeight}px`;
     box.replaceChildren(this.frame, buttons({ SVG: () => this.save() }));
@@ -138,6 +137,7 @@ export class Chart {
 
   start(spec) {
     this.spec = spec;
+    this.box.setAttribute("role", "img");
     this.box.setAttribute("aria-label", spec.title);
     this.draw();
     onTheme(() => this.draw());

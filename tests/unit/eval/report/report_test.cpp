@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -181,29 +182,40 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
       << "the front and two methods";
 }
 
-TEST_F(Report, TwoFilesOfOneNameAreTwoMethods) {
-  testing::write_fake_run(folder.path() / "mine", dataset(), {}, "accurate");
-  testing::write_fake_run(folder.path() / "theirs", dataset(), {}, "theirs/accurate");
-  const std::vector<fs::path> runs{folder.path() / "mine", folder.path() / "theirs"};
-  EXPECT_EQ(count(written(runs), "id=\"compared\""), 0U) << "the same values";
-  std::string record = testing::read_file(runs[1] / "run.yaml");
+/// Has the fake run of a folder say other values of its configuration.
+void change_values(const fs::path& run) {
+  std::string record = testing::read_file(run / "run.yaml");
   const std::string value = "event_map_ratio: 0.4";
   ASSERT_EQ(count(record, value), 1U);
-  record.replace(record.find(value), value.size(), "event_map_ratio: 0.5");
-  folder.write("theirs/run.yaml", record);
+  std::ofstream(run / "run.yaml") << record.replace(record.find(value), value.size(),
+                                                    "event_map_ratio: 0.5");
+}
+
+TEST_F(Report, TwoConfigurationsOfOneNameAreTwoMethods) {
+  const auto written_run = [&](const std::string& name, const std::string& configuration) {
+    testing::write_fake_run(folder.path() / name, dataset(), {}, configuration);
+    return folder.path() / name;
+  };
+  const std::vector<fs::path> runs{written_run("mine", "accurate"),
+                                   written_run("alike", "a/accurate"),
+                                   written_run("theirs", "theirs/accurate")};
+  EXPECT_EQ(count(written(runs), "id=\"compared\""), 0U) << "the same values";
+  change_values(runs[2]);
   const auto chart = chart_of(written(runs), "walls/dt_rel/time");
-  ASSERT_EQ(chart["series"].size(), 2U);
+  ASSERT_EQ(chart["series"].size(), 2U) << "those of the same values are one";
   EXPECT_EQ(chart["series"][0]["name"], "track accurate (.)");
   EXPECT_EQ(chart["series"][1]["name"], "track accurate (theirs)");
 }
 
-TEST_F(Report, OneFileIsOneMethodWhereverElseItsRunsWereMade) {
-  testing::write_fake_run(folder.path() / "before", dataset(), {}, "old/accurate");
-  const fs::path file = folder.path() / "against.html";
-  ReportOptions options;
-  options.against = {folder.path() / "before"};
-  write_report(std::vector{run()}, file, options);
-  EXPECT_EQ(count(testing::read_file(file), "<h2>A against B</h2>"), 1U);
+TEST_F(Report, AFileThatWasChangedBetweenTheRunsIsTwoMethods) {
+  const std::vector<fs::path> runs{folder.path() / "before", folder.path() / "after"};
+  for (const fs::path& run : runs) testing::write_fake_run(run, dataset(), {}, "accurate");
+  change_values(runs[1]);
+  const auto chart = chart_of(written(runs), "walls/dt_rel/time");
+  ASSERT_EQ(chart["series"].size(), 2U);
+  const std::string first = chart["series"][0]["name"], second = chart["series"][1]["name"];
+  EXPECT_THAT(first, ::testing::MatchesRegex("track accurate \\([0-9a-f]{8}\\)"));
+  EXPECT_NE(first, second);
 }
 
 TEST_F(Report, APublishedSpeedStandsInTheChart) {
@@ -235,16 +247,16 @@ TEST_F(Report, SaysHowEveryPartIsRepeated) {
     EXPECT_EQ(count(page, "saccade render " + shown.string() + " -o walls_accurate.mp4"), 1U);
 }
 
-TEST_F(Report, ShowsAFilmOfARunThatHasOne) {
+TEST_F(Report, ShowsAFilmOfEveryRunThatHasOne) {
   if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "needs ffmpeg";
   ReportOptions options;
   options.film = true;
   const fs::path file = folder.path() / "report.html";
-  write_report(std::vector{run()}, file, options);
+  write_report(std::vector{run(), twin()}, file, options);
   const std::string page = testing::read_file(file);
-  EXPECT_EQ(count(page, "<video "), 1U);
-  EXPECT_EQ(count(page, "src=\"data:video/mp4;base64,"), 1U);
-  EXPECT_EQ(count(page, "poster=\"data:image/webp;base64,"), 1U);
+  EXPECT_EQ(count(page, "<video "), 2U);
+  EXPECT_EQ(count(page, "src=\"data:video/mp4;base64,"), 2U);
+  EXPECT_EQ(count(page, "poster=\"data:image/webp;base64,"), 2U);
   EXPECT_THAT(testing::external_references(page), ::testing::IsEmpty());
 }
 
