@@ -15,6 +15,7 @@
 #include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/coarse_surface.h"
 #include "estimator/refinement/edge_fit.h"
+#include "estimator/refinement/edge_matches.h"
 #include "estimator/refinement/node_correction.h"
 #include "estimator/refinement/observed_edges.h"
 #include "estimator/refinement/robust_spread.h"
@@ -38,26 +39,6 @@ FittedEdge corrected(FittedEdge fitted, const EdgeUnknowns& unknowns) {
   edge.normal = (edge.normal - static_cast<float>(unknowns[2]) * tangent).normalized();
   fitted.sigma *= inverse_depth / edge.inverse_depth;
   edge.inverse_depth = inverse_depth;
-  return fitted;
-}
-
-/// The edge as another view sees it; nullopt for behind it.
-std::optional<FittedEdge> seen_by(const Rigid3& other_from_view, FittedEdge fitted,
-                                  const PinholeCamera& camera) {
-  RayEdge& edge = fitted.edge;
-  const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
-  const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {
-    return other_from_view * (depth_m * camera.ray(pixel.cast<double>()));
-  };
-  const Eigen::Vector3d point = moved(edge.pixel);
-  const Eigen::Vector3d along = moved(edge.pixel + edge.tangent());
-  if (!(point.z() > 0 && along.z() > 0)) return std::nullopt;
-  const Eigen::Vector2d pixel = camera.project(point);
-  const Eigen::Vector2d tangent = (camera.project(along) - pixel).normalized();
-  edge.pixel = pixel.cast<float>();
-  edge.normal = Eigen::Vector2f(static_cast<float>(tangent.y()), static_cast<float>(-tangent.x()));
-  fitted.sigma *= static_cast<float>(depth_m / point.z());
-  edge.inverse_depth = static_cast<float>(1 / point.z());
   return fitted;
 }
 

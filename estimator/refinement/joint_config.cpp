@@ -39,6 +39,11 @@ void describe(config::Fields& fields, JointRefinementOptions& options) {
       .value("known_events_per_edge", options.known_events_per_edge,
              "at most, beside them, while the poses are given")
       .range(5, 1e6);
+  fields
+      .value("again_keyframes", options.again_keyframes,
+             "that see an edge again, later, and join in; 0: none")
+      .range(0, 1000);
+  fields.value("again_events", options.again_events, "of each of them, at most").range(1, 1e6);
   fields.value("noise_px", options.noise_px, "least deviation of an event from its edge")
       .range(1e-3, 10);
   fields.value("outlier", options.outlier, "deviations beyond which an event counts less")

@@ -14,8 +14,10 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "estimator/refinement/edge_matches.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
+#include "estimator/refinement/keyframe_windows.h"
 #include "estimator/refinement/marginal_information.h"
 #include "estimator/refinement/path_costs.h"
 #include "estimator/refinement/robust_spread.h"
@@ -35,6 +37,12 @@ std::vector<std::size_t> evenly(std::size_t count, int most) {
   return some;
 }
 
+/// Appends `most` of some events, evenly.
+void append_evenly(std::span<const std::uint32_t> events, int most,
+                   std::vector<std::uint32_t>& chosen) {
+  for (const std::size_t i : evenly(events.size(), most)) chosen.push_back(events[i]);
+}
+
 /// The path as a smooth spline, every millisecond.
 Trajectory smooth_path(const JointStart& start, double smoothing_s) {
   const Spline spline = Spline::smooth(start.path, smoothing_s);
@@ -50,8 +58,7 @@ Trajectory smooth_path(const JointStart& start, double smoothing_s) {
 
 /// An edge of a keyframe as it is adjusted.
 struct Adjusted {
-  std::size_t keyframe;
-  std::size_t edge;  ///< in the keyframe's RayEdges
+  KeyframeEdge found;
   SteppedEdge unknowns;
 };
 
@@ -76,6 +83,7 @@ class Problem {
                  [&](std::size_t k) { steps_[k] = event_steps(windows[k].events, camera); });
     choose_edges();
     for (Adjusted& edge : adjusted_) add_edge(edge);
+    if (options.again_keyframes > 0) tie_keyframes();
     hold_path(start.known);
     if (options.imu.use) add_readings(start);
   }
@@ -121,64 +129,85 @@ class Problem {
     for (std::size_t k = 0; k < found_.size(); ++k)
       for (const std::size_t i : evenly(found_[k].edges.size(), options_.edges)) {
         const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);
-        adjusted_.push_back({k, i, {rho, 0, 0, 0, 0}});
+        adjusted_.push_back({{k, i}, {rho, 0, 0, 0, 0}});
       }
   }
 
   void add_edge(Adjusted& adjusted) {
-    const RayEdges& found = found_[adjusted.keyframe];
-    const FittedEdge& fitted = found.edges[adjusted.edge];
-    std::vector<std::uint32_t> events(found.events.event.begin() + fitted.first,
-                                      found.events.event.begin() + fitted.last);
-    std::sort(events.begin(), events.end());
-    double* unknowns = adjusted.unknowns.data();
-    const std::vector<std::uint8_t>& steps = steps_[adjusted.keyframe];
-    const double mean = mean_step(steps, events);
-    for (const std::uint32_t e : choose_events(windows_[adjusted.keyframe], events))
-      add_event(windows_[adjusted.keyframe], e, steps[e] > 0 ? steps[e] - mean : 0, fitted,
-                unknowns);
+    add_events(adjusted, adjusted.found, [&](std::span<const std::uint32_t> events) {
+      return choose_events(windows_[adjusted.found.keyframe], events);
+    });
     const double rho = adjusted.unknowns[0];
     // Of the depth hardly any hold: where a window says nothing of an edge.
     const SteppedEdge sigma(rho, options_.offset_px, options_.tilt_sigma, options_.hysteresis_px,
                             options_.step_px);
-    problem_.AddResidualBlock(new HeldCost<5>(adjusted.unknowns, sigma), nullptr, unknowns);
-    ordering_->AddElementToGroup(unknowns, 0);
+    problem_.AddResidualBlock(new HeldCost<5>(adjusted.unknowns, sigma), nullptr,
+                              adjusted.unknowns.data());
+    ordering_->AddElementToGroup(adjusted.unknowns.data(), 0);
+  }
+
+  /// Against an edge some of the events that were found on `seen`: on itself, or on what another
+  /// keyframe sees of it.
+  void add_events(Adjusted& adjusted, const KeyframeEdge& seen, const auto& choose) {
+    const RayEdges& found = found_[seen.keyframe];
+    const FittedEdge& edge = found.edges[seen.edge];
+    std::vector<std::uint32_t> events(found.events.event.begin() + edge.first,
+                                      found.events.event.begin() + edge.last);
+    std::sort(events.begin(), events.end());
+    const std::vector<std::uint8_t>& steps = steps_[seen.keyframe];
+    const double mean = mean_step(steps, events);
+    for (const std::uint32_t e : choose(events))
+      add_event(adjusted, windows_[seen.keyframe].events[e], steps[e] > 0 ? steps[e] - mean : 0,
+                static_cast<double>(edge.residual_px));
+  }
+
+  /// Events of edges that later keyframes see again, against the edge as it was seen first.
+  void tie_keyframes() {
+    std::vector<KeyframeEdge> edges;
+    for (const Adjusted& adjusted : adjusted_) edges.push_back(adjusted.found);
+    const auto again = seen_again(edges, windows_, found_, options_.window_s, undistorted_);
+    for (std::size_t i = 0; i < adjusted_.size(); ++i)
+      for (const std::size_t a : evenly(again[i].size(), options_.again_keyframes))
+        add_events(adjusted_[i], again[i][a], [&](std::span<const std::uint32_t> events) {
+          std::vector<std::uint32_t> chosen;
+          append_evenly(events, options_.again_events, chosen);
+          return chosen;
+        });
   }
 
   /// Some of an edge's events, given and returned in order of time.
   [[nodiscard]] std::vector<std::uint32_t> choose_events(
-      const ViewWindow& window, const std::vector<std::uint32_t>& events) const {
+      const ViewWindow& window, std::span<const std::uint32_t> events) const {
     const auto is_known = [&](std::uint32_t e) {
       return seconds_from_ns(window.events[e].t_ns) <= known_until_s_;
     };
     const auto first_open = std::partition_point(events.begin(), events.end(), is_known);
     const auto known = static_cast<std::size_t>(first_open - events.begin());
     std::vector<std::uint32_t> chosen;
-    for (const std::size_t i : evenly(known, options_.known_events_per_edge))
-      chosen.push_back(events[i]);
-    for (const std::size_t i : evenly(events.size() - known, options_.events_per_edge))
-      chosen.push_back(events[known + i]);
+    append_evenly(events.first(known), options_.known_events_per_edge, chosen);
+    append_evenly(events.subspan(known), options_.events_per_edge, chosen);
     return chosen;
   }
 
   /// `step`: by which its step of a run is above the mean of the edge.
-  void add_event(const ViewWindow& window, std::uint32_t index, double step,
-                 const FittedEdge& fitted, double* unknowns) {
-    const Event& event = window.events[index];
+  void add_event(Adjusted& adjusted, const Event& event, double step, double residual_px) {
+    const auto& [keyframe, number] = adjusted.found;
+    const ViewWindow& view = windows_[keyframe];
+    const RayEdge& edge = found_[keyframe].edges[number].edge;
     const double t_s = seconds_from_ns(event.t_ns);
     EdgeObservation observation;
-    observation.view_from_camera = window.world_from_reference().inverse() * path_.at_clamped(t_s);
+    observation.view_from_camera = view.world_from_reference().inverse() * path_.at_clamped(t_s);
     observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
     observation.lag = event.polarity;
-    observation.pixel = fitted.edge.pixel.cast<double>();
-    observation.normal = fitted.edge.normal.cast<double>();
-    const double sigma_px = std::max(options_.noise_px, static_cast<double>(fitted.residual_px));
+    observation.pixel = edge.pixel.cast<double>();
+    observation.normal = edge.normal.cast<double>();
+    const double sigma_px = std::max(options_.noise_px, residual_px);
     const SplineKnots::Place place = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
         new PathEdgeCost(observation, event.polarity * step, undistorted_, place.weight, sigma_px),
         new ceres::CauchyLoss(options_.outlier), correction_.data(place.first),
         correction_.data(place.first + 1), correction_.data(place.first + 2),
-        correction_.data(place.first + 3), unknowns);
+        correction_.data(place.first + 3), adjusted.unknowns.data());
     residuals_.emplace_back(id, sigma_px);
   }
 
@@ -271,17 +300,6 @@ class Problem {
 
 }  // namespace
 
-std::span<const Event> events_around(std::span<const Event> events, double t_s, double window_s) {
-  const TimeNs from_ns = ns_from_seconds(t_s - window_s / 2);
-  const TimeNs to_ns = ns_from_seconds(t_s + window_s / 2);
-  const auto before = [](TimeNs limit) {
-    return [limit](const Event& e) { return e.t_ns < limit; };
-  };
-  const auto first = std::partition_point(events.begin(), events.end(), before(from_ns));
-  const auto last = std::partition_point(first, events.end(), before(to_ns));
-  return {first, last};
-}
-
 Matrix6 JointResult::covariance_at(double t_s) const {
   if (covariance.size() == 0) return Matrix6::Zero();
   const SplineKnots::Place place = knots.at(t_s);
@@ -303,10 +321,12 @@ JointResult refine_jointly(std::span<const Event> events, const JointStart& star
     done = std::max(done, step);
   };
   result.path = smooth_path(start, options.smoothing_s);
+  const std::vector<double> views =
+      views_along(start.keyframe_s, result.path.end_s(), options.window_s);
   for (int i = 0; i < options.rounds; ++i) {
     const Trajectory before = result.path;
     std::vector<ViewWindow> windows;
-    for (const double t_s : start.keyframe_s)
+    for (const double t_s : views)
       windows.push_back({events_around(events, t_s, options.window_s), &before, t_s});
     std::vector<RayEdges> found(windows.size());
     parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });

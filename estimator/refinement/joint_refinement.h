@@ -25,6 +25,10 @@ struct JointRefinementOptions {
   /// Beside them, of the start's: only while the poses are known do events say how far away an edge
   /// is in the unit of the path, and so what the path's scale is.
   int known_events_per_edge = 100;
+  /// Beside them, of the same edge in keyframes whose windows are later and apart: what is seen
+  /// again holds a long path. Of so many keyframes and, in each, so many events, at most.
+  int again_keyframes = 4;
+  int again_events = 10;
   double noise_px = 0.1;       ///< least deviation of an event from its edge
   double outlier = 2;          ///< deviations beyond which an event counts less (Cauchy)
   double tilt_sigma = 0.3;     ///< of an edge's tilt m from 0
@@ -39,7 +43,7 @@ struct JointRefinementOptions {
   double known_sigma_px = 0.02;  ///< of the poses of the start, as image motion
   int rounds = 2;                ///< of finding the keyframes' edges, and adjusting
   int iterations = 10;           ///< of Levenberg-Marquardt in a round, at most
-  double information = 0.1;      ///< of that of independent residuals: neighbouring ones err alike
+  double information = 0.04;     ///< of that of independent residuals: neighbouring ones err alike
   InertialRowsOptions imu;
 
   /// Steps of work, as far as progress goes.
@@ -47,10 +51,6 @@ struct JointRefinementOptions {
     return static_cast<std::size_t>(rounds) * static_cast<std::size_t>(iterations + 1);
   }
 };
-
-/// The events that a keyframe's edges are sought in.
-[[nodiscard]] std::span<const Event> events_around(std::span<const Event> events, double t_s,
-                                                   double window_s);
 
 /// What is refined.
 struct JointStart {

@@ -8,7 +8,8 @@ namespace saccade {
 SeenLandmarks::SeenLandmarks(std::span<const Landmark> landmarks, const Rigid3& view_from_world,
                              const PinholeCamera& camera)
     : first_(camera.width, camera.height, kNone) {
-  for (const Landmark& landmark : landmarks) {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    const Landmark& landmark = landmarks[i];
     const Eigen::Vector3d point = view_from_world * landmark.in_world;
     if (!(point.z() > 0)) continue;
     const Eigen::Vector2d pixel = camera.project(point);
@@ -17,7 +18,7 @@ SeenLandmarks::SeenLandmarks(std::span<const Landmark> landmarks, const Rigid3& 
         first_(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
     next_.push_back(first);
     first = static_cast<int>(seen_.size());
-    seen_.push_back({pixel, 1 / point.z(), landmark.sigma / point.z()});
+    seen_.push_back({pixel, 1 / point.z(), landmark.sigma / point.z(), i});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,7 @@ class SeenLandmarks {
     Eigen::Vector2d pixel;
     double inverse_depth = 0;  ///< [1/m]
     double sigma = 0;          ///< [1/m]
+    std::size_t index = 0;     ///< among the landmarks given
   };
 
   /// `camera` is undistorted.

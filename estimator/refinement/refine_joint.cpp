@@ -15,6 +15,7 @@
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/refinement/joint_poses.h"
+#include "estimator/refinement/keyframe_windows.h"
 #include "estimator/run_input.h"
 #include "estimator/stage_clock.h"
 #include "estimator/tracking/pose_output.h"

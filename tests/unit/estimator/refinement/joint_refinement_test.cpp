@@ -120,6 +120,52 @@ TEST(JointRefinement, EventsOfTheStartCountBesideTheOthers) {
   EXPECT_LT(position_sigma_m(many, 0.38), position_sigma_m(few, 0.38));
 }
 
+/// corner_glide() there and back within kReturn_s.
+constexpr double kReturn_s = 0.8;
+Rigid3 there_and_back(double t_s) {
+  constexpr double kPi = 3.14159265358979;
+  return corner_glide(0.2 * (1 - std::cos(2 * kPi * t_s / kReturn_s)));
+}
+
+/// Drifts as evenly as a tracker does, by 1 % of the depth and 7 mrad.
+Rigid3 drifted_there_and_back(double t_s) {
+  const double away = std::max(0.0, t_s - kJointKnown_s) / (kReturn_s - kJointKnown_s);
+  return there_and_back(t_s) *
+         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
+}
+
+JointResult refined_there_and_back(const Events& events, int again_keyframes) {
+  const PinholeCamera& camera = joint_recording().world.camera();
+  JointStart start;
+  for (double t_s = 0; t_s <= kReturn_s + 1e-9; t_s += 2e-3) {
+    start.path.push_back({t_s, drifted_there_and_back(t_s)});
+    if (t_s <= kJointKnown_s) start.known.push_back({t_s, there_and_back(t_s)});
+  }
+  for (int k = 1; k < 8; ++k) start.keyframe_s.push_back(0.1 * k);
+  start.typical_depth_m = kCornerDepth_m;
+  JointRefinementOptions options;
+  options.window_s = 0.3;
+  options.edges = 200;
+  options.events_per_edge = 20;
+  options.again_keyframes = again_keyframes;
+  const DepthConfig config;
+  return refine_jointly(events, start, camera, RayDepth(config.rays, config.limits, camera),
+                        options);
+}
+
+TEST(JointRefinement, WhatIsSeenAgainHoldsALongPath) {
+  const Events events = joint_recording().world.simulate(there_and_back, 0, kReturn_s, 1e-3, 0.15);
+  const JointResult apart = refined_there_and_back(events, 0);
+  const JointResult tied = refined_there_and_back(events, 4);
+  EXPECT_GT(tied.observations, apart.observations * 11 / 10);
+  // The end sees what the given start saw.
+  const auto error_m = [](const JointResult& result) {
+    return (there_and_back(0.7).inverse() * result.path.at_clamped(0.7)).translation().norm();
+  };
+  EXPECT_LT(error_m(tied), 0.5 * error_m(apart));
+  EXPECT_LT(position_sigma_m(tied, 0.7), 0.5 * position_sigma_m(apart, 0.7));
+}
+
 TEST(JointRefinement, SaysThatReadingsDoNotFit) {
   MountedImu imu = readings_of_glide();
   imu.samples.resize(20);
@@ -141,15 +187,6 @@ TEST(JointRefinement, IsTheSameForAnyNumberOfThreads) {
               three.path.poses()[i].world_from_camera.rotation().coeffs());
   }
   EXPECT_EQ(one.covariance, three.covariance);
-}
-
-TEST(EventsAround, AreThoseOfTheWindow) {
-  Events events;
-  for (int i = 0; i < 10; ++i) events.push_back({ns_from_seconds(0.1 * i), 0, 0, 1});
-  const auto some = events_around(events, 0.5, 0.4);
-  ASSERT_EQ(some.size(), 4U);
-  EXPECT_EQ(some.front().t_ns, ns_from_seconds(0.3));
-  EXPECT_TRUE(events_around(events, 5, 1).empty());
 }
 
 }  // namespace

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/depth/event_ownership.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/refinement/landmarks.h"
+#include "estimator/view_windows.h"
+
+namespace saccade {
+
+/// The edge as another view sees it; nullopt for behind it. `camera` is undistorted.
+[[nodiscard]] std::optional<FittedEdge> seen_by(const Rigid3& other_from_view, FittedEdge fitted,
+                                                const PinholeCamera& camera);
+
+/// The edges of a view, looked up from another view: which of them lies on an edge there. On it is
+/// one within 2 px of its place, at its depth but for a tenth, and along it but for 15 degrees,
+/// brighter on the same side.
+class EdgeMatcher {
+ public:
+  /// `other_from_view`: from where the edges are to where they are looked up. They must outlive the
+  /// matcher; `camera` is undistorted.
+  EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+              const PinholeCamera& camera);
+
+  /// Its number; nullopt for none.
+  [[nodiscard]] std::optional<std::size_t> on(const RayEdge& edge) const;
+
+ private:
+  std::span<const FittedEdge> edges_;
+  Rigid3 other_from_view_;
+  PinholeCamera camera_;
+  SeenLandmarks places_;
+};
+
+/// An edge that a keyframe's window shows.
+struct KeyframeEdge {
+  std::size_t keyframe;
+  std::size_t edge;  ///< in the keyframe's RayEdges
+};
+
+/// Of each of these edges what later keyframes see of it that are at least `apart_s` away, in order
+/// of time. `windows` are in order of time, `found` are their edges; `edges` are in order of their
+/// keyframes.
+[[nodiscard]] std::vector<std::vector<KeyframeEdge>> seen_again(std::span<const KeyframeEdge> edges,
+                                                                std::span<const ViewWindow> windows,
+                                                                std::span<const RayEdges> found,
+                                                                double apart_s,
+                                                                const PinholeCamera& camera);
+
+}  // namespace saccade
