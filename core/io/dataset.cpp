@@ -41,6 +41,19 @@ void take_size_of_images(const std::vector<StampedFile>& frames, PinholeCamera& 
   }
 }
 
+fs::path find_events(const fs::path& folder) {
+  for (const char* name : {"events.h5", "events.txt"})
+    if (fs::exists(folder / name)) return folder / name;
+  return {};
+}
+
+void take_size_of_events(const fs::path& events, PinholeCamera& camera) {
+  if (events.empty()) return;
+  const SensorSize sensor = stated_sensor(events);
+  camera.width = sensor.width;
+  camera.height = sensor.height;
+}
+
 PinholeCamera read_camera(const fs::path& folder, const std::optional<DatasetRecord>& record,
                           const std::vector<StampedFile>& frames) {
   const fs::path calib = folder / "calib.txt";
@@ -60,10 +73,13 @@ PinholeCamera read_camera(const fs::path& folder, const std::optional<DatasetRec
     camera.height = record->height;
   }
   if (camera.width == 0) take_size_of_images(frames, camera);
+  if (camera.width == 0) take_size_of_events(find_events(folder), camera);
   if (camera.width == 0)
-    throw InputError(folder.string(),
-                     "the sensor size is unknown: there is no picture to take it from; state it in "
-                     "camera.yaml (cam0: resolution) or dataset.yaml (width, height)");
+    throw InputError(
+        folder.string(),
+        "the sensor size is unknown: there is no picture to take it from, and events.h5 "
+        "does not state it; state it in camera.yaml (cam0: resolution) or "
+        "dataset.yaml (width, height)");
   camera.check((fs::exists(calib) ? calib : chain).string());
   return camera;
 }
@@ -79,12 +95,6 @@ DatasetFacts facts_of(const fs::path& folder, const std::optional<DatasetRecord>
   facts.log_eps = record->log_eps;
   if (!record->name.empty()) facts.name = record->name;
   return facts;
-}
-
-fs::path find_events(const fs::path& folder) {
-  for (const char* name : {"events.h5", "events.txt"})
-    if (fs::exists(folder / name)) return folder / name;
-  return {};
 }
 
 /// Seconds -> ns; beyond +-9e9 s the end of the int64 range.

@@ -43,7 +43,9 @@ bool decodes(const fs::path& file, const Check& check) {
 DatasetWriter::DatasetWriter(const fs::path& folder, const PinholeCamera& camera,
                              const DatasetWriterOptions& options)
     : folder_(folder), camera_(camera), options_(options) {
-  event_writers_.push_back(make_event_writer(folder_ / "events.h5", options.timestamp_unit));
+  const SensorSize sensor{camera.width, camera.height};
+  event_writers_.push_back(
+      make_event_writer(folder_ / "events.h5", options.timestamp_unit, sensor));
   if (options.events_text)
     event_writers_.push_back(make_event_writer(folder_ / "events.txt", options.timestamp_unit));
 }

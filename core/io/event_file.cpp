@@ -24,9 +24,13 @@ EventFileInfo read_event_file_info(const std::filesystem::path& file) {
 }
 
 std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
-                                               TimestampUnit unit) {
-  if (is_h5(file)) return std::make_unique<EventH5Writer>(file, unit);
+                                               TimestampUnit unit, SensorSize sensor) {
+  if (is_h5(file)) return std::make_unique<EventH5Writer>(file, unit, sensor);
   return std::make_unique<EventTextWriter>(file);
+}
+
+SensorSize stated_sensor(const std::filesystem::path& file) {
+  return is_h5(file) ? EventH5Reader(file).info().sensor : SensorSize{};
 }
 
 void sort_ties(std::span<Event> events) {

@@ -31,6 +31,7 @@ struct EventFileInfo {
   TimeNs first_ns = 0;  ///< 0 when there are no events
   TimeNs last_ns = 0;
   TimestampUnit unit = TimestampUnit::kNanoseconds;
+  SensorSize sensor;  ///< as the file states it; only HDF5 can
 };
 
 /// Events of a `.h5`/`.hdf5` file (events_h5.h) or, with any other ending, a text file
@@ -51,9 +52,14 @@ class EventWriter {
   [[nodiscard]] virtual std::uint64_t count() const = 0;
 };
 
-/// The writer for the file's ending, as read_events() chooses; `unit` matters to HDF5 only.
+/// The writer for the file's ending, as read_events() chooses; `unit` and `sensor` matter to HDF5
+/// only.
 [[nodiscard]] std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
-                                                             TimestampUnit unit);
+                                                             TimestampUnit unit,
+                                                             SensorSize sensor = {});
+
+/// The sensor's size where the file states it; no event is read.
+[[nodiscard]] SensorSize stated_sensor(const std::filesystem::path& file);
 
 /// Sorts runs of equal time by EventOrder; `events` are in order of time.
 void sort_ties(std::span<Event> events);

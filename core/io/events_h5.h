@@ -12,7 +12,8 @@ namespace saccade {
 
 /// Events in the DSEC layout: /events/x and y (u16), /events/p (0/1), /events/t (integers,
 /// attribute "unit" = "us" or "ns", us without it), /ms_to_idx (index of the first event at or
-/// after each millisecond) and /t_offset, which is added to all times. Opening checks types and
+/// after each millisecond) and /t_offset, which is added to all times. Beside the layout the group
+/// may state the sensor's size, attributes "width" and "height" [px]. Opening checks types and
 /// lengths.
 class EventH5Reader {
  public:
@@ -41,7 +42,8 @@ class EventH5Reader {
 /// it.
 class EventH5Writer final : public EventWriter {
  public:
-  EventH5Writer(const std::filesystem::path& file, TimestampUnit unit);
+  /// `sensor`: 0 is not stated.
+  EventH5Writer(const std::filesystem::path& file, TimestampUnit unit, SensorSize sensor = {});
   ~EventH5Writer() override;
   void append(std::span<const Event> events) override;
   void close() override;

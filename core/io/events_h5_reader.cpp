@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -43,6 +45,7 @@ struct EventH5Reader::State {
     p = column("/events/p", 1);
     t = column("/events/t", 8);
     read_unit();
+    sensor = {read_size("width"), read_size("height")};
     read_offset();
     read_index();
   }
@@ -59,6 +62,7 @@ struct EventH5Reader::State {
   [[nodiscard]] H5Handle open_dataset(const char* path) const;
   [[nodiscard]] H5Handle column(const char* path, std::size_t widest);
   void read_unit();
+  [[nodiscard]] int read_size(const char* side) const;
   void read_offset();
   void read_index();
 
@@ -75,6 +79,7 @@ struct EventH5Reader::State {
   H5Handle file, x, y, p, t;
   std::uint64_t count = 0;
   TimeNs unit = 1000;  ///< [ns]
+  SensorSize sensor;
   std::int64_t offset = 0;
   std::optional<std::vector<std::uint64_t>> ms_to_idx;
 };
@@ -134,6 +139,17 @@ void EventH5Reader::State::read_unit() {
   if (text != "us" && text != "ns")
     fail("/events/t", "attribute \"unit\" is '" + text + "'; it must be \"us\" or \"ns\"");
   unit = text == "us" ? 1000 : 1;
+}
+
+/// [px]; 0 where it is not stated.
+int EventH5Reader::State::read_size(const char* side) const {
+  const H5Handle group = {H5Gopen2(file, "events", H5P_DEFAULT), H5Gclose};
+  if (H5Aexists(group, side) <= 0) return 0;
+  const H5Handle attribute = {H5Aopen(group, side, H5P_DEFAULT), H5Aclose};
+  int pixels = 0;
+  if (H5Aread(attribute, H5T_NATIVE_INT, &pixels) < 0 || pixels < 1 || pixels > 65536)
+    fail("/events", fmt::format("attribute \"{}\" must be a number of pixels", side));
+  return pixels;
 }
 
 void EventH5Reader::State::read_offset() {
@@ -276,6 +292,7 @@ EventFileInfo EventH5Reader::info() const {
   EventFileInfo info;
   info.count = state_->count;
   info.unit = state_->unit == 1 ? TimestampUnit::kNanoseconds : TimestampUnit::kMicroseconds;
+  info.sensor = state_->sensor;
   if (info.count == 0) return info;
   const auto time_at = [&](std::uint64_t i) {
     return state_->time_ns(state_->read_times({i, i + 1}).front(), i);

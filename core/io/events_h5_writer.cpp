@@ -43,7 +43,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 }  // namespace
 
 struct EventH5Writer::State {
-  State(const std::filesystem::path& file_name, TimestampUnit timestamp_unit)
+  State(const std::filesystem::path& file_name, TimestampUnit timestamp_unit, SensorSize sensor)
       : target(file_name),
         unit(timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1),
         ticks_per_ms(1'000'000 / unit) {
@@ -57,6 +57,9 @@ struct EventH5Writer::State {
     columns[2] = {group, "p", H5T_STD_U8LE, target.target()};
     columns[3] = {group, "t", H5T_STD_I64LE, target.target()};
     write_unit(columns[3].id());
+    if (sensor.width == 0) return;
+    write_size(group, "width", sensor.width);
+    write_size(group, "height", sensor.height);
   }
 
   void check(bool success) const { check_h5_write(success, target.target()); }
@@ -68,6 +71,13 @@ struct EventH5Writer::State {
     const H5Handle attribute = {H5Acreate2(dataset, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT),
                                 H5Aclose};
     check(attribute.valid() && H5Awrite(attribute, type, unit == 1 ? "ns" : "us") >= 0);
+  }
+
+  void write_size(hid_t group, const char* name, int pixels) const {
+    const H5Handle space = {H5Screate(H5S_SCALAR), H5Sclose};
+    const H5Handle attribute = {
+        H5Acreate2(group, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose};
+    check(attribute.valid() && H5Awrite(attribute, H5T_NATIVE_INT, &pixels) >= 0);
   }
 
   void add(std::span<const Event> events);
@@ -172,8 +182,9 @@ void EventH5Writer::State::finish() {
   target.commit();
 }
 
-EventH5Writer::EventH5Writer(const std::filesystem::path& file, TimestampUnit unit)
-    : state_(std::make_unique<State>(file, unit)) {}
+EventH5Writer::EventH5Writer(const std::filesystem::path& file, TimestampUnit unit,
+                             SensorSize sensor)
+    : state_(std::make_unique<State>(file, unit, sensor)) {}
 
 EventH5Writer::~EventH5Writer() = default;
 

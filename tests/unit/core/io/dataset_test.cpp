@@ -249,6 +249,18 @@ TEST_F(DatasetFolder, UnknownSensorSizeIsAnError) {
               HasSubstr("the sensor size is unknown"));
 }
 
+TEST_F(DatasetFolder, EventsMayStateTheSensor) {
+  fs::remove(plain() / "images/a.png");
+  fs::remove(folder_.path() / "plain/events.txt");
+  const auto writer =
+      make_event_writer(folder_.path() / "plain/events.h5", TimestampUnit::kMicroseconds, {8, 6});
+  writer->append(Events{{1000, 7, 5, 1}});
+  writer->close();
+  const Dataset data = Dataset::open(folder_.path() / "plain");
+  EXPECT_EQ(data.camera().width, 8);
+  EXPECT_EQ(data.camera().height, 6);
+}
+
 TEST_F(DatasetFolder, MissingFolderFilesAndCalibration) {
   EXPECT_THAT(error_of([&] { return Dataset::open(folder_.path() / "no"); }),
               HasSubstr("no such dataset folder"));

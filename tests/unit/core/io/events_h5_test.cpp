@@ -315,6 +315,34 @@ TEST_F(EventsH5, WithoutCloseNothingIsWritten) {
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
+TEST_F(EventsH5, MayStateTheSensor) {
+  for (const SensorSize size : {SensorSize{}, SensorSize{346, 260}}) {
+    EventH5Writer writer(file_, kUs, size);
+    writer.append(events_);
+    writer.close();
+    EXPECT_EQ(stated_sensor(file_).width, size.width);
+  }
+  const SensorSize sensor = stated_sensor(file_);
+  EXPECT_EQ(sensor.width, 346);
+  EXPECT_EQ(sensor.height, 260);
+  EXPECT_EQ(stated_sensor(folder_.path() / "a.txt").width, 0) << "text cannot, and is not read";
+}
+
+TEST_F(EventsH5, ASensorWithoutPixelsIsAnError) {
+  EXPECT_THAT(error_after([](hid_t file) {
+                const hid_t group = H5Gopen2(file, "events", H5P_DEFAULT);
+                const hid_t space = H5Screate(H5S_SCALAR);
+                const hid_t width =
+                    H5Acreate2(group, "width", H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT);
+                const int none = 0;
+                H5Awrite(width, H5T_NATIVE_INT, &none);
+                H5Aclose(width);
+                H5Sclose(space);
+                H5Gclose(group);
+              }),
+              HasSubstr("/events: attribute \"width\" must be a number of pixels"));
+}
+
 TEST_F(EventsH5, EndingChoosesTheFormat) {
   for (const char* name : {"a.h5", "a.hdf5", "a.txt", "a.csv"}) {
     const std::unique_ptr<EventWriter> writer = make_event_writer(folder_.path() / name, kNs);
