@@ -72,6 +72,16 @@ std::vector<Event> thinned(std::span<const Event> events, std::size_t most,
   return kept;
 }
 
+/// Of edges that may be off by `slack` times as much.
+MappingOptions loosened(MappingOptions options, double slack) {
+  options.max_sigma *= slack;
+  RayDepthOptions& rays = options.depth.rays;
+  rays.refiner.max_sigma *= slack;
+  rays.propagation.max_sigma *= slack;
+  rays.fusion.max_sigma *= slack;
+  return options;
+}
+
 void append(MapPoints& points, const Eigen::Vector3d& point) {
   points.x.push_back(static_cast<float>(point.x()));
   points.y.push_back(static_cast<float>(point.y()));
@@ -84,6 +94,16 @@ Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
     : options_(options), camera_(camera) {}
 
 Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const {
+  Mapping mapping = map_once(events, path);
+  for (const double slack : {3.0, 9.0}) {
+    if (mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges)) break;
+    Mapping looser = Mapper(loosened(options_, slack), camera_).map_once(events, path);
+    if (looser.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(looser);
+  }
+  return mapping;
+}
+
+Mapping Mapper::map_once(std::span<const Event> events, const KnownPath& path) const {
   Mapping mapping;
   Keyframe& keyframe = mapping.keyframe;
   ViewWindow window;

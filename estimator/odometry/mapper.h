@@ -29,7 +29,10 @@ struct MappingOptions {
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
   bool image = true;  ///< made for people where the edges do not need it, after the last event
   double max_sigma = 0.05;  ///< of a point's inverse depth that becomes an edge, relative
-  double smoothing_s = 0;   ///< spacing of the knots of a spline through the poses; 0: as tracked
+  /// With fewer edges, less certain ones are taken, too: those that hardly move sideways need no
+  /// better depth to be tracked by.
+  int min_edges = 0;
+  double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// So many times edges are found and adjusted together with the poses; 0: the poses are taken as
   /// they are. Of depth.method: rays.
   int adjust_rounds = 0;
@@ -84,6 +87,7 @@ class Mapper {
   void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
  private:
+  [[nodiscard]] Mapping map_once(std::span<const Event> events, const KnownPath& path) const;
   [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;

@@ -27,11 +27,11 @@ std::size_t count_until(std::span<const Event> events, double t_s) {
 
 bool is_settled(const KnownPath& start) { return start.settled_until_s >= start.poses.end_s(); }
 
-/// The poses of a start that are an output: of one that is settled, none.
+/// The poses of a start that are an output: those that were not given.
 std::vector<TrackedPose> found_poses(const KnownPath& start) {
   std::vector<TrackedPose> poses;
-  if (is_settled(start)) return poses;
   for (const StampedPose& pose : start.poses.poses()) {
+    if (pose.t_s <= start.given_until_s) continue;
     TrackedPose tracked;
     tracked.t_ns = tracked.first_ns = tracked.last_ns = ns_from_seconds(pose.t_s);
     tracked.world_from_camera = pose.world_from_camera;
@@ -54,22 +54,26 @@ Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, 
       camera_(camera),
       mapper_(options.mapping, camera),
       map_(options.map, camera),
-      tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {}
+      tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {
+  start_.min_edges = static_cast<std::size_t>(options.mapping.min_edges);
+  start_.refinement.limits = options.mapping.depth.limits;
+}
 
 Odometry::~Odometry() = default;
+
+void Odometry::set_gyroscope(Gyroscope gyroscope) {
+  gyroscope_ = gyroscope;
+  tracker_.set_gyroscope(std::move(gyroscope));
+}
 
 OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& start,
                              const std::function<void(std::size_t)>& progress) {
   OdometryResult result;
-  known_.assign(start.poses.poses().begin(), start.poses.poses().end());
-  settled_until_s_ = start.settled_until_s;
-  given_until_s_ = start.given_until_s;
-  result.poses = found_poses(start);
-  Stream stream{events, count_until(events, start.poses.end_s())};
   {
     const StageClock clock(result.mapping_s);
-    start_from(events.first(stream.done), start);
+    start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
   }
+  Stream stream{events, count_until(events, known_.back().t_s)};
   if (progress) progress(stream.done);
   tracker_.start(stream.rest());
   const EventClock clock(stream.rest().empty() ? 0 : stream.rest().front().t_ns);
@@ -162,19 +166,22 @@ bool Odometry::is_due(double now_s) const {
   return job_->mapping.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
 }
 
-void Odometry::start_from(std::span<const Event> events, const KnownPath& start) {
-  Mapping mapping = mapper_.map(events, start);
-  Keyframe& first = mapping.keyframe;
-  if (first.edges.size() < kLeastEdges)
+void Odometry::start_from(FirstMap first, OdometryResult& result) {
+  Keyframe& keyframe = first.mapping.keyframe;
+  if (keyframe.edges.size() < kLeastEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
-  typical_depth_m_ = first.typical_depth_m;
-  if (!is_settled(start)) take_mapped_poses(mapping);
+  known_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
+  settled_until_s_ = first.path.settled_until_s;
+  given_until_s_ = first.path.given_until_s;
+  result.poses = found_poses(first.path);
+  typical_depth_m_ = keyframe.typical_depth_m;
+  if (!is_settled(first.path)) take_mapped_poses(first.mapping);
   last_keyframe_ = known_.back();
-  map_.add(std::move(first), last_keyframe_.world_from_camera);
+  map_.add(std::move(keyframe), last_keyframe_.world_from_camera);
   tracker_.set_map(map_.points());
-  tracker_.reset(ns_from_seconds(start.poses.end_s()), last_keyframe_.world_from_camera);
+  tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
 }
 
 bool Odometry::wants_keyframe() const {
@@ -241,12 +248,12 @@ void Odometry::refine(std::span<const Event> events, const KnownPath& start, Odo
   const StageClock clock(result.refinement_s);
   JointStart joint;
   joint.path = known_;
-  joint.known.push_back(start.poses.poses().front());
-  if (is_settled(start)) joint.known.assign(start.poses.poses().begin(), start.poses.poses().end());
+  for (const StampedPose& pose : start.poses.poses())
+    if (pose.t_s <= start.settled_until_s) joint.known.push_back(pose);
   for (const Keyframe& keyframe : map_.keyframes()) joint.keyframe_s.push_back(keyframe.t_s);
   joint.typical_depth_m = typical_depth_m_;
   joint.imu = imu_;
-  joint.is_metric = is_settled(start);
+  joint.is_metric = start.given_until_s != kNothingGiven;
   const JointResult refined = refine_jointly(within(events, Trajectory(known_)), joint, camera_,
                                              mapper_.rays(), options_.last.joint, progress);
   for (StampedPose& pose : known_) pose.world_from_camera = refined.path.at_clamped(pose.t_s);

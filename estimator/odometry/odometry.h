@@ -17,6 +17,7 @@
 #include "estimator/odometry/edge_map.h"
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
+#include "estimator/odometry/start/first_map.h"
 #include "estimator/refinement/joint_refinement.h"
 #include "estimator/tracking/tracker.h"
 
@@ -108,13 +109,13 @@ class Odometry {
   ~Odometry();
 
   /// For tracking.motion.prediction: imu.
-  void set_gyroscope(Gyroscope gyroscope) { tracker_.set_gyroscope(std::move(gyroscope)); }
+  void set_gyroscope(Gyroscope gyroscope);
   /// For last.joint.imu.
   void set_imu(MountedImu imu) { imu_ = std::move(imu); }
 
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
-  /// are found from the last of them on; those of a start that is not settled as a whole are
-  /// part of the result, too, as last adjusted. `progress` is called with the number of events done
+  /// are found from the last of them on; those that were not given are part of the result, too, as
+  /// last adjusted. `progress` is called with the number of events done
   /// since its last call. Throws InputError where the start shows no edges.
   [[nodiscard]] OdometryResult run(std::span<const Event> events, const KnownPath& start,
                                    const std::function<void(std::size_t)>& progress = {});
@@ -144,7 +145,7 @@ class Odometry {
     [[nodiscard]] std::span<const Event> rest() const { return all.subspan(done); }
   };
 
-  void start_from(std::span<const Event> events, const KnownPath& start);
+  void start_from(FirstMap first, OdometryResult& result);
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void take_pose(TrackedPose pose, OdometryResult& result);
   void forget_astray(const TrackedPose& found, OdometryResult& result);
@@ -157,6 +158,7 @@ class Odometry {
   void output(OdometryResult& result) const;
 
   OdometryOptions options_;
+  FirstMapOptions start_;
   PinholeCamera camera_;
   Mapper mapper_;
   EdgeMap map_;
@@ -167,6 +169,7 @@ class Odometry {
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
   double last_search_s_ = -std::numeric_limits<double>::infinity();
+  Gyroscope gyroscope_;
   std::optional<MountedImu> imu_;
   StampedPose last_keyframe_;  ///< the camera when the last one was begun
   double typical_depth_m_ = 1;

@@ -89,6 +89,13 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
         .value("max_sigma", options.max_sigma,
                "deviation of a point's depth up to which it is tracked, relative")
         .above(0);
+    fields
+        .value(
+            "min_edges", options.min_edges,
+            "with fewer, less certain ones are tracked, too, of up to 9 times the deviation here "
+            "and in depth.rays, and given poses that show fewer are carried on by the events "
+            "after them")
+        .range(0, 1e6);
     fields.value("image", options.image, "an image is made, too, for people; after the last event");
   }
   fields

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/odometry/start/carried_path.h"
+
 namespace saccade {
 namespace {
-
-constexpr double kPoseSpacing_s = 1e-3;
 
 std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
   const auto at = [&](double t_s) {
@@ -16,19 +16,6 @@ std::span<const Event> between(std::span<const Event> events, double from_s, dou
   };
   const auto first = at(from_s);
   return {first, std::max(first, at(to_s))};
-}
-
-/// Replaces the turns of the poses from `first` >= 1 on by those that the gyroscope felt.
-void turn_by(const Gyroscope& gyroscope, std::vector<StampedPose>& poses, std::size_t first) {
-  if (gyroscope.is_empty()) return;
-  for (std::size_t i = first; i < poses.size(); ++i) {
-    const StampedPose& before = poses[i - 1];
-    const Eigen::Vector3d rate =
-        gyroscope.mean_rate(ns_from_seconds(before.t_s), ns_from_seconds(poses[i].t_s));
-    Rigid3& pose = poses[i].world_from_camera;
-    pose = {before.world_from_camera.rotation() * so3_exp((poses[i].t_s - before.t_s) * rate),
-            pose.translation()};
-  }
 }
 
 /// `gyroscope` tells the turn, where it is not empty.
@@ -41,19 +28,6 @@ Trajectory path_of(const PlaneFit& fit, const Gyroscope& gyroscope) {
     poses.push_back({t_s, fit.motion.reference_from_camera(t_s - fit.middle_s)});
   }
   turn_by(gyroscope, poses, 1);
-  return Trajectory(std::move(poses));
-}
-
-/// The path goes on at its velocity of the last 20 ms.
-Trajectory carried_on(const Trajectory& path, double until_s, const Gyroscope& gyroscope) {
-  constexpr double kLast_s = 0.02;
-  const double end_s = path.end_s();
-  const Rigid3 last = path.poses().back().world_from_camera;
-  const Twist step = (path.at_clamped(end_s - kLast_s).inverse() * last).log();
-  std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
-  for (double t_s = end_s + kPoseSpacing_s; t_s < until_s + kPoseSpacing_s; t_s += kPoseSpacing_s)
-    poses.push_back({t_s, last * Rigid3::exp((t_s - end_s) / kLast_s * step)});
-  turn_by(gyroscope, poses, path.size());
   return Trajectory(std::move(poses));
 }
 
@@ -145,18 +119,6 @@ class StartFinder {
 };
 
 }  // namespace
-
-PathRefinementOptions start_refinement() {
-  PathRefinementOptions options;
-  options.adjustment.edges = 800;
-  options.adjustment.node_spacing_s = 0.02;
-  options.adjustment.deviations = AdjustmentOptions::Deviations::kPose;
-  options.adjustment.pose_sigma_px = 20;
-  options.adjustment.step_sigma_px = 0.3;
-  options.adjustment.surface_sigma = 0.02;
-  options.adjustment.iterations = 20;
-  return options;
-}
 
 Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
                      const BootstrapOptions& options, const Gyroscope& gyroscope) {

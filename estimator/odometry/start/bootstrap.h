@@ -11,9 +11,6 @@
 
 namespace saccade {
 
-/// What the refinement of a start is by default: loose where there is nothing to hold on to.
-[[nodiscard]] PathRefinementOptions start_refinement();
-
 struct BootstrapOptions {
   double depth_m = 1;      ///< the scale is free: the typical depth is called so
   double window_s = 0.25;  ///< of the path that is found, at most

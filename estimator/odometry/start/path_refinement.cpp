@@ -26,11 +26,24 @@ Trajectory scaled(const Trajectory& path, double scale) {
 
 }  // namespace
 
+PathRefinementOptions start_refinement() {
+  PathRefinementOptions options;
+  options.adjustment.edges = 800;
+  options.adjustment.node_spacing_s = 0.02;
+  options.adjustment.deviations = AdjustmentOptions::Deviations::kPose;
+  options.adjustment.pose_sigma_px = 20;
+  options.adjustment.step_sigma_px = 0.3;
+  options.adjustment.surface_sigma = 0.02;
+  options.adjustment.iterations = 20;
+  return options;
+}
+
 PathRefinement::PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera)
     : options_(options), camera_(camera), depth_(options.rays, options.limits, camera) {}
 
-FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path,
-                                int rounds) const {
+FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path, int rounds,
+                                double given_until_s) const {
+  const bool is_free = given_until_s == kNothingGiven;
   FreePath result;
   result.poses = path;
   const double reference_s =
@@ -43,11 +56,12 @@ FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory&
     for (const FittedEdge& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
     const Adjustment adjustment =
-        adjust(window, edges, camera_, {kNothingGiven, kNothingGiven, median_depth(edges), {}},
+        adjust(window, edges, camera_, {given_until_s, given_until_s, median_depth(edges), {}},
                options_.adjustment);
     if (!adjustment.ok) return result;
     result.residual_px = adjustment.residual_after_px;
-    result.poses = scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges));
+    result.poses = is_free ? scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges))
+                           : adjustment.trajectory;
   }
   result.is_clear = true;
   return result;

@@ -14,13 +14,16 @@ namespace saccade {
 struct PathRefinementOptions {
   std::size_t min_edges = 100;
   RayDepthOptions rays;
-  DepthLimits limits{.near_m = 0.3, .far_m = 50};  ///< the typical depth being 1
+  DepthLimits limits{.near_m = 0.3, .far_m = 50};  ///< of a free path the typical depth is 1
   AdjustmentOptions adjustment;
 };
 
-/// A path that is known up to a similarity.
+/// What the refinement of a start is by default: loose where there is nothing to hold on to.
+[[nodiscard]] PathRefinementOptions start_refinement();
+
+/// A path that is known up to a similarity, or from its given poses on.
 struct FreePath {
-  Trajectory poses;        ///< world_from_camera; the typical depth is 1
+  Trajectory poses;        ///< world_from_camera; of a free one the typical depth is 1
   std::size_t edges = 0;   ///< found with it
   std::size_t events = 0;  ///< of theirs
   double residual_px = 0;  ///< robust deviation of these
@@ -28,16 +31,16 @@ struct FreePath {
 };
 
 /// Path and edges of a window, adjusted in turn: edges are found with the path (RayDepth), then
-/// both are adjusted (edge_adjustment.h) with nothing held. The typical depth stays the unit of
-/// length.
+/// both are adjusted (edge_adjustment.h). Of a path without given poses nothing is held, and the
+/// typical depth stays the unit of length.
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);
 
   /// `events` of the window, at least one, none beyond `path`; `rounds` of finding edges and
-  /// adjusting them with the path.
-  [[nodiscard]] FreePath refine(std::span<const Event> events, const Trajectory& path,
-                                int rounds) const;
+  /// adjusting them with the path, of which the poses until `given_until_s` are exact.
+  [[nodiscard]] FreePath refine(std::span<const Event> events, const Trajectory& path, int rounds,
+                                double given_until_s = kNothingGiven) const;
 
  private:
   PathRefinementOptions options_;

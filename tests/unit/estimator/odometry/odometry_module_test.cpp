@@ -122,6 +122,22 @@ TEST_F(OdometryModule, TheEventsOfSomeOfThePixelsWillDo) {
               HasSubstr("show no edges in depth"));
 }
 
+TEST_F(OdometryModule, AStartOfAFewPixelsIsCarriedOn) {
+  std::string yaml =
+      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  yaml.replace(yaml.find("truth_s: 0.2"), 12, "truth_s: 0.1");
+  yaml.replace(yaml.find("edges: depth"), 12, "edges: depth, min_edges: 600");
+  (void)run_odometry(request("run", yaml));
+  const fs::path run = folder_.path() / "run";
+  expect_glide(run);
+  const Trajectory found = read_trajectory(run / "trajectory.txt");
+  EXPECT_GT(found.start_s(), 0.1) << "given poses are no output";
+  EXPECT_LT(found.start_s(), 0.102) << "those that it was carried on by are";
+  const auto keyframes = read_keyframe_list(run / "keyframes.yaml");
+  EXPECT_GT(keyframes.front().made_s, 0.11);
+  EXPECT_GE(keyframes.front().edges, 600);
+}
+
 TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
   const auto shortest_s = [&](const std::string& name, const std::string& keyframe) {
     std::string yaml = kQuick;

@@ -1,0 +1,52 @@
+#include "estimator/odometry/start/first_map.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "estimator/odometry/start/carried_path.h"
+#include "estimator/view_windows.h"
+
+namespace saccade {
+namespace {
+
+/// `path` with the given poses as they are, and what follows after the last of them.
+Trajectory held(const Trajectory& path, const KnownPath& start) {
+  const double until_s = start.given_until_s;
+  const Rigid3 given_from_found =
+      start.poses.at_clamped(until_s) * path.at_clamped(until_s).inverse();
+  std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
+  for (StampedPose& pose : poses)
+    pose.world_from_camera = pose.t_s <= until_s ? start.poses.at_clamped(pose.t_s)
+                                                 : given_from_found * pose.world_from_camera;
+  return Trajectory(std::move(poses));
+}
+
+}  // namespace
+
+FirstMap first_map(std::span<const Event> events, const KnownPath& start, const Mapper& mapper,
+                   const PinholeCamera& camera, const FirstMapOptions& options,
+                   const Gyroscope& gyroscope) {
+  FirstMap first{start, mapper.map(within(events, start.poses), start)};
+  const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
+  if (is_enough() || start.given_until_s == kNothingGiven || events.empty()) return first;
+  const PathRefinement refinement(options.refinement, camera);
+  const double start_s = start.poses.start_s();
+  const double longest_s =
+      std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start_s);
+  KnownPath path = start;
+  double length_s = path.poses.end_s() - start_s;
+  while (!is_enough() && length_s < longest_s) {
+    length_s = std::min(options.growth * length_s, longest_s);
+    const Trajectory longer = carried_on(path.poses, start_s + length_s, gyroscope);
+    FreePath refined = refinement.refine(within(events, longer), longer, 1, start.given_until_s);
+    if (!refined.is_clear) break;
+    path.poses = held(refined.poses, start);
+    Mapping mapping = mapper.map(within(events, path.poses), path);
+    if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
+      first = {path, std::move(mapping)};
+  }
+  return first;
+}
+
+}  // namespace saccade

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "estimator/odometry/mapper.h"
+#include "estimator/odometry/start/path_refinement.h"
+#include "estimator/tracking/gyroscope.h"
+
+namespace saccade {
+
+struct FirstMapOptions {
+  std::size_t min_edges = 0;  ///< with fewer, given poses are carried on; 0: never
+  double window_s = 0.3;      ///< of the path, at most
+  double growth = 1.15;       ///< of the path, from round to round
+  PathRefinementOptions refinement = given_refinement();
+
+ private:
+  /// Little is known of an edge, or the poses were not carried on; what says how far away it is
+  /// are its events while they are given.
+  [[nodiscard]] static PathRefinementOptions given_refinement() {
+    PathRefinementOptions options = start_refinement();
+    options.min_edges = 60;
+    options.adjustment.given_pairs = 5;
+    options.rays.refiner.max_sigma = 0.09;
+    return options;
+  }
+};
+
+/// The first keyframe and the path that it was made with.
+struct FirstMap {
+  KnownPath path;
+  Mapping mapping;
+};
+
+/// What a run starts from. Where the camera hardly steps sideways while its poses are given, few
+/// edges tell their depth, and it would be lost soon after. The path then goes on at its last
+/// velocity and is adjusted together with the edges (PathRefinement), the given poses being held,
+/// until `mapper` makes a map of edges enough, or the path is as long as it may get. `start` as of
+/// Odometry::run(): one without given poses is taken as it is. `events` in order of time; `camera`
+/// with its lens; `gyroscope`, where it is not empty, tells the turn beyond the given poses.
+/// Deterministic.
+[[nodiscard]] FirstMap first_map(std::span<const Event> events, const KnownPath& start,
+                                 const Mapper& mapper, const PinholeCamera& camera,
+                                 const FirstMapOptions& options, const Gyroscope& gyroscope);
+
+}  // namespace saccade
