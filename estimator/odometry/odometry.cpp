@@ -176,6 +176,7 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   settled_until_s_ = first.path.settled_until_s;
   given_until_s_ = first.path.given_until_s;
   result.poses = found_poses(first.path);
+  if (given_until_s_ != kNothingGiven) result.carried_s = known_.back().t_s - given_until_s_;
   typical_depth_m_ = keyframe.typical_depth_m;
   if (!is_settled(first.path)) take_mapped_poses(first.mapping);
   last_keyframe_ = known_.back();

@@ -87,6 +87,7 @@ struct KeyframeChange {
 struct OdometryResult {
   std::vector<TrackedPose> poses;
   std::vector<KeyframeChange> changes;
+  double carried_s = 0;   ///< for so long given poses were carried on (first_map())
   double tracking_s = 0;  ///< seconds of work
   double mapping_s = 0;
   // Of refine().

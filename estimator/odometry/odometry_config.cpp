@@ -233,7 +233,9 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   fields.group(
       "depth", [&](Fields& f) { describe_depth_method(f, odometry.mapping.depth); },
       "as of saccade run depth");
-  if (odometry.mapping.image || odometry.mapping.edges == MappingOptions::Edges::kGradient)
+  // Where it is stated, too, so that switching the images off is one change.
+  if (odometry.mapping.image || odometry.mapping.edges == MappingOptions::Edges::kGradient ||
+      fields.has("reconstruction"))
     fields.group(
         "reconstruction",
         [&](Fields& f) { describe_image_method(f, odometry.mapping.reconstruction); },

@@ -183,6 +183,8 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
   const std::size_t lost = count_lost(found.result.poses);
   std::string text = fmt::format("{} poses ({} lost) by {} keyframes", found.result.poses.size(),
                                  lost, found.keyframes.size());
+  if (const double carried_s = found.result.carried_s; carried_s > 0)
+    text += fmt::format(", the start carried on for {:.2f} s", carried_s);
   if (config.odometry.last.use && lost > 0) text += ", not adjusted as a whole";
   if (const auto& inertial = found.result.inertial)
     text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);

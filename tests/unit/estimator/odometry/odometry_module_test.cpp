@@ -127,7 +127,8 @@ TEST_F(OdometryModule, AStartOfAFewPixelsIsCarriedOn) {
       std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
   yaml.replace(yaml.find("truth_s: 0.2"), 12, "truth_s: 0.1");
   yaml.replace(yaml.find("edges: depth"), 12, "edges: depth, min_edges: 600");
-  (void)run_odometry(request("run", yaml));
+  const RunSummary summary = run_odometry(request("run", yaml));
+  EXPECT_THAT(summary.found, HasSubstr(", the start carried on for 0.0"));
   const fs::path run = folder_.path() / "run";
   expect_glide(run);
   const Trajectory found = read_trajectory(run / "trajectory.txt");
@@ -302,6 +303,16 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
         << file;
   const Trajectory found = read_trajectory(folder_.path() / "with" / "trajectory.txt");
   EXPECT_LT(found.poses().front().world_from_camera.log().norm(), 0.01);
+}
+
+TEST_F(OdometryModule, ImagesAreSwitchedOffByOneKey) {
+  const auto printed = [](const std::string& image) {
+    return print_odometry_config(config::parse(
+        "mapping: {edges: depth, image: " + image + "}\nreconstruction: {levels: {beyond: 0.5}}\n",
+        "configuration"));
+  };
+  EXPECT_THAT(printed("true"), HasSubstr("reconstruction:"));
+  EXPECT_THAT(printed("false"), ::testing::Not(HasSubstr("reconstruction:")));
 }
 
 TEST_F(OdometryModule, SaysWhatIsWrong) {
