@@ -29,8 +29,9 @@ struct MappingOptions {
   Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
   bool image = true;  ///< made for people where the edges do not need it, after the last event
   double max_sigma = 0.05;  ///< of a point's inverse depth that becomes an edge, relative
-  /// With fewer edges, less certain ones are taken, too: those that hardly move sideways need no
-  /// better depth to be tracked by.
+  /// Of kDepth: with fewer edges, less certain ones are tracked, too, of 3 and 9 times the
+  /// deviation: those that hardly move sideways need no better depth. Renewed depths are the
+  /// certain ones alone.
   int min_edges = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// So many times edges are found and adjusted together with the poses; 0: the poses are taken as

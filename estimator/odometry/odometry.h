@@ -116,8 +116,8 @@ class Odometry {
 
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
   /// are found from the last of them on; those that were not given are part of the result, too, as
-  /// last adjusted. `progress` is called with the number of events done
-  /// since its last call. Throws InputError where the start shows no edges.
+  /// last adjusted. `progress` is called with the number of events done since its last call. Throws
+  /// InputError where the start shows no edges.
   [[nodiscard]] OdometryResult run(std::span<const Event> events, const KnownPath& start,
                                    const std::function<void(std::size_t)>& progress = {});
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/trajectory.h"
 #include "estimator/tracking/gyroscope.h"
 

@@ -30,7 +30,9 @@ FirstMap first_map(std::span<const Event> events, const KnownPath& start, const 
   FirstMap first{start, mapper.map(within(events, start.poses), start)};
   const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
   if (is_enough() || start.given_until_s == kNothingGiven || events.empty()) return first;
-  const PathRefinement refinement(options.refinement, camera);
+  PathRefinementOptions refined = options.refinement;
+  if (!gyroscope.is_empty()) refined.adjustment.turn_share = options.felt_turn_share;
+  const PathRefinement refinement(refined, camera);
   const double start_s = start.poses.start_s();
   const double longest_s =
       std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start_s);
@@ -39,10 +41,11 @@ FirstMap first_map(std::span<const Event> events, const KnownPath& start, const 
   while (!is_enough() && length_s < longest_s) {
     length_s = std::min(options.growth * length_s, longest_s);
     const Trajectory longer = carried_on(path.poses, start_s + length_s, gyroscope);
-    FreePath refined = refinement.refine(within(events, longer), longer, 1, start.given_until_s);
-    if (!refined.is_clear) break;
-    path.poses = held(refined.poses, start);
-    Mapping mapping = mapper.map(within(events, path.poses), path);
+    const std::span<const Event> window = within(events, longer);
+    if (window.empty()) continue;
+    // Where there is too little to adjust it by, the path is the longer one as it is.
+    path.poses = held(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
+    Mapping mapping = mapper.map(window, path);
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};
   }

@@ -13,8 +13,10 @@ namespace saccade {
 
 struct FirstMapOptions {
   std::size_t min_edges = 0;  ///< with fewer, given poses are carried on; 0: never
-  double window_s = 0.3;      ///< of the path, at most
+  double window_s = 0.3;      ///< of the path with the given poses, to a millisecond; at most
   double growth = 1.15;       ///< of the path, from round to round
+  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
+  double felt_turn_share = 0.05;
   PathRefinementOptions refinement = given_refinement();
 
  private:
@@ -37,11 +39,11 @@ struct FirstMap {
 
 /// What a run starts from. Where the camera hardly steps sideways while its poses are given, few
 /// edges tell their depth, and it would be lost soon after. The path then goes on at its last
-/// velocity and is adjusted together with the edges (PathRefinement), the given poses being held,
-/// until `mapper` makes a map of edges enough, or the path is as long as it may get. `start` as of
-/// Odometry::run(): one without given poses is taken as it is. `events` in order of time; `camera`
-/// with its lens; `gyroscope`, where it is not empty, tells the turn beyond the given poses.
-/// Deterministic.
+/// velocity and is adjusted together with the edges (PathRefinement), the given poses being put
+/// back each time, until `mapper` makes a map of edges enough, or the path is as long as it may
+/// get; the largest map is taken. `start` as of Odometry::run(): one without given poses is taken
+/// as it is. `events` in order of time; `camera` with its lens; `gyroscope`, where it is not empty,
+/// tells the turn beyond the given poses. Deterministic.
 [[nodiscard]] FirstMap first_map(std::span<const Event> events, const KnownPath& start,
                                  const Mapper& mapper, const PinholeCamera& camera,
                                  const FirstMapOptions& options, const Gyroscope& gyroscope);

@@ -38,7 +38,7 @@ class PathRefinement {
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);
 
   /// `events` of the window, at least one, none beyond `path`; `rounds` of finding edges and
-  /// adjusting them with the path, of which the poses until `given_until_s` are exact.
+  /// adjusting them with the path, whose nodes until `given_until_s` are held.
   [[nodiscard]] FreePath refine(std::span<const Event> events, const Trajectory& path, int rounds,
                                 double given_until_s = kNothingGiven) const;
 

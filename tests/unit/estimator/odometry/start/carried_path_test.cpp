@@ -32,8 +32,11 @@ TEST(CarriedPath, ThePosesBeforeAreKept) {
   const Trajectory before = steady(0.05);
   const Trajectory path = carried_on(before, 0.06, {});
   ASSERT_GT(path.size(), before.size());
-  for (std::size_t i = 0; i < before.size(); ++i)
+  for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(path.poses()[i].t_s, before.poses()[i].t_s);
+    EXPECT_EQ(path.poses()[i].world_from_camera.translation(),
+              before.poses()[i].world_from_camera.translation());
+  }
 }
 
 TEST(CarriedPath, APathShorterThanTheLookBackTellsItsVelocity) {

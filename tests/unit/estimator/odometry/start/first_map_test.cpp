@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
+#include "core/imu_sample.h"
+#include "core/parallel.h"
 #include "estimator/odometry/start/carried_path.h"
 #include "tests/support/planar_world.h"
 
@@ -68,9 +73,10 @@ Worst worst_of(const Trajectory& path, double from_s, double to_s) {
   return worst;
 }
 
-FirstMap made(const KnownPath& start, const FirstMapOptions& options) {
+FirstMap made(const KnownPath& start, const FirstMapOptions& options,
+              const Gyroscope& gyroscope = {}) {
   return first_map(events(), start, Mapper(quick_mapping(), corner().camera()), corner().camera(),
-                   options, {});
+                   options, gyroscope);
 }
 
 FirstMapOptions carried() {
@@ -97,19 +103,54 @@ TEST(FirstMap, GivenPosesThatShowTooLittleAreCarriedOn) {
   EXPECT_GT(worst_of(blind, kGiven_s, kWhole_s).rad, 3 * found.rad) << "the events say more";
 }
 
-TEST(FirstMap, IsDeterministic) {
+TEST(FirstMap, IsTheSameForAnyNumberOfThreads) {
+  set_thread_count(1);
   const FirstMap one = made(given(), carried());
-  const FirstMap two = made(given(), carried());
-  ASSERT_EQ(one.path.poses.size(), two.path.poses.size());
-  EXPECT_EQ(one.path.poses.poses().back().world_from_camera.translation(),
-            two.path.poses.poses().back().world_from_camera.translation());
+  set_thread_count(3);
+  const FirstMap three = made(given(), carried());
+  set_thread_count(0);
+  ASSERT_EQ(one.path.poses.size(), three.path.poses.size());
+  for (std::size_t i = 0; i < one.path.poses.size(); ++i)
+    EXPECT_EQ(one.path.poses.poses()[i].world_from_camera.translation(),
+              three.path.poses.poses()[i].world_from_camera.translation());
+  EXPECT_EQ(one.mapping.keyframe.edges.x, three.mapping.keyframe.edges.x);
+}
+
+TEST(FirstMap, AGyroscopeTellsTheTurnBeyond) {
+  std::vector<ImuSample> readings;
+  for (int i = 0; i * 1e-3 < kWhole_s; ++i) {
+    ImuSample reading;
+    reading.t_ns = ns_from_seconds(i * 1e-3);
+    const Rigid3 step = shaken(i * 1e-3 - 1e-4).inverse() * shaken(i * 1e-3 + 1e-4);
+    reading.angular_velocity = so3_log(step.rotation()) / 2e-4;
+    readings.push_back(reading);
+  }
+  const Gyroscope gyroscope(readings, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  const FirstMap felt = made(given(), carried(), gyroscope);
+  ASSERT_GT(felt.path.poses.end_s(), kGiven_s + 0.01);
+  EXPECT_LT(worst_of(felt.path.poses, kGiven_s, kWhole_s).rad, 1e-3);
 }
 
 TEST(FirstMap, EndsWithTheLongestPathThatIsAllowed) {
   FirstMapOptions options = carried();
   options.min_edges = 1000000;
   options.window_s = 0.12;
-  EXPECT_LT(made(given(), options).path.poses.end_s(), 0.1221);
+  const double end_s = made(given(), options).path.poses.end_s();
+  EXPECT_GT(end_s, kGiven_s + 0.01);
+  EXPECT_LT(end_s, 0.1211);
+}
+
+TEST(FirstMap, AGapInTheEventsIsGoneBeyond) {
+  // One event, then none until long after the given poses.
+  Events sparse = {events().front()};
+  for (const Event& event : events())
+    if (event.t_ns > ns_from_seconds(0.2)) sparse.push_back(event);
+  KnownPath start = given();
+  std::vector<StampedPose> late(start.poses.poses().begin() + 10, start.poses.poses().end());
+  start.poses = Trajectory(std::move(late));
+  const FirstMap first = first_map(sparse, start, Mapper(quick_mapping(), corner().camera()),
+                                   corner().camera(), carried(), {});
+  EXPECT_GE(first.path.poses.end_s(), kGiven_s);
 }
 
 TEST(FirstMap, AStartThatWasFoundIsTakenAsItIs) {
