@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/config/document.h"
-#include "estimator/run.h"
+#include "estimator/run/run_request.h"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include "estimator/depth/ray_depth.h"
 #include "estimator/depth/sweep_depth.h"
 #include "estimator/depth/thesis_depth.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

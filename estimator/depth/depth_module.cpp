@@ -7,9 +7,9 @@
 #include "core/config/config.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/view_run.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
+#include "estimator/run/view_run.h"
 
 namespace saccade {
 namespace {
@@ -36,7 +36,7 @@ RunSummary run_depth(const RunRequest& request) {
       "depth", windows, request.repeat, timing,
       [&](const ViewWindow& window) { return estimator->estimate(window); });
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     write_depth(writer.path(), dataset.camera(), windows, results);
   }
   writer.finish("depth", request, dataset, input.window, config.seed, config::print(config),

@@ -8,8 +8,8 @@
 
 #include "core/image.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "estimator/depth/found_edges.h"
-#include "estimator/stage_clock.h"
 
 namespace saccade {
 namespace {
@@ -68,7 +68,7 @@ DepthResult RayDepth::estimate(const ViewWindow& window) const { return fuse(fin
 RayEdges RayDepth::find_edges(const ViewWindow& window) const {
   double rays_s = 0, seeds_s = 0, regression_s = 0, ownership_s = 0, propagation_s = 0;
   const auto timed = [](double& seconds, const auto& step) {
-    const StageClock clock(seconds);
+    const ScopedTimer clock(seconds);
     return step();
   };
   RayEdges found;
@@ -101,7 +101,7 @@ DepthResult RayDepth::fuse(const RayEdges& found) const {
   double fusion_s = 0;
   DepthResult result;
   {
-    const StageClock clock(fusion_s);
+    const ScopedTimer clock(fusion_s);
     result.points = fused(points_of(found.edges), options_.fusion);
   }
   result.candidates = found.seeds;

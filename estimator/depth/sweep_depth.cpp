@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/stopwatch.h"
 #include "estimator/depth/ray_votes.h"
-#include "estimator/stage_clock.h"
 
 namespace saccade {
 namespace {
@@ -58,12 +58,12 @@ DepthResult SweepDepth::estimate(const ViewWindow& window) const {
   DepthResult result;
   Peaks peaks;
   {
-    const StageClock clock(vote_s);
+    const ScopedTimer clock(vote_s);
     const EventRays rays(window, camera_, undistortion_, 1);
     peaks = has_parallax(rays) ? sweep(rays) : Peaks{};
   }
   {
-    const StageClock clock(select_s);
+    const ScopedTimer clock(select_s);
     const auto selected = select(peaks);
     for (const EdgeDepth& point : selected) result.candidates.emplace_back(point.x_px, point.y_px);
     result.points = without_outliers(selected, camera_, options_.outliers);

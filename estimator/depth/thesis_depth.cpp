@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/stopwatch.h"
 #include "estimator/depth/derotated_frame.h"
 #include "estimator/depth/epipolar.h"
 #include "estimator/mean_time.h"
-#include "estimator/stage_clock.h"
 
 namespace saccade {
 
@@ -76,7 +76,7 @@ DepthResult ThesisDepth::estimate(const ViewWindow& window) const {
     return reference_from_world * window.trajectory->at_clamped(t_s).translation();
   };
   const auto draw = [&](std::span<const Event> events) {
-    const StageClock clock(frame_s);
+    const ScopedTimer clock(frame_s);
     ImageF image = derotation.draw(events);
     normalise_frame(image);
     return image;
@@ -88,7 +88,7 @@ DepthResult ThesisDepth::estimate(const ViewWindow& window) const {
   Eigen::Vector3d first_centre = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const Frame frame{draw(frames[k]), centre_of(frames[k]) - first_centre};
-    const StageClock clock(search_s);
+    const ScopedTimer clock(search_s);
     if (k == 0) {
       first_centre = frame.centre;
       keypoints = start_keypoints(frame.image);
@@ -104,7 +104,7 @@ DepthResult ThesisDepth::estimate(const ViewWindow& window) const {
     if (is_converged(keypoint.belief) && point.inverse_depth > 0) converged.push_back(point);
   }
   {
-    const StageClock clock(removal_s);
+    const ScopedTimer clock(removal_s);
     result.points = without_outliers(converged, camera_, options_.outliers);
   }
   result.stages_s = {{"event_frame", frame_s}, {"search", search_s}, {"outliers", removal_s}};

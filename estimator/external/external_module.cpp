@@ -12,14 +12,14 @@
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
 #include "core/shell.h"
+#include "core/stopwatch.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"
 #include "estimator/external/external_output.h"
 #include "estimator/external/external_process.h"
 #include "estimator/external/handover.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 namespace {
@@ -132,7 +132,7 @@ RunSummary run_external(const RunRequest& request) {
   RunWriter writer(request);
   const ExternalFolders folders(writer.path());
   RunTiming timing;
-  std::optional<StageClock> io(timing.io_s);
+  std::optional<ScopedTimer> io(timing.io_s);
   const Dataset dataset = Dataset::open(request.dataset);
   check_program(config);
   const Events events = load_events(request, dataset);

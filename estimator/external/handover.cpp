@@ -12,7 +12,7 @@
 #include "core/io/event_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
-#include "estimator/run_input.h"
+#include "estimator/run/run_input.h"
 
 namespace saccade {
 namespace {

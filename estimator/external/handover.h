@@ -10,7 +10,7 @@
 #include "core/trajectory.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"
-#include "estimator/run.h"
+#include "estimator/run/run_request.h"
 
 namespace saccade {
 

@@ -13,13 +13,13 @@
 #include "core/io/trajectory_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_output.h"
 #include "estimator/imu/stabilizer.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 namespace {
@@ -74,13 +74,13 @@ void stabilize(const StabilizeInput& input, const StabilizeConfig& config,
                const PinholeCamera& camera, Stabilization& result, RunTiming& timing) {
   double orientation_s = 0, events_s = 0;
   {
-    const StageClock clock(orientation_s);
+    const ScopedTimer clock(orientation_s);
     result.camera =
         input.imu ? camera_orientations(*input.imu, config.orientation) : ImuPoses{input.poses, {}};
     result.world_from_steady = steady_poses(result.camera.world_from_camera, config.steady);
   }
   {
-    const StageClock clock(events_s);
+    const ScopedTimer clock(events_s);
     const Stabilizer stabilizer(camera, result.camera.world_from_camera);
     result.stretches = cut(input.events, config.window_s);
     parallel_for(result.stretches.size(), [&](std::size_t i) {
@@ -119,7 +119,7 @@ RunSummary run_stabilization(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   StabilizeInput input;
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     input = load_input(request, dataset);
   }
   timing.events = input.events.size();
@@ -138,7 +138,7 @@ RunSummary run_stabilization(const RunRequest& request) {
       is_from_events ? seconds_from_ns(input.events.front().t_ns) : poses.start_s();
   const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     write(writer.path(), dataset, config, result, window);
   }
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);

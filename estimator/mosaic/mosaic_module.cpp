@@ -15,16 +15,16 @@
 #include "core/io/panorama_file.h"
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/rate_offset.h"
 #include "estimator/mosaic/swept.h"
 #include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/reconstruction_output.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 namespace {
@@ -83,10 +83,10 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Con
   double orientation_s = 0, offset_s = 0, wall_s = 0;
   MosaicRun run;
   {
-    const StageClock whole(wall_s);
+    const ScopedTimer whole(wall_s);
     Trajectory& poses = run.camera.world_from_camera;
     {
-      const StageClock clock(orientation_s);
+      const ScopedTimer clock(orientation_s);
       run.camera = source.imu ? camera_orientations(*source.imu, config.orientation)
                               : ImuPoses{source.poses, {}};
     }
@@ -95,7 +95,7 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Con
       throw InputError(dataset.folder().string(),
                        "holds no events within the time of the orientations");
     if (config.rate_offset.estimate) {
-      const StageClock clock(offset_s);
+      const ScopedTimer clock(offset_s);
       poses = sharpened(poses, run.events, source, dataset.camera(), config);
     }
     run.panorama = panorama_of(dataset.camera(), poses, run.events, config);
@@ -137,7 +137,7 @@ RunSummary run_mosaic(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   MosaicSource source;
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     source = load_source(request, dataset);
   }
   const Contrasts thresholds = contrasts(config.contrast_on, config.contrast_off, dataset);
@@ -162,7 +162,7 @@ RunSummary run_mosaic(const RunRequest& request) {
         .log_image;
   });
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     write(writer.path(), run, growth);
   }
   writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/config/document.h"
-#include "estimator/run.h"
+#include "estimator/run/run_request.h"
 
 namespace saccade {
 

@@ -7,7 +7,7 @@
 #include "core/config/config.h"
 #include "core/io/atomic_file.h"
 #include "core/median.h"
-#include "estimator/run_writer.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 namespace {

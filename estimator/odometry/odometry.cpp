@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "estimator/refinement/joint_poses.h"
-#include "estimator/stage_clock.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {
@@ -70,7 +70,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
                              const std::function<void(std::size_t)>& progress) {
   OdometryResult result;
   {
-    const StageClock clock(result.mapping_s);
+    const ScopedTimer clock(result.mapping_s);
     start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
   }
   Stream stream{events, count_until(events, known_.back().t_s)};
@@ -82,7 +82,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
     if (options_.mode == OdometryMode::kOnline) await_frame(clock, stream, result);
     std::optional<TrackedPose> pose;
     {
-      const StageClock work(result.tracking_s);
+      const ScopedTimer work(result.tracking_s);
       pose = tracker_.next();
     }
     if (!pose) break;
@@ -208,7 +208,7 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
        path = KnownPath{
            Trajectory(known_), settled_until_s_, given_until_s_, typical_depth_m_,
            map_.landmarks(now_s - options_.mapping.duration_s, known_.back().world_from_camera)}] {
-        const StageClock clock(*seconds);
+        const ScopedTimer clock(*seconds);
         return mapper_.map(mapped, path);
       });
 }
@@ -246,7 +246,7 @@ bool Odometry::wants_refinement(const OdometryResult& result) const {
 
 void Odometry::refine(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
                       const std::function<void(std::size_t)>& progress) {
-  const StageClock clock(result.refinement_s);
+  const ScopedTimer clock(result.refinement_s);
   JointStart joint;
   joint.path = known_;
   for (const StampedPose& pose : start.poses.poses())

@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "core/config/fields.h"
-#include "estimator/camera_correction.h"
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry.h"
 #include "estimator/odometry/start/bootstrap.h"
+#include "estimator/run/camera_correction.h"
 
 namespace saccade {
 

@@ -10,12 +10,12 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
 #include "estimator/odometry/start/start_record.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
 #include "estimator/tracking/gyroscope_input.h"
 #include "estimator/tracking/pose_output.h"
 
@@ -80,7 +80,7 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
     start.path.settled_until_s = start.path.given_until_s = start.from_s;
     return start;
   }
-  const StageClock clock(start.seconds);
+  const ScopedTimer clock(start.seconds);
   start.found = found_start(dataset, camera, events, options, gyroscope);
   start.from_s = start.found->path.start_s();
   // All but the first pose may change.
@@ -129,7 +129,7 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
     odometry->set_gyroscope(input.gyroscope);
     if (input.imu) odometry->set_imu(*input.imu);
     wall_s.push_back(start.seconds);
-    const StageClock clock(wall_s.back());
+    const ScopedTimer clock(wall_s.back());
     found.result = odometry->run(input.events, start.path, [&](std::size_t n) { progress.add(n); });
     if (!odometry->wants_refinement(found.result)) continue;
     Progress refinement("refine", config.odometry.last.joint.steps(), "steps");
@@ -137,7 +137,7 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
                      [&](std::size_t n) { refinement.add(n); });
   }
   if (config.odometry.mapping.image) {
-    const StageClock clock(found.images_s);
+    const ScopedTimer clock(found.images_s);
     Progress images("images", odometry->map().keyframes().size(), "keyframes");
     odometry->add_images(input.events, [&](std::size_t n) { images.add(n); });
   }
@@ -202,7 +202,7 @@ RunSummary run_odometry(const RunRequest& request) {
   RunWriter writer(request);
 
   RunTiming timing;
-  std::optional<StageClock> io(timing.io_s);
+  std::optional<ScopedTimer> io(timing.io_s);
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;

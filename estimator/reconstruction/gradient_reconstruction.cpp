@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "estimator/reconstruction/gradient_filter.h"
 #include "estimator/reconstruction/gradient_images.h"
-#include "estimator/stage_clock.h"
 
 namespace saccade {
 
@@ -16,7 +16,7 @@ Reconstruction integrate_gradients(LevelFinder& finder, std::span<const Event> e
   Reconstruction result;
   const double levels_s = finder.find_all(events, world_from_camera,
                                           [&](std::span<const PlaceLevel> part, double share) {
-                                            const StageClock clock(filter_s);
+                                            const ScopedTimer clock(filter_s);
                                             filter.add(part);
                                             result.levels += part.size();
                                             // Poisson's equation takes no time beside this.
@@ -24,7 +24,7 @@ Reconstruction integrate_gradients(LevelFinder& finder, std::span<const Event> e
                                           });
   set_gradient(result, grid, filter.states(), options.observed_sigma);
   {
-    const StageClock clock(poisson_s);
+    const ScopedTimer clock(poisson_s);
     const bool wraps = grid.wraps();
     result.log_image = solve_poisson(
         divergence(between_pixels(result.gradient_x, result.gradient_y, wraps), wraps),

@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "estimator/reconstruction/place_finder.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "estimator/reconstruction/gradient_images.h"
 #include "estimator/reconstruction/level_system.h"
 #include "estimator/reconstruction/levels_by_track.h"
 #include "estimator/reconstruction/poisson.h"
-#include "estimator/stage_clock.h"
 
 namespace saccade {
 namespace {
@@ -165,21 +165,21 @@ Reconstruction solve_equations(LevelFinder& finder, std::span<const Event> event
                                             if (done) done(kLevelsShare * share);
                                           });
   {
-    const StageClock clock(order_s);
+    const ScopedTimer clock(order_s);
     tracks.order(static_cast<float>(options.thin_px));
   }
   ImageF image;
   LevelSystem system(grid.width(), grid.height(), grid.wraps());
   for (int round = 0; round < options.rounds; ++round) {
     {
-      const StageClock clock(equations_s);
+      const ScopedTimer clock(equations_s);
       system.clear();
       system.reserve(tracks.size());
       add_levels(system, grid, tracks, image, options);
       add_smoothness(system, grid, options, image);
     }
     {
-      const StageClock clock(solve_s);
+      const ScopedTimer clock(solve_s);
       image = system.solve(options.iterations, options.tolerance, image).image;
     }
     if (done) done(kLevelsShare + (1 - kLevelsShare) * (round + 1) / options.rounds);

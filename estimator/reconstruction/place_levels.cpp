@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/stage_clock.h"
+#include "core/stopwatch.h"
 
 namespace saccade {
 namespace {
@@ -29,7 +29,7 @@ double LevelFinder::find_all(std::span<const Event> events, const Trajectory& wo
     part.clear();
     const std::size_t count = std::min(kBatch, events.size() - begin);
     {
-      const StageClock clock(seconds);
+      const ScopedTimer clock(seconds);
       find(events.subspan(begin, count), world_from_camera, part);
     }
     use(part, static_cast<double>(begin + count) / static_cast<double>(events.size()));

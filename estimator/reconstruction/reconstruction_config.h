@@ -11,7 +11,7 @@
 #include "estimator/reconstruction/equation_reconstruction.h"
 #include "estimator/reconstruction/gradient_reconstruction.h"
 #include "estimator/reconstruction/image_estimator.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -12,9 +12,9 @@
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_output.h"
 #include "estimator/reconstruction/step_figures.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/view_run.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
+#include "estimator/run/view_run.h"
 
 namespace saccade {
 namespace {
@@ -41,7 +41,7 @@ RunSummary run_reconstruction(const RunRequest& request) {
   const ViewInput input = load_view_input(request, dataset, timing);
   std::vector<ReconstructionWindow> windows;
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     const DepthSource depth(dataset, request.depth_from, input.trajectory, config.depth);
     windows = make_windows(input, dataset, depth, config);
   }
@@ -56,7 +56,7 @@ RunSummary run_reconstruction(const RunRequest& request) {
         return estimator->reconstruct(part).log_image;
       });
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     write_reconstruction(writer.path(), windows, results, growth);
     if (config.figures) write_step_figures(writer.path(), dataset, windows.front());
   }

@@ -7,7 +7,7 @@
 #include "core/trajectory.h"
 #include "estimator/depth/ray_depth.h"
 #include "estimator/refinement/landmarks.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -10,7 +10,7 @@
 #include "estimator/depth/event_ownership.h"
 #include "estimator/depth/ray_depth.h"
 #include "estimator/refinement/landmarks.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include "estimator/depth/ray_depth.h"
 #include "estimator/refinement/edge_residual.h"
 #include "estimator/refinement/node_correction.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 

@@ -9,10 +9,10 @@
 #include "core/io/view_list.h"
 #include "core/median.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
-#include "estimator/run_input.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
 
 namespace saccade {
 namespace {
@@ -73,7 +73,7 @@ void save_costs(const std::vector<RefinedDepth>& refined, const std::filesystem:
 RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
                         const Dataset& dataset, const SourceRun& run, RunWriter& writer) {
   RunTiming timing;
-  std::optional<StageClock> io(timing.io_s);
+  std::optional<ScopedTimer> io(timing.io_s);
   RunRequest request = run.within(asked);
   if (!request.poses_from && !run.record.poses_from.empty())
     request.poses_from = run.record.poses_from;
@@ -95,7 +95,7 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
   for (int i = 0; i < request.repeat; ++i) {
     double wall_s = 0;
     {
-      const StageClock clock(wall_s);
+      const ScopedTimer clock(wall_s);
       parallel_for(windows.size(), [&](std::size_t k) {
         refined[k] = refine_depth_of(windows[k], points[k], dataset.camera(), depth,
                                      method.rays.slabs, config.depth);

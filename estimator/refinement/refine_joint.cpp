@@ -11,13 +11,13 @@
 #include "core/median.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/refinement/joint_poses.h"
 #include "estimator/refinement/keyframe_windows.h"
-#include "estimator/run_input.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {
@@ -151,7 +151,7 @@ void write_keyframes(const std::filesystem::path& folder, const PinholeCamera& c
 RunSummary refine_joint(const RunRequest& request, const RefinementConfig& config,
                         const Dataset& dataset, const SourceRun& run, RunWriter& writer) {
   RunTiming timing;
-  std::optional<StageClock> io(timing.io_s);
+  std::optional<ScopedTimer> io(timing.io_s);
   JointInput input = load(request, dataset, run);
   if (config.joint.imu.use) input.start.imu = load_mounted_imu(dataset, "joint.imu.use");
   io.reset();
@@ -164,7 +164,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   for (int i = 0; i < request.repeat; ++i) {
     double wall_s = 0;
     {
-      const StageClock clock(wall_s);
+      const ScopedTimer clock(wall_s);
       result = refine_jointly(input.events, input.start, camera, depth, config.joint,
                               [&](std::size_t n) { progress.add(n); });
     }
@@ -179,7 +179,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   double depth_s = 0;
   std::vector<DepthResult> depths;
   {
-    const StageClock clock(depth_s);
+    const ScopedTimer clock(depth_s);
     depths = depths_on(input, result.path, depth, config.joint.window_s);
   }
   timing.stages_s = {{"adjustment", timing.wall_s.back()}, {"depth", depth_s}};

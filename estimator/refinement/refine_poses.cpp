@@ -6,8 +6,8 @@
 #include "core/io/covariance_file.h"
 #include "core/median.h"
 #include "core/progress.h"
-#include "estimator/run_input.h"
-#include "estimator/stage_clock.h"
+#include "core/stopwatch.h"
+#include "estimator/run/run_input.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
@@ -66,7 +66,7 @@ std::vector<StampedCovariance> take(const RefinedPath& path, const Rigid3& world
 RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
                         const Dataset& dataset, const SourceRun& run, RunWriter& writer) {
   RunTiming timing;
-  std::optional<StageClock> io(timing.io_s);
+  std::optional<ScopedTimer> io(timing.io_s);
   const RunRequest request = run.within(asked);
   const auto tracked = run.config<TrackConfig>();
   std::vector<TrackedPose> poses = run.poses();
@@ -91,7 +91,7 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   for (int i = 0; i < request.repeat; ++i) {
     double wall_s = 0;
     {
-      const StageClock clock(wall_s);
+      const ScopedTimer clock(wall_s);
       path = refine_path(surface, camera, contrast, events, start, config.poses);
     }
     progress.add(events.size());

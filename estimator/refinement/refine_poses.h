@@ -3,7 +3,7 @@
 #include "core/io/dataset.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/source_run.h"
-#include "estimator/run_writer.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 

@@ -9,8 +9,8 @@
 #include "estimator/refinement/refine_poses.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/source_run.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/io/csv_reader.h"
 #include "core/io/trajectory_file.h"
-#include "estimator/run_writer.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 namespace {

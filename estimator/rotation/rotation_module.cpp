@@ -8,11 +8,11 @@
 #include "core/config/config.h"
 #include "core/io/trajectory_file.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/rotation/rotation_config.h"
-#include "estimator/run_input.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
+#include "estimator/run/run_input.h"
+#include "estimator/run/run_writer.h"
 #include "estimator/tracking/gyroscope.h"
 
 namespace saccade {
@@ -132,7 +132,7 @@ RunSummary run_rotation(const RunRequest& request) {
   std::optional<ImuInput> imu;
   Events events;
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     if (config.source != Source::kEvents) imu = load_imu_input(dataset, "source: imu or both");
     if (config.source != Source::kImu) events = load_events(request, dataset);
   }
@@ -142,7 +142,7 @@ RunSummary run_rotation(const RunRequest& request) {
   for (int i = 0; i < request.repeat; ++i) {
     double wall_s = 0;
     {
-      const StageClock clock(wall_s);
+      const ScopedTimer clock(wall_s);
       rates = find_rates(config, dataset.camera(), events, imu, progress);
     }
     timing.wall_s.push_back(wall_s);
@@ -151,7 +151,7 @@ RunSummary run_rotation(const RunRequest& request) {
   const double last_s = rates.empty() ? 0 : rates.back().t_s;
   timing.sequence_s = last_s - first_s;
   {
-    const StageClock clock(timing.io_s);
+    const ScopedTimer clock(timing.io_s);
     write_angular_velocities(writer.path() / "angular_velocity.txt", rates);
   }
   writer.finish("rotation", request, dataset, window_of(request, first_s, last_s), config.seed,

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "estimator/stage_clock.h"
+#include "core/stopwatch.h"
 #include "estimator/tracking/posterior_pose.h"
 #include "estimator/tracking/robust_weight.h"
 
@@ -100,7 +100,7 @@ int FrameTracker::coarsest_level() const {
 }
 
 void FrameTracker::draw(const Rigid3& map_from_camera) {
-  const StageClock clock(timing_.template_s);
+  const ScopedTimer clock(timing_.template_s);
   view_.draw(map_from_camera);
   for (int y = 0; y < shown_.height(); ++y)
     for (int x = 0; x < shown_.width(); ++x) {
@@ -135,7 +135,7 @@ void FrameTracker::average(const ImageF& frame, int square_px) {
 }
 
 auto FrameTracker::compare(const ImageF& frame, int square_px) -> Sums {
-  const StageClock clock(timing_.align_s);
+  const ScopedTimer clock(timing_.align_s);
   average(frame, square_px);
   Sums sums;
   const ImageF& picture = pictures_.map;

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "estimator/mean_time.h"
-#include "estimator/stage_clock.h"
 #include "estimator/tracking/posterior_pose.h"
 
 namespace saccade {
@@ -50,7 +50,7 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
 }
 
 void IntensityTracker::restart_levels(float looks) {
-  const StageClock clock(timing_.template_s);
+  const ScopedTimer clock(timing_.template_s);
   measurements_.restart(motion_.pose(), looks);
 }
 
@@ -187,7 +187,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   const Estimate estimate = align(predicted);
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
-    const StageClock clock(timing_.align_s);
+    const ScopedTimer clock(timing_.align_s);
     measurements_.correct();
   }
   pose.iterations = options_.iterations;
@@ -206,15 +206,15 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
 void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
                             const Rigid3& map_from_camera) {
   {
-    const StageClock clock(timing_.template_s);
+    const ScopedTimer clock(timing_.template_s);
     measurements_.prepare_view(map_from_camera);
   }
-  const StageClock clock(timing_.event_frame_s);
+  const ScopedTimer clock(timing_.event_frame_s);
   measurements_.load(events, t_ns, motion_at(map_from_camera));
 }
 
 auto IntensityTracker::align(const PosePrediction& predicted) -> Estimate {
-  const StageClock clock(timing_.align_s);
+  const ScopedTimer clock(timing_.align_s);
   PosteriorPose pose(predicted, options_.information / (options_.noise * options_.noise));
   Estimate estimate;
   for (int i = 0; i <= options_.iterations; ++i) {

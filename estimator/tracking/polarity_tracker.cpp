@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/stopwatch.h"
 #include "estimator/mean_time.h"
-#include "estimator/stage_clock.h"
 #include "estimator/tracking/event_frame.h"
 #include "estimator/tracking/posterior_pose.h"
 
@@ -83,7 +83,7 @@ std::size_t PolarityTracker::follow_edges(std::span<const Event> events, Poses& 
 }
 
 void PolarityTracker::draw_view(const Rigid3& map_from_camera) {
-  const StageClock clock(timing_.template_s);
+  const ScopedTimer clock(timing_.template_s);
   if (has_view_ && view_.moved_px(map_from_camera) < options_.redraw_px) return;
   view_.draw(map_from_camera);
   template_.draw(view_, map_.atlas());
@@ -100,7 +100,7 @@ bool PolarityTracker::track_frame(std::span<const Event> events, Poses& poses) {
   const PosePrediction predicted = motion_.predict(pose.t_ns, view_.typical_depth_m());
   draw_view(predicted.map_from_camera);
   {
-    const StageClock clock(timing_.event_frame_s);
+    const ScopedTimer clock(timing_.event_frame_s);
     frame_.draw(events, pose.t_ns, ImageMotion(camera_, motion_.velocity()), view_);
   }
   const Estimate estimate = align(predicted);
@@ -132,7 +132,7 @@ IncrementChunk::Sums PolarityTracker::compare(const IncrementPoints& points,
 }
 
 auto PolarityTracker::align(const PosePrediction& predicted) -> Estimate {
-  const StageClock clock(timing_.align_s);
+  const ScopedTimer clock(timing_.align_s);
   const auto template_at = [&](const Rigid3& map_from_camera) {
     return map_from_camera.inverse() * view_.map_from_camera();
   };

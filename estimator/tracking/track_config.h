@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/config/fields.h"
-#include "estimator/camera_correction.h"
+#include "estimator/run/camera_correction.h"
 #include "estimator/tracking/frame_tracker.h"
 #include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/polarity_tracker.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/stage_clock.h"
+#include "core/stopwatch.h"
 
 namespace saccade {
 namespace {
@@ -88,7 +88,7 @@ std::size_t Tracker::next_frame_events() {
 }
 
 void Tracker::prepare_template(const Rigid3& map_from_camera) {
-  const StageClock clock(timing_.template_s);
+  const ScopedTimer clock(timing_.template_s);
   if (template_fits(map_from_camera)) return;
   map_from_template_ = map_from_camera;
   points_ = drawer_.draw(map_from_template_.inverse());
@@ -122,7 +122,7 @@ std::size_t Tracker::events_per_frame() const {
 }
 
 void Tracker::draw_frame(TrackedPose& pose) {
-  const StageClock clock(timing_.event_frame_s);
+  const ScopedTimer clock(timing_.event_frame_s);
   const std::span<const Event> events = window_.events();
   pose.first_ns = events.front().t_ns;
   pose.last_ns = events.back().t_ns;
@@ -145,7 +145,7 @@ void Tracker::draw_frame(TrackedPose& pose) {
 }
 
 AlignResult Tracker::align(TimeNs t_ns) {
-  const StageClock clock(timing_.align_s);
+  const ScopedTimer clock(timing_.align_s);
   const PosePrediction predicted = motion_.predict(t_ns, typical_depth_m_);
   const Rigid3 current_from_template = predicted.map_from_camera.inverse() * map_from_template_;
   // Events that earlier frames had, too, say nothing new: against them the prediction weighs more.

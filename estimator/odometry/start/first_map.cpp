@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimator/odometry/start/carried_path.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 namespace {

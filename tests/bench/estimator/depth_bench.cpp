@@ -16,7 +16,7 @@
 #include "estimator/depth/ray_gather.h"
 #include "estimator/depth/ray_regression.h"
 #include "estimator/depth/ray_votes.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {

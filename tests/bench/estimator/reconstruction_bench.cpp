@@ -11,7 +11,7 @@
 #include "estimator/reconstruction/poisson.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reference_grid.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {

@@ -5,7 +5,7 @@
 #include "core/io/dataset.h"
 #include "core/io/run_record.h"
 #include "core/trajectory.h"
-#include "estimator/run.h"
+#include "estimator/run/run_request.h"
 
 namespace saccade {
 

@@ -1,4 +1,4 @@
-#include "estimator/run_writer.h"
+#include "estimator/run/run_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "estimator/run_input.h"
+#include "estimator/run/run_input.h"
 
 #include <algorithm>
 #include <limits>

@@ -10,7 +10,7 @@
 #include "core/io/atomic_file.h"
 #include "core/io/dataset.h"
 #include "core/io/run_record.h"
-#include "estimator/run.h"
+#include "estimator/run/run_request.h"
 
 namespace saccade {
 

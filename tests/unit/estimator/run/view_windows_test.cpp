@@ -1,4 +1,4 @@
-#include "estimator/view_windows.h"
+#include "estimator/run/view_windows.h"
 
 #include <gtest/gtest.h>
 

@@ -11,11 +11,11 @@
 #include "core/io/run_record.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "core/trajectory.h"
-#include "estimator/run.h"
-#include "estimator/run_writer.h"
-#include "estimator/stage_clock.h"
-#include "estimator/view_windows.h"
+#include "estimator/run/run_request.h"
+#include "estimator/run/run_writer.h"
+#include "estimator/run/view_windows.h"
 
 namespace saccade {
 
@@ -51,7 +51,7 @@ template <typename Result, typename Window, typename Estimate>
   for (int i = 0; i < repeat; ++i) {
     double wall_s = 0;
     {
-      const StageClock clock(wall_s);
+      const ScopedTimer clock(wall_s);
       parallel_for(windows.size(), [&](std::size_t k) {
         results[k] = estimate(windows[k]);
         progress.add(windows[k].events.size());

@@ -1,4 +1,4 @@
-#include "estimator/camera_correction.h"
+#include "estimator/run/camera_correction.h"
 
 namespace saccade {
 

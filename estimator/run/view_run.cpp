@@ -1,13 +1,13 @@
-#include "estimator/view_run.h"
+#include "estimator/run/view_run.h"
 
 #include "core/check.h"
 #include "core/error.h"
-#include "estimator/run_input.h"
+#include "estimator/run/run_input.h"
 
 namespace saccade {
 
 ViewInput load_view_input(const RunRequest& request, const Dataset& dataset, RunTiming& timing) {
-  const StageClock clock(timing.io_s);
+  const ScopedTimer clock(timing.io_s);
   ViewInput input;
   input.trajectory = load_poses(request, dataset);
   input.loaded = load_events(request, dataset);
