@@ -1,8 +1,11 @@
 #include "apps/common_options.h"
 
+#include <fmt/core.h>
+
 #include "apps/option_checks.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "apps/reference_page.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 
@@ -36,6 +39,18 @@ void add_config_options(CLI::App& command, CommonOptions& options) {
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   command.add_flag("--print-config", options.print_config,
                    "Print every key with its value, help and range, and stop");
+}
+
+void add_reference_option(CLI::App& command, const std::string& page) {
+  command
+      .add_flag_callback(
+          "--reference",
+          [page] {
+            fmt::print("{}", reference_page(page).markdown());
+            throw CLI::Success();
+          },
+          "Print every key of the configuration as a page of docs/reference/, and stop.")
+      ->trigger_on_parse();
 }
 
 }  // namespace saccade

@@ -9,8 +9,8 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/event_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "core/io/import/public_sequence.h"
 
 namespace saccade {

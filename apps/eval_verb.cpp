@@ -9,7 +9,7 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/store/result_store.h"
 

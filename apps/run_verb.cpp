@@ -6,9 +6,10 @@
 #include "apps/command_line.h"
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
+#include "apps/reference_page.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/registry.h"
 
 namespace saccade {
@@ -18,6 +19,7 @@ struct RunVerbOptions {
   std::string module;
   std::string config;
   RunRequest request;
+  bool reference = false;
   CommonOptions common;
 };
 
@@ -42,6 +44,10 @@ void show(const std::filesystem::path& output, const RunSummary& summary) {
 void run(RunVerbOptions options) {
   options.common.apply();
   const Module& module = find_module(options.module);
+  if (options.reference) {
+    fmt::print("{}", reference_page(options.module).markdown());
+    return;
+  }
   options.request.config = options.common.load(options.config);
   if (options.common.print_config) {
     fmt::print("{}", module.print_config(options.request.config));
@@ -85,6 +91,9 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("--repeat", request.repeat, "Repeat the work, for timing")
       ->check(whole_number(1, 100000))
       ->capture_default_str();
+  verb->add_flag("--reference", options->reference,
+                 "Print every key of the module's configuration as a page of docs/reference/, and "
+                 "stop.");
   add_config_options(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(
@@ -98,7 +107,8 @@ void add_run_verb(CLI::App& command) {
       "  saccade run mosaic --data data/panorama -c configs/mosaic/best.yaml -o runs/mosaic\n"
       "  saccade run rotation --data data/panorama -c configs/rotation/events.yaml -o "
       "runs/rotation\n"
-      "  saccade run refine --data data/walls --from runs/walls -o runs/walls_refined");
+      "  saccade run refine --data data/walls --from runs/walls -o runs/walls_refined\n"
+      "  saccade run depth --reference > depth.md");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

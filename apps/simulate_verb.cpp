@@ -81,6 +81,7 @@ void add_simulate_verb(CLI::App& command) {
                  "Into the cache ($SACCADE_CACHE, see `saccade cache`) unless it is there; DATASET "
                  "becomes a link to it");
   add_config_options(*verb, options->common);
+  add_reference_option(*verb, "simulate");
   add_common_options(*verb, options->common);
   verb->footer(
       "Example:\n"

@@ -10,7 +10,7 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/sweep/sweep.h"
 #include "eval/sweep/sweep_config.h"
 
@@ -125,6 +125,7 @@ void add_sweep_verb(CLI::App& command) {
   verb->add_option("SWEEP", options->file, "Sweep file (YAML)")->required();
   verb->add_option("-o,--output", options->output, "Folder of the sweep")->type_name("DIR");
   add_sweep_options(*verb, *options);
+  add_reference_option(*verb, "sweep");
   verb->footer(
       "Examples:\n"
       "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples\n"

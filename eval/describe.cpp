@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/event_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"

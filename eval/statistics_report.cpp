@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/io/csv_file.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/number_text.h"
 #include "eval/picture/line_chart.h"
 #include "eval/store/text_grid.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/io/events_h5.h"
-#include "core/io/file_list.h"
-#include "core/io/image_file.h"
-#include "core/parallel.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/files/file_list.h"
+#include "core/io/images/image_file.h"
+#include "core/process/parallel.h"
 #include "core/srgb.h"
 
 namespace saccade {
@@ -44,7 +44,7 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
                              std::span<const StabilizedStretch> stretches) {
   std::filesystem::create_directories(folder);
   EventH5Writer events(folder / "events.h5", TimestampUnit::kNanoseconds);
-  StabilizedPlaces places;
+  StabilizedCoordinates places;
   std::vector<StabilizedWindow> windows;
   for (const StabilizedStretch& stretch : stretches) {
     Events batch;
@@ -59,7 +59,7 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
     windows.push_back(stretch.window);
   }
   events.close();
-  write_stabilized_places(folder / "places.h5", places);
+  write_stabilized_coordinates(folder / "places.h5", places);
   write_stabilized_windows(folder / "windows.csv", windows);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/panorama.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/mosaic/swept.h"
 #include "estimator/reconstruction/direction_finder.h"
 #include "estimator/reconstruction/pose_table.h"

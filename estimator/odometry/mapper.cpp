@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "estimator/depth/sweep_depth.h"
 #include "estimator/reconstruction/point_surface.h"
 

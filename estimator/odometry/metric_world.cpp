@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 #include "core/config/config.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 #include "core/median.h"
 #include "estimator/run/run_writer.h"
 

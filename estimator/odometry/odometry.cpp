@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/refinement/joint_poses.h"
 #include "estimator/tracking/pose_output.h"

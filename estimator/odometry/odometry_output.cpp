@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/io/keyframe_list.h"
-#include "core/io/view_list.h"
+#include "core/io/run/keyframe_list.h"
+#include "core/io/run/view_list.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/reconstruction/reconstruction_output.h"
 #include "estimator/tracking/pose_output.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 
 namespace saccade {
 

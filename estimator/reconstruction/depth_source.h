@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/io/dataset.h"
-#include "core/io/view_list.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/view_list.h"
 #include "core/trajectory.h"
 #include "estimator/reconstruction/place_finder.h"
 #include "estimator/reconstruction/plane_labels.h"

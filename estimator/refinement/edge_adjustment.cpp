@@ -11,7 +11,7 @@
 
 #include <ceres/ceres.h>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/refinement/adjustment_costs.h"
 #include "estimator/refinement/coarse_surface.h"
 #include "estimator/refinement/edge_fit.h"

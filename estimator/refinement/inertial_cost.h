@@ -8,7 +8,7 @@
 #include <ceres/cost_function.h>
 
 #include "core/rigid3.h"
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/imu/preintegration.h"
 
 namespace saccade {
@@ -34,9 +34,9 @@ struct InertialFrame {
 
 /// An instant of the path at which readings begin or end.
 struct InertialNode {
-  Rigid3 given;              ///< world_from_camera before the correction
-  Twist motion;              ///< of the camera, in its axes [unit/s, rad/s]
-  SplineKnots::Place place;  ///< in the correction
+  Rigid3 given;                   ///< world_from_camera before the correction
+  Twist motion;                   ///< of the camera, in its axes [unit/s, rad/s]
+  SplineKnots::LocalBasis place;  ///< in the correction
 };
 
 /// Readings between two instants of a path (Preintegration) against the path:

@@ -13,7 +13,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/refinement/edge_matches.h"
 #include "estimator/refinement/event_steps.h"
 #include "estimator/refinement/held_cost.h"
@@ -202,7 +202,7 @@ class Problem {
     observation.pixel = edge.pixel.cast<double>();
     observation.normal = edge.normal.cast<double>();
     const double sigma_px = std::max(options_.noise_px, residual_px);
-    const SplineKnots::Place place = correction_.knots().at(t_s);
+    const SplineKnots::LocalBasis place = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
         new PathEdgeCost(observation, event.polarity * step, undistorted_, place.weight, sigma_px),
         new ceres::CauchyLoss(options_.outlier), correction_.data(place.first),
@@ -222,7 +222,7 @@ class Problem {
     const Twist sigma = sigma_of_px(options_.known_sigma_px);
     for (const StampedPose& pose : known) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
-      const SplineKnots::Place place = correction_.knots().at(pose.t_s);
+      const SplineKnots::LocalBasis place = correction_.knots().at(pose.t_s);
       const Twist given = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
       problem_.AddResidualBlock(new KnownPoseCost(given, place.weight, sigma), nullptr,
                                 correction_.data(place.first), correction_.data(place.first + 1),
@@ -302,7 +302,7 @@ class Problem {
 
 Matrix6 JointResult::covariance_at(double t_s) const {
   if (covariance.size() == 0) return Matrix6::Zero();
-  const SplineKnots::Place place = knots.at(t_s);
+  const SplineKnots::LocalBasis place = knots.at(t_s);
   Eigen::Matrix<double, 6, 24> by_twists;
   for (Eigen::Index k = 0; k < 4; ++k)
     by_twists.middleCols<6>(6 * k) = place.weight[k] * Matrix6::Identity();

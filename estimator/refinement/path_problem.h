@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/cost_log.h"
 #include "estimator/refinement/seen_level.h"
 

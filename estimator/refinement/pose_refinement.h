@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/cost_log.h"
 #include "estimator/refinement/increment_images.h"
 #include "estimator/refinement/level_chains.h"

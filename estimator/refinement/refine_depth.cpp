@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/io/ply_file.h"
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "core/median.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"

@@ -11,7 +11,7 @@ Rigid3 corrected(const Rigid3& control, const double* correction) {
 }
 
 SeenLevel seen_level(const MapSurface& surface, const MapSurface::Hit& hit,
-                     const Eigen::Vector3d& ray, const SplineKnots::Place& time,
+                     const Eigen::Vector3d& ray, const SplineKnots::LocalBasis& time,
                      std::span<const Rigid3> controls, double const* const* corrections) {
   SeenLevel seen;
   std::array<Rigid3, 4> now;

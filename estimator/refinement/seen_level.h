@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/map_surface.h"
 
 namespace saccade {
@@ -23,7 +23,7 @@ struct SeenLevel {
 /// `controls` before their corrections, four of both; `hit` is the place that the pixel's `ray`
 /// meets; its plane holds for any correction.
 [[nodiscard]] SeenLevel seen_level(const MapSurface& surface, const MapSurface::Hit& hit,
-                                   const Eigen::Vector3d& ray, const SplineKnots::Place& time,
+                                   const Eigen::Vector3d& ray, const SplineKnots::LocalBasis& time,
                                    std::span<const Rigid3> controls,
                                    double const* const* corrections);
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/map_surface.h"
 
 namespace saccade {

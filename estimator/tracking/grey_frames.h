@@ -5,7 +5,7 @@
 
 #include "core/event.h"
 #include "core/image.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/srgb.h"
 
 namespace saccade {

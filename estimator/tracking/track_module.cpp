@@ -11,7 +11,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/median.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/frame_tracker.h"

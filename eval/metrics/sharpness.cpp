@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/camera.h"
-#include "core/io/event_file.h"
-#include "core/parallel.h"
+#include "core/io/events/event_file.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
@@ -30,7 +30,7 @@ std::pair<std::size_t, std::size_t> range_of(const Events& events, const Stabili
 StabilizedRun load_stabilized(const std::filesystem::path& folder) {
   StabilizedRun run;
   run.events = read_events(folder / "events.h5", {});
-  run.places = read_stabilized_places(folder / "places.h5", run.events.size());
+  run.places = read_stabilized_coordinates(folder / "places.h5", run.events.size());
   run.windows = read_stabilized_windows(folder / "windows.csv");
   return run;
 }

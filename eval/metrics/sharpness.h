@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/image.h"
-#include "core/io/dataset.h"
-#include "core/io/stabilized_events.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/stabilized_events.h"
 #include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
 
@@ -13,8 +13,8 @@ namespace saccade {
 /// What `saccade run stabilize` wrote, or any program in its layout: events.h5, places.h5 and
 /// windows.csv of one folder.
 struct StabilizedRun {
-  Events events;            ///< at the nearest pixel, in order of time
-  StabilizedPlaces places;  ///< of the same
+  Events events;                 ///< at the nearest pixel, in order of time
+  StabilizedCoordinates places;  ///< of the same
   std::vector<StabilizedWindow> windows;
 };
 

@@ -1,6 +1,6 @@
 #include "eval/picture/film.h"
 
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/picture/video.h"
 
 namespace saccade {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/picture/depth_picture.h"
 #include "eval/picture/film.h"
 #include "eval/picture/sheet.h"

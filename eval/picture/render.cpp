@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/metrics/scored_samples.h"
 #include "eval/picture/film.h"
 #include "eval/picture/mosaic_picture.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/io/event_file.h"
+#include "core/io/events/event_file.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/colour_bar.h"
 #include "eval/picture/event_picture.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/trajectory.h"
 #include "eval/picture/colour.h"
 #include "eval/picture/image_picture.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/number_text.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/film.h"

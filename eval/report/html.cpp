@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/io/image_file.h"
-#include "core/io/webp_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/images/webp_file.h"
 #include "eval/picture/canvas.h"
 
 namespace saccade {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/image_views.h"
 #include "eval/number_text.h"
 #include "eval/picture/canvas.h"

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/io/event_file.h"
-#include "core/shell.h"
+#include "core/io/events/event_file.h"
+#include "core/process/shell.h"
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"

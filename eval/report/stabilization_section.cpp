@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/file_list.h"
-#include "core/io/image_file.h"
+#include "core/io/files/file_list.h"
+#include "core/io/images/image_file.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/log_picture.h"

@@ -20,7 +20,7 @@ struct Draws {
 };
 
 // In the namespace of the type, where the templates of Fields find them. InputError at the node's
-// place for a distribution that cannot be drawn from.
+// location for a distribution that cannot be drawn from.
 void from_node(const config::Node& node, const std::string& name, Draws& draws);
 [[nodiscard]] config::Node to_node(const Draws& draws);
 

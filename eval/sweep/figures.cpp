@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/config/convert.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/picture/bar_chart.h"
 #include "eval/picture/line_chart.h"
 #include "eval/sweep/metric_info.h"

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "core/config/suggest.h"
-#include "core/io/atomic_file.h"
-#include "core/io/dataset_record.h"
-#include "core/progress.h"
+#include "core/io/dataset/dataset_record.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/run_folder.h"
 #include "eval/sweep/expected.h"

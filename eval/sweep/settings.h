@@ -31,7 +31,7 @@ using Grid = std::vector<GridAxis>;
 void make_paths_absolute(config::Node& value);
 
 // In the namespace of the types, where the templates of Fields find them. InputError at the node's
-// place for an axis without values or with one value twice.
+// location for an axis without values or with one value twice.
 void from_node(const config::Node& node, const std::string& name, Settings& settings);
 [[nodiscard]] config::Node to_node(const Settings& settings);
 void from_node(const config::Node& node, const std::string& name, Grid& grid);

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "core/io/labels_h5.h"
-#include "core/spline.h"
+#include "core/io/events/labels_h5.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/pixel_rays.h"
 #include "simulator/sensor/sensed_event.h"

@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/linear_signal.h"
 #include "simulator/sensor/object_motion.h"

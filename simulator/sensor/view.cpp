@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/image_motion.h"
 #include "simulator/sensor/object_motion.h"
 #include "simulator/sensor/tile_trace.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "tests/support/command.h"
 
 namespace saccade::testing {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/io/csv_reader.h"
+#include "core/io/tables/csv_reader.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

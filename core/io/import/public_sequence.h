@@ -9,7 +9,7 @@
 #include "core/image.h"
 #include "core/imu_sample.h"
 #include "core/io/calibration_file.h"
-#include "core/io/file_list.h"
+#include "core/io/files/file_list.h"
 #include "core/trajectory.h"
 
 namespace saccade {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/derotated_frame.h"
 #include "estimator/depth/edge_refiner.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/depth_mesh.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/reconstruction/level_system.h"
 #include "estimator/reconstruction/place_finder.h"
 #include "estimator/reconstruction/place_levels.h"

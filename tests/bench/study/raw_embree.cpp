@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/scene/mesh_import.h"
 #include "simulator/scene/placement.h"
 #include "simulator/sensor/pixel_rays.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/panorama_file.h"
-#include "core/io/run_record.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/images/panorama_file.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
 #include "eval/picture/render.h"
 #include "eval/report/report.h"

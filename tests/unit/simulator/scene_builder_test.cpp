@@ -4,7 +4,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/exr_file.h"
+#include "core/io/images/exr_file.h"
 #include "simulator/scene/placement.h"
 #include "tests/unit/simulator/mesh_files.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/report/keyframe_section.h"
 #include "tests/unit/eval/fake_folders.h"
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/number_text.h"
 #include "eval/sweep/metric_info.h"
 #include "tests/unit/eval/sweep/sweep_files.h"
