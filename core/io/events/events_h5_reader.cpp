@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "core/io/events/events_h5.h"
 #include "core/io/tables/h5_handle.h"
+#include "core/time_search.h"
 
 namespace saccade {
 namespace {
@@ -237,9 +239,7 @@ Range EventH5Reader::State::find(TimeWindow window) const {
       else
         high = middle;
     }
-    const std::vector<std::int64_t> times = read_times({low, high});
-    return low + static_cast<std::uint64_t>(std::lower_bound(times.begin(), times.end(), tick) -
-                                            times.begin());
+    return low + count_before(read_times({low, high}), tick, std::identity{});
   };
   constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
