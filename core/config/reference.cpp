@@ -62,8 +62,10 @@ class Explorer {
 
   /// Tries the choices of `base` that no run before has shown; `conditions` led to it.
   void explore_choices(const ReferenceRecord& base, const std::vector<std::string>& conditions) {
-    for (const ReferenceRecord::Choice& choice : base.choices) {
-      if (!explored_.insert(choice.name).second) continue;
+    std::vector<ReferenceRecord::Choice> choices;
+    for (const ReferenceRecord::Choice& choice : base.choices)
+      if (explored_.insert(choice.name).second) choices.push_back(choice);
+    for (const ReferenceRecord::Choice& choice : choices) {
       std::vector<ReferenceRecord> runs;
       for (std::size_t value = 0; value < choice.values.size(); ++value) {
         Held held = base.held;
