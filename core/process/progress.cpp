@@ -33,8 +33,8 @@ std::string clock_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-std::string bar(double share) {
-  const int filled = static_cast<int>(share * kBarWidth);
+std::string bar(double fraction) {
+  const int filled = static_cast<int>(fraction * kBarWidth);
   return "[" + std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(kBarWidth - filled), '.') + "] ";
 }
@@ -57,9 +57,9 @@ std::string progress_text(const ProgressState& state) {
                        clock_text(state.elapsed_s), speed);
   if (state.total == 0)
     return fmt::format("{}: {}{}, {}", state.label, with_prefix(done), state.unit, speed);
-  const double share = std::min(1.0, done / static_cast<double>(state.total));
+  const double fraction = std::min(1.0, done / static_cast<double>(state.total));
   std::string text = fmt::format("{}: {}{:3.0f} %, {}", state.label,
-                                 state.with_bar ? bar(share) : "", 100 * share, speed);
+                                 state.with_bar ? bar(fraction) : "", 100 * fraction, speed);
   if (rate > 0)
     text += fmt::format(", {} left",
                         clock_text(std::max(0.0, static_cast<double>(state.total) - done) / rate));

@@ -18,9 +18,9 @@ using Index = Eigen::Index;
 std::size_t size(Index i) { return static_cast<std::size_t>(i); }
 
 /// Interpolation through M poses in terms of the M + 1 increments between the control poses.
-/// Segment i must turn and move by what lies between poses i and i + 1, which involves increments
+/// Segment i must rotate and move by what lies between poses i and i + 1, which involves increments
 /// i, i + 1, i + 2; the first and the last increment follow from their neighbours by the natural
-/// ends. Increments longer than half a turn are allowed, so that a spline can swing beyond its
+/// ends. Increments longer than half a revolution are allowed, so that a spline can swing beyond its
 /// poses.
 class Interpolation {
  public:
@@ -55,8 +55,8 @@ class Interpolation {
     return increments;
   }
 
-  /// Newton's method from `increments` for the given turns; false when it gets stuck.
-  [[nodiscard]] bool solve_rotations(const std::vector<Eigen::Quaterniond>& turns,
+  /// Newton's method from `increments` for the given rotations; false when it gets stuck.
+  [[nodiscard]] bool solve_rotations(const std::vector<Eigen::Quaterniond>& rotations,
                                      Vectors& increments) const {
     constexpr int kMaxIterations = 60;
     constexpr double kTolerance = 1e-12;
@@ -65,15 +65,15 @@ class Interpolation {
       double worst = 0;
       double cost = 0;
       for (Index i = 0; i < segments_; ++i) {
-        const auto turn = rotation_over_segment(bases_[size(i)], columns(increments, i));
-        const Eigen::Vector3d residual = so3_log(turn.rotation.conjugate() * turns[size(i)]);
-        add<3>(system, i, turn.jacobian, residual);
+        const auto segment = rotation_over_segment(bases_[size(i)], columns(increments, i));
+        const Eigen::Vector3d residual = so3_log(segment.rotation.conjugate() * rotations[size(i)]);
+        add<3>(system, i, segment.jacobian, residual);
         worst = std::max(worst, residual.norm());
         cost += residual.squaredNorm();
       }
       if (worst < kTolerance) return true;
       const auto step = system.solve();
-      if (!step || !descend(turns, cost, *step, increments)) return false;
+      if (!step || !descend(rotations, cost, *step, increments)) return false;
     }
     return false;
   }
@@ -115,7 +115,7 @@ class Interpolation {
   }
 
   /// Goes along `step` as far as the squared error falls; false when it does not.
-  [[nodiscard]] bool descend(const std::vector<Eigen::Quaterniond>& turns, double cost,
+  [[nodiscard]] bool descend(const std::vector<Eigen::Quaterniond>& rotations, double cost,
                              const Eigen::MatrixXd& step, Vectors& increments) const {
     for (double length = 1; length > 1e-3; length /= 2) {
       Vectors candidate = increments;
@@ -125,8 +125,8 @@ class Interpolation {
       close_ends(candidate);
       double candidate_cost = 0;
       for (Index i = 0; i < segments_; ++i) {
-        const auto turn = rotation_over_segment(bases_[size(i)], columns(candidate, i));
-        candidate_cost += so3_log(turn.rotation.conjugate() * turns[size(i)]).squaredNorm();
+        const auto segment = rotation_over_segment(bases_[size(i)], columns(candidate, i));
+        candidate_cost += so3_log(segment.rotation.conjugate() * rotations[size(i)]).squaredNorm();
       }
       if (candidate_cost < cost) {
         increments = std::move(candidate);
@@ -149,35 +149,35 @@ std::vector<Eigen::Quaterniond> exponentials(const Vectors& rotation_vectors, do
   return result;
 }
 
-[[noreturn]] void fail_rotations(const Vectors& turns) {
+[[noreturn]] void fail_rotations(const Vectors& rotations) {
   double largest = 0;
-  for (const Eigen::Vector3d& w : turns) largest = std::max(largest, w.norm());
+  for (const Eigen::Vector3d& w : rotations) largest = std::max(largest, w.norm());
   throw InputError({}, fmt::format("no spline was found through these rotations (consecutive ones "
                                    "are up to {:.0f} degrees apart); give poses closer together",
                                    largest * 180 / std::numbers::pi));
 }
 
-/// Increments between control rotations for the given turns (rotation vectors) between poses. The
+/// Increments between control rotations for the given rotation vectors between poses. The
 /// linear solution is exact for rotation about one axis and a good start otherwise; where Newton's
-/// method gets stuck from there, the turns grow from nothing to their size in steps that it can
+/// method gets stuck from there, the rotations grow from nothing to their size in steps that it can
 /// take.
-Vectors solve_rotations(const Interpolation& interpolation, const Vectors& turns) {
+Vectors solve_rotations(const Interpolation& interpolation, const Vectors& rotations) {
   constexpr double kLargestStep = 0.04;
   constexpr double kSmallestStep = 1e-3;
-  Vectors increments = interpolation.solve_linear(turns);
-  if (interpolation.solve_rotations(exponentials(turns, 1), increments)) return increments;
+  Vectors increments = interpolation.solve_linear(rotations);
+  if (interpolation.solve_rotations(exponentials(rotations, 1), increments)) return increments;
 
   for (Eigen::Vector3d& w : increments) w.setZero();
   double step = kLargestStep;
   for (double reached = 0; reached < 1;) {
     const double scale = std::min(1.0, reached + step);
     Vectors candidate = increments;
-    if (interpolation.solve_rotations(exponentials(turns, scale), candidate)) {
+    if (interpolation.solve_rotations(exponentials(rotations, scale), candidate)) {
       increments = std::move(candidate);
       reached = scale;
       step = std::min(kLargestStep, 2 * step);
     } else if ((step /= 2) < kSmallestStep) {
-      fail_rotations(turns);
+      fail_rotations(rotations);
     }
   }
   return increments;
@@ -188,7 +188,7 @@ Vectors solve_rotations(const Interpolation& interpolation, const Vectors& turns
 Spline Spline::interpolate(std::span<const StampedPose> poses) {
   SACCADE_CHECK(poses.size() >= 2);
   std::vector<double> times;
-  Vectors steps, turns;
+  Vectors steps, rotations;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     times.push_back(poses[i].t_s);
     if (i == 0) continue;
@@ -196,11 +196,11 @@ Spline Spline::interpolate(std::span<const StampedPose> poses) {
     const Rigid3& a = poses[i - 1].world_from_camera;
     const Rigid3& b = poses[i].world_from_camera;
     steps.push_back(b.translation() - a.translation());
-    turns.push_back(so3_log(a.rotation().conjugate() * b.rotation()));
+    rotations.push_back(so3_log(a.rotation().conjugate() * b.rotation()));
   }
   const Interpolation interpolation(times);
   const Vectors position_steps = interpolation.solve_linear(steps);
-  const Vectors increments = solve_rotations(interpolation, turns);
+  const Vectors increments = solve_rotations(interpolation, rotations);
 
   // Control pose 0 of each segment is placed by the segment's own first pose, so that nothing
   // drifts.
@@ -212,10 +212,11 @@ Spline Spline::interpolate(std::span<const StampedPose> poses) {
     const Eigen::Vector3d start = basis.value(0).head<3>().matrix();
     const Eigen::Matrix3d s = Interpolation::columns(position_steps, i);
     const Eigen::Matrix3d w = Interpolation::columns(increments, i);
-    const Eigen::Quaterniond turned = so3_exp(start[0] * w.col(0)) * so3_exp(start[1] * w.col(1));
+    const Eigen::Quaterniond first_rotation =
+        so3_exp(start[0] * w.col(0)) * so3_exp(start[1] * w.col(1));
     segments.emplace_back(times[size(i)], times[size(i) + 1] - times[size(i)], basis,
                           pose.translation() - s * start, s,
-                          (pose.rotation() * turned.conjugate()).normalized(), w);
+                          (pose.rotation() * first_rotation.conjugate()).normalized(), w);
   }
   return {std::move(segments), times.front(), times.back()};
 }

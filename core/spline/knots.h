@@ -13,8 +13,8 @@
 
 namespace saccade {
 
-/// Evenly spaced knots of a cubic B-spline: segment i, of `spacing_s`, is ruled by the controls i
-/// .. i + 3 of segments + 3.
+/// Evenly spaced knots of a cubic B-spline. Segment i, `spacing_s` long, depends on the controls
+/// i .. i + 3; there are segments + 3 controls.
 struct SplineKnots {
   double start_s = 0;
   double spacing_s = 1;  ///< > 0
@@ -30,7 +30,7 @@ struct SplineKnots {
     return start_s + (static_cast<double>(control) - 1) * spacing_s;
   }
 
-  /// What rules an instant.
+  /// The basis functions that are not zero at an instant, and their controls.
   struct LocalBasis {
     std::size_t first = 0;   ///< of the four controls
     Eigen::Array4d basis;    ///< cumulative: B_1 .. B_3 and a zero

@@ -29,7 +29,7 @@ struct RotationWithJacobian {
     const Eigen::Array4d& basis_value, const std::array<Eigen::Quaterniond, 4>& controls);
 
 /// Difference of the two increments between three control rotations and its derivative by their
-/// right perturbations (3x9): zero on even rotation.
+/// right perturbations (3x9): zero at constant angular velocity.
 struct RotationSecondDifference {
   Eigen::Vector3d value;
   Eigen::Matrix<double, 3, 9> jacobian;

@@ -15,9 +15,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Weight of evenness (second differences of the control poses) against one sample per segment. It
+/// Weight of smoothness (second differences of the control poses) against one sample per segment. It
 /// decides where samples are missing and is far below any measurement elsewhere.
-constexpr double kEvenness = 1e-6;
+constexpr double kSmoothness = 1e-6;
 
 /// Least squares over uniform knots: samples at (segment, u), control poses 0 .. segments + 2.
 class Smoothing {
@@ -28,8 +28,8 @@ class Smoothing {
         basis_(bases_between(std::vector<double>{0, 1}).front()),
         start_s_(poses.front().t_s),
         spacing_s_((poses.back().t_s - start_s_) / static_cast<double>(segments)),
-        evenness_(kEvenness * std::max(1.0, static_cast<double>(poses.size()) /
-                                                static_cast<double>(segments))) {}
+        smoothness_(kSmoothness * std::max(1.0, static_cast<double>(poses.size()) /
+                                                    static_cast<double>(segments))) {}
 
   [[nodiscard]] std::vector<Rigid3> solve() const {
     const Eigen::MatrixXd positions = solve_positions();
@@ -66,7 +66,7 @@ class Smoothing {
       system.add(segment, weights, target);
     });
     const Eigen::RowVector3d second_difference =
-        std::sqrt(evenness_) * Eigen::RowVector3d(1, -2, 1);
+        std::sqrt(smoothness_) * Eigen::RowVector3d(1, -2, 1);
     for (Index k = 0; k + 2 < controls_count(); ++k) {
       system.add(k, second_difference, Eigen::RowVector3d::Zero());
     }
@@ -96,11 +96,11 @@ class Smoothing {
       if (!step || !step->allFinite()) break;
       const double reach = step->cwiseAbs().maxCoeff();
       length = std::min(1.0, 2 * length);
-      Rotations candidate = turned(controls, length * *step);
+      Rotations candidate = rotated(controls, length * *step);
       Linearised there = linearised(candidate);
       while (there.cost > at.cost && length * reach > kStepTolerance) {
         length /= 2;
-        candidate = turned(controls, length * *step);
+        candidate = rotated(controls, length * *step);
         there = linearised(candidate);
       }
       const bool done =
@@ -115,10 +115,10 @@ class Smoothing {
                         spacing_s_));
   }
 
-  [[nodiscard]] static Rotations turned(Rotations controls, const Eigen::MatrixXd& step) {
+  [[nodiscard]] static Rotations rotated(Rotations controls, const Eigen::MatrixXd& step) {
     for (std::size_t k = 0; k < controls.size(); ++k) {
-      const Eigen::Vector3d turn = step.middleRows<3>(3 * static_cast<Index>(k));
-      controls[k] = (controls[k] * so3_exp(turn)).normalized();
+      const Eigen::Vector3d rotation_vector = step.middleRows<3>(3 * static_cast<Index>(k));
+      controls[k] = (controls[k] * so3_exp(rotation_vector)).normalized();
     }
     return controls;
   }
@@ -144,12 +144,12 @@ class Smoothing {
       result.system.add(3 * segment, at.jacobian, residual);
       result.cost += residual.squaredNorm();
     });
-    const double weight = std::sqrt(evenness_);
+    const double weight = std::sqrt(smoothness_);
     for (std::size_t k = 0; k + 2 < controls.size(); ++k) {
       const RotationSecondDifference u =
           rotation_second_difference(controls[k], controls[k + 1], controls[k + 2]);
       result.system.add(3 * static_cast<Index>(k), weight * u.jacobian, -weight * u.value);
-      result.cost += evenness_ * u.value.squaredNorm();
+      result.cost += smoothness_ * u.value.squaredNorm();
     }
     return result;
   }
@@ -159,7 +159,7 @@ class Smoothing {
   CumulativeBasis basis_;
   double start_s_;
   double spacing_s_;
-  double evenness_;
+  double smoothness_;
 };
 
 }  // namespace

@@ -35,12 +35,12 @@ class Spline {
   /// Passes through every pose at its time (to 1e-6 m and 1e-6 rad); knots at the poses' times,
   /// natural ends (no acceleration there). At least 2 poses, times strictly increasing. Consecutive
   /// rotations may be 150 degrees apart and more about changing axes where times are evenly spaced;
-  /// throws InputError where no spline through them is found (large turns within very uneven
+  /// throws InputError where no spline through them is found (large rotations within very uneven
   /// times).
   [[nodiscard]] static Spline interpolate(std::span<const StampedPose> poses);
 
   /// Least-squares fit with uniform knots `knot_spacing_s` apart (rounded so that whole segments
-  /// fill the poses' span), for recorded motion. Where poses are missing the motion goes on evenly.
+  /// fill the poses' span), for recorded motion. Where poses are missing the motion is extrapolated at constant velocity.
   /// At least 2 poses, times strictly increasing. Throws InputError if the rotations do not
   /// converge.
   [[nodiscard]] static Spline smooth(std::span<const StampedPose> poses, double knot_spacing_s);

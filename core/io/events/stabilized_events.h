@@ -27,7 +27,7 @@ void write_stabilized_coordinates(const std::filesystem::path& file,
 [[nodiscard]] StabilizedCoordinates read_stabilized_coordinates(const std::filesystem::path& file,
                                                                 std::uint64_t count);
 
-/// A stretch of events that were turned to one orientation: a row of windows.csv.
+/// Consecutive events that were rotated to one orientation: a row of windows.csv.
 struct StabilizedWindow {
   double start_s = 0;
   double end_s = 0;  ///< of the events in [start, end)

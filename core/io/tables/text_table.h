@@ -71,7 +71,7 @@ class TextRow {
     std::uint32_t digits = 0;  ///< 0: no unsigned number of 1..7 digits, or one too near to the end
     std::uint32_t value = 0;
   };
-  /// Without a branch per digit, which the processor cannot foresee in coordinates: the eight bytes
+  /// Without a branch per digit, which the processor cannot predict in coordinates: the eight bytes
   /// are handled at once, the digits moved to the top and their values combined pairwise.
   [[nodiscard]] ShortNumber short_number() const {
     if (readable_end_ - rest_ < 8) return {};

@@ -87,7 +87,7 @@ TEST(SplineRotation, RotationBetweenControlsHasItsDerivative) {
   testing::expect_jacobian<3, 12>(at.jacobian, change, Vector<12>::Zero());
 }
 
-TEST(SplineRotation, UnevennessHasItsDerivativeAndVanishesOnEvenRotation) {
+TEST(SplineRotation, SecondDifferenceHasItsDerivativeAndVanishesAtConstantVelocity) {
   const auto controls = some_rotations();
   const auto value = [](const Vector<9>& d) -> Vector3d {
     const auto moved = perturbed((Vector<12>() << d, 0, 0, 0).finished());
