@@ -21,13 +21,9 @@ constexpr const char* kInputsFile = "inputs.yaml";
 /// Stands beside the content while that is being given its name, with the hash of its marker.
 constexpr const char* kCompleteFile = "complete";
 
-/// What inputs.yaml holds.
-struct Inputs {
-  Fingerprint inputs;
-};
-
-void describe(config::Fields& fields, Inputs& inputs) {
-  fields.value("inputs", inputs.inputs, "what the unfinished work depends on");
+/// The contents of inputs.yaml.
+void describe_inputs(config::Fields& fields, Fingerprint& inputs) {
+  fields.value("inputs", inputs, "What the unfinished work depends on.");
 }
 
 void create_folder(const fs::path& folder) {
@@ -107,8 +103,10 @@ ResumableFolder::~ResumableFolder() {
 void ResumableFolder::take_up_leftovers() {
   if (!fs::exists(workplace_ / kInputsFile)) return clear();  // new, or not even begun
   try {
-    const auto before = config::read<Inputs>(config::load(workplace_ / kInputsFile));
-    refusal_ = difference(before.inputs, fingerprint_);
+    Fingerprint before;
+    config::Session::read(config::load(workplace_ / kInputsFile),
+                          [&](config::Fields& fields) { describe_inputs(fields, before); }, {});
+    refusal_ = difference(before, fingerprint_);
   } catch (const InputError&) {
     refusal_ = "its list of inputs is damaged";
   }
@@ -136,7 +134,9 @@ void ResumableFolder::clear() {
     fs::remove_all(old);
     create_folder(old);
   }
-  write_atomically(workplace_ / kInputsFile, config::print(Inputs{fingerprint_}));
+  write_atomically(workplace_ / kInputsFile,
+                   config::to_yaml(config::Session::write(
+                       [&](config::Fields& fields) { describe_inputs(fields, fingerprint_); })));
 }
 
 void ResumableFolder::start_clean(const std::string& why) {

@@ -7,14 +7,6 @@
 #include "core/io/files/atomic_file.h"
 
 namespace saccade {
-namespace {
-
-struct KeyframeList {
-  int format_version = 1;
-  std::vector<KeyframeEntry> keyframes;
-};
-
-}  // namespace
 
 void describe(config::Fields& fields, KeyframeEntry& keyframe) {
   fields.value("t_s", keyframe.t_s, "time of its view").required();
@@ -31,15 +23,16 @@ void describe(config::Fields& fields, KeyframeEntry& keyframe) {
 
 namespace {
 
-void describe(config::Fields& fields, KeyframeList& list) {
-  fields.value("format_version", list.format_version, "layout of this file").required().range(1, 1);
-  fields.list("keyframes", list.keyframes, "in order of time").required();
-  for (std::size_t i = 1; i < list.keyframes.size(); ++i)
-    fields.expect(list.keyframes[i - 1].t_s < list.keyframes[i].t_s, "keyframes",
+void describe_keyframes(config::Fields& fields, std::vector<KeyframeEntry>& keyframes) {
+  int format_version = 1;
+  fields.value("format_version", format_version, "layout of this file").required().range(1, 1);
+  fields.list("keyframes", keyframes, "in order of time").required();
+  for (std::size_t i = 1; i < keyframes.size(); ++i)
+    fields.expect(keyframes[i - 1].t_s < keyframes[i].t_s, "keyframes",
                   fmt::format("must be in order of time: {} s stands before {} s",
-                              list.keyframes[i - 1].t_s, list.keyframes[i].t_s));
-  const auto count = static_cast<std::int64_t>(list.keyframes.size());
-  for (const KeyframeEntry& keyframe : list.keyframes)
+                              keyframes[i - 1].t_s, keyframes[i].t_s));
+  const auto count = static_cast<std::int64_t>(keyframes.size());
+  for (const KeyframeEntry& keyframe : keyframes)
     for (const std::int64_t i : keyframe.active)
       fields.expect(i >= 0 && i < count, "keyframes",
                     fmt::format("active keyframe {} is not among the {} in the list", i, count));
@@ -48,14 +41,17 @@ void describe(config::Fields& fields, KeyframeList& list) {
 }  // namespace
 
 std::vector<KeyframeEntry> read_keyframe_list(const std::filesystem::path& file) {
-  return config::read<KeyframeList>(config::load(file)).keyframes;
+  std::vector<KeyframeEntry> keyframes;
+  config::Session::read(config::load(file),
+                        [&](config::Fields& fields) { describe_keyframes(fields, keyframes); }, {});
+  return keyframes;
 }
 
 void write_keyframe_list(const std::filesystem::path& file,
                          std::span<const KeyframeEntry> keyframes) {
-  KeyframeList list;
-  list.keyframes.assign(keyframes.begin(), keyframes.end());
-  write_atomically(file, config::print(list));
+  std::vector<KeyframeEntry> list(keyframes.begin(), keyframes.end());
+  write_atomically(file, config::to_yaml(config::Session::write(
+                             [&](config::Fields& fields) { describe_keyframes(fields, list); })));
 }
 
 }  // namespace saccade

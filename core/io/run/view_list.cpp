@@ -10,11 +10,6 @@
 namespace saccade {
 namespace {
 
-struct ViewList {
-  int format_version = 1;
-  std::vector<RunView> views;
-};
-
 std::filesystem::path relative_to(const std::filesystem::path& file,
                                   const std::filesystem::path& folder) {
   return file.empty() ? file : file.lexically_proximate(folder);
@@ -48,34 +43,37 @@ void describe(config::Fields& fields, RunView& view) {
 
 namespace {
 
-void describe(config::Fields& fields, ViewList& list) {
-  fields.value("format_version", list.format_version, "layout of this file").required().range(1, 1);
-  fields.list("views", list.views, "in order of time").required();
-  for (std::size_t i = 1; i < list.views.size(); ++i)
-    fields.expect(list.views[i - 1].t_s < list.views[i].t_s, "views",
-                  fmt::format("must be in order of time: {} s stands before {} s",
-                              list.views[i - 1].t_s, list.views[i].t_s));
+void describe_views(config::Fields& fields, std::vector<RunView>& views) {
+  int format_version = 1;
+  fields.value("format_version", format_version, "layout of this file").required().range(1, 1);
+  fields.list("views", views, "in order of time").required();
+  for (std::size_t i = 1; i < views.size(); ++i)
+    fields.expect(views[i - 1].t_s < views[i].t_s, "views",
+                  fmt::format("must be in order of time: {} s stands before {} s", views[i - 1].t_s,
+                              views[i].t_s));
 }
 
 }  // namespace
 
 std::vector<RunView> read_view_list(const std::filesystem::path& file) {
-  ViewList list = config::read<ViewList>(config::load(file));
+  std::vector<RunView> views;
+  config::Session::read(config::load(file),
+                        [&](config::Fields& fields) { describe_views(fields, views); }, {});
   const std::filesystem::path folder = file.parent_path();
-  for (RunView& view : list.views)
+  for (RunView& view : views)
     for (auto* path : {&view.depth, &view.keypoints, &view.gradient, &view.image})
       *path = below(folder, *path);
-  return list.views;
+  return views;
 }
 
 void write_view_list(const std::filesystem::path& file, std::span<const RunView> views) {
-  ViewList list;
-  list.views.assign(views.begin(), views.end());
+  std::vector<RunView> list(views.begin(), views.end());
   const std::filesystem::path folder = file.parent_path();
-  for (RunView& view : list.views)
+  for (RunView& view : list)
     for (auto* path : {&view.depth, &view.keypoints, &view.gradient, &view.image})
       *path = relative_to(*path, folder);
-  write_atomically(file, config::print(list));
+  write_atomically(file, config::to_yaml(config::Session::write(
+                             [&](config::Fields& fields) { describe_views(fields, list); })));
 }
 
 }  // namespace saccade
