@@ -20,9 +20,13 @@ bool is_within(std::string_view name, std::string_view section) {
                                        name[section.size()] == '.' || name[section.size()] == '[');
 }
 
-template <class Key>
-auto find_key(std::vector<Key>& keys, const std::string& name) {
-  return std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
+template <class List>
+auto find_key(List& keys, const std::string& name) {
+  return std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return key.name == name; });
+}
+
+bool holds_key(const Keys& keys, const std::string& name) {
+  return find_key(keys, name) != keys.end();
 }
 
 /// "`method: rays` or `sweep`", "`views`", "no `views`".
@@ -72,8 +76,9 @@ class Explorer {
         held[choice.name] = value;
         runs.push_back(described(held));
       }
+      const Keys before = keys_;
       for (const ReferenceRecord& run : runs) add_new(run.keys, conditions);
-      add_conditions(choice, runs);
+      add_conditions(choice, runs, base.keys, before);
       for (std::size_t value = 0; value < runs.size(); ++value) {
         std::vector<std::string> longer = conditions;
         if (choice.name.back() != kFormMark) longer.push_back(condition_text(choice, {value}));
@@ -99,14 +104,22 @@ class Explorer {
     keys_.insert(keys_.end(), added.begin(), added.end());
   }
 
-  /// A key that some values of the choice know and others do not gets this as a condition.
-  void add_conditions(const ReferenceRecord::Choice& choice, std::vector<ReferenceRecord>& runs) {
+  /// A key that some values of the choice know and others do not gets this as a condition; as an
+  /// alternative where another choice has led to it `before`.
+  void add_conditions(const ReferenceRecord::Choice& choice,
+                      const std::vector<ReferenceRecord>& runs, const Keys& base,
+                      const Keys& before) {
     for (ReferenceKey& key : keys_) {
       std::vector<std::size_t> values;
       for (std::size_t value = 0; value < runs.size(); ++value)
-        if (find_key(runs[value].keys, key.name) != runs[value].keys.end()) values.push_back(value);
+        if (holds_key(runs[value].keys, key.name)) values.push_back(value);
       if (values.empty() || values.size() == runs.size() || takes_any_form(key.name)) continue;
-      key.conditions.push_back(condition_text(choice, values));
+      const std::string condition = condition_text(choice, values);
+      if (!holds_key(before, key.name) || holds_key(base, key.name)) {
+        key.conditions.push_back(condition);
+      } else if (!key.conditions.empty()) {
+        key.conditions.back() += " or " + condition;
+      }
     }
   }
 

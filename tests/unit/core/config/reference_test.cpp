@@ -22,6 +22,7 @@ struct Nested {
   double sigma_px = 1;
   double scale = 1;
   double window_s = 0.1;
+  double rank = 0.5;
   std::vector<double> scales{1, 1};
 };
 
@@ -38,6 +39,8 @@ void describe(Fields& fields, Nested& nested) {
         "A kernel.");
   }
   if (nested.method != "mean") fields.value("window_s", nested.window_s, "The window.");
+  if (nested.method == "median" || (nested.method == "kernel" && nested.weighted))
+    fields.value("rank", nested.rank, "The rank.").range(0, 1);
   if (fields.form("scale") == Form::kList) {
     fields.value("scale", nested.scales, "The scale.").above(0);
   } else {
@@ -58,11 +61,13 @@ const ReferenceKey& key_of(const std::vector<ReferenceKey>& keys, const std::str
 TEST(Reference, ListsTheKeysOfChoicesThatAreNotTaken) {
   const auto keys = reference<Nested>();
   EXPECT_THAT(names_of(keys), ElementsAre("method", "kernel", "kernel.weighted", "kernel.sigma_px",
-                                          "window_s", "scale"));
+                                          "window_s", "rank", "scale"));
   EXPECT_THAT(key_of(keys, "kernel").conditions, ElementsAre("`method: kernel`"));
   EXPECT_THAT(key_of(keys, "kernel.sigma_px").conditions,
               ElementsAre("`method: kernel`", "`kernel.weighted: true`"));
   EXPECT_THAT(key_of(keys, "window_s").conditions, ElementsAre("`method: median` or `kernel`"));
+  EXPECT_THAT(key_of(keys, "rank").conditions,
+              ElementsAre("`method: median` or `kernel.weighted: true`"));
   EXPECT_THAT(key_of(keys, "scale").conditions, IsEmpty());
 }
 
