@@ -25,7 +25,8 @@ auto find_key(List& keys, const std::string& name) {
   return std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return key.name == name; });
 }
 
-bool holds_key(const Keys& keys, const std::string& name) {
+template <class List>
+bool holds_key(const List& keys, const std::string& name) {
   return find_key(keys, name) != keys.end();
 }
 
@@ -49,7 +50,8 @@ class Explorer {
   Keys explore() {
     const ReferenceRecord base = described({});
     keys_ = base.keys;
-    explore_choices(base, {});
+    for (const ReferenceRecord::Choice& choice : base.choices) conditions_[choice.name] = {};
+    explore_choices(base);
     return std::move(keys_);
   }
 
@@ -64,8 +66,8 @@ class Explorer {
     return record;
   }
 
-  /// Tries the choices of `base` that no run before has shown; `conditions` led to it.
-  void explore_choices(const ReferenceRecord& base, const std::vector<std::string>& conditions) {
+  /// Tries the choices of `base` that no run before has shown.
+  void explore_choices(const ReferenceRecord& base) {
     std::vector<ReferenceRecord::Choice> choices;
     for (const ReferenceRecord::Choice& choice : base.choices)
       if (explored_.insert(choice.name).second) choices.push_back(choice);
@@ -77,12 +79,25 @@ class Explorer {
         runs.push_back(described(held));
       }
       const Keys before = keys_;
-      for (const ReferenceRecord& run : runs) add_new(run.keys, conditions);
+      for (const ReferenceRecord& run : runs) add_new(run.keys, conditions_[choice.name]);
       add_conditions(choice, runs, base.keys, before);
-      for (std::size_t value = 0; value < runs.size(); ++value) {
-        std::vector<std::string> longer = conditions;
-        if (choice.name.back() != kFormMark) longer.push_back(condition_text(choice, {value}));
-        explore_choices(runs[value], longer);
+      find_choices(choice, runs);
+      for (const ReferenceRecord& run : runs) explore_choices(run);
+    }
+  }
+
+  /// The conditions of the choices that only some values of `choice` lead to.
+  void find_choices(const ReferenceRecord::Choice& choice,
+                    const std::vector<ReferenceRecord>& runs) {
+    for (const ReferenceRecord& run : runs) {
+      for (const ReferenceRecord::Choice& found : run.choices) {
+        if (conditions_.contains(found.name)) continue;
+        std::vector<std::size_t> values;
+        for (std::size_t value = 0; value < runs.size(); ++value)
+          if (holds_key(runs[value].choices, found.name)) values.push_back(value);
+        std::vector<std::string> conditions = conditions_[choice.name];
+        if (choice.name.back() != kFormMark) conditions.push_back(condition_text(choice, values));
+        conditions_[found.name] = std::move(conditions);
       }
     }
   }
@@ -132,6 +147,7 @@ class Explorer {
   const std::function<void(ReferenceRecord&)>& describe_;
   Keys keys_;
   std::set<std::string> explored_;
+  std::map<std::string, std::vector<std::string>> conditions_;  ///< of each choice
   std::set<std::string> of_any_form_;
 };
 
