@@ -160,7 +160,7 @@ template <class T>
 Rule Fields::value(std::string_view key, T& target, std::string_view help) {
   const Node* node = declare(key);
   if (node != nullptr) from_node(*node, name_of(key), target);
-  if (mode_ == Mode::kReference) record(key, TypeName<T>::text(), to_node(target), help);
+  if (mode_ == Mode::kReference) record(key, type_name(&target), to_node(target), help);
   if constexpr (std::is_same_v<T, bool>) target = explored(key, target);
   if (writing()) node = put(key, to_node(target), help);
   if (mode_ == Mode::kCheck) {

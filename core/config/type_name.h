@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,52 +16,63 @@
 
 namespace saccade::config {
 
-/// What the reference calls the values of a T: "number", "list of 3 numbers". A type with a
-/// from_node() of its own is a "map" unless it specialises this.
+// What the reference calls the values of a T: "number", "list of 3 numbers"; "map" where T has a
+// from_node() of its own. The argument names the type alone.
 template <class T>
-struct TypeName {
-  static std::string text() {
-    if constexpr (std::same_as<T, bool>) return "true or false";
-    if constexpr (std::same_as<T, std::uint64_t>) return "whole number from 0";
-    if constexpr (std::is_integral_v<T>) return "whole number";
-    if constexpr (std::is_floating_point_v<T>) return "number";
-    if constexpr (std::same_as<T, std::string>) return "text";
-    if constexpr (std::same_as<T, std::filesystem::path>) return "path";
-    if constexpr (std::same_as<T, Rigid3>) return "4 rows of 4 numbers";
-    return "map";
-  }
-};
+[[nodiscard]] std::string type_name(const T*);
+template <class T>
+[[nodiscard]] std::string type_name(const std::optional<T>*);
+template <class T>
+[[nodiscard]] std::string type_name(const std::vector<T>*);
+template <class T>
+[[nodiscard]] std::string type_name(const std::map<std::string, T>*);
+template <class T, std::size_t N>
+[[nodiscard]] std::string type_name(const std::array<T, N>*);
+template <class T, int N>
+[[nodiscard]] std::string type_name(const Eigen::Matrix<T, N, 1>*);
 
-/// What the values of a T are called: "numbers".
-inline std::string plural(const std::string& type) {
+/// "numbers" of "number".
+[[nodiscard]] inline std::string plural(const std::string& type) {
   if (type.starts_with("list of ")) return "lists of " + type.substr(8);
   if (type.starts_with("whole number")) return "whole numbers" + type.substr(12);
-  return type == "text" ? "texts" : type + "s";
+  return type + "s";
 }
 
 template <class T>
-struct TypeName<std::optional<T>> {
-  static std::string text() { return TypeName<T>::text() + " or ~"; }
-};
+std::string type_name(const T*) {
+  if constexpr (std::same_as<T, bool>) return "true or false";
+  if constexpr (std::same_as<T, std::uint64_t>) return "whole number from 0";
+  if constexpr (std::is_integral_v<T>) return "whole number";
+  if constexpr (std::is_floating_point_v<T>) return "number";
+  if constexpr (std::same_as<T, std::string>) return "text";
+  if constexpr (std::same_as<T, std::filesystem::path>) return "path";
+  if constexpr (std::same_as<T, Rigid3>) return "4 rows of 4 numbers";
+  return "map";
+}
+
 template <class T>
-struct TypeName<std::vector<T>> {
-  static std::string text() { return "list of " + plural(TypeName<T>::text()); }
-};
+std::string type_name(const std::optional<T>*) {
+  return type_name(static_cast<const T*>(nullptr)) + " or ~";
+}
+
 template <class T>
-struct TypeName<std::map<std::string, T>> {
-  static std::string text() { return "map of " + plural(TypeName<T>::text()); }
-};
+std::string type_name(const std::vector<T>*) {
+  return "list of " + plural(type_name(static_cast<const T*>(nullptr)));
+}
+
+template <class T>
+std::string type_name(const std::map<std::string, T>*) {
+  return "map of " + plural(type_name(static_cast<const T*>(nullptr)));
+}
+
 template <class T, std::size_t N>
-struct TypeName<std::array<T, N>> {
-  static std::string text() {
-    return "list of " + std::to_string(N) + " " + plural(TypeName<T>::text());
-  }
-};
+std::string type_name(const std::array<T, N>*) {
+  return "list of " + std::to_string(N) + " " + plural(type_name(static_cast<const T*>(nullptr)));
+}
+
 template <class T, int N>
-struct TypeName<Eigen::Matrix<T, N, 1>> {
-  static std::string text() {
-    return "list of " + std::to_string(N) + " " + plural(TypeName<T>::text());
-  }
-};
+std::string type_name(const Eigen::Matrix<T, N, 1>*) {
+  return "list of " + std::to_string(N) + " " + plural(type_name(static_cast<const T*>(nullptr)));
+}
 
 }  // namespace saccade::config
