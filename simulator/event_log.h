@@ -12,7 +12,7 @@
 
 #include "core/io/block_journal.h"
 #include "simulator/sensor/event_tile.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 

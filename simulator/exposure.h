@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/spline.h"
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 
 namespace saccade {
 

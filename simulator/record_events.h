@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulator/sensor/event_camera.h"
-#include "simulator/take.h"
+#include "simulator/camera_recording.h"
 
 namespace saccade {
 

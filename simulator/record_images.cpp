@@ -10,7 +10,7 @@
 #include "core/progress.h"
 #include "simulator/exposure.h"
 #include "simulator/sensor/sample_times.h"
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 
 namespace saccade {
 namespace {

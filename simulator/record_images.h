@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulator/take.h"
+#include "simulator/camera_recording.h"
 
 namespace saccade {
 

@@ -13,7 +13,7 @@
 #include "simulator/record_images.h"
 #include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
-#include "simulator/unfinished.h"
+#include "simulator/resume.h"
 
 namespace saccade {
 namespace {

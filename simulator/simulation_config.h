@@ -13,7 +13,7 @@
 #include "simulator/motion/motion_options.h"
 #include "simulator/scene/scene_options.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/imu.h"
+#include "simulator/sensor/imu/imu.h"
 
 namespace saccade {
 

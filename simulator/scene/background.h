@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/scene.h"
-#include "simulator/scene/texture.h"
+#include "simulator/scene/texture/texture.h"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "simulator/scene/texture.h"
+#include "simulator/scene/texture/texture.h"
 
 namespace saccade {
 

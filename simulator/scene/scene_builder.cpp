@@ -14,9 +14,9 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/mesh_import.h"
-#include "simulator/scene/picture.h"
-#include "simulator/scene/placement.h"
+#include "simulator/scene/mesh/mesh_import.h"
+#include "simulator/scene/texture/picture.h"
+#include "simulator/scene/mesh/world_from_mesh.h"
 #include "simulator/scene/triangle_setup.h"
 
 namespace saccade {

@@ -9,7 +9,7 @@
 
 #include "core/spline.h"
 #include "simulator/scene/background.h"
-#include "simulator/scene/mesh.h"
+#include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_options.h"
 

@@ -3,7 +3,7 @@
 #include "simulator/scene/scene.h"
 
 #include "core/config/fields.h"
-#include "simulator/scene/file_source.h"
+#include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {

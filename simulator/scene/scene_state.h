@@ -10,12 +10,12 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/background.h"
-#include "simulator/scene/illumination.h"
-#include "simulator/scene/mesh.h"
-#include "simulator/scene/occluder_tree.h"
-#include "simulator/scene/patch_light.h"
+#include "simulator/scene/light/illumination.h"
+#include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/visibility/triangle_bvh.h"
+#include "simulator/scene/light/patch_lighting.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/visibility.h"
+#include "simulator/scene/visibility/visibility.h"
 
 namespace saccade {
 

@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "simulator/scene/moving_object.h"
-#include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/object_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/motion/object_motion.h"
 
 namespace saccade {
 namespace {

@@ -8,7 +8,7 @@
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/sensor_output.h"
 #include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 

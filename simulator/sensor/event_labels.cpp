@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "simulator/scene/moving_object.h"
-#include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
 
 namespace saccade {
 namespace {

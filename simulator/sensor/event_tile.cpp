@@ -8,11 +8,11 @@
 #include <span>
 
 #include "core/check.h"
-#include "simulator/sensor/foresight.h"
-#include "simulator/sensor/pixel_signal.h"
-#include "simulator/sensor/plane_signal.h"
-#include "simulator/sensor/tile_look.h"
-#include "simulator/sensor/tile_paths.h"
+#include "simulator/sensor/visibility/visibility_predictor.h"
+#include "simulator/sensor/signal/pixel_signal.h"
+#include "simulator/sensor/signal/texture_signal.h"
+#include "simulator/sensor/rays/tile_samples.h"
+#include "simulator/sensor/signal/tile_trajectories.h"
 
 namespace saccade {
 namespace {

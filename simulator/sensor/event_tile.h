@@ -8,13 +8,13 @@
 #include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/pixel_bank.h"
-#include "simulator/sensor/pixel_noise.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/ray_tracer.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/pixel_bank.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 

@@ -6,10 +6,10 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/linear_signal.h"
-#include "simulator/sensor/object_motion.h"
-#include "simulator/sensor/tile_trace.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/signal/linear_signal.h"
+#include "simulator/sensor/motion/object_motion.h"
+#include "simulator/sensor/rays/tile_trace.h"
 
 namespace saccade {
 namespace {

@@ -12,10 +12,10 @@
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_delivery.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/pixel_bank.h"
-#include "simulator/sensor/pixel_noise.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/ray_tracer.h"
+#include "simulator/sensor/pixel/pixel_bank.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
 
 namespace saccade {
 

@@ -12,10 +12,10 @@
 
 #include "core/parallel.h"
 #include "simulator/sensor/event_camera.h"
-#include "simulator/sensor/event_pixel.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/tile_trace.h"
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/pixel/event_pixel.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/tile_trace.h"
+#include "simulator/sensor/image_renderer.h"
 
 namespace saccade::testing {
 namespace {

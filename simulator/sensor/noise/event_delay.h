@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "simulator/sensor/noise/noise_options.h"
 #include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 

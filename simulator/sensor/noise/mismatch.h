@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/event_pixel.h"
+#include "simulator/sensor/pixel/event_pixel.h"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include "simulator/sensor/noise/event_bus.h"
 #include "simulator/sensor/noise/event_delay.h"
 #include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 

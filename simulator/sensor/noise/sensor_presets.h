@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulator/sensor/event_pixel.h"
+#include "simulator/sensor/pixel/event_pixel.h"
 #include "simulator/sensor/noise/noise_options.h"
 
 namespace saccade {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 #include "tests/support/closed_form_plane.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

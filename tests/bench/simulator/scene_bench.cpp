@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "simulator/scene/scene_builder.h"
-#include "simulator/scene/texture_generator.h"
+#include "simulator/scene/texture/texture_generator.h"
 
 namespace saccade {
 namespace {

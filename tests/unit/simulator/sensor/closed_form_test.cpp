@@ -9,10 +9,10 @@
 #include <numbers>
 #include <vector>
 
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "simulator/sensor/view.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "simulator/sensor/image_renderer.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

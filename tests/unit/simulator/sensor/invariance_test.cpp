@@ -12,7 +12,7 @@
 #include "simulator/sensor/event_camera.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "simulator/sensor/event_camera.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/log_eps.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 

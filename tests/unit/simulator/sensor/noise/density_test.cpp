@@ -13,7 +13,7 @@
 
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/noise/sensor_presets.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
 namespace saccade {

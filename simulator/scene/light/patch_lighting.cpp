@@ -1,0 +1,328 @@
+#include "simulator/scene/light/patch_lighting.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "simulator/scene/scene_state.h"
+
+namespace saccade {
+namespace {
+
+/// Neighbours in a mesh must leave no light between them, whatever the rounding.
+constexpr double kLightTolerance = 1e-10;
+/// How much wider than a patch the pyramid from a lamp is, for what is seen by a hair beside it.
+constexpr double kPyramidRoom = 0.01;
+/// A lamp without a place is taken to be this many sizes of the scene away where its triangles are
+/// searched for: less than the room off its parallel light.
+constexpr double kFar = 1e4;
+
+std::array<Eigen::Vector3d, 3> corners_of(const TriangleSurface& surface,
+                                          const TriangleInterior& interior) {
+  Eigen::Matrix3d rows;
+  rows << surface.plane.gradient.transpose(), interior.second.gradient.transpose(),
+      interior.third.gradient.transpose();
+  const Eigen::Vector3d offsets(surface.plane.offset, interior.second.offset,
+                                interior.third.offset);
+  const Eigen::Matrix3d inverse = rows.inverse();
+  const Eigen::Vector3d first = inverse * -offsets;
+  return {first, first + inverse.col(1), first + inverse.col(2)};
+}
+
+/// Keeps of a polygon what is not below zero of `side`.
+void clip(std::vector<Eigen::Vector3d>& polygon, const AffineForm& side) {
+  std::vector<Eigen::Vector3d> kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Eigen::Vector3d& a = polygon[k];
+    const Eigen::Vector3d& b = polygon[(k + 1) % polygon.size()];
+    const double at_a = side.at(a);
+    const double at_b = side.at(b);
+    if (at_a >= 0) kept.push_back(a);
+    if ((at_a < 0) != (at_b < 0)) kept.emplace_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  polygon = std::move(kept);
+}
+
+/// Corners around all that pyramids see of a triangle.
+std::vector<Eigen::Vector3d> patch_corners(const std::array<Eigen::Vector3d, 3>& triangle,
+                                           std::span<const SightPyramid> sweep) {
+  std::vector<Eigen::Vector3d> patch;
+  for (const SightPyramid& pyramid : sweep) {
+    std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end());
+    const Eigen::Vector3d axis = pyramid.corners[0] + pyramid.corners[2];
+    for (std::size_t k = 0; k < 4; ++k) {
+      Eigen::Vector3d normal = pyramid.corners[k].cross(pyramid.corners[(k + 1) % 4]);
+      if (normal.dot(axis) < 0) normal = -normal;
+      clip(polygon, {normal, -normal.dot(pyramid.eye)});
+    }
+    patch.insert(patch.end(), polygon.begin(), polygon.end());
+  }
+  return patch;
+}
+
+/// The narrowest pyramid with room from `eye` around points, of those along their longest extent;
+/// none where they are all around it.
+std::optional<SightPyramid> pyramid_around(const Eigen::Vector3d& eye,
+                                           std::span<const Eigen::Vector3d> points) {
+  constexpr double kWidest = 0.2;  // cosine
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) axis += (point - eye).normalized();
+  axis.normalize();
+  std::vector<Eigen::Vector3d> on_plane;
+  Eigen::Vector3d longest = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d way = point - eye;
+    const double along = way.dot(axis);
+    if (!(along > kWidest * way.norm())) return std::nullopt;
+    on_plane.emplace_back(way / along - axis);
+    if (on_plane.back().squaredNorm() > longest.squaredNorm()) longest = on_plane.back();
+  }
+  const Eigen::Vector3d right =
+      longest.squaredNorm() > 0 ? Eigen::Vector3d(longest.normalized()) : axis.unitOrthogonal();
+  const Eigen::Vector3d down = axis.cross(right);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& point : on_plane)
+    box.extend(Eigen::Vector2d(point.dot(right), point.dot(down)));
+  const double room = kPyramidRoom * box.sizes().maxCoeff() + 1e-12;
+  const auto corner = [&](double x, double y) -> Eigen::Vector3d {
+    return axis + x * right + y * down;
+  };
+  const Eigen::Vector2d low = box.min().array() - room;
+  const Eigen::Vector2d high = box.max().array() + room;
+  return SightPyramid{eye,
+                      {corner(low.x(), low.y()), corner(high.x(), low.y()),
+                       corner(high.x(), high.y()), corner(low.x(), high.y())},
+                      0};
+}
+
+struct Ball {
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+/// Around lifted points, with room.
+Ball ball_around(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& lift) {
+  Ball ball{Eigen::Vector3d::Zero(), 0};
+  for (const Eigen::Vector3d& point : points) ball.centre += point + lift;
+  ball.centre /= static_cast<double>(points.size());
+  for (const Eigen::Vector3d& point : points)
+    ball.radius = std::max(ball.radius, (point + lift - ball.centre).norm());
+  ball.radius *= 1 + 2 * kPyramidRoom;
+  return ball;
+}
+
+/// Adds room for the rounding between neighbours to the edges.
+ShadowCaster with_tolerance(ShadowCaster caster, double scale) {
+  for (std::size_t k = 0; k < 3; ++k) caster.forms[k].offset += kLightTolerance * scale;
+  return caster;
+}
+
+/// In the light from `position`: the edges' forms as TrianglePass has them from there.
+ShadowCaster near_caster(TriangleId triangle, const TrianglePass& pass,
+                         const Eigen::Vector3d& position, const Eigen::Vector3d& patch) {
+  const double sign = pass.depth > 0 ? 1 : -1;
+  const auto form = [&](const Eigen::Vector3d& gradient, double offset) -> AffineForm {
+    return {sign * gradient, sign * (offset - gradient.dot(position))};
+  };
+  return with_tolerance({{form(pass.edges[0], 0), form(pass.edges[1], 0), form(pass.edges[2], 0),
+                          form(pass.w, -pass.depth)},
+                         triangle},
+                        std::abs(pass.w.dot(patch - position)));
+}
+
+/// In parallel light from the direction `to_light`: where the way there meets the plane, each form
+/// is what it is at the way's foot plus the way's share of it.
+ShadowCaster far_caster(TriangleId triangle, const TriangleSurface& surface,
+                        const TriangleInterior& interior, const Eigen::Vector3d& to_light) {
+  const double slope = surface.plane.gradient.dot(to_light);
+  const AffineForm distance{-surface.plane.gradient / slope, -surface.plane.offset / slope};
+  const auto shifted = [&](const AffineForm& form) -> AffineForm {
+    const double rate = form.gradient.dot(to_light);
+    return {form.gradient + rate * distance.gradient, form.offset + rate * distance.offset};
+  };
+  const AffineForm second = shifted(interior.second);
+  const AffineForm third = shifted(interior.third);
+  const AffineForm first{-second.gradient - third.gradient, 1 - second.offset - third.offset};
+  return with_tolerance({{first, second, third, distance}, triangle}, 1);
+}
+
+}  // namespace
+
+LampSet PatchLight::lamps_at(const Eigen::Vector3d& point) const {
+  LampSet lamps = proven;
+  const Eigen::Vector3d start = point + lift;
+  for (const DoubtfulLamp& lamp : doubtful) {
+    bool is_lit = true;
+    lamp.lanes.visit_others({start, start, start}, [&](std::size_t i) {
+      is_lit = !lamp.casters[i].hides(start);
+      return is_lit;
+    });
+    if (is_lit) lamps |= lamp.bit;
+  }
+  return lamps;
+}
+
+std::optional<ShadowCaster> Scene::State::shadow_caster(TriangleId triangle,
+                                                        const LightOptions& lamp,
+                                                        const Eigen::Vector3d& patch) const {
+  if (lamp.type == LightType::kPoint) {
+    const TrianglePass pass = triangle_pass(triangle, lamp.position, Eigen::Matrix3d::Identity());
+    if (pass.depth == 0) return std::nullopt;
+    return near_caster(triangle, pass, lamp.position, patch);
+  }
+  const TriangleSurface& surface = surfaces[triangle];
+  if (surface.plane.gradient.dot(lamp.direction) == 0) return std::nullopt;
+  return far_caster(triangle, surface, interiors[triangle], -lamp.direction);
+}
+
+bool Scene::State::collect_casters(const LightOptions& lamp, std::span<const Eigen::Vector3d> patch,
+                                   const AffineForm& front, std::size_t most,
+                                   std::vector<TriangleId>& found) {
+  const Eigen::Vector3d eye = lamp.type == LightType::kPoint
+                                  ? lamp.position
+                                  : Eigen::Vector3d(patch[0] - kFar * size_m * lamp.direction);
+  const auto pyramid = pyramid_around(eye, patch);
+  found.clear();
+  return pyramid && occluders(0).collect({&*pyramid, 1}, front, most, found) &&
+         std::all_of(found.begin(), found.end(), [&](TriangleId triangle) {
+           return triangle < surfaces.size() - cutouts.size();
+         });
+}
+
+bool Scene::State::find_light(const Patch& patch, std::size_t most, PatchLight& light) {
+  const AffineForm& plane = surfaces[patch.triangle].plane;
+  const double offset = illumination->shadow_offset();
+  light.lift = offset * patch.side * plane.gradient;
+  light.proven = 0;
+  light.doubtful.clear();
+  // Ways to lamps begin above the surface: what reaches less high cannot be in them.
+  const AffineForm front{patch.side * plane.gradient, patch.side * plane.offset - 0.5 * offset};
+  const std::span<const LightOptions> lamps = illumination->lights();
+  std::vector<TriangleId> found;
+  for (std::size_t k = 0; k < lamps.size(); ++k) {
+    const double height = lamps[k].type == LightType::kPoint
+                              ? plane.at(lamps[k].position)
+                              : -plane.gradient.dot(lamps[k].direction);
+    if (!(patch.side * height > 0)) continue;
+    found.clear();
+    if (lamps[k].shadows && !collect_casters(lamps[k], patch.corners, front, most, found))
+      return false;
+    add_lamp(LampSet{1} << k, patch, found, light);
+  }
+  return true;
+}
+
+void Scene::State::find_light(const Patch& patch, const WholeLight& whole,
+                              PatchLight& light) const {
+  light.lift = illumination->shadow_offset() * patch.side * surfaces[patch.triangle].plane.gradient;
+  light.proven = whole.proven;
+  light.doubtful.clear();
+  for (const LampCandidates& lamp : *whole.candidates)
+    add_lamp(lamp.bit, patch, lamp.triangles, light);
+}
+
+void Scene::State::add_lamp(LampSet bit, const Patch& patch, std::span<const TriangleId> found,
+                            PatchLight& light) const {
+  DoubtfulLamp lamp{bit, {}, {}};
+  const LightOptions& options =
+      illumination->lights()[static_cast<std::size_t>(std::countr_zero(bit))];
+  if (!keep_casters(options, patch, light.lift, found, lamp.casters)) return;
+  if (lamp.casters.empty()) {
+    light.proven |= bit;
+    return;
+  }
+  double reach_m = 0;
+  for (const Eigen::Vector3d& corner : patch.corners)
+    reach_m = std::max(reach_m, (corner - patch.corners[0]).norm());
+  lamp.lanes = CasterLanes(patch.corners[0] + light.lift, 2 * reach_m);
+  for (const ShadowCaster& caster : lamp.casters) lamp.lanes.add(caster.forms);
+  light.doubtful.push_back(std::move(lamp));
+}
+
+bool Scene::State::keep_casters(const LightOptions& lamp, const Patch& patch,
+                                const Eigen::Vector3d& lift, std::span<const TriangleId> found,
+                                std::vector<ShadowCaster>& casters) const {
+  const auto& corners = patch.corners;
+  const Ball ball = ball_around(corners, lift);
+  for (const TriangleId triangle : found) {
+    const auto caster = shadow_caster(triangle, lamp, corners[0]);
+    if (!caster) continue;
+    bool covers = true;
+    const bool is_beside =
+        std::any_of(caster->forms.begin(), caster->forms.end(), [&](const AffineForm& form) {
+          const double middle = form.at(ball.centre);
+          const double reach = ball.radius * form.gradient.norm();
+          if (std::abs(middle) > reach) {
+            covers = covers && middle > 0;
+            return middle < 0;
+          }
+          double low = std::numeric_limits<double>::infinity();
+          double high = -low;
+          for (const Eigen::Vector3d& corner : corners) {
+            const double value = form.at(corner + lift);
+            low = std::min(low, value);
+            high = std::max(high, value);
+          }
+          const double room = kPyramidRoom * (high - low);
+          covers = covers && low > room;
+          return high + room <= 0;
+        });
+    if (is_beside) continue;
+    if (covers) return false;
+    casters.push_back(*caster);
+  }
+  return true;
+}
+
+const WholeLight& Scene::State::whole_light(TriangleId triangle, double side) {
+  constexpr std::size_t kSimple = 6;
+  constexpr std::size_t kMost = 96;
+  std::call_once(whole_lights_built,
+                 [this] { whole_lights = std::make_unique<WholeLight[]>(2 * surfaces.size()); });
+  WholeLight& whole = whole_lights[2 * triangle + (side > 0 ? 1 : 0)];
+  std::call_once(whole.found, [&] {
+    const auto corners = corners_of(surfaces[triangle], interiors[triangle]);
+    PatchLight light;
+    if (!find_light({triangle, side, {corners.begin(), corners.end()}}, kMost, light)) return;
+    std::size_t count = 0;
+    for (const DoubtfulLamp& lamp : light.doubtful) count += lamp.casters.size();
+    if (count <= kSimple) {
+      whole.light = std::make_unique<const PatchLight>(std::move(light));
+      return;
+    }
+    whole.candidates = std::make_unique<std::vector<LampCandidates>>(light.doubtful.size());
+    whole.proven = light.proven;
+    for (std::size_t k = 0; k < light.doubtful.size(); ++k) {
+      (*whole.candidates)[k].bit = light.doubtful[k].bit;
+      for (const ShadowCaster& caster : light.doubtful[k].casters)
+        (*whole.candidates)[k].triangles.push_back(caster.triangle);
+    }
+  });
+  return whole;
+}
+
+const PatchLight* Scene::find_light(TriangleId triangle, std::span<const SightPyramid> sweep,
+                                    std::size_t most, PatchLight& light) const {
+  if (!state_->illumination || !moving_objects().empty()) return nullptr;
+  const AffineForm& plane = state_->surfaces[triangle].plane;
+  const double side = plane.at(sweep.front().eye) > 0 ? 1 : -1;
+  for (const SightPyramid& pyramid : sweep)
+    if (!(side * plane.at(pyramid.eye) > 0)) return nullptr;
+  const WholeLight& whole = state_->whole_light(triangle, side);
+  if (whole.light) return whole.light.get();
+  const Patch patch{
+      triangle, side,
+      patch_corners(corners_of(state_->surfaces[triangle], state_->interiors[triangle]), sweep)};
+  if (patch.corners.empty()) return nullptr;
+  if (whole.candidates)
+    state_->find_light(patch, whole, light);
+  else if (!state_->find_light(patch, most, light))
+    return nullptr;
+  return &light;
+}
+
+}  // namespace saccade

@@ -1,0 +1,270 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "simulator/sensor/pixel/crossing.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/pixel/pixel_traits.h"
+#include "simulator/sensor/pixel/sensed_event.h"
+
+namespace saccade {
+
+/// A pixel at work: turns stretches of its signal, one after the other, into events.
+/// `Emit(t_s, polarity, origin, log_intensity)`.
+template <class Signal, class Emit>
+class PixelSensor {
+ public:
+  using Sample = typename Signal::Sample;
+
+  PixelSensor(const Signal& signal, const PixelTraits& traits, double log_eps, PixelState& state,
+              Thresholds& thresholds, const Emit& emit)
+      : signal_(signal),
+        traits_(traits),
+        log_eps_(log_eps),
+        state_(state),
+        thresholds_(thresholds),
+        emit_(emit) {}
+
+  /// The ideal pixel, up to its leak. Returns the widest final bracket around a crossing [s].
+  double sense(const Sample& lo, const Sample& hi) {
+    Sample a = lo;
+    while (a.t_s < hi.t_s) {
+      const auto exit = first_exit(signal_, thresholds_, a, hi);
+      if (!exit) break;
+      a = cross(*exit, true).after;
+    }
+    return widest_s_;
+  }
+
+  /// With refractory period, shot noise and hot pixels.
+  double sense(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+
+  /// The same behind the photoreceptor's low pass.
+  double sense_filtered(const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                        NoisyState& noisy, int depth = 0);
+
+ private:
+  struct Crossing {
+    double t_s;
+    Sample after;  ///< within the tolerance
+  };
+
+  /// Locates the crossing and fires: once, or for every threshold that the bracket crosses.
+  Crossing cross(const Bracket<Sample>& exit, bool repeatedly);
+  void fire(double t_s, int polarity, double log_intensity);
+  /// The reference becomes the signal.
+  void reset(double t_s, double signal);
+  /// Takes the candidate that is due, if there is one; whether the pixel fires at it.
+  bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
+                          NoisyState& noisy);
+  void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+  /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
+  /// stays, prove that nothing happens over a stretch.
+  [[nodiscard]] bool is_silent(const RadianceRange& range, double from_s, double to_s,
+                               const NoisyState& noisy) const;
+  /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
+  [[nodiscard]] bool is_silent(const FilteredPiece& piece, const LinearPiece& input,
+                               const NoisyState& noisy) const;
+  /// Drops the candidates that fall into the blind time.
+  void skip_candidates(double until_s, const PixelNoise& noise, NoisyState& noisy) const {
+    while (noisy.spontaneous.next_s() < until_s)
+      (void)noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+  }
+  /// Whether values from `low` to `high` stay within the band, however the leak moves it meanwhile.
+  [[nodiscard]] bool is_within_band(double low, double from_s, double high, double to_s) const {
+    // Rounding may not make a certificate of what is exactly at a threshold.
+    constexpr double kGuard = 1e-12;
+    const Band& band = state_.level.band();
+    return low + traits_.drift_per_s * from_s > band.lower + kGuard &&
+           high + traits_.drift_per_s * to_s < band.upper - kGuard;
+  }
+  void update_thresholds() {
+    thresholds_ =
+        Thresholds(state_.level.band(), traits_.drift_per_s, log_eps_, state_.reference_s);
+  }
+
+  const Signal& signal_;
+  const PixelTraits& traits_;
+  double log_eps_;
+  PixelState& state_;
+  Thresholds& thresholds_;
+  const Emit& emit_;
+  double widest_s_ = 0;
+};
+
+/// The greatest error of the linear pieces that the low pass is given, where they are no steps [log
+/// units].
+constexpr double kPieceError = 1e-3;
+/// The greatest change within a piece, for which its cutoff is constant [log units].
+constexpr double kPieceChange = 0.05;
+/// A stretch in which nothing happens is passed over up to what the filter remembers at its end,
+/// where it is so many times as long as that.
+constexpr double kLongMemories = 1.5;
+
+template <class Signal, class Emit>
+auto PixelSensor<Signal, Emit>::cross(const Bracket<Sample>& exit, bool repeatedly) -> Crossing {
+  const Band band = thresholds_.band();
+  const int polarity = thresholds_.signal(exit.hi) >= band.upper ? 1 : -1;
+  const double level = polarity > 0 ? band.upper : band.lower;
+  const Bracket<Sample> bracket = refine(signal_, thresholds_, exit, level);
+  widest_s_ = std::max(widest_s_, bracket.width_s());
+  const double t_s = bracket.crossing_s(thresholds_, level);
+  do {
+    fire(t_s, polarity, bracket.hi.log_intensity);
+  } while (repeatedly &&
+           (polarity > 0 ? thresholds_.signal(bracket.hi) >= state_.level.band().upper
+                         : thresholds_.signal(bracket.hi) <= state_.level.band().lower));
+  update_thresholds();
+  return {t_s, bracket.hi};
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::fire(double t_s, int polarity, double log_intensity) {
+  const double leaked = traits_.drift_per_s * (t_s - state_.reference_s);
+  const bool is_leak = polarity > 0 && leaked > 0.5 * traits_.contrast.on;
+  state_.level.fire(polarity, traits_.contrast);
+  state_.reference_s = t_s;
+  emit_(t_s, polarity, is_leak ? EventOrigin::kLeak : EventOrigin::kSignal, log_intensity);
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::reset(double t_s, double signal) {
+  state_.level.reset(signal, traits_.contrast);
+  state_.reference_s = t_s;
+  update_thresholds();
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::fire_spontaneously(double t_s, double log_intensity, double signal,
+                                                   const PixelNoise& noise, NoisyState& noisy) {
+  const SpontaneousCandidate candidate =
+      noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+  if (!noise.spontaneous.accepts(candidate, log_intensity)) return false;
+  emit_(t_s, candidate.polarity, candidate.origin, log_intensity);
+  reset(t_s, signal);
+  return true;
+}
+
+template <class Signal, class Emit>
+double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                                        NoisyState& noisy) {
+  const auto rest = [&](double t_s) {
+    if (noise.refractory_s > 0) noisy.blind_until_s = t_s + noise.refractory_s;
+  };
+  Sample a = lo;
+  while (a.t_s < hi.t_s) {
+    if (noisy.blind_until_s >= a.t_s) {
+      if (noisy.blind_until_s >= hi.t_s) break;
+      if (noisy.blind_until_s > a.t_s) a = signal_.at(noisy.blind_until_s, a, hi);
+      skip_candidates(a.t_s, noise, noisy);
+      noisy.blind_until_s = NoisyState::kNotBlind;
+      reset(a.t_s, thresholds_.signal(a));
+    }
+    const double next_s = noisy.spontaneous.next_s();
+    const Sample b = next_s <= a.t_s ? a : next_s < hi.t_s ? signal_.at(next_s, a, hi) : hi;
+    const auto exit = b.t_s > a.t_s ? first_exit(signal_, thresholds_, a, b) : std::nullopt;
+    if (exit) {
+      const Crossing crossing = cross(*exit, noise.refractory_s == 0);
+      rest(crossing.t_s);
+      a = crossing.after;
+    } else {
+      a = b;
+      if (next_s <= a.t_s &&
+          fire_spontaneously(a.t_s, a.log_intensity, thresholds_.signal(a), noise, noisy))
+        rest(a.t_s);
+    }
+  }
+  return widest_s_;
+}
+
+template <class Signal, class Emit>
+double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample& hi,
+                                                 const PixelNoise& noise, NoisyState& noisy,
+                                                 int depth) {
+  const double length_s = hi.t_s - lo.t_s;
+  if (length_s <= signal_.tolerance_s()) {  // a step
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  const RadianceRange range = signal_.range(lo, hi);
+  if (std::abs(hi.log_intensity - lo.log_intensity) <= kPieceChange &&
+      range.log_error(log_eps_, length_s) <= kPieceError) {
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  const double memory_s = noise.filter.memory_s(range.low);
+  if (length_s > kLongMemories * memory_s && is_silent(range, lo.t_s, hi.t_s, noisy)) {
+    const Sample remembered = signal_.at(hi.t_s - memory_s, lo, hi);
+    noisy.filter = PhotoreceptorFilter::settled(remembered.log_intensity);
+    return sense_filtered(remembered, hi, noise, noisy, depth + 1);
+  }
+  const Sample middle = signal_.divide(lo, hi, depth);
+  if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s)) {  // no double left between them
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  sense_filtered(lo, middle, noise, noisy, depth + 1);
+  return sense_filtered(middle, hi, noise, noisy, depth + 1);
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
+                                            const PixelNoise& noise, NoisyState& noisy) {
+  const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
+  const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
+  noisy.filter = piece.end_state();
+  if (is_silent(piece, input, noisy)) return;
+  const FilteredPiece seen = piece.drifting(traits_.drift_per_s);
+  const double drifted = traits_.drift_per_s * lo.t_s;
+  const auto signal = [&](double t_s) { return seen.value(t_s) + drifted; };
+  double t_s = lo.t_s;
+  while (t_s < hi.t_s) {
+    if (noisy.blind_until_s >= t_s) {
+      if (noisy.blind_until_s >= hi.t_s) break;
+      t_s = noisy.blind_until_s;
+      skip_candidates(t_s, noise, noisy);
+      noisy.blind_until_s = NoisyState::kNotBlind;
+      reset(t_s, signal(t_s));
+    }
+    const double next_s = std::max(noisy.spontaneous.next_s(), t_s);
+    const Band& band = state_.level.band();
+    const auto crossing =
+        seen.first_crossing(band.lower - drifted, band.upper - drifted, t_s, signal_.tolerance_s());
+    bool fires = false;
+    if (crossing && crossing->t_s <= next_s) {
+      t_s = crossing->t_s;
+      widest_s_ = std::max(widest_s_, signal_.tolerance_s());
+      fire(t_s, crossing->polarity, static_cast<double>(piece.value(t_s)));
+      update_thresholds();
+      fires = true;
+    } else if (next_s < hi.t_s) {
+      t_s = next_s;
+      fires = fire_spontaneously(t_s, piece.value(t_s), signal(t_s), noise, noisy);
+    } else {
+      break;
+    }
+    if (fires && noise.refractory_s > 0) noisy.blind_until_s = t_s + noise.refractory_s;
+  }
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::is_silent(const RadianceRange& range, double from_s, double to_s,
+                                          const NoisyState& noisy) const {
+  if (noisy.blind_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
+  const auto [state_low, state_high] = std::minmax(noisy.filter.first, noisy.filter.output);
+  const double low = std::min(state_low, std::log(log_eps_ + std::max(range.low, 0.0)));
+  const double high = std::max(state_high, std::log(log_eps_ + range.high));
+  return is_within_band(low, from_s, high, to_s);
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::is_silent(const FilteredPiece& piece, const LinearPiece& input,
+                                          const NoisyState& noisy) const {
+  if (noisy.blind_until_s >= input.t0_s) return noisy.blind_until_s >= input.t1_s;
+  if (noisy.spontaneous.next_s() < input.t1_s) return false;
+  const FilteredPiece::Reach reach = piece.reach();
+  return is_within_band(reach.low, input.t0_s, reach.high, input.t1_s);
+}
+
+}  // namespace saccade
