@@ -9,7 +9,7 @@
 namespace saccade {
 
 /// One camera's recording in the making: what the camera moves through and where it is written.
-struct Take {
+struct CameraRecording {
   const SimulationConfig& config;
   const PinholeCamera& camera;
   const EventOptions& events;

@@ -7,7 +7,7 @@ namespace saccade {
 namespace {
 
 /// The fastest pixel at `t_s` [px/s].
-double image_speed(const ViewRenderer& renderer, const Spline& motion, double t_s) {
+double image_speed(const ImageRenderer& renderer, const Spline& motion, double t_s) {
   const FlowField flow = renderer.flow(motion.state(t_s), t_s);
   float speed = 0;
   for (std::size_t i = 0; i < flow.u.size(); ++i)
@@ -17,7 +17,7 @@ double image_speed(const ViewRenderer& renderer, const Spline& motion, double t_
 
 }  // namespace
 
-std::vector<double> exposure_times(const ViewRenderer& renderer, const Spline& world_from_camera,
+std::vector<double> exposure_times(const ImageRenderer& renderer, const Spline& world_from_camera,
                                    double t_s, double exposure_s) {
   constexpr double kMotion_px = 0.25;
   constexpr double kMostTimes = 256;

@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// The way of the events from all pixels to the recording: put in order, through the part of the
+/// The path of the events from all pixels to the recording: put in order, through the part of the
 /// sensor behind the pixels, and handed on as soon as none can come before them.
 class EventDelivery {
  public:

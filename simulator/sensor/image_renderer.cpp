@@ -11,14 +11,14 @@
 namespace saccade {
 namespace {}  // namespace
 
-ViewRenderer::ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
-                           TextureFilter filter)
+ImageRenderer::ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
+                             TextureFilter filter)
     : scene_(scene),
       filter_(filter),
       radiance_rays_(camera, rays_per_pixel),
       centre_rays_(camera, 1) {}
 
-ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
+ImageF ImageRenderer::radiance(std::span<const StampedPose> poses) const {
   ImageF image(camera().width, camera().height);
   const std::size_t per_pixel = radiance_rays_.rays_per_pixel();
   const double count = static_cast<double>(per_pixel * poses.size());
@@ -43,21 +43,21 @@ ImageF ViewRenderer::radiance(std::span<const StampedPose> poses) const {
   return image;
 }
 
-ImageF ViewRenderer::depth(const StampedPose& pose) const {
+ImageF ImageRenderer::depth(const StampedPose& pose) const {
   ImageF image(camera().width, camera().height);
   const auto render = [&](std::size_t index) {
     const Tile tile = centre_rays_.tile(index);
     trace_tile(scene_, centre_rays_.rays(index), pose,
                [&](std::size_t i, const Ray& ray, TriangleId triangle) {
                  image(tile.x(i), tile.y(i)) =
-                     static_cast<float>(scene_.look(ray, triangle).distance);
+                     static_cast<float>(scene_.sample_surface(ray, triangle).distance);
                });
   };
   parallel_for(centre_rays_.tile_count(), render, kTilesPerTask);
   return image;
 }
 
-FlowField ViewRenderer::flow(const SplineState& state, double t_s) const {
+FlowField ImageRenderer::flow(const SplineState& state, double t_s) const {
   FlowField field{ImageF(camera().width, camera().height), ImageF(camera().width, camera().height)};
   const StampedPose pose{t_s, state.world_from_body};
   const RelativeTwists twists(scene_, state, t_s);
@@ -65,8 +65,9 @@ FlowField ViewRenderer::flow(const SplineState& state, double t_s) const {
     const Tile tile = centre_rays_.tile(index);
     const std::span<const Eigen::Vector3d> rays = centre_rays_.rays(index);
     trace_tile(scene_, rays, pose, [&](std::size_t i, const Ray& ray, TriangleId triangle) {
-      const double depth = scene_.look(ray, triangle).distance;
-      const Eigen::Vector2d flow = point_motion(camera(), rays[i], depth, twists.before(triangle));
+      const double depth = scene_.sample_surface(ray, triangle).distance;
+      const Eigen::Vector2d flow =
+          point_motion(camera(), rays[i], depth, twists.relative_to(triangle));
       field.u(tile.x(i), tile.y(i)) = static_cast<float>(flow.x());
       field.v(tile.x(i), tile.y(i)) = static_cast<float>(flow.y());
     });

@@ -16,11 +16,11 @@ namespace saccade {
 /// Whole images of the scene at given poses, in parallel over tiles. Radiance is the mean over a
 /// pixel's rays, as the event pixels see it; depth and motion are those of the ray through the
 /// pixel's centre.
-class ViewRenderer {
+class ImageRenderer {
  public:
   /// `scene` must outlive the renderer; `rays_per_pixel`: 1, 4 or 16.
-  ViewRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
-               TextureFilter filter = TextureFilter::kBilinear);
+  ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
+                TextureFilter filter = TextureFilter::kBilinear);
 
   /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur).
   [[nodiscard]] ImageF radiance(std::span<const StampedPose> poses) const;

@@ -12,17 +12,18 @@
 
 namespace saccade {
 
-/// Sorts out, of many shadow casters at once, those whose shadow a point cannot meet on its way:
+/// Sorts out, of many occluders at once, those whose shadow a point cannot meet along its path:
 /// one of their forms stays below zero. Floats in lanes, from a point near by so that their
 /// rounding is small, with room for it.
-class CasterLanes {
+class OccluderLanes {
  public:
   using Forms = std::array<AffineForm, 4>;
-  using Way = std::array<Eigen::Vector3d, 3>;
+  using Points = std::array<Eigen::Vector3d, 3>;
 
-  CasterLanes() = default;
+  OccluderLanes() = default;
   /// For points within `reach_m` of `origin`.
-  CasterLanes(const Eigen::Vector3d& origin, double reach_m) : origin_(origin), reach_m_(reach_m) {}
+  OccluderLanes(const Eigen::Vector3d& origin, double reach_m)
+      : origin_(origin), reach_m_(reach_m) {}
 
   void add(const Forms& forms) {
     if (count_ % kLanes == 0) blocks_.emplace_back();
@@ -40,17 +41,17 @@ class CasterLanes {
   }
 
   /// use(i), counted in the order of add(), until it returns false, for those that a point may meet
-  /// that goes along the parabola through its places at both ends and half way.
+  /// that goes along the parabola through its offsets at both ends and half points.
   template <class Use>
-  void visit_others(const Way& way, const Use& use) const {
-    std::array<std::array<float, 3>, 3> places;
-    for (std::size_t m = 0; m < way.size(); ++m)
+  void visit_candidates(const Points& points, const Use& use) const {
+    std::array<std::array<float, 3>, 3> offsets;
+    for (std::size_t m = 0; m < points.size(); ++m)
       for (std::size_t c = 0; c < 3; ++c)
-        places[m][c] = static_cast<float>(way[m][static_cast<Eigen::Index>(c)] -
-                                          origin_[static_cast<Eigen::Index>(c)]);
+        offsets[m][c] = static_cast<float>(points[m][static_cast<Eigen::Index>(c)] -
+                                           origin_[static_cast<Eigen::Index>(c)]);
     Lanes is_beside;
     for (std::size_t first = 0; first < count_; first += kLanes) {
-      test(blocks_[first / kLanes], places, is_beside);
+      test(blocks_[first / kLanes], offsets, is_beside);
       for (std::size_t lane = 0; lane < std::min(kLanes, count_ - first); ++lane)
         if (is_beside[lane] == 0 && !use(first + lane)) return;
     }
@@ -65,7 +66,7 @@ class CasterLanes {
     std::array<Lanes, 4> x{}, y{}, z{}, offset{}, room{};
   };
 
-  static void test(const Block& block, const std::array<std::array<float, 3>, 3>& places,
+  static void test(const Block& block, const std::array<std::array<float, 3>, 3>& offsets,
                    Lanes& is_beside) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       float beside = 0;
@@ -74,9 +75,9 @@ class CasterLanes {
           return block.x[k][lane] * p[0] + block.y[k][lane] * p[1] + block.z[k][lane] * p[2] +
                  block.offset[k][lane];
         };
-        const float from = at(places[0]);
-        const float middle = at(places[1]);
-        const float to = at(places[2]);
+        const float from = at(offsets[0]);
+        const float middle = at(offsets[1]);
+        const float to = at(offsets[2]);
         const float turn = 2 * middle - 0.5F * (from + to);
         const float high = std::max(std::max(from, middle), std::max(to, turn));
         beside = high < -block.room[k][lane] ? 1.0F : beside;

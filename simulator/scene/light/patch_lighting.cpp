@@ -15,9 +15,9 @@ namespace {
 
 /// Neighbours in a mesh must leave no light between them, whatever the rounding.
 constexpr double kLightTolerance = 1e-10;
-/// How much wider than a patch the pyramid from a lamp is, for what is seen by a hair beside it.
+/// How much wider than a patch the pyramid from a light is, for what is seen by a hair beside it.
 constexpr double kPyramidRoom = 0.01;
-/// A lamp without a place is taken to be this many sizes of the scene away where its triangles are
+/// A light without a place is taken to be this many sizes of the scene away where its triangles are
 /// searched for: less than the room off its parallel light.
 constexpr double kFar = 1e4;
 
@@ -49,9 +49,9 @@ void clip(std::vector<Eigen::Vector3d>& polygon, const AffineForm& side) {
 
 /// Corners around all that pyramids see of a triangle.
 std::vector<Eigen::Vector3d> patch_corners(const std::array<Eigen::Vector3d, 3>& triangle,
-                                           std::span<const SightPyramid> sweep) {
+                                           std::span<const Frustum> sweep) {
   std::vector<Eigen::Vector3d> patch;
-  for (const SightPyramid& pyramid : sweep) {
+  for (const Frustum& pyramid : sweep) {
     std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end());
     const Eigen::Vector3d axis = pyramid.corners[0] + pyramid.corners[2];
     for (std::size_t k = 0; k < 4; ++k) {
@@ -66,8 +66,8 @@ std::vector<Eigen::Vector3d> patch_corners(const std::array<Eigen::Vector3d, 3>&
 
 /// The narrowest pyramid with room from `eye` around points, of those along their longest extent;
 /// none where they are all around it.
-std::optional<SightPyramid> pyramid_around(const Eigen::Vector3d& eye,
-                                           std::span<const Eigen::Vector3d> points) {
+std::optional<Frustum> pyramid_around(const Eigen::Vector3d& eye,
+                                      std::span<const Eigen::Vector3d> points) {
   constexpr double kWidest = 0.2;  // cosine
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) axis += (point - eye).normalized();
@@ -93,10 +93,10 @@ std::optional<SightPyramid> pyramid_around(const Eigen::Vector3d& eye,
   };
   const Eigen::Vector2d low = box.min().array() - room;
   const Eigen::Vector2d high = box.max().array() + room;
-  return SightPyramid{eye,
-                      {corner(low.x(), low.y()), corner(high.x(), low.y()),
-                       corner(high.x(), high.y()), corner(low.x(), high.y())},
-                      0};
+  return Frustum{eye,
+                 {corner(low.x(), low.y()), corner(high.x(), low.y()), corner(high.x(), high.y()),
+                  corner(low.x(), high.y())},
+                 0};
 }
 
 struct Ball {
@@ -116,14 +116,14 @@ Ball ball_around(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d&
 }
 
 /// Adds room for the rounding between neighbours to the edges.
-ShadowCaster with_tolerance(ShadowCaster caster, double scale) {
-  for (std::size_t k = 0; k < 3; ++k) caster.forms[k].offset += kLightTolerance * scale;
-  return caster;
+Occluder with_tolerance(Occluder occluder, double scale) {
+  for (std::size_t k = 0; k < 3; ++k) occluder.forms[k].offset += kLightTolerance * scale;
+  return occluder;
 }
 
-/// In the light from `position`: the edges' forms as TrianglePass has them from there.
-ShadowCaster near_caster(TriangleId triangle, const TrianglePass& pass,
-                         const Eigen::Vector3d& position, const Eigen::Vector3d& patch) {
+/// In the light from `position`: the edges' forms as EdgeFunctions has them from there.
+Occluder point_light_occluder(TriangleId triangle, const EdgeFunctions& pass,
+                              const Eigen::Vector3d& position, const Eigen::Vector3d& patch) {
   const double sign = pass.depth > 0 ? 1 : -1;
   const auto form = [&](const Eigen::Vector3d& gradient, double offset) -> AffineForm {
     return {sign * gradient, sign * (offset - gradient.dot(position))};
@@ -134,10 +134,11 @@ ShadowCaster near_caster(TriangleId triangle, const TrianglePass& pass,
                         std::abs(pass.w.dot(patch - position)));
 }
 
-/// In parallel light from the direction `to_light`: where the way there meets the plane, each form
-/// is what it is at the way's foot plus the way's share of it.
-ShadowCaster far_caster(TriangleId triangle, const TriangleSurface& surface,
-                        const TriangleInterior& interior, const Eigen::Vector3d& to_light) {
+/// In parallel light from the direction `to_light`: where the path there intersects the plane, each form
+/// is what it is at the path's foot plus the path's fraction of it.
+Occluder directional_light_occluder(TriangleId triangle, const TriangleSurface& surface,
+                                    const TriangleInterior& interior,
+                                    const Eigen::Vector3d& to_light) {
   const double slope = surface.plane.gradient.dot(to_light);
   const AffineForm distance{-surface.plane.gradient / slope, -surface.plane.offset / slope};
   const auto shifted = [&](const AffineForm& form) -> AffineForm {
@@ -152,108 +153,110 @@ ShadowCaster far_caster(TriangleId triangle, const TriangleSurface& surface,
 
 }  // namespace
 
-LampSet PatchLight::lamps_at(const Eigen::Vector3d& point) const {
-  LampSet lamps = proven;
+LightSet PatchLighting::lights_at(const Eigen::Vector3d& point) const {
+  LightSet lights = unoccluded;
   const Eigen::Vector3d start = point + lift;
-  for (const DoubtfulLamp& lamp : doubtful) {
+  for (const PartlyOccludedLight& light : partly_occluded) {
     bool is_lit = true;
-    lamp.lanes.visit_others({start, start, start}, [&](std::size_t i) {
-      is_lit = !lamp.casters[i].hides(start);
+    light.lanes.visit_candidates({start, start, start}, [&](std::size_t i) {
+      is_lit = !light.occluders[i].occludes(start);
       return is_lit;
     });
-    if (is_lit) lamps |= lamp.bit;
+    if (is_lit) lights |= light.bit;
   }
-  return lamps;
+  return lights;
 }
 
-std::optional<ShadowCaster> Scene::State::shadow_caster(TriangleId triangle,
-                                                        const LightOptions& lamp,
-                                                        const Eigen::Vector3d& patch) const {
-  if (lamp.type == LightType::kPoint) {
-    const TrianglePass pass = triangle_pass(triangle, lamp.position, Eigen::Matrix3d::Identity());
+std::optional<Occluder> Scene::State::occluder(TriangleId triangle, const LightOptions& light,
+                                               const Eigen::Vector3d& patch) const {
+  if (light.type == LightType::kPoint) {
+    const EdgeFunctions pass =
+        edge_functions(triangle, light.position, Eigen::Matrix3d::Identity());
     if (pass.depth == 0) return std::nullopt;
-    return near_caster(triangle, pass, lamp.position, patch);
+    return point_light_occluder(triangle, pass, light.position, patch);
   }
   const TriangleSurface& surface = surfaces[triangle];
-  if (surface.plane.gradient.dot(lamp.direction) == 0) return std::nullopt;
-  return far_caster(triangle, surface, interiors[triangle], -lamp.direction);
+  if (surface.plane.gradient.dot(light.direction) == 0) return std::nullopt;
+  return directional_light_occluder(triangle, surface, interiors[triangle], -light.direction);
 }
 
-bool Scene::State::collect_casters(const LightOptions& lamp, std::span<const Eigen::Vector3d> patch,
-                                   const AffineForm& front, std::size_t most,
-                                   std::vector<TriangleId>& found) {
-  const Eigen::Vector3d eye = lamp.type == LightType::kPoint
-                                  ? lamp.position
-                                  : Eigen::Vector3d(patch[0] - kFar * size_m * lamp.direction);
+bool Scene::State::collect_occluders(const LightOptions& light,
+                                     std::span<const Eigen::Vector3d> patch,
+                                     const AffineForm& front, std::size_t most,
+                                     std::vector<TriangleId>& found) {
+  const Eigen::Vector3d eye = light.type == LightType::kPoint
+                                  ? light.position
+                                  : Eigen::Vector3d(patch[0] - kFar * size_m * light.direction);
   const auto pyramid = pyramid_around(eye, patch);
   found.clear();
-  return pyramid && occluders(0).collect({&*pyramid, 1}, front, most, found) &&
+  return pyramid && bvh(0).collect({&*pyramid, 1}, front, most, found) &&
          std::all_of(found.begin(), found.end(), [&](TriangleId triangle) {
            return triangle < surfaces.size() - cutouts.size();
          });
 }
 
-bool Scene::State::find_light(const Patch& patch, std::size_t most, PatchLight& light) {
+bool Scene::State::find_lighting(const Patch& patch, std::size_t most, PatchLighting& lighting) {
   const AffineForm& plane = surfaces[patch.triangle].plane;
   const double offset = illumination->shadow_offset();
-  light.lift = offset * patch.side * plane.gradient;
-  light.proven = 0;
-  light.doubtful.clear();
-  // Ways to lamps begin above the surface: what reaches less high cannot be in them.
+  lighting.lift = offset * patch.side * plane.gradient;
+  lighting.unoccluded = 0;
+  lighting.partly_occluded.clear();
+  // Paths to lights begin above the surface: what reaches less high cannot be in them.
   const AffineForm front{patch.side * plane.gradient, patch.side * plane.offset - 0.5 * offset};
-  const std::span<const LightOptions> lamps = illumination->lights();
+  const std::span<const LightOptions> lights = illumination->lights();
   std::vector<TriangleId> found;
-  for (std::size_t k = 0; k < lamps.size(); ++k) {
-    const double height = lamps[k].type == LightType::kPoint
-                              ? plane.at(lamps[k].position)
-                              : -plane.gradient.dot(lamps[k].direction);
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const double height = lights[k].type == LightType::kPoint
+                              ? plane.at(lights[k].position)
+                              : -plane.gradient.dot(lights[k].direction);
     if (!(patch.side * height > 0)) continue;
     found.clear();
-    if (lamps[k].shadows && !collect_casters(lamps[k], patch.corners, front, most, found))
+    if (lights[k].shadows && !collect_occluders(lights[k], patch.corners, front, most, found))
       return false;
-    add_lamp(LampSet{1} << k, patch, found, light);
+    add_light(LightSet{1} << k, patch, found, lighting);
   }
   return true;
 }
 
-void Scene::State::find_light(const Patch& patch, const WholeLight& whole,
-                              PatchLight& light) const {
-  light.lift = illumination->shadow_offset() * patch.side * surfaces[patch.triangle].plane.gradient;
-  light.proven = whole.proven;
-  light.doubtful.clear();
-  for (const LampCandidates& lamp : *whole.candidates)
-    add_lamp(lamp.bit, patch, lamp.triangles, light);
+void Scene::State::find_lighting(const Patch& patch, const TriangleLighting& whole,
+                                 PatchLighting& lighting) const {
+  lighting.lift =
+      illumination->shadow_offset() * patch.side * surfaces[patch.triangle].plane.gradient;
+  lighting.unoccluded = whole.unoccluded;
+  lighting.partly_occluded.clear();
+  for (const OccluderCandidates& light : *whole.candidates)
+    add_light(light.bit, patch, light.triangles, lighting);
 }
 
-void Scene::State::add_lamp(LampSet bit, const Patch& patch, std::span<const TriangleId> found,
-                            PatchLight& light) const {
-  DoubtfulLamp lamp{bit, {}, {}};
+void Scene::State::add_light(LightSet bit, const Patch& patch, std::span<const TriangleId> found,
+                             PatchLighting& lighting) const {
+  PartlyOccludedLight light{bit, {}, {}};
   const LightOptions& options =
       illumination->lights()[static_cast<std::size_t>(std::countr_zero(bit))];
-  if (!keep_casters(options, patch, light.lift, found, lamp.casters)) return;
-  if (lamp.casters.empty()) {
-    light.proven |= bit;
+  if (!select_occluders(options, patch, lighting.lift, found, light.occluders)) return;
+  if (light.occluders.empty()) {
+    lighting.unoccluded |= bit;
     return;
   }
   double reach_m = 0;
   for (const Eigen::Vector3d& corner : patch.corners)
     reach_m = std::max(reach_m, (corner - patch.corners[0]).norm());
-  lamp.lanes = CasterLanes(patch.corners[0] + light.lift, 2 * reach_m);
-  for (const ShadowCaster& caster : lamp.casters) lamp.lanes.add(caster.forms);
-  light.doubtful.push_back(std::move(lamp));
+  light.lanes = OccluderLanes(patch.corners[0] + lighting.lift, 2 * reach_m);
+  for (const Occluder& occluder : light.occluders) light.lanes.add(occluder.forms);
+  lighting.partly_occluded.push_back(std::move(light));
 }
 
-bool Scene::State::keep_casters(const LightOptions& lamp, const Patch& patch,
-                                const Eigen::Vector3d& lift, std::span<const TriangleId> found,
-                                std::vector<ShadowCaster>& casters) const {
+bool Scene::State::select_occluders(const LightOptions& light, const Patch& patch,
+                                    const Eigen::Vector3d& lift, std::span<const TriangleId> found,
+                                    std::vector<Occluder>& occluders) const {
   const auto& corners = patch.corners;
   const Ball ball = ball_around(corners, lift);
   for (const TriangleId triangle : found) {
-    const auto caster = shadow_caster(triangle, lamp, corners[0]);
-    if (!caster) continue;
+    const auto occluder = occluder(triangle, light, corners[0]);
+    if (!occluder) continue;
     bool covers = true;
     const bool is_beside =
-        std::any_of(caster->forms.begin(), caster->forms.end(), [&](const AffineForm& form) {
+        std::any_of(occluder->forms.begin(), occluder->forms.end(), [&](const AffineForm& form) {
           const double middle = form.at(ball.centre);
           const double reach = ball.radius * form.gradient.norm();
           if (std::abs(middle) > reach) {
@@ -273,56 +276,59 @@ bool Scene::State::keep_casters(const LightOptions& lamp, const Patch& patch,
         });
     if (is_beside) continue;
     if (covers) return false;
-    casters.push_back(*caster);
+    occluders.push_back(*occluder);
   }
   return true;
 }
 
-const WholeLight& Scene::State::whole_light(TriangleId triangle, double side) {
+const TriangleLighting& Scene::State::triangle_lighting(TriangleId triangle, double side) {
   constexpr std::size_t kSimple = 6;
   constexpr std::size_t kMost = 96;
-  std::call_once(whole_lights_built,
-                 [this] { whole_lights = std::make_unique<WholeLight[]>(2 * surfaces.size()); });
-  WholeLight& whole = whole_lights[2 * triangle + (side > 0 ? 1 : 0)];
+  std::call_once(triangle_lightings_built, [this] {
+    triangle_lightings = std::make_unique<TriangleLighting[]>(2 * surfaces.size());
+  });
+  TriangleLighting& whole = triangle_lightings[2 * triangle + (side > 0 ? 1 : 0)];
   std::call_once(whole.found, [&] {
     const auto corners = corners_of(surfaces[triangle], interiors[triangle]);
-    PatchLight light;
-    if (!find_light({triangle, side, {corners.begin(), corners.end()}}, kMost, light)) return;
+    PatchLighting lighting;
+    if (!find_lighting({triangle, side, {corners.begin(), corners.end()}}, kMost, lighting)) return;
     std::size_t count = 0;
-    for (const DoubtfulLamp& lamp : light.doubtful) count += lamp.casters.size();
+    for (const PartlyOccludedLight& light : lighting.partly_occluded)
+      count += light.occluders.size();
     if (count <= kSimple) {
-      whole.light = std::make_unique<const PatchLight>(std::move(light));
+      whole.lighting = std::make_unique<const PatchLighting>(std::move(lighting));
       return;
     }
-    whole.candidates = std::make_unique<std::vector<LampCandidates>>(light.doubtful.size());
-    whole.proven = light.proven;
-    for (std::size_t k = 0; k < light.doubtful.size(); ++k) {
-      (*whole.candidates)[k].bit = light.doubtful[k].bit;
-      for (const ShadowCaster& caster : light.doubtful[k].casters)
-        (*whole.candidates)[k].triangles.push_back(caster.triangle);
+    whole.candidates =
+        std::make_unique<std::vector<OccluderCandidates>>(lighting.partly_occluded.size());
+    whole.unoccluded = lighting.unoccluded;
+    for (std::size_t k = 0; k < lighting.partly_occluded.size(); ++k) {
+      (*whole.candidates)[k].bit = lighting.partly_occluded[k].bit;
+      for (const Occluder& occluder : lighting.partly_occluded[k].occluders)
+        (*whole.candidates)[k].triangles.push_back(occluder.triangle);
     }
   });
   return whole;
 }
 
-const PatchLight* Scene::find_light(TriangleId triangle, std::span<const SightPyramid> sweep,
-                                    std::size_t most, PatchLight& light) const {
+const PatchLighting* Scene::find_lighting(TriangleId triangle, std::span<const Frustum> sweep,
+                                          std::size_t most, PatchLighting& lighting) const {
   if (!state_->illumination || !moving_objects().empty()) return nullptr;
   const AffineForm& plane = state_->surfaces[triangle].plane;
   const double side = plane.at(sweep.front().eye) > 0 ? 1 : -1;
-  for (const SightPyramid& pyramid : sweep)
+  for (const Frustum& pyramid : sweep)
     if (!(side * plane.at(pyramid.eye) > 0)) return nullptr;
-  const WholeLight& whole = state_->whole_light(triangle, side);
-  if (whole.light) return whole.light.get();
+  const TriangleLighting& whole = state_->triangle_lighting(triangle, side);
+  if (whole.lighting) return whole.lighting.get();
   const Patch patch{
       triangle, side,
       patch_corners(corners_of(state_->surfaces[triangle], state_->interiors[triangle]), sweep)};
   if (patch.corners.empty()) return nullptr;
   if (whole.candidates)
-    state_->find_light(patch, whole, light);
-  else if (!state_->find_light(patch, most, light))
+    state_->find_lighting(patch, whole, lighting);
+  else if (!state_->find_lighting(patch, most, lighting))
     return nullptr;
-  return &light;
+  return &lighting;
 }
 
 }  // namespace saccade

@@ -53,10 +53,10 @@ fs::path texture_file(const TextureReference& reference, const MaterialContext& 
   return (context.mesh_file.parent_path() / name).lexically_normal();
 }
 
-Picture decode_embedded(const aiTexture& texture, const std::string& place) {
+Picture decode_embedded(const aiTexture& texture, const std::string& source_name) {
   if (texture.mHeight == 0) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(texture.pcData);
-    return decode_picture({bytes, bytes + texture.mWidth}, place);
+    return decode_picture({bytes, bytes + texture.mWidth}, source_name);
   }
   Picture picture{ImageF(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight)), {}};
   std::transform(texture.pcData, texture.pcData + picture.grey.size(), picture.grey.data(),
@@ -70,12 +70,12 @@ Picture decode_embedded(const aiTexture& texture, const std::string& place) {
 TexturePair load_texture(const TextureReference& reference, const MaterialContext& context) {
   if (const aiTexture* embedded = context.scene.GetEmbeddedTexture(reference.name.c_str())) {
     const std::string hint = embedded->achFormatHint;
-    return make_textures(
-        decode_embedded(*embedded, fmt::format("{}:{}.{}", context.place, reference.name, hint)),
-        reference.wrap);
+    return make_textures(decode_embedded(*embedded, fmt::format("{}:{}.{}", context.source_name,
+                                                                reference.name, hint)),
+                         reference.wrap);
   }
   return context.textures.colour(context.source, texture_file(reference, context), reference.wrap,
-                                 context.place);
+                                 context.source_name);
 }
 
 double grey_of(const aiColor3D& colour, bool is_linear) {
@@ -116,7 +116,7 @@ ImportedMaterial import_material(const aiMaterial& material, const MaterialConte
   }
   if (const auto alpha = find_texture(material, aiTextureType_OPACITY))
     result.material.opacity = context.textures.opacity(
-        context.source, texture_file(*alpha, context), alpha->wrap, context.place);
+        context.source, texture_file(*alpha, context), alpha->wrap, context.source_name);
   return result;
 }
 

@@ -15,7 +15,7 @@ struct MaterialContext {
   const aiScene& scene;
   const FileSource& source;
   std::filesystem::path mesh_file;  ///< in the source
-  std::string place;                ///< of the mesh file, for errors
+  std::string source_name;          ///< of the mesh file, for errors
   TextureLibrary& textures;
 };
 

@@ -34,7 +34,7 @@ Eigen::Affine3d transform_of(const aiMatrix4x4& m) {
 }
 
 const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::path& file,
-                    const std::string& place) {
+                    const std::string& source_name) {
   importer.SetIOHandler(files);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -42,19 +42,21 @@ const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::pa
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const std::string extension = file.extension().string();
   if (!importer.IsExtensionSupported(extension))
-    throw InputError(place, fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
-                                        "COLLADA, FBX, STL and others can",
-                                        extension));
+    throw InputError(source_name,
+                     fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
+                                 "COLLADA, FBX, STL and others can",
+                                 extension));
   const aiScene* scene =
       importer.ReadFile(file.generic_string(),
                         aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType);
   for (const std::string& missing : files->missing())
     if (missing.ends_with(".mtl") &&
         std::ranges::none_of(files->opened(), [](const auto& f) { return f.ends_with(".mtl"); }))
-      throw InputError(place, fmt::format("its material library {} does not exist",
-                                          fs::path(missing).lexically_normal().string()));
+      throw InputError(source_name, fmt::format("its material library {} does not exist",
+                                                fs::path(missing).lexically_normal().string()));
   if (scene == nullptr)
-    throw InputError(place, fmt::format("cannot be read as a mesh: {}", importer.GetErrorString()));
+    throw InputError(source_name,
+                     fmt::format("cannot be read as a mesh: {}", importer.GetErrorString()));
   return *scene;
 }
 
@@ -73,8 +75,8 @@ std::vector<ImportedMaterial> used_materials(const MaterialContext& context) {
 /// Copies assimp's meshes into one.
 class Flattener {
  public:
-  Flattener(const aiScene& scene, std::vector<ImportedMaterial> materials, std::string place)
-      : scene_(scene), materials_(std::move(materials)), place_(std::move(place)) {
+  Flattener(const aiScene& scene, std::vector<ImportedMaterial> materials, std::string source_name)
+      : scene_(scene), materials_(std::move(materials)), source_name_(std::move(source_name)) {
     for (const ImportedMaterial& imported : materials_)
       mesh_.materials.push_back(imported.material);
   }
@@ -87,7 +89,7 @@ class Flattener {
   }
 
   [[nodiscard]] Mesh take() {
-    if (mesh_.triangles.empty()) throw InputError(place_, "holds no visible triangle");
+    if (mesh_.triangles.empty()) throw InputError(source_name_, "holds no visible triangle");
     return std::move(mesh_);
   }
 
@@ -97,9 +99,10 @@ class Flattener {
     const Material& material = imported.material;
     const bool textured = material.texture != nullptr || material.opacity != nullptr;
     if (!imported.invisible && textured && !part.HasTextureCoords(imported.uv_channel))
-      throw InputError(place_, fmt::format("material '{}' has a texture, but its faces have no "
-                                           "texture coordinates",
-                                           material_name(part)));
+      throw InputError(source_name_,
+                       fmt::format("material '{}' has a texture, but its faces have no "
+                                   "texture coordinates",
+                                   material_name(part)));
     const std::size_t first = mesh_.vertices.size();
     const Eigen::Matrix3d normal_matrix = file_from_node.linear().inverse().transpose();
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
@@ -125,7 +128,7 @@ class Flattener {
 
   void check_finite(const Eigen::Vector3d& vertex, std::size_t index) const {
     if (!vertex.allFinite())
-      throw InputError(place_, fmt::format("vertex {} is not finite", index));
+      throw InputError(source_name_, fmt::format("vertex {} is not finite", index));
   }
 
   static Eigen::Vector3d normal_of(const aiMesh& part, unsigned i, const Eigen::Matrix3d& matrix) {
@@ -140,7 +143,8 @@ class Flattener {
     if (!part.HasTextureCoords(channel)) return Eigen::Vector2d::Zero();
     const Eigen::Vector2d uv = vector_of(part.mTextureCoords[channel][i]).head<2>();
     if (!uv.allFinite())
-      throw InputError(place_, fmt::format("texture coordinate of vertex {} is not finite", i));
+      throw InputError(source_name_,
+                       fmt::format("texture coordinate of vertex {} is not finite", i));
     return uv;
   }
 
@@ -161,20 +165,21 @@ class Flattener {
 
   const aiScene& scene_;
   std::vector<ImportedMaterial> materials_;
-  std::string place_;
+  std::string source_name_;
   Mesh mesh_;
 };
 
 }  // namespace
 
 Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& source) {
-  const std::string place = location.text();
+  const std::string source_name = location.text();
   if (!location.archive.empty())
-    throw InputError(place, "relief parameters cannot be read from within an archive");
+    throw InputError(source_name, "relief parameters cannot be read from within an archive");
   const ReliefOptions options = read_relief_options(location.file);
   if (!options.texture) return generate_relief(options);
   const WrapModes wrap{Wrap::kClamp, Wrap::kClamp};
-  return generate_relief(options, textures_.colour(source, *options.texture, wrap, place).grey);
+  return generate_relief(options,
+                         textures_.colour(source, *options.texture, wrap, source_name).grey);
 }
 
 Mesh MeshImporter::read(const fs::path& file) {
@@ -182,14 +187,14 @@ Mesh MeshImporter::read(const fs::path& file) {
   if (!problem.empty()) throw InputError(file.string(), problem);
   const FileLocation location = FileLocation::parse(file);
   const FileSource& source = sources_.try_emplace(location.archive, location.archive).first->second;
-  const std::string place = location.text();
-  if (!source.contains(location.file)) throw InputError(place, "is not in this archive");
-  if (place.ends_with(".relief.yaml")) return read_relief(location, source);
+  const std::string source_name = location.text();
+  if (!source.contains(location.file)) throw InputError(source_name, "is not in this archive");
+  if (source_name.ends_with(".relief.yaml")) return read_relief(location, source);
 
   Assimp::Importer importer;  // owns the AssimpFiles
-  const aiScene& scene = load(importer, new AssimpFiles(source), location.file, place);
-  const MaterialContext context{scene, source, location.file, place, textures_};
-  Flattener flattener(scene, used_materials(context), place);
+  const aiScene& scene = load(importer, new AssimpFiles(source), location.file, source_name);
+  const MaterialContext context{scene, source, location.file, source_name, textures_};
+  Flattener flattener(scene, used_materials(context), source_name);
   flattener.add(*scene.mRootNode, Eigen::Affine3d::Identity());
   return flattener.take();
 }

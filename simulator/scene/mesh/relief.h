@@ -33,11 +33,11 @@ class SmoothNoise {
 };
 
 /// The height function of a relief:
-///   h(p) = H a(p) f(phase(p)) + sum_k H_k N_k(p),   phase(p) = (p . across + bend N_b(p)) /
-///   wavelength
-/// where f rises smoothly from 0 to 1 over the share `rise` of a period and falls over the rest, a
-/// in [0.5, 1] lets crests rise and sink, and all N are SmoothNoise. C2. Additions and products
-/// alone, so that builds without fused operations agree to the bit.
+///   h(p) = H a(p) f(phase(p)) + sum_k H_k N_k(p)
+///   phase(p) = (p . across + bend N_b(p)) / wavelength
+/// where f rises smoothly from 0 to 1 over the fraction `rise` of a period and falls over the rest,
+/// a in [0.5, 1] lets crests rise and sink, and all N are SmoothNoise. C2. Uses additions and
+/// products alone, so that builds without fused operations agree to the bit.
 class Relief {
  public:
   /// Throws InputError when an option is out of range.

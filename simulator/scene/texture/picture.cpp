@@ -19,8 +19,8 @@ namespace {
 
 std::span<const std::byte> as_bytes(const Bytes& bytes) { return std::as_bytes(std::span(bytes)); }
 
-std::string lower_extension(const std::string& place) {
-  std::string extension = std::filesystem::path(place).extension().string();
+std::string lower_extension(const std::string& source_name) {
+  std::string extension = std::filesystem::path(source_name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
 }
@@ -48,14 +48,14 @@ ImageF alpha_of(const ImageRgba8& image) {
   return converted(image, [](const Rgba8& p) { return static_cast<float>(p[3]) / 255; });
 }
 
-ImageRgbF decode_hdr(const Bytes& bytes, const std::string& place) {
+ImageRgbF decode_hdr(const Bytes& bytes, const std::string& source_name) {
   cv::Mat decoded;
   try {
     decoded = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& error) {
-    throw InputError(place, fmt::format("cannot be decoded: {}", error.err));
+    throw InputError(source_name, fmt::format("cannot be decoded: {}", error.err));
   }
-  if (decoded.type() != CV_32FC3) throw InputError(place, "is not a Radiance HDR picture");
+  if (decoded.type() != CV_32FC3) throw InputError(source_name, "is not a Radiance HDR picture");
   ImageRgbF image(decoded.cols, decoded.rows);
   for (int y = 0; y < decoded.rows; ++y)
     for (int x = 0; x < decoded.cols; ++x) {
@@ -65,39 +65,39 @@ ImageRgbF decode_hdr(const Bytes& bytes, const std::string& place) {
   return image;
 }
 
-void check_light(const ImageF& image, const std::string& place) {
+void check_light(const ImageF& image, const std::string& source_name) {
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x)
       if (!(image(x, y) >= 0 && std::isfinite(image(x, y))))
-        throw InputError(
-            place, fmt::format("texel ({}, {}) is {}, but light is finite and not negative", x, y,
-                               image(x, y)));
+        throw InputError(source_name,
+                         fmt::format("texel ({}, {}) is {}, but light is finite and not negative",
+                                     x, y, image(x, y)));
 }
 
 }  // namespace
 
-Picture decode_picture(const Bytes& bytes, const std::string& place) {
-  const std::string extension = lower_extension(place);
+Picture decode_picture(const Bytes& bytes, const std::string& source_name) {
+  const std::string extension = lower_extension(source_name);
   Picture picture;
   if (extension == ".exr") {
-    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), place));
+    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name));
   } else if (extension == ".hdr") {
-    picture.grey = grey_of(decode_hdr(bytes, place));
+    picture.grey = grey_of(decode_hdr(bytes, source_name));
   } else {
-    const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), place);
+    const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
     picture.grey = grey_of(image);
     picture.opacity = alpha_of(image);
     if (std::ranges::all_of(picture.opacity.pixels(), [](float a) { return a >= 0.5F; }))
       picture.opacity = {};
   }
-  check_light(picture.grey, place);
+  check_light(picture.grey, source_name);
   return picture;
 }
 
-ImageF decode_opacity(const Bytes& bytes, const std::string& place) {
-  const std::string extension = lower_extension(place);
-  if (extension == ".exr" || extension == ".hdr") return decode_picture(bytes, place).grey;
-  const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), place);
+ImageF decode_opacity(const Bytes& bytes, const std::string& source_name) {
+  const std::string extension = lower_extension(source_name);
+  if (extension == ".exr" || extension == ".hdr") return decode_picture(bytes, source_name).grey;
+  const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
   if (std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p[3] != 255; }))
     return alpha_of(image);
   return converted(image, [](const Rgba8& p) { return luminance(p[0], p[1], p[2]) / 255.0F; });

@@ -77,7 +77,7 @@ ImageF widened(ImageF image) {
   return wide;
 }
 
-/// The share of texel `i` that lies in from..to.
+/// The fraction of texel `i` that lies in from..to.
 double overlap(double from, double to, int i) {
   return std::max(0.0, std::min(to, i + 1.0) - std::max(from, static_cast<double>(i)));
 }
@@ -157,7 +157,7 @@ TexelRange Texture::range_across_border(const TexelBox& box) const {
 }
 
 TexelRange Texture::range_within(int i0, int i1, int j0, int j1) const {
-  constexpr unsigned kMost = 4;  // values looked at per side
+  constexpr unsigned kMost = 4;  // values examined per side
   const auto extent = static_cast<unsigned>(std::max(i1 - i0, j1 - j0));
   const int level = std::bit_width(extent / kMost);
   TexelRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};

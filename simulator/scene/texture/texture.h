@@ -50,8 +50,9 @@ class Texture {
   /// pictures, continuous in all arguments; at level <= 0 the same as without one.
   [[nodiscard]] double at_texel(double x, double y, double level) const;
 
-  /// The pictures of the pyramid, this one included. Picture k of W_k x H_k texels has at (x + 0.5)
-  /// W_k / W - 0.5, and likewise in y, what this one has at x.
+  /// The pictures of the pyramid, this one included. What this one has at x, picture k of
+  /// W_k x H_k texels has (likewise in y) at
+  ///   x_k = (x + 0.5) W_k / W - 0.5
   [[nodiscard]] std::size_t level_count() const { return coarser().size() + 1; }
   [[nodiscard]] const Texture& level(std::size_t k) const {
     return k == 0 ? *this : coarser()[k - 1];
@@ -79,7 +80,7 @@ class Texture {
 
  private:
   struct Pyramid;
-  /// Levels 1, 2 ... of the pyramid, made when they are first asked for.
+  /// LogIntensities 1, 2 ... of the pyramid, made when they are first asked for.
   [[nodiscard]] const std::vector<Texture>& coarser() const;
   [[nodiscard]] double across_border(double x, double y) const;
   [[nodiscard]] std::array<float, 4> cell_across_border(std::int64_t i, std::int64_t j) const;

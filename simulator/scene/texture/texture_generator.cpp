@@ -143,10 +143,10 @@ class Generator {
     if (length < kShortestRibbed) return;
     add_stroke(center - length * axis, center + 0.9F * length * axis, width, level);
     if (length < kShortestVeined) return;
-    for (const float place : {-0.5F, -0.1F, 0.3F})
+    for (const float offset : {-0.5F, -0.1F, 0.3F})
       for (const float side : {-0.6F, 0.6F}) {
-        const Eigen::Vector2f root = center + place * length * axis;
-        const Eigen::Vector2f reach = 0.3F * length * axis + (1 - place * place) * side * across;
+        const Eigen::Vector2f root = center + offset * length * axis;
+        const Eigen::Vector2f reach = 0.3F * length * axis + (1 - offset * offset) * side * across;
         add_stroke(root, root + reach, 0.7 * width, level);
       }
   }

@@ -16,17 +16,17 @@ class Fields;
 /// Mumford and Huang, IJCV 41, 2001), thin lines, blocks of strokes like text, and smooth noise.
 /// Nothing in it repeats. Lengths are in metres of the surface that it covers.
 struct TextureOptions {
-  std::array<double, 2> size_m{2, 2};  ///< width, height
+  std::array<double, 2> size_m{2, 2};
   double texels_per_m = 250;
   std::uint64_t seed = 1;
-  std::array<double, 2> albedo{0.05, 0.95};  ///< darkest, lightest; linear light
-  double edge_texels = 1.4;                  ///< width over which edges blend
+  std::array<double, 2> albedo{0.05, 0.95};
+  double edge_texels = 1.4;
 
   struct Shapes {
-    std::array<double, 2> diameter_m{0.02, 0.8};  ///< smallest, largest; density ~ diameter^-3
-    double coverage = 3;                          ///< area of all shapes over area of the texture
-    std::array<double, 2> opacity{0.3, 1};        ///< range: faint and strong edges
-    double leaves = 0;  ///< share of leaves with veins; the rest discs, rectangles, polygons
+    std::array<double, 2> diameter_m{0.02, 0.8};
+    double coverage = 3;
+    std::array<double, 2> opacity{0.3, 1};
+    double leaves = 0;
   } shapes;
   struct Lines {
     double per_m2 = 4;
@@ -34,20 +34,20 @@ struct TextureOptions {
     double width_m = 0.008;
   } lines;
   struct Text {
-    double per_m2 = 0.8;  ///< blocks of text
+    double per_m2 = 0.8;
     double height_m = 0.04;
-    std::array<int, 2> lines{1, 5};     ///< fewest, most
-    std::array<int, 2> letters{4, 16};  ///< in a line
+    std::array<int, 2> lines{1, 5};
+    std::array<int, 2> letters{4, 16};
   } text;
   struct Noise {
-    std::array<double, 2> wavelength_m{0.03, 0.5};  ///< shortest, longest
-    double strength = 0.1;                          ///< largest change of the log albedo
+    std::array<double, 2> wavelength_m{0.03, 0.5};
+    double strength = 0.1;
   } noise;
 };
 
 void describe(config::Fields& fields, TextureOptions& options);
 
-/// Reads a *.texture.yaml. Throws InputError with its place.
+/// Reads a *.texture.yaml. Throws InputError with its position.
 [[nodiscard]] TextureOptions read_texture_options(const std::filesystem::path& file);
 
 }  // namespace saccade

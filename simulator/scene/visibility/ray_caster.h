@@ -28,7 +28,7 @@ struct TriangleRun {
 /// built.
 class RayCaster {
  public:
-  /// Whether a triangle is opaque where a ray meets its plane. Asked for triangles with
+  /// Whether a triangle is opaque where a ray intersects its plane. Asked for triangles with
   /// cutouts only; thread-safe.
   using IsOpaque = std::function<bool(const Ray&, TriangleId)>;
 

@@ -27,11 +27,11 @@ struct Interval {
 /// and the half space in front.
 class Region {
  public:
-  Region(std::span<const SightPyramid> sweep, const AffineForm& front)
+  Region(std::span<const Frustum> sweep, const AffineForm& front)
       : count_(sweep.size()), front_(front) {
     SACCADE_CHECK(!sweep.empty() && sweep.size() <= kMostPyramids);
     for (std::size_t m = 0; m < count_; ++m) {
-      const SightPyramid& pyramid = sweep[m];
+      const Frustum& pyramid = sweep[m];
       const Eigen::Vector3d axis = pyramid.corners[0] + pyramid.corners[2];
       for (std::size_t k = 0; k < 4; ++k) {
         Eigen::Vector3d normal =
@@ -124,7 +124,7 @@ class Region {
 
 }  // namespace
 
-OccluderTree::OccluderTree(std::span<const Corners> triangles, std::span<const TriangleId> ids) {
+TriangleBvh::TriangleBvh(std::span<const Corners> triangles, std::span<const TriangleId> ids) {
   SACCADE_CHECK(triangles.size() == ids.size());
   triangles_.reserve(triangles.size());
   for (std::size_t i = 0; i < ids.size(); ++i) triangles_.push_back({triangles[i], ids[i]});
@@ -134,8 +134,7 @@ OccluderTree::OccluderTree(std::span<const Corners> triangles, std::span<const T
 
 /// Where the surfaces of both parts' boxes times their triangles are least, of some planes across
 /// the longest extent of the centres.
-std::uint32_t OccluderTree::divide(std::span<Occluder> triangles,
-                                   const Eigen::AlignedBox3f& centres) {
+std::uint32_t TriangleBvh::divide(std::span<Item> triangles, const Eigen::AlignedBox3f& centres) {
   constexpr std::size_t kBins = 16;
   struct Bin {
     Eigen::AlignedBox3f box;
@@ -153,14 +152,14 @@ std::uint32_t OccluderTree::divide(std::span<Occluder> triangles,
   };
   Eigen::Index axis = 0;
   const float extent = centres.sizes().maxCoeff(&axis);
-  const auto bin_of = [&](const Occluder& occluder) {
+  const auto bin_of = [&](const Item& occluder) {
     const float share = (centre_of(occluder.corners)[axis] - centres.min()[axis]) / extent;
     return std::min(static_cast<std::size_t>(share * static_cast<float>(kBins)), kBins - 1);
   };
   const auto half = static_cast<std::uint32_t>(triangles.size() / 2);
   if (!(extent > 0)) return half;
   std::array<Bin, kBins> bins;
-  for (const Occluder& occluder : triangles) {
+  for (const Item& occluder : triangles) {
     Bin& bin = bins[bin_of(occluder)];
     for (const Eigen::Vector3f& corner : occluder.corners) bin.box.extend(corner);
     ++bin.count;
@@ -183,11 +182,11 @@ std::uint32_t OccluderTree::divide(std::span<Occluder> triangles,
     sum.add(bins[k]);
   }
   const auto middle = std::partition(triangles.begin(), triangles.end(),
-                                     [&](const Occluder& each) { return bin_of(each) < best; });
+                                     [&](const Item& each) { return bin_of(each) < best; });
   return static_cast<std::uint32_t>(middle - triangles.begin());
 }
 
-void OccluderTree::build(std::uint32_t first, std::uint32_t count, int depth) {
+void TriangleBvh::build(std::uint32_t first, std::uint32_t count, int depth) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   Eigen::AlignedBox3f box, centres;
@@ -210,8 +209,8 @@ void OccluderTree::build(std::uint32_t first, std::uint32_t count, int depth) {
 }
 
 template <class Use>
-void OccluderTree::visit(std::span<const SightPyramid> sweep, const AffineForm& front,
-                         const Use& use) const {
+void TriangleBvh::visit(std::span<const Frustum> sweep, const AffineForm& front,
+                        const Use& use) const {
   if (nodes_.empty()) return;
   const Region region(sweep, front);
   const bool is_one = region.is_one();
@@ -259,7 +258,7 @@ void OccluderTree::visit(std::span<const SightPyramid> sweep, const AffineForm& 
   }
 }
 
-bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const {
+bool TriangleBvh::may_intersect(std::span<const Frustum> sweep, const AffineForm& front) const {
   bool any = false;
   visit(sweep, front, [&](TriangleId) {
     any = true;
@@ -268,8 +267,8 @@ bool OccluderTree::may_show(std::span<const SightPyramid> sweep, const AffineFor
   return any;
 }
 
-bool OccluderTree::collect(std::span<const SightPyramid> sweep, const AffineForm& front,
-                           std::size_t most, std::vector<TriangleId>& found) const {
+bool TriangleBvh::collect(std::span<const Frustum> sweep, const AffineForm& front, std::size_t most,
+                          std::vector<TriangleId>& found) const {
   bool all = true;
   visit(sweep, front, [&](TriangleId id) {
     all = found.size() < most;

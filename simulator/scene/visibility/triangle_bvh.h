@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "simulator/scene/visibility/ray_caster.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/visibility/ray_caster.h"
 
 namespace saccade {
 
@@ -24,29 +24,29 @@ struct AffineForm {
 
 /// Triangles in a tree of boxes, to prove that none of them can come into view. Conservative: a
 /// triangle counts as long as no side of the pyramids separates it. Thread-safe once built.
-class OccluderTree {
+class TriangleBvh {
  public:
   /// `ids`: one per triangle.
-  OccluderTree(std::span<const Corners> triangles, std::span<const TriangleId> ids);
+  TriangleBvh(std::span<const Corners> triangles, std::span<const TriangleId> ids);
 
-  /// Whether some triangle may reach into a pyramid of sight that moves evenly through those of
+  /// Whether some triangle may reach into a frustum that moves evenly through those of
   /// `sweep`, above zero of `front`.
-  [[nodiscard]] bool may_show(std::span<const SightPyramid> sweep, const AffineForm& front) const;
+  [[nodiscard]] bool may_intersect(std::span<const Frustum> sweep, const AffineForm& front) const;
 
   /// Adds all such triangles to `found`, in a fixed order; false where it would hold more than
   /// `most`.
-  [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, const AffineForm& front,
+  [[nodiscard]] bool collect(std::span<const Frustum> sweep, const AffineForm& front,
                              std::size_t most, std::vector<TriangleId>& found) const;
 
  private:
-  struct Occluder {
+  struct Item {
     Corners corners;
     TriangleId id;
   };
 
   /// use(id) for all such triangles, until it returns false.
   template <class Use>
-  void visit(std::span<const SightPyramid> sweep, const AffineForm& front, const Use& use) const;
+  void visit(std::span<const Frustum> sweep, const AffineForm& front, const Use& use) const;
 
   /// A box; its children follow, or as a leaf it holds triangles first..first + count.
   struct Node {
@@ -57,10 +57,10 @@ class OccluderTree {
 
   void build(std::uint32_t first, std::uint32_t count, int depth = 0);
   /// Brings the triangles of both children together; returns the number in the first.
-  [[nodiscard]] static std::uint32_t divide(std::span<Occluder> triangles,
+  [[nodiscard]] static std::uint32_t divide(std::span<Item> triangles,
                                             const Eigen::AlignedBox3f& centres);
 
-  std::vector<Occluder> triangles_;  ///< in the order of the leaves
+  std::vector<Item> triangles_;  ///< in the order of the leaves
   std::vector<Node> nodes_;
 };
 

@@ -78,9 +78,9 @@ void replace_by_nearer(const MovingObject& object, const RayCaster& caster,
 }  // namespace
 
 Visibility::Visibility(std::optional<RayCaster> still, std::vector<MovingObject> objects,
-                       std::vector<RayCaster> casters)
-    : still_(std::move(still)), objects_(std::move(objects)), casters_(std::move(casters)) {
-  SACCADE_CHECK(objects_.size() == casters_.size() && (still_ || !objects_.empty()));
+                       std::vector<RayCaster> ray_casters)
+    : still_(std::move(still)), objects_(std::move(objects)), ray_casters_(std::move(ray_casters)) {
+  SACCADE_CHECK(objects_.size() == ray_casters_.size() && (still_ || !objects_.empty()));
 }
 
 void Visibility::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
@@ -92,7 +92,7 @@ void Visibility::nearest(std::span<const Ray> rays, std::span<TriangleId> triang
   std::fill(triangles.begin(), triangles.end(), kNothing);
   if (still_) still_->nearer(rays, triangles, distances);
   for (std::size_t k = 0; k < objects_.size(); ++k)
-    replace_by_nearer(objects_[k], casters_[k], rays, triangles, distances);
+    replace_by_nearer(objects_[k], ray_casters_[k], rays, triangles, distances);
 }
 
 void Visibility::find_blocked(std::span<const Ray> rays, std::span<const float> distances,
@@ -104,7 +104,7 @@ void Visibility::find_blocked(std::span<const Ray> rays, std::span<const float> 
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (blocked[i] || !where.meets(rays[i], static_cast<double>(distances[i]))) continue;
       const Ray local = where.local(rays[i]);
-      casters_[k].find_blocked({&local, 1}, distances.subspan(i, 1), blocked.subspan(i, 1));
+      ray_casters_[k].find_blocked({&local, 1}, distances.subspan(i, 1), blocked.subspan(i, 1));
     }
   }
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "simulator/scene/moving_object.h"
-#include "simulator/scene/visibility/ray_caster.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/visibility/ray_caster.h"
 
 namespace saccade {
 
@@ -16,14 +16,14 @@ namespace saccade {
           frame.rotation.transpose() * ray.direction, ray.time_s};
 }
 
-/// What a ray meets first among the triangles that stand still, in the world, and those of moving
+/// What a ray intersects first among the triangles that are static, in the world, and those of moving
 /// objects, each in its object's own frame. Rays go through the latter only where they pass an
 /// object's bounding sphere at their time. Thread-safe.
 class Visibility {
  public:
-  /// `still`: none where everything moves. `casters`: one for each of `objects`.
+  /// `still`: none where everything moves. `ray_casters`: one for each of `objects`.
   Visibility(std::optional<RayCaster> still, std::vector<MovingObject> objects,
-             std::vector<RayCaster> casters);
+             std::vector<RayCaster> ray_casters);
 
   /// The nearest triangle along each of at most 16 coherent rays.
   void nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
@@ -38,7 +38,7 @@ class Visibility {
  private:
   std::optional<RayCaster> still_;
   std::vector<MovingObject> objects_;
-  std::vector<RayCaster> casters_;
+  std::vector<RayCaster> ray_casters_;
 };
 
 }  // namespace saccade

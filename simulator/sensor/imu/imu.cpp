@@ -7,23 +7,32 @@
 namespace saccade {
 
 void describe(config::Fields& fields, ImuOptions& options) {
-  fields.value("rate_hz", options.rate_hz, "samples per second; 0: no IMU").range(0, 1e6);
-  fields.value("T_camera_imu", options.camera_from_imu,
-               "4 x 4, point in the camera = T * point in the IMU [m]");
-  fields.value("gyro_noise_density", options.gyroscope.density, "white noise [rad/s/sqrt(Hz)]")
+  fields.value("rate_hz", options.rate_hz, "Number of IMU samples per second. 0 disables the IMU.")
+      .range(0, 1e6);
+  fields.value(
+      "T_camera_imu", options.camera_from_imu,
+      "Pose as a 4 x 4 matrix: a point in the camera is T times the point in the IMU, in metres.");
+  fields
+      .value("gyro_noise_density", options.gyroscope.density,
+             "White noise density of the gyroscope, in rad/s/sqrt(Hz). 0 disables it.")
       .range(0, 1e3);
   fields
       .value("gyro_random_walk", options.gyroscope.random_walk,
-             "of the gyroscope's bias [rad/s^2/sqrt(Hz)]")
+             "Random walk of the gyroscope bias, in rad/s^2/sqrt(Hz). 0 keeps the bias constant.")
       .range(0, 1e3);
-  fields.value("gyro_bias", options.gyro_bias, "at the start [rad/s]").range(-1e3, 1e3);
-  fields.value("accel_noise_density", options.accelerometer.density, "white noise [m/s^2/sqrt(Hz)]")
+  fields.value("gyro_bias", options.gyro_bias, "Bias of the gyroscope at the start, in rad/s.")
+      .range(-1e3, 1e3);
+  fields
+      .value("accel_noise_density", options.accelerometer.density,
+             "White noise density of the accelerometer, in m/s^2/sqrt(Hz). 0 disables it.")
       .range(0, 1e3);
   fields
       .value("accel_random_walk", options.accelerometer.random_walk,
-             "of the accelerometer's bias [m/s^3/sqrt(Hz)]")
+             "Random walk of the accelerometer bias, in m/s^3/sqrt(Hz). 0 keeps the bias constant.")
       .range(0, 1e3);
-  fields.value("accel_bias", options.accel_bias, "at the start [m/s^2]").range(-1e3, 1e3);
+  fields
+      .value("accel_bias", options.accel_bias, "Bias of the accelerometer at the start, in m/s^2.")
+      .range(-1e3, 1e3);
 }
 
 ImuSample imu_sample(const Spline& motion, const Rigid3& camera_from_imu,

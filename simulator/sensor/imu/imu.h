@@ -14,12 +14,12 @@ inline const Eigen::Vector3d kStandardGravity(0, 0, -9.81);
 
 /// The inertial sensor (section `imu`); without noise unless asked for (imu_noise.h has the model).
 struct ImuOptions {
-  double rate_hz = 1000;     ///< 0: none
+  double rate_hz = 1000;
   Rigid3 camera_from_imu{};  ///< key T_camera_imu, 4 x 4
   TriadNoise gyroscope{};
   TriadNoise accelerometer{};
-  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();   ///< at the start [rad/s]
-  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  ///< at the start [m/s^2]
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  ///< [m/s^2]
 
   [[nodiscard]] ImuCalibration calibration() const { return {rate_hz, accelerometer, gyroscope}; }
 };

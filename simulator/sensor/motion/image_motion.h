@@ -12,7 +12,7 @@ namespace saccade {
 [[nodiscard]] Twist camera_twist(const SplineState& state);
 
 /// Twist of the camera as seen from a moving object, in the camera's frame: before it, the points
-/// of the object stand still.
+/// of the object are static.
 ///   v = R_c^T (v_c - v_o - w_o x (t_c - t_o)),   w = w_c - R_c^T w_o   (v_o, w_o in the world)
 [[nodiscard]] Twist relative_twist(const SplineState& camera, const SplineState& object);
 

@@ -45,15 +45,15 @@ double speed_between(const PinholeCamera& camera, const Eigen::Vector3d& ray, co
 }  // namespace
 
 RelativeTwists::RelativeTwists(const Scene& scene, const SplineState& camera, double t_s)
-    : scene_(scene), before_still_(camera_twist(camera)) {
+    : scene_(scene), relative_to_static_(camera_twist(camera)) {
   for (const MovingObject& object : scene.moving_objects())
-    before_moving_.push_back(relative_twist(camera, object.state(t_s)));
+    relative_to_moving_.push_back(relative_twist(camera, object.state(t_s)));
 }
 
-const Twist& RelativeTwists::before(TriangleId triangle) const {
+const Twist& RelativeTwists::relative_to(TriangleId triangle) const {
   const MovingObject* object = scene_.moving_object(triangle);
-  if (object == nullptr) return before_still_;
-  return before_moving_[static_cast<std::size_t>(object - scene_.moving_objects().data())];
+  if (object == nullptr) return relative_to_static_;
+  return relative_to_moving_[static_cast<std::size_t>(object - scene_.moving_objects().data())];
 }
 
 ObjectMotion::ObjectMotion(const Scene& scene, const Spline& world_from_camera, double from_s,
@@ -66,25 +66,26 @@ ObjectMotion::ObjectMotion(const Scene& scene, const Spline& world_from_camera, 
     for (const MovingObject& object : scene.moving_objects()) {
       const SplineState state = object.state(t_s);
       const Rigid3 object_from_camera = state.world_from_body.inverse() * camera.world_from_body;
-      looks_.push_back({object_from_camera.rotation_matrix(), object_from_camera.translation(),
-                        object.box(), relative_twist(camera, state), camera_twist(camera)});
+      snapshots_.push_back({object_from_camera.rotation_matrix(), object_from_camera.translation(),
+                            object.box(), relative_twist(camera, state), camera_twist(camera)});
     }
   }
 }
 
-InverseDepthRange ObjectMotion::met(const Look& look, const Eigen::Vector3d& ray,
-                                    double radius) const {
-  // The point at z on the ray, in the object's frame, is start + z * slope, give or take the cone's
-  // width and the motion until the next look, both affine in z: margin + z * spread.
-  const Eigen::Vector3d slope = look.object_from_camera * ray;
-  const double margin = reach_s_ * look.relative.head<3>().norm();
-  const double spread = radius + reach_s_ * look.relative.tail<3>().norm() * ray.norm();
+InverseDepthRange ObjectMotion::inverse_depths_in_cone(const Snapshot& snapshot,
+                                                       const Eigen::Vector3d& ray,
+                                                       double radius) const {
+  // The point at z on the ray, in the object's frame, is start + z * slope, up to the cone's
+  // width and the motion until the next snapshot, both affine in z: margin + z * spread.
+  const Eigen::Vector3d slope = snapshot.object_from_camera * ray;
+  const double margin = reach_s_ * snapshot.relative.head<3>().norm();
+  const double spread = radius + reach_s_ * snapshot.relative.tail<3>().norm() * ray.norm();
   double low = 0;
   double high = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
-    const double start = look.camera_in_object[axis];
-    clip(slope[axis] + spread, look.box.min()[axis] - margin - start, low, high);
-    clip(spread - slope[axis], start - margin - look.box.max()[axis], low, high);
+    const double start = snapshot.camera_in_object[axis];
+    clip(slope[axis] + spread, snapshot.box.min()[axis] - margin - start, low, high);
+    clip(spread - slope[axis], start - margin - snapshot.box.max()[axis], low, high);
   }
   if (low > high) return {kInfinity, 0};
   return {1 / high, 1 / low};
@@ -94,15 +95,15 @@ ImageSpeed ObjectMotion::bound(const PinholeCamera& camera, const Eigen::Vector3
                                double radius_px, const InverseDepthRange& seen) const {
   const double radius = kLensRoom * radius_px / std::min(camera.fx, camera.fy);
   ImageSpeed largest;
-  for (const Look& look : looks_) {
-    InverseDepthRange range = met(look, ray, radius);
+  for (const Snapshot& snapshot : snapshots_) {
+    InverseDepthRange range = inverse_depths_in_cone(snapshot, ray, radius);
     if (range.low > range.high || range.high < seen.low) continue;
     if (range.high == kInfinity) range.high = std::max(seen.high, range.low);
-    const ImageSpeed speed = image_speed_bound(camera, ray, radius_px, look.relative, range);
+    const ImageSpeed speed = image_speed_bound(camera, ray, radius_px, snapshot.relative, range);
     largest.fastest = std::max(largest.fastest, speed.fastest);
     largest.parallax =
         std::max({largest.parallax, speed.parallax,
-                  speed_between(camera, ray, look.relative, range, look.camera, seen)});
+                  speed_between(camera, ray, snapshot.relative, range, snapshot.camera, seen)});
   }
   return largest;
 }

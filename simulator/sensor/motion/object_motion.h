@@ -16,12 +16,12 @@ class RelativeTwists {
   RelativeTwists(const Scene& scene, const SplineState& camera, double t_s);
 
   /// Before the body of `triangle`; before the static scene for kNothing.
-  [[nodiscard]] const Twist& before(TriangleId triangle) const;
+  [[nodiscard]] const Twist& relative_to(TriangleId triangle) const;
 
  private:
   const Scene& scene_;
-  Twist before_still_;
-  std::vector<Twist> before_moving_;  ///< in the order of Scene::moving_objects()
+  Twist relative_to_static_;
+  std::vector<Twist> relative_to_moving_;  ///< in the order of Scene::moving_objects()
 };
 
 /// Where the moving objects of a scene can be seen within a short time, and how fast their points
@@ -41,7 +41,7 @@ class ObjectMotion {
 
  private:
   /// One object at one instant.
-  struct Look {
+  struct Snapshot {
     Eigen::Matrix3d object_from_camera;
     Eigen::Vector3d camera_in_object;
     Eigen::AlignedBox3d box;  ///< of the object, in its frame
@@ -49,13 +49,14 @@ class ObjectMotion {
     Twist camera;             ///< of the camera before the static scene
   };
 
-  /// Range of 1 / z of a look's box within `radius` (on the plane z = 1) of the direction; no
+  /// Range of 1 / z of a snapshot's box within `radius` (on the plane z = 1) of the direction; no
   /// range, low > high, where the box is not met. An infinite `high`: the camera may be inside.
-  [[nodiscard]] InverseDepthRange met(const Look& look, const Eigen::Vector3d& ray,
-                                      double radius) const;
+  [[nodiscard]] InverseDepthRange inverse_depths_in_cone(const Snapshot& snapshot,
+                                                         const Eigen::Vector3d& ray,
+                                                         double radius) const;
 
-  double reach_s_;  ///< around a look's instant for which it stands
-  std::vector<Look> looks_;
+  double reach_s_;  ///< around a snapshot's instant for which it stands
+  std::vector<Snapshot> snapshots_;
 };
 
 }  // namespace saccade

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "simulator/sensor/pixel/event_pixel.h"
-#include "simulator/sensor/signal/ray_sample.h"
 #include "simulator/sensor/signal/cell_bounds.h"
+#include "simulator/sensor/signal/ray_sample.h"
 
 namespace saccade {
 
@@ -132,12 +132,12 @@ template <class Signal, class Sample>
   const RadianceRange range = signal.range(lo, hi);
   if (thresholds.certify(range, hi.t_s)) return std::nullopt;
   if (thresholds.is_monotone(range) || hi.t_s - lo.t_s <= signal.tolerance_s()) {
-    if (thresholds.band().holds(thresholds.signal(hi))) return std::nullopt;
+    if (thresholds.band().contains(thresholds.signal(hi))) return std::nullopt;
     return Bracket<Sample>{lo, hi};
   }
   const Sample middle = signal.divide(lo, hi, depth);
   if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s)) {  // no double left between them
-    if (thresholds.band().holds(thresholds.signal(hi))) return std::nullopt;
+    if (thresholds.band().contains(thresholds.signal(hi))) return std::nullopt;
     return Bracket<Sample>{lo, hi};
   }
   if (auto exit = find_exit(signal, thresholds, lo, middle, depth + 1)) return exit;

@@ -11,16 +11,16 @@ struct Contrast {
   double off = 0.15;
 };
 
-/// Values between which a pixel stays silent.
+/// Values between which a pixel stays without an event.
 struct Band {
   double lower = 0;  ///< fires OFF when the signal falls to it
   double upper = 0;  ///< fires ON when the signal rises to it
 
-  [[nodiscard]] bool holds(double value) const { return value < upper && value > lower; }
+  [[nodiscard]] bool contains(double value) const { return value < upper && value > lower; }
 };
 
 /// An event pixel's memory: the level from which it measures contrast. The level is rebuilt from
-/// two counters, so it has no drift: a signal that returns to a former level meets exactly the
+/// two counters, so it has no drift: a signal that returns to a former level intersects exactly the
 /// former thresholds.
 class EventPixel {
  public:

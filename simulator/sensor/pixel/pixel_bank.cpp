@@ -16,13 +16,13 @@ void PixelBank::start(std::size_t i, double log_intensity, double t_s) {
   pixel.state = start_pixel(pixel.traits, log_intensity, t_s);
   update_thresholds(pixel);
   if (!noisy_.empty())
-    noisy_[i] = {NoisyState::kNotBlind,
+    noisy_[i] = {NoisyState::kNotRefractory,
                  noise_.spontaneous.start(pixel.traits.x, pixel.traits.y, t_s),
                  PhotoreceptorFilter::settled(log_intensity)};
 }
 
 void PixelBank::update_thresholds(Pixel& pixel) const {
-  pixel.thresholds = Thresholds(pixel.state.level.band(), pixel.traits.drift_per_s,
+  pixel.thresholds = Thresholds(pixel.state.reference.band(), pixel.traits.drift_per_s,
                                 options_.log_eps, pixel.state.reference_s);
 }
 

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulator/sensor/pixel/crossing.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/state_bytes.h"
+#include "simulator/sensor/pixel/crossing.h"
 #include "simulator/sensor/pixel/pixel_noise.h"
-#include "simulator/sensor/rays/pixel_rays.h"
 #include "simulator/sensor/pixel/pixel_sensor.h"
 #include "simulator/sensor/pixel/pixel_traits.h"
 #include "simulator/sensor/pixel/sensed_event.h"
+#include "simulator/sensor/rays/pixel_rays.h"
 
 namespace saccade {
 
@@ -34,11 +34,11 @@ class PixelBank {
   double sense(std::size_t i, const Signal& signal, const typename Signal::Sample& from,
                const typename Signal::Sample& to);
 
-  /// Whether sense() looks at more of a signal than where it crosses a threshold.
+  /// Whether sense() uses more of a signal than where it crosses a threshold.
   [[nodiscard]] bool is_noisy() const { return !noisy_.empty(); }
   /// Whether only a crossing could make pixel `i` fire between two times.
   [[nodiscard]] bool is_idle(std::size_t i, double from_s, double to_s) const {
-    return noisy_.empty() || (!noise_.filter.on() && noisy_[i].blind_until_s < from_s &&
+    return noisy_.empty() || (!noise_.filter.on() && noisy_[i].refractory_until_s < from_s &&
                               noisy_[i].spontaneous.next_s() >= to_s);
   }
   /// What pixel `i` fires at.

@@ -26,9 +26,10 @@ struct PixelNoise {
 /// What a pixel with imperfections remembers besides its reference. Trivially copyable, without
 /// padding.
 struct NoisyState {
-  static constexpr double kNotBlind = -std::numeric_limits<double>::infinity();
+  static constexpr double kNotRefractory = -std::numeric_limits<double>::infinity();
 
-  double blind_until_s = kNotBlind;  ///< its refractory period's end, when the reference is reset
+  double refractory_until_s =
+      kNotRefractory;  ///< its refractory period's end, when the reference is reset
   SpontaneousState spontaneous;
   FilterState filter;
 };

@@ -58,14 +58,23 @@ class PixelSensor {
   /// Takes the candidate that is due, if there is one; whether the pixel fires at it.
   bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
                           NoisyState& noisy);
+  /// What advance() of a stretch has come to.
+  enum class Reached { kCrossing, kCandidate, kEnd };
+  class RawStretch;
+  class FilteredStretch;
+
+  /// The one loop of a pixel with imperfections, whatever its signal: at most up to the next
+  /// spontaneous candidate, with the refractory period after every event.
+  template <class Stretch>
+  void sense_stretch(Stretch& stretch, const PixelNoise& noise, NoisyState& noisy);
   void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
   /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
   /// stays, prove that nothing happens over a stretch.
-  [[nodiscard]] bool is_silent(const RadianceRange& range, double from_s, double to_s,
-                               const NoisyState& noisy) const;
+  [[nodiscard]] bool proves_no_event(const RadianceRange& range, double from_s, double to_s,
+                                     const NoisyState& noisy) const;
   /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
-  [[nodiscard]] bool is_silent(const FilteredPiece& piece, const LinearPiece& input,
-                               const NoisyState& noisy) const;
+  [[nodiscard]] bool proves_no_event(const FilteredPiece& piece, const LinearPiece& input,
+                                     const NoisyState& noisy) const;
   /// Drops the candidates that fall into the blind time.
   void skip_candidates(double until_s, const PixelNoise& noise, NoisyState& noisy) const {
     while (noisy.spontaneous.next_s() < until_s)
@@ -75,13 +84,13 @@ class PixelSensor {
   [[nodiscard]] bool is_within_band(double low, double from_s, double high, double to_s) const {
     // Rounding may not make a certificate of what is exactly at a threshold.
     constexpr double kGuard = 1e-12;
-    const Band& band = state_.level.band();
+    const Band& band = state_.reference.band();
     return low + traits_.drift_per_s * from_s > band.lower + kGuard &&
            high + traits_.drift_per_s * to_s < band.upper - kGuard;
   }
   void update_thresholds() {
     thresholds_ =
-        Thresholds(state_.level.band(), traits_.drift_per_s, log_eps_, state_.reference_s);
+        Thresholds(state_.reference.band(), traits_.drift_per_s, log_eps_, state_.reference_s);
   }
 
   const Signal& signal_;
@@ -113,8 +122,8 @@ auto PixelSensor<Signal, Emit>::cross(const Bracket<Sample>& exit, bool repeated
   do {
     fire(t_s, polarity, bracket.hi.log_intensity);
   } while (repeatedly &&
-           (polarity > 0 ? thresholds_.signal(bracket.hi) >= state_.level.band().upper
-                         : thresholds_.signal(bracket.hi) <= state_.level.band().lower));
+           (polarity > 0 ? thresholds_.signal(bracket.hi) >= state_.reference.band().upper
+                         : thresholds_.signal(bracket.hi) <= state_.reference.band().lower));
   update_thresholds();
   return {t_s, bracket.hi};
 }
@@ -123,14 +132,14 @@ template <class Signal, class Emit>
 void PixelSensor<Signal, Emit>::fire(double t_s, int polarity, double log_intensity) {
   const double leaked = traits_.drift_per_s * (t_s - state_.reference_s);
   const bool is_leak = polarity > 0 && leaked > 0.5 * traits_.contrast.on;
-  state_.level.fire(polarity, traits_.contrast);
+  state_.reference.fire(polarity, traits_.contrast);
   state_.reference_s = t_s;
   emit_(t_s, polarity, is_leak ? EventOrigin::kLeak : EventOrigin::kSignal, log_intensity);
 }
 
 template <class Signal, class Emit>
 void PixelSensor<Signal, Emit>::reset(double t_s, double signal) {
-  state_.level.reset(signal, traits_.contrast);
+  state_.reference.reset(signal, traits_.contrast);
   state_.reference_s = t_s;
   update_thresholds();
 }
@@ -147,34 +156,71 @@ bool PixelSensor<Signal, Emit>::fire_spontaneously(double t_s, double log_intens
 }
 
 template <class Signal, class Emit>
+template <class Stretch>
+void PixelSensor<Signal, Emit>::sense_stretch(Stretch& stretch, const PixelNoise& noise,
+                                              NoisyState& noisy) {
+  while (stretch.t_s() < stretch.end_s()) {
+    if (noisy.refractory_until_s >= stretch.t_s()) {
+      if (noisy.refractory_until_s >= stretch.end_s()) break;
+      stretch.skip_to(noisy.refractory_until_s);
+      skip_candidates(stretch.t_s(), noise, noisy);
+      noisy.refractory_until_s = NoisyState::kNotRefractory;
+      reset(stretch.t_s(), stretch.signal());
+    }
+    const Reached reached = stretch.advance(noisy.spontaneous.next_s());
+    const bool fires =
+        reached == Reached::kCrossing || (reached == Reached::kCandidate &&
+                                          fire_spontaneously(stretch.t_s(), stretch.log_intensity(),
+                                                             stretch.signal(), noise, noisy));
+    if (fires && noise.refractory_s > 0)
+      noisy.refractory_until_s = stretch.event_s() + noise.refractory_s;
+  }
+}
+
+/// The signal itself, whose crossings are searched by branch and bound.
+template <class Signal, class Emit>
+class PixelSensor<Signal, Emit>::RawStretch {
+ public:
+  /// `repeatedly`: fires for every threshold that a bracket crosses.
+  RawStretch(PixelSensor& pixel, const Sample& lo, const Sample& hi, bool repeatedly)
+      : pixel_(pixel), now_(lo), hi_(hi), repeatedly_(repeatedly), event_s_(lo.t_s) {}
+  [[nodiscard]] double t_s() const { return now_.t_s; }
+  [[nodiscard]] double end_s() const { return hi_.t_s; }
+  [[nodiscard]] double event_s() const { return event_s_; }
+  [[nodiscard]] double signal() const { return pixel_.thresholds_.signal(now_); }
+  [[nodiscard]] double log_intensity() const { return now_.log_intensity; }
+  void skip_to(double t_s) {
+    if (t_s > now_.t_s) now_ = pixel_.signal_.at(t_s, now_, hi_);
+  }
+  [[nodiscard]] Reached advance(double next_s) {
+    const Sample to = next_s <= now_.t_s ? now_
+                      : next_s < hi_.t_s ? pixel_.signal_.at(next_s, now_, hi_)
+                                         : hi_;
+    if (to.t_s > now_.t_s)
+      if (const auto exit = first_exit(pixel_.signal_, pixel_.thresholds_, now_, to)) {
+        const Crossing crossing = pixel_.cross(*exit, repeatedly_);
+        event_s_ = crossing.t_s;
+        now_ = crossing.after;
+        return Reached::kCrossing;
+      }
+    now_ = to;
+    event_s_ = to.t_s;
+    return next_s <= to.t_s ? Reached::kCandidate : Reached::kEnd;
+  }
+
+ private:
+  PixelSensor& pixel_;
+  Sample now_;
+  const Sample& hi_;
+  bool repeatedly_;
+  double event_s_;
+};
+
+template <class Signal, class Emit>
 double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, const PixelNoise& noise,
                                         NoisyState& noisy) {
-  const auto rest = [&](double t_s) {
-    if (noise.refractory_s > 0) noisy.blind_until_s = t_s + noise.refractory_s;
-  };
-  Sample a = lo;
-  while (a.t_s < hi.t_s) {
-    if (noisy.blind_until_s >= a.t_s) {
-      if (noisy.blind_until_s >= hi.t_s) break;
-      if (noisy.blind_until_s > a.t_s) a = signal_.at(noisy.blind_until_s, a, hi);
-      skip_candidates(a.t_s, noise, noisy);
-      noisy.blind_until_s = NoisyState::kNotBlind;
-      reset(a.t_s, thresholds_.signal(a));
-    }
-    const double next_s = noisy.spontaneous.next_s();
-    const Sample b = next_s <= a.t_s ? a : next_s < hi.t_s ? signal_.at(next_s, a, hi) : hi;
-    const auto exit = b.t_s > a.t_s ? first_exit(signal_, thresholds_, a, b) : std::nullopt;
-    if (exit) {
-      const Crossing crossing = cross(*exit, noise.refractory_s == 0);
-      rest(crossing.t_s);
-      a = crossing.after;
-    } else {
-      a = b;
-      if (next_s <= a.t_s &&
-          fire_spontaneously(a.t_s, a.log_intensity, thresholds_.signal(a), noise, noisy))
-        rest(a.t_s);
-    }
-  }
+  RawStretch stretch(*this, lo, hi, noise.refractory_s == 0);
+  sense_stretch(stretch, noise, noisy);
   return widest_s_;
 }
 
@@ -194,7 +240,7 @@ double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample&
     return widest_s_;
   }
   const double memory_s = noise.filter.memory_s(range.low);
-  if (length_s > kLongMemories * memory_s && is_silent(range, lo.t_s, hi.t_s, noisy)) {
+  if (length_s > kLongMemories * memory_s && proves_no_event(range, lo.t_s, hi.t_s, noisy)) {
     const Sample remembered = signal_.at(hi.t_s - memory_s, lo, hi);
     noisy.filter = PhotoreceptorFilter::settled(remembered.log_intensity);
     return sense_filtered(remembered, hi, noise, noisy, depth + 1);
@@ -208,50 +254,64 @@ double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample&
   return sense_filtered(middle, hi, noise, noisy, depth + 1);
 }
 
+/// A piece of the photoreceptor's output, whose crossings follow in closed form.
+template <class Signal, class Emit>
+class PixelSensor<Signal, Emit>::FilteredStretch {
+ public:
+  FilteredStretch(PixelSensor& pixel, const FilteredPiece& piece, double from_s, double to_s)
+      : pixel_(pixel),
+        piece_(piece),
+        drifting_(piece.drifting(pixel.traits_.drift_per_s)),
+        drifted_(pixel.traits_.drift_per_s * from_s),
+        t_s_(from_s),
+        end_s_(to_s) {}
+  [[nodiscard]] double t_s() const { return t_s_; }
+  [[nodiscard]] double end_s() const { return end_s_; }
+  [[nodiscard]] double event_s() const { return t_s_; }
+  [[nodiscard]] double signal() const { return drifting_.value(t_s_) + drifted_; }
+  [[nodiscard]] double log_intensity() const { return piece_.value(t_s_); }
+  void skip_to(double t_s) { t_s_ = t_s; }
+  [[nodiscard]] Reached advance(double next_candidate_s) {
+    const double tolerance_s = pixel_.signal_.tolerance_s();
+    const double next_s = std::max(next_candidate_s, t_s_);
+    const Band& band = pixel_.state_.reference.band();
+    const auto crossing =
+        drifting_.first_crossing(band.lower - drifted_, band.upper - drifted_, t_s_, tolerance_s);
+    if (crossing && crossing->t_s <= next_s) {
+      t_s_ = crossing->t_s;
+      pixel_.widest_s_ = std::max(pixel_.widest_s_, tolerance_s);
+      pixel_.fire(t_s_, crossing->polarity, log_intensity());
+      pixel_.update_thresholds();
+      return Reached::kCrossing;
+    }
+    t_s_ = std::min(next_s, end_s_);
+    return next_s < end_s_ ? Reached::kCandidate : Reached::kEnd;
+  }
+
+ private:
+  PixelSensor& pixel_;
+  const FilteredPiece& piece_;
+  FilteredPiece drifting_;  ///< as a pixel with a leaking reference sees it
+  double drifted_;
+  double t_s_;
+  double end_s_;
+};
+
 template <class Signal, class Emit>
 void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
                                             const PixelNoise& noise, NoisyState& noisy) {
   const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
   const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
   noisy.filter = piece.end_state();
-  if (is_silent(piece, input, noisy)) return;
-  const FilteredPiece seen = piece.drifting(traits_.drift_per_s);
-  const double drifted = traits_.drift_per_s * lo.t_s;
-  const auto signal = [&](double t_s) { return seen.value(t_s) + drifted; };
-  double t_s = lo.t_s;
-  while (t_s < hi.t_s) {
-    if (noisy.blind_until_s >= t_s) {
-      if (noisy.blind_until_s >= hi.t_s) break;
-      t_s = noisy.blind_until_s;
-      skip_candidates(t_s, noise, noisy);
-      noisy.blind_until_s = NoisyState::kNotBlind;
-      reset(t_s, signal(t_s));
-    }
-    const double next_s = std::max(noisy.spontaneous.next_s(), t_s);
-    const Band& band = state_.level.band();
-    const auto crossing =
-        seen.first_crossing(band.lower - drifted, band.upper - drifted, t_s, signal_.tolerance_s());
-    bool fires = false;
-    if (crossing && crossing->t_s <= next_s) {
-      t_s = crossing->t_s;
-      widest_s_ = std::max(widest_s_, signal_.tolerance_s());
-      fire(t_s, crossing->polarity, static_cast<double>(piece.value(t_s)));
-      update_thresholds();
-      fires = true;
-    } else if (next_s < hi.t_s) {
-      t_s = next_s;
-      fires = fire_spontaneously(t_s, piece.value(t_s), signal(t_s), noise, noisy);
-    } else {
-      break;
-    }
-    if (fires && noise.refractory_s > 0) noisy.blind_until_s = t_s + noise.refractory_s;
-  }
+  if (proves_no_event(piece, input, noisy)) return;
+  FilteredStretch stretch(*this, piece, lo.t_s, hi.t_s);
+  sense_stretch(stretch, noise, noisy);
 }
 
 template <class Signal, class Emit>
-bool PixelSensor<Signal, Emit>::is_silent(const RadianceRange& range, double from_s, double to_s,
-                                          const NoisyState& noisy) const {
-  if (noisy.blind_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
+bool PixelSensor<Signal, Emit>::proves_no_event(const RadianceRange& range, double from_s,
+                                                double to_s, const NoisyState& noisy) const {
+  if (noisy.refractory_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
   const auto [state_low, state_high] = std::minmax(noisy.filter.first, noisy.filter.output);
   const double low = std::min(state_low, std::log(log_eps_ + std::max(range.low, 0.0)));
   const double high = std::max(state_high, std::log(log_eps_ + range.high));
@@ -259,9 +319,10 @@ bool PixelSensor<Signal, Emit>::is_silent(const RadianceRange& range, double fro
 }
 
 template <class Signal, class Emit>
-bool PixelSensor<Signal, Emit>::is_silent(const FilteredPiece& piece, const LinearPiece& input,
-                                          const NoisyState& noisy) const {
-  if (noisy.blind_until_s >= input.t0_s) return noisy.blind_until_s >= input.t1_s;
+bool PixelSensor<Signal, Emit>::proves_no_event(const FilteredPiece& piece,
+                                                const LinearPiece& input,
+                                                const NoisyState& noisy) const {
+  if (noisy.refractory_until_s >= input.t0_s) return noisy.refractory_until_s >= input.t1_s;
   if (noisy.spontaneous.next_s() < input.t1_s) return false;
   const FilteredPiece::Reach reach = piece.reach();
   return is_within_band(reach.low, input.t0_s, reach.high, input.t1_s);

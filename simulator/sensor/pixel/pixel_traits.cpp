@@ -1,17 +1,16 @@
 #include "simulator/sensor/pixel/pixel_traits.h"
 
-#include "simulator/sensor/noise/leak.h"
-#include "simulator/sensor/noise/mismatch.h"
+#include "simulator/sensor/noise/noise_models.h"
 
 namespace saccade {
 
 PixelTraits pixel_traits(const EventOptions& options, std::uint64_t seed, std::uint16_t x,
                          std::uint16_t y) {
-  const LeakOptions& leak = options.noise.leak;
-  const Contrast contrast = pixel_contrast(options, seed, x, y);
-  const double slope = leak_slope(leak, contrast.on, seed, x, y);
-  const double period_s = slope > 0 ? contrast.on / slope : 0;
-  return {x, y, contrast, slope, leak_phase(seed, x, y) * period_s};
+  PixelTraits traits{x, y, options.contrast};
+  for (const NoiseModel& model : noise_models())
+    if (model.shape_pixel != nullptr && model.is_on(options.noise))
+      model.shape_pixel(options.noise, seed, traits);
+  return traits;
 }
 
 PixelState start_pixel(const PixelTraits& traits, double log_intensity, double t_s) {

@@ -17,7 +17,7 @@ struct PixelTraits {
 
 /// What every pixel remembers. Trivially copyable, without padding.
 struct PixelState {
-  EventPixel level;
+  EventPixel reference;
   double reference_s = 0;  ///< since when the reference is what it is
 };
 

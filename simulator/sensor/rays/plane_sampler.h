@@ -26,16 +26,17 @@ struct DirectionLanes {
 };
 
 /// The places on a plane that the pixels of a tile see at an instant.
-struct PlaneLanes {
+struct TexelLanes {
   Lanes x, y;            ///< texel coordinates
   Lanes x_rate, y_rate;  ///< [texel/s]
 };
 
-/// A textured or plain triangle that stands still, as the rays of a camera see it one by one.
-class PlaneView {
+/// A textured or plain triangle that is static, as the rays of a camera see it one by one.
+class PlaneSampler {
  public:
   /// `now` and `soon`: its map at an instant and `soon_s` later.
-  PlaneView(const TexelMap& now, const TexelMap& soon, double soon_s, TriangleId triangle)
+  PlaneSampler(const TexelHomography& now, const TexelHomography& soon, double soon_s,
+               TriangleId triangle)
       : now_(now),
         x_change_((soon.x - now.x) / soon_s),
         y_change_((soon.y - now.y) / soon_s),
@@ -44,9 +45,9 @@ class PlaneView {
 
   [[nodiscard]] TriangleId triangle() const { return triangle_; }
   /// Its texture and factor.
-  [[nodiscard]] SurfaceLook surface() const { return {now_.texture, 0, 0, now_.factor}; }
+  [[nodiscard]] SurfaceSample surface() const { return {now_.texture, 0, 0, now_.factor}; }
 
-  [[nodiscard]] RayView at(const Eigen::Vector3d& direction) const {
+  [[nodiscard]] RaySample at(const Eigen::Vector3d& direction) const {
     const double inverse = 1 / now_.w.dot(direction);
     const double slowing = w_change_.dot(direction);
     const double x = now_.x.dot(direction) * inverse;
@@ -58,7 +59,7 @@ class PlaneView {
   }
 
   /// The same for all pixels of a tile.
-  void at(const DirectionLanes& directions, PlaneLanes& lanes) const {
+  void at(const DirectionLanes& directions, TexelLanes& lanes) const {
     for (std::size_t i = 0; i < kTilePixels; ++i) {
       const double dx = directions.x[i];
       const double dy = directions.y[i];
@@ -75,7 +76,7 @@ class PlaneView {
   }
 
  private:
-  TexelMap now_;
+  TexelHomography now_;
   Eigen::Vector3d x_change_, y_change_, w_change_;
   TriangleId triangle_;
 };

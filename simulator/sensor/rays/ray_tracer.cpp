@@ -15,21 +15,21 @@ namespace {
 /// How far outside its edges a ray still counts as meeting a triangle at its border [barycentric].
 constexpr double kAtEdge = 1e-3;
 /// Rates are differences over this time: short against any motion, long against rounding.
-constexpr double kSoon_s = 1e-7;
+constexpr double kDifference_s = 1e-7;
 
-/// Where more triangles than this may hide a lamp from a patch, shadow rays are quicker.
-constexpr std::size_t kMostCasters = 8192;
+/// Where more triangles than this may hide a light from a patch, shadow rays are quicker.
+constexpr std::size_t kMaxOccluders = 8192;
 /// Of patches whose light is found in one go.
-constexpr std::size_t kMostLights = 256;
+constexpr std::size_t kMaxPatches = 256;
 
-RayView with_rates(const SurfaceLook& now, const SurfaceLook& soon, double soon_s,
-                   TriangleId triangle) {
-  RayView view{triangle, now, 0, 0};
-  if (soon.texture != now.texture || (soon.distance == 0) != (now.distance == 0)) return view;
-  view.x_rate = (soon.x - now.x) / soon_s;
-  view.y_rate = (soon.y - now.y) / soon_s;
-  view.level_rate = (soon.level - now.level) / soon_s;
-  return view;
+RaySample with_rates(const SurfaceSample& now, const SurfaceSample& soon, double soon_s,
+                     TriangleId triangle) {
+  RaySample sample{triangle, now, 0, 0};
+  if (soon.texture != now.texture || (soon.distance == 0) != (now.distance == 0)) return sample;
+  sample.x_rate = (soon.x - now.x) / soon_s;
+  sample.y_rate = (soon.y - now.y) / soon_s;
+  sample.level_rate = (soon.level - now.level) / soon_s;
+  return sample;
 }
 
 }  // namespace
@@ -47,92 +47,97 @@ Ray RayTracer::ray_at(const Eigen::Vector3d& direction, double t_s) const {
   return {camera.position, camera.rotation * direction, t_s};
 }
 
-SurfaceLook RayTracer::surface_look(const Eigen::Vector3d& direction, TriangleId triangle,
-                                    const CameraFrame& camera, double t_s) const {
+SurfaceSample RayTracer::sample_surface(const Eigen::Vector3d& direction, TriangleId triangle,
+                                        const CameraFrame& camera, double t_s) const {
   const Ray ray{camera.position, camera.rotation * direction, t_s};
-  if (footprints_ == nullptr) return scene_.look(ray, triangle);
-  return scene_.look(ray, triangle, spread_in_world(*footprints_, camera.rotation, direction));
+  if (footprints_ == nullptr) return scene_.sample_surface(ray, triangle);
+  return scene_.sample_surface(ray, triangle,
+                               spread_in_world(*footprints_, camera.rotation, direction));
 }
 
-RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
-  RayView view = unlit_view(direction, triangle, t_s);
+RaySample RayTracer::sample(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
+  RaySample sample = sample_unlit(direction, triangle, t_s);
   if (scene_.is_lit()) {
     const Ray ray = ray_at(direction, t_s);
-    illuminate({&ray, 1}, {&view, 1});
+    illuminate({&ray, 1}, {&sample, 1});
   }
-  return view;
+  return sample;
 }
 
-RayView RayTracer::view(const Eigen::Vector3d& direction, TriangleId triangle, LampSet lamps,
-                        double t_s) {
-  RayView view = unlit_view(direction, triangle, t_s);
-  if (!scene_.is_lit()) return view;
-  view.look.lamps = lamps;
-  view.look.irradiance = scene_.irradiance(ray_at(direction, t_s), triangle, view.look);
-  return view;
+RaySample RayTracer::sample(const Eigen::Vector3d& direction, TriangleId triangle, LightSet lights,
+                            double t_s) {
+  RaySample sample = sample_unlit(direction, triangle, t_s);
+  if (!scene_.is_lit()) return sample;
+  sample.surface.lights = lights;
+  sample.surface.irradiance = scene_.irradiance(ray_at(direction, t_s), triangle, sample.surface);
+  return sample;
 }
 
 double RayTracer::difference_s(double t_s) const {
-  return t_s + kSoon_s <= poses_->to_s() ? kSoon_s : -kSoon_s;
+  return t_s + kDifference_s <= poses_->to_s() ? kDifference_s : -kDifference_s;
 }
 
-RayView RayTracer::unlit_view(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {
+RaySample RayTracer::sample_unlit(const Eigen::Vector3d& direction, TriangleId triangle,
+                                  double t_s) {
   ++statistics_.surface_looks;
   const double soon_s = difference_s(t_s);
-  return with_rates(surface_look(direction, triangle, poses_->at(t_s), t_s),
-                    surface_look(direction, triangle, poses_->at(t_s + soon_s), t_s + soon_s),
+  return with_rates(sample_surface(direction, triangle, poses_->at(t_s), t_s),
+                    sample_surface(direction, triangle, poses_->at(t_s + soon_s), t_s + soon_s),
                     soon_s, triangle);
 }
 
-void RayTracer::use(const std::array<Eigen::Vector3d, 4>& outline, double from_s, double to_s) {
-  finds_lights_ = is_lit();
-  light_count_ = 0;
-  if (finds_lights_) sweep_ = sweep_of(outline, from_s, to_s);
+void RayTracer::set_region(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
+                           double to_s) {
+  finds_lighting_ = is_lit();
+  lighting_count_ = 0;
+  if (finds_lighting_) frusta_ = frusta_over(outline, from_s, to_s);
 }
 
-const PatchLight* RayTracer::light_of(TriangleId triangle) {
-  if (!finds_lights_ || triangle == kNothing) return nullptr;
-  for (std::size_t k = light_count_; k-- > 0;)
-    if (lights_[k].triangle == triangle) return lights_[k].light();
-  if (light_count_ == kMostLights) return nullptr;
-  if (light_count_ == lights_.size()) lights_.emplace_back();
-  KnownLight& known = lights_[light_count_++];
+const PatchLighting* RayTracer::lighting_of(TriangleId triangle) {
+  if (!finds_lighting_ || triangle == kNothing) return nullptr;
+  for (std::size_t k = lighting_count_; k-- > 0;)
+    if (known_[k].triangle == triangle) return known_[k].lighting();
+  if (lighting_count_ == kMaxPatches) return nullptr;
+  if (lighting_count_ == known_.size()) known_.emplace_back();
+  KnownLighting& known = known_[lighting_count_++];
   known.triangle = triangle;
-  const PatchLight* light = scene_.find_light(triangle, sweep_, kMostCasters, known.patch);
-  known.is_known = light == &known.patch;
-  known.whole = known.is_known ? nullptr : light;
-  return light;
+  const PatchLighting* lighting =
+      scene_.find_lighting(triangle, frusta_, kMaxOccluders, known.patch);
+  known.is_known = lighting == &known.patch;
+  known.whole = known.is_known ? nullptr : lighting;
+  return lighting;
 }
 
 Eigen::Vector3d RayTracer::point_at(const Eigen::Vector3d& direction, TriangleId triangle,
                                     double t_s) const {
   const Ray ray = ray_at(direction, t_s);
-  const double distance = scene_.look(ray, triangle).distance;
+  const double distance = scene_.sample_surface(ray, triangle).distance;
   if (!(distance > 0)) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   return ray.origin + distance * ray.direction;
 }
 
-void RayTracer::illuminate(std::span<const Ray> rays, std::span<RayView> views) {
-  std::array<Ray, kPacket> doubtful;
+void RayTracer::illuminate(std::span<const Ray> rays, std::span<RaySample> samples) {
+  std::array<Ray, kPacket> unknown;
   std::array<TriangleId, kPacket> triangles;
-  std::array<SurfaceLook, kPacket> looks;
+  std::array<SurfaceSample, kPacket> surfaces;
   std::array<std::size_t, kPacket> owners;
   std::size_t n = 0;
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    SurfaceLook& look = views[k].look;
-    if (const PatchLight* light = light_of(views[k].triangle); light && look.distance > 0) {
-      look.lamps = light->lamps_at(rays[k].origin + look.distance * rays[k].direction);
-      look.irradiance = scene_.irradiance(rays[k], views[k].triangle, look);
+    SurfaceSample& surface = samples[k].surface;
+    if (const PatchLighting* lighting = lighting_of(samples[k].triangle);
+        lighting && surface.distance > 0) {
+      surface.lights = lighting->lights_at(rays[k].origin + surface.distance * rays[k].direction);
+      surface.irradiance = scene_.irradiance(rays[k], samples[k].triangle, surface);
       continue;
     }
-    doubtful[n] = rays[k];
-    triangles[n] = views[k].triangle;
-    looks[n] = look;
+    unknown[n] = rays[k];
+    triangles[n] = samples[k].triangle;
+    surfaces[n] = surface;
     owners[n++] = k;
   }
   if (n == 0) return;
-  scene_.illuminate({doubtful.data(), n}, {triangles.data(), n}, {looks.data(), n});
-  for (std::size_t k = 0; k < n; ++k) views[owners[k]].look = looks[k];
+  scene_.illuminate({unknown.data(), n}, {triangles.data(), n}, {surfaces.data(), n});
+  for (std::size_t k = 0; k < n; ++k) samples[owners[k]].surface = surfaces[k];
   statistics_.lit_points += n;
 }
 
@@ -148,39 +153,41 @@ void RayTracer::find_triangles(std::span<const Eigen::Vector3d> directions, doub
 }
 
 void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
-                      std::span<RayView> views) {
+                      std::span<RaySample> samples) {
   std::array<TriangleId, kPacket> triangles;
   const std::span<TriangleId> seen(triangles.data(), directions.size());
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Ray ray = ray_at(directions[k], t_s);
-    seen[k] = scene_.nearest_of(within_reach_, ray);
+    seen[k] = scene_.nearest_among(candidates_, ray);
     if (seen[k] != kNothing) continue;
     seen[k] = scene_.visible_exactly(ray);
     ++statistics_.rays;
   }
-  see(directions, seen, t_s, views);
+  sample(directions, seen, t_s, samples);
 }
 
-void RayTracer::see(std::span<const Eigen::Vector3d> directions,
-                    std::span<const TriangleId> triangles, double t_s, std::span<RayView> views) {
-  SACCADE_CHECK(triangles.size() == directions.size() && views.size() == directions.size());
+void RayTracer::sample(std::span<const Eigen::Vector3d> directions,
+                       std::span<const TriangleId> triangles, double t_s,
+                       std::span<RaySample> samples) {
+  SACCADE_CHECK(triangles.size() == directions.size() && samples.size() == directions.size());
   const CameraFrame camera = poses_->at(t_s);
   const double soon_s = difference_s(t_s);
   const CameraFrame soon = poses_->at(t_s + soon_s);
-  std::optional<PlaneView> plane;
+  std::optional<PlaneSampler> plane;
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const TriangleId triangle = triangles[k];
     if (footprints_ != nullptr || triangle == kNothing ||
         scene_.moving_object(triangle) != nullptr) {
-      views[k] =
-          with_rates(surface_look(directions[k], triangle, camera, t_s),
-                     surface_look(directions[k], triangle, soon, t_s + soon_s), soon_s, triangle);
+      samples[k] =
+          with_rates(sample_surface(directions[k], triangle, camera, t_s),
+                     sample_surface(directions[k], triangle, soon, t_s + soon_s), soon_s, triangle);
       continue;
     }
     if (!plane || plane->triangle() != triangle)
-      plane.emplace(scene_.texel_map(triangle, camera.position, camera.rotation),
-                    scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, triangle);
-    views[k] = plane->at(directions[k]);
+      plane.emplace(scene_.texel_homography(triangle, camera.position, camera.rotation),
+                    scene_.texel_homography(triangle, soon.position, soon.rotation), soon_s,
+                    triangle);
+    samples[k] = plane->at(directions[k]);
   }
   if (!scene_.is_lit()) return;
   std::array<Ray, kPacket> rays;
@@ -188,7 +195,7 @@ void RayTracer::see(std::span<const Eigen::Vector3d> directions,
     const std::size_t n = std::min(kPacket, directions.size() - first);
     for (std::size_t k = 0; k < n; ++k)
       rays[k] = {camera.position, camera.rotation * directions[first + k], t_s};
-    illuminate({rays.data(), n}, views.subspan(first, n));
+    illuminate({rays.data(), n}, samples.subspan(first, n));
   }
 }
 
@@ -197,12 +204,12 @@ InverseDepthRange RayTracer::inverse_depths(std::span<const Eigen::Vector3d> dir
                                             double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
   InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
-  TrianglePass plane;
+  EdgeFunctions plane;
   for (std::size_t k = 0; k < directions.size(); ++k) {
     double inverse = 0;
     if (triangles[k] != kNothing) {
       if (k == 0 || triangles[k] != triangles[k - 1])
-        plane = scene_.triangle_pass(triangles[k], camera.position, camera.rotation, t_s);
+        plane = scene_.edge_functions(triangles[k], camera.position, camera.rotation, t_s);
       inverse = std::max(plane.w.dot(directions[k]) / plane.depth, 0.0);
     }
     range.low = std::min(range.low, inverse);
@@ -211,83 +218,83 @@ InverseDepthRange RayTracer::inverse_depths(std::span<const Eigen::Vector3d> dir
   return range;
 }
 
-PlaneView RayTracer::plane_view(TriangleId triangle, double t_s) const {
+PlaneSampler RayTracer::plane_sampler(TriangleId triangle, double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
   const double soon_s = difference_s(t_s);
   const CameraFrame soon = poses_->at(t_s + soon_s);
-  return {scene_.texel_map(triangle, camera.position, camera.rotation),
-          scene_.texel_map(triangle, soon.position, soon.rotation), soon_s, triangle};
+  return {scene_.texel_homography(triangle, camera.position, camera.rotation),
+          scene_.texel_homography(triangle, soon.position, soon.rotation), soon_s, triangle};
 }
 
-bool RayTracer::is_alone(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
-                         double from_s, double to_s) const {
-  const auto sweep = sweep_of(outline, from_s, to_s);
-  return scene_.is_alone(triangle, sweep);
+bool RayTracer::is_sole_visible(TriangleId triangle, const std::array<Eigen::Vector3d, 4>& outline,
+                                double from_s, double to_s) const {
+  const auto frusta = frusta_over(outline, from_s, to_s);
+  return scene_.is_sole_visible(triangle, frusta);
 }
 
 bool RayTracer::collect(const std::array<Eigen::Vector3d, 4>& outline, double farthest_m,
                         double from_s, double to_s, std::size_t most,
                         std::vector<TriangleId>& found) const {
-  const auto sweep = sweep_of(outline, from_s, to_s);
-  return scene_.collect(sweep, farthest_m, most, found);
+  const auto frusta = frusta_over(outline, from_s, to_s);
+  return scene_.collect(frusta, farthest_m, most, found);
 }
 
-auto RayTracer::sweep_of(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
-                         double to_s) const -> Sweep {
-  Sweep sweep;
-  const double step_s = (to_s - from_s) / static_cast<double>(sweep.size() - 1);
-  for (std::size_t m = 0; m + 1 < sweep.size(); ++m)
-    sweep[m] = pyramid_at(outline, from_s + static_cast<double>(m) * step_s);
-  sweep.back() = pyramid_at(outline, to_s);
-  return sweep;
+auto RayTracer::frusta_over(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
+                            double to_s) const -> Frusta {
+  Frusta frusta;
+  const double step_s = (to_s - from_s) / static_cast<double>(frusta.size() - 1);
+  for (std::size_t m = 0; m + 1 < frusta.size(); ++m)
+    frusta[m] = frustum_at(outline, from_s + static_cast<double>(m) * step_s);
+  frusta.back() = frustum_at(outline, to_s);
+  return frusta;
 }
 
-SightPyramid RayTracer::pyramid_at(const std::array<Eigen::Vector3d, 4>& outline,
-                                   double t_s) const {
+Frustum RayTracer::frustum_at(const std::array<Eigen::Vector3d, 4>& outline, double t_s) const {
   const CameraFrame camera = poses_->at(t_s);
-  SightPyramid pyramid{camera.position, {}, t_s};
+  Frustum frustum{camera.position, {}, t_s};
   for (std::size_t k = 0; k < outline.size(); ++k)
-    pyramid.corners[k] = camera.rotation * outline[k];
-  return pyramid;
+    frustum.corners[k] = camera.rotation * outline[k];
+  return frustum;
 }
 
-std::vector<OpaqueStretch> RayTracer::find_holes(const Eigen::Vector3d& direction,
-                                                 TriangleId triangle, double from_s,
-                                                 double to_s) const {
-  constexpr double kLooksPerTexel = 4;
-  constexpr double kMostLooks = 64;
-  const auto look = [&](double t_s) {
-    return scene_.cutout_look(ray_at(direction, t_s), triangle);
+std::vector<OpacityInterval> RayTracer::find_opacity_intervals(const Eigen::Vector3d& direction,
+                                                               TriangleId triangle, double from_s,
+                                                               double to_s) const {
+  constexpr double kSamplesPerTexel = 4;
+  constexpr double kMaxSamples = 64;
+  const auto sample = [&](double t_s) {
+    return scene_.sample_cutout(ray_at(direction, t_s), triangle);
   };
-  const CutoutLook first = look(from_s);
-  const CutoutLook last = look(to_s);
+  const CutoutSample first = sample(from_s);
+  const CutoutSample last = sample(to_s);
   const double texels = std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
-  const double steps = std::clamp(std::ceil(kLooksPerTexel * texels), 4.0, kMostLooks);
-  const auto opacity = [&](double t_s) { return look(t_s).opacity; };
+  const double steps = std::clamp(std::ceil(kSamplesPerTexel * texels), 4.0, kMaxSamples);
+  const auto opacity = [&](double t_s) { return sample(t_s).opacity; };
   return OpacitySearch(opacity, {from_s, first.opacity}, {to_s, last.opacity},
                        static_cast<std::size_t>(steps))
-      .stretches();
+      .intervals();
 }
 
-bool RayTracer::sees(const Eigen::Vector3d& direction, TriangleId triangle,
-                     std::span<const TriangleId> among, double t_s) const {
-  return scene_.nearest_of(among, ray_at(direction, t_s)) == triangle;
+bool RayTracer::is_nearest(const Eigen::Vector3d& direction, TriangleId triangle,
+                           std::span<const TriangleId> among, double t_s) const {
+  return scene_.nearest_among(among, ray_at(direction, t_s)) == triangle;
 }
 
-double RayTracer::inside(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) const {
-  return scene_.inside(ray_at(direction, t_s), triangle);
+double RayTracer::min_barycentric(const Eigen::Vector3d& direction, TriangleId triangle,
+                                  double t_s) const {
+  return scene_.min_barycentric(ray_at(direction, t_s), triangle);
 }
 
-double RayTracer::change_s(const Eigen::Vector3d& direction, const Sighting& from,
-                           const Sighting& to, double tolerance_s) const {
+double RayTracer::change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
+                           const VisibleTriangle& to, double tolerance_s) const {
   TriangleId triangle = from.triangle;
   double a_s = from.t_s, b_s = to.t_s;
-  double a = inside(direction, triangle, a_s);
-  double b = inside(direction, triangle, b_s);
+  double a = min_barycentric(direction, triangle, a_s);
+  double b = min_barycentric(direction, triangle, b_s);
   if (!(b < 0)) {
     triangle = to.triangle;
-    a = inside(direction, triangle, a_s);
-    b = inside(direction, triangle, b_s);
+    a = min_barycentric(direction, triangle, a_s);
+    b = min_barycentric(direction, triangle, b_s);
   }
   if ((a < 0) == (b < 0)) return std::numeric_limits<double>::quiet_NaN();
   // False position, Illinois variant, on the smallest barycentric coordinate.
@@ -296,7 +303,7 @@ double RayTracer::change_s(const Eigen::Vector3d& direction, const Sighting& fro
   for (int k = 0, last = 0; k < kMostSteps && b_s - a_s > tolerance_s; ++k) {
     const double before = t;
     t = a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.001, 0.999);
-    const double value = inside(direction, triangle, t);
+    const double value = min_barycentric(direction, triangle, t);
     const bool is_first = (value < 0) == (a < 0);
     (is_first ? a_s : b_s) = t;
     (is_first ? a : b) = value;
@@ -307,24 +314,25 @@ double RayTracer::change_s(const Eigen::Vector3d& direction, const Sighting& fro
   return a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.0, 1.0);
 }
 
-bool RayTracer::is_covered(const Eigen::Vector3d& direction, const Sighting& from,
-                           const Sighting& to, double tolerance_s) const {
+bool RayTracer::is_covered(const Eigen::Vector3d& direction, const VisibleTriangle& from,
+                           const VisibleTriangle& to, double tolerance_s) const {
   if (from.triangle == kNothing || to.triangle == kNothing) return true;
-  if (inside(direction, from.triangle, to.t_s) >= 0 ||
-      inside(direction, to.triangle, from.t_s) >= 0)
+  if (min_barycentric(direction, from.triangle, to.t_s) >= 0 ||
+      min_barycentric(direction, to.triangle, from.t_s) >= 0)
     return true;
   const double t_s = change_s(direction, from, to, tolerance_s);
-  return !std::isnan(t_s) && std::min(inside(direction, from.triangle, t_s),
-                                      inside(direction, to.triangle, t_s)) > -kAtEdge;
+  return !std::isnan(t_s) && std::min(min_barycentric(direction, from.triangle, t_s),
+                                      min_barycentric(direction, to.triangle, t_s)) > -kAtEdge;
 }
 
 bool RayTracer::is_crease(const Eigen::Vector3d& direction, TriangleId a, TriangleId b,
                           double t_s) const {
   constexpr double kSamePoint = 1e-6;  // of the distance
   const Ray ray = ray_at(direction, t_s);
-  if (std::min(scene_.inside(ray, a), scene_.inside(ray, b)) < -kAtEdge) return false;
-  const double first = scene_.look(ray, a).distance;
-  const double second = scene_.look(ray, b).distance;
+  if (std::min(scene_.min_barycentric(ray, a), scene_.min_barycentric(ray, b)) < -kAtEdge)
+    return false;
+  const double first = scene_.sample_surface(ray, a).distance;
+  const double second = scene_.sample_surface(ray, b).distance;
   return std::abs(first - second) < kSamePoint * first;
 }
 

@@ -12,7 +12,7 @@ namespace saccade {
 /// that exact [texel].
 constexpr double kOverhang = 1e-3;
 
-/// Paths that stray less than this from their chord are as good as their cubics, whose own error is
+/// Paths that chord_error less than this from their chord are as good as their cubics, whose own error is
 /// orders of magnitude smaller.
 constexpr double kStraight_texel = 0.005;
 
@@ -35,13 +35,14 @@ inline Interval product(const Interval& a, const Interval& b) {
 
 /// One coordinate of the cubic over a stretch, u = 0..1: u (1 - u)^2 and u^2 (u - 1) weigh the
 /// differences of the ends' slopes from the chord's.
-struct Track {
+struct HermiteCoordinate {
   double from, to;
   double chord;                   ///< [texel]
   double from_excess, to_excess;  ///< of the slopes over u [texel]
   double length_s;
 
-  Track(double from_value, double from_rate, double to_value, double to_rate, double seconds)
+  HermiteCoordinate(double from_value, double from_rate, double to_value, double to_rate,
+                    double seconds)
       : from(from_value),
         to(to_value),
         chord(to_value - from_value),
@@ -49,12 +50,12 @@ struct Track {
         to_excess(to_rate * seconds - chord),
         length_s(seconds) {}
 
-  [[nodiscard]] double stray() const {
+  [[nodiscard]] double chord_error() const {
     return 4.0 / 27 * (std::abs(from_excess) + std::abs(to_excess));
   }
 
   [[nodiscard]] Interval values() const {
-    return {std::min(from, to) - stray(), std::max(from, to) + stray()};
+    return {std::min(from, to) - chord_error(), std::max(from, to) + chord_error()};
   }
 
   /// Over u. The weights' own derivatives stay within [-1/3, 1].
@@ -82,26 +83,27 @@ struct Track {
   [[nodiscard]] double rate_at(double u) const { return slope_at(u) / length_s; }
 };
 
-inline Track x_track(const RayView& from, const RayView& to, double length_s) {
-  return {from.look.x, from.x_rate, to.look.x, to.x_rate, length_s};
+inline HermiteCoordinate x_coordinate(const RaySample& from, const RaySample& to, double length_s) {
+  return {from.surface.x, from.x_rate, to.surface.x, to.x_rate, length_s};
 }
 
-inline Track y_track(const RayView& from, const RayView& to, double length_s) {
-  return {from.look.y, from.y_rate, to.look.y, to.y_rate, length_s};
+inline HermiteCoordinate y_coordinate(const RaySample& from, const RaySample& to, double length_s) {
+  return {from.surface.y, from.y_rate, to.surface.y, to.y_rate, length_s};
 }
 
 /// The level of the texture's pyramid. Its path may have a kink, where the longer side of the
 /// footprint changes or reaches a texel.
-inline Track level_track(const RayView& from, const RayView& to, double length_s) {
-  return {from.look.level, from.level_rate, to.look.level, to.level_rate, length_s};
+inline HermiteCoordinate level_coordinate(const RaySample& from, const RaySample& to,
+                                          double length_s) {
+  return {from.surface.level, from.level_rate, to.surface.level, to.level_rate, length_s};
 }
 
 /// A kinked path turns at the meeting of both ends' tangents, at most a quarter of the sum of their
 /// differences from the chord's rate away from it.
-inline Interval level_values(const Track& level) {
-  const double stray = 27.0 / 16 * level.stray();
-  return {std::max(std::min(level.from, level.to) - stray, 0.0),
-          std::max(level.from, level.to) + stray};
+inline Interval level_values(const HermiteCoordinate& level) {
+  const double chord_error = 27.0 / 16 * level.chord_error();
+  return {std::max(std::min(level.from, level.to) - chord_error, 0.0),
+          std::max(level.from, level.to) + chord_error};
 }
 
 /// A cell of a texture with the part of it that a path may touch, from its upper left texel.
@@ -147,11 +149,11 @@ struct CellIndex {
   double i, j;
 };
 
-inline CellIndex middle_cell(const Track& x, const Track& y) {
+inline CellIndex middle_cell(const HermiteCoordinate& x, const HermiteCoordinate& y) {
   return {std::floor(0.5 * (x.from + x.to)), std::floor(0.5 * (y.from + y.to))};
 }
 
-inline bool is_within(const Interval& range, double index) {
+inline bool is_within_cell(const Interval& range, double index) {
   return range.low >= index - kOverhang && range.high <= index + 1 + kOverhang;
 }
 
@@ -165,15 +167,15 @@ inline Cell cell_of(const Texture& texture, const CellIndex& index, const Interv
 }
 
 /// Where to divide a stretch: the border of a texel or of a level that is nearest to the middle.
-class Division {
+class SplitPoint {
  public:
   static constexpr double kNearest = 0.02;  ///< to an end
   /// So far behind a border it is divided [texel]: a signal that only touches a threshold in the
-  /// very corner of its course, where two texels are alike, does not depend on the last bit.
+  /// very corner of its path, where two texels are alike, does not depend on the last bit.
   static constexpr double kPast = 1e-5;
 
   /// The time at which `track` is past `border`, one step of Newton's method from the chord.
-  void consider(const Track& track, double border) {
+  void consider(const HermiteCoordinate& track, double border) {
     const double past = border + std::copysign(kPast, track.chord);
     double u = (past - track.from) / track.chord;
     if (!(u > 0 && u < 1)) return;
@@ -182,7 +184,7 @@ class Division {
   }
 
   /// The borders of the cell in the middle.
-  void consider_cell(const Track& x, const Track& y) {
+  void consider_cell(const HermiteCoordinate& x, const HermiteCoordinate& y) {
     const CellIndex index = middle_cell(x, y);
     consider(x, index.i);
     consider(x, index.i + 1);
@@ -204,15 +206,16 @@ class Division {
 
 /// Fraction of a stretch within one cell at which the radiance turns; the middle if it does not or
 /// the path leaves the cell.
-inline double extremum_in_cell(const Texture& texture, const Track& x, const Track& y) {
+inline double extremum_in_cell(const Texture& texture, const HermiteCoordinate& x,
+                               const HermiteCoordinate& y) {
   const CellIndex index = middle_cell(x, y);
-  if (!is_within(x.values(), index.i) || !is_within(y.values(), index.j)) return 0.5;
+  if (!is_within_cell(x.values(), index.i) || !is_within_cell(y.values(), index.j)) return 0.5;
   const Cell cell = cell_of(texture, index, {x.from, x.to}, {y.from, y.to});
   const double a =
       cell.slope_x(cell.y.low) * x.rate_at(0) + cell.slope_y(cell.x.low) * y.rate_at(0);
   const double b =
       cell.slope_x(cell.y.high) * x.rate_at(1) + cell.slope_y(cell.x.high) * y.rate_at(1);
-  return Division::inside(a / (a - b));
+  return SplitPoint::inside(a / (a - b));
 }
 
 }  // namespace saccade

@@ -7,10 +7,10 @@ namespace saccade {
 namespace {
 
 /// Coordinates of an environment map go around; those of `view` are brought next to `near`.
-void follow(const RayView& near, RayView& view) {
-  if (view.triangle != kNothing || view.look.texture == nullptr) return;
-  const double turn = view.look.texture->width();
-  view.look.x += turn * std::round((near.look.x - view.look.x) / turn);
+void follow(const RaySample& near, RaySample& sample) {
+  if (sample.triangle != kNothing || sample.surface.texture == nullptr) return;
+  const double turn = sample.surface.texture->width();
+  sample.surface.x += turn * std::round((near.surface.x - sample.surface.x) / turn);
 }
 
 RadianceRange hull(RadianceRange a, const RadianceRange& b) {
@@ -48,33 +48,33 @@ RadianceRange PixelSignal<kRays>::range_across_change(std::size_t ray, const Sam
                                                       const Sample& hi) const {
   const double length_s = hi.t_s - lo.t_s;
   if (length_s <= tolerance_s_) return {};
-  const RayView& from = lo.rays[ray];
-  const RayView& to = hi.rays[ray];
+  const RaySample& from = lo.rays[ray];
+  const RaySample& to = hi.rays[ray];
   if (!tracer_.is_covered(directions_[ray], {from.triangle, lo.t_s}, {to.triangle, hi.t_s},
                           0.1 * tolerance_s_))
     return {};
   // Their light is that of the end at which they are seen.
-  RayView from_later = tracer_.unlit_view(directions_[ray], from.triangle, hi.t_s);
-  RayView to_earlier = tracer_.unlit_view(directions_[ray], to.triangle, lo.t_s);
-  from_later.look.irradiance = from.look.irradiance;
-  to_earlier.look.irradiance = to.look.irradiance;
+  RaySample from_later = tracer_.sample_unlit(directions_[ray], from.triangle, hi.t_s);
+  RaySample to_earlier = tracer_.sample_unlit(directions_[ray], to.triangle, lo.t_s);
+  from_later.surface.irradiance = from.surface.irradiance;
+  to_earlier.surface.irradiance = to.surface.irradiance;
   return hull(radiance_range(from, from_later, length_s), radiance_range(to_earlier, to, length_s));
 }
 
 template <std::size_t kRays>
-RayView PixelSignal<kRays>::between(std::size_t ray, const Sample& lo, const Sample& hi,
-                                    double t_s) const {
-  const RayView& from = lo.rays[ray];
-  const RayView& to = hi.rays[ray];
+RaySample PixelSignal<kRays>::between(std::size_t ray, const Sample& lo, const Sample& hi,
+                                      double t_s) const {
+  const RaySample& from = lo.rays[ray];
+  const RaySample& to = hi.rays[ray];
   const double length_s = hi.t_s - lo.t_s;
   if (!tracer_.is_lit() && is_straight(from, to, length_s))
     return interpolate(from, to, length_s, (t_s - lo.t_s) / length_s);
-  // Where the same lamps light both ends, they light what is between.
-  RayView view = from.look.lamps == to.look.lamps
-                     ? tracer_.view(directions_[ray], from.triangle, from.look.lamps, t_s)
-                     : tracer_.view(directions_[ray], from.triangle, t_s);
-  follow(from, view);
-  return view;
+  // Where the same lights light both ends, they light what is between.
+  RaySample sample = from.surface.lights == to.surface.lights
+                         ? tracer_.sample(directions_[ray], from.triangle, from.surface.lights, t_s)
+                         : tracer_.sample(directions_[ray], from.triangle, t_s);
+  follow(from, sample);
+  return sample;
 }
 
 template <std::size_t kRays>
@@ -93,7 +93,7 @@ auto PixelSignal<kRays>::at(double t_s, const Sample& lo, const Sample& hi) cons
 }
 
 template <std::size_t kRays>
-auto PixelSignal<kRays>::look(double t_s) const -> Sample {
+auto PixelSignal<kRays>::trace(double t_s) const -> Sample {
   Sample sample;
   sample.t_s = t_s;
   tracer_.trace(directions_, t_s, sample.rays);
@@ -102,13 +102,12 @@ auto PixelSignal<kRays>::look(double t_s) const -> Sample {
 }
 
 template <std::size_t kRays>
-auto PixelSignal<kRays>::look_again(double t_s, const Sample& lo, const Sample& hi) const
-    -> Sample {
-  if (changing_ray(lo, hi) < kRays) return look(t_s);
+auto PixelSignal<kRays>::resample(double t_s, const Sample& lo, const Sample& hi) const -> Sample {
+  if (changing_ray(lo, hi) < kRays) return trace(t_s);
   Sample sample;
   sample.t_s = t_s;
   for (std::size_t k = 0; k < kRays; ++k) {
-    sample.rays[k] = tracer_.view(directions_[k], lo.rays[k].triangle, t_s);
+    sample.rays[k] = tracer_.sample(directions_[k], lo.rays[k].triangle, t_s);
     follow(lo.rays[k], sample.rays[k]);
   }
   set_log_intensity(sample);
@@ -124,11 +123,11 @@ auto PixelSignal<kRays>::divide(const Sample& lo, const Sample& hi, int depth) c
   double fraction = 0.5;
   for (std::size_t k = 0; k < kRays && fraction == 0.5 && changing == kRays; ++k)
     if (kRays == 1 || !radiance_range(lo.rays[k], hi.rays[k], length_s).is_monotone())
-      fraction = dividing_fraction(lo.rays[k], hi.rays[k], length_s);
+      fraction = split_fraction(lo.rays[k], hi.rays[k], length_s);
   return at(lo.t_s + fraction * length_s, lo, hi);
 }
 
-/// Right before the change, or, where that has been looked at already, right after it: two looks
+/// Right before the change, or, where that has been sampled already, right after it: two samples
 /// enclose it within the tolerance. Neighbours in a mesh need no ray.
 template <std::size_t kRays>
 auto PixelSignal<kRays>::divide_at_change(std::size_t ray, const Sample& lo, const Sample& hi) const
@@ -146,7 +145,7 @@ auto PixelSignal<kRays>::divide_at_change(std::size_t ray, const Sample& lo, con
   if (kRays > 1 || !tracer_.is_crease(direction, from, to, change_s)) return at(t_s, lo, hi);
   Sample sample;
   sample.t_s = t_s;
-  sample.rays[ray] = tracer_.view(direction, is_before ? from : to, t_s);
+  sample.rays[ray] = tracer_.sample(direction, is_before ? from : to, t_s);
   set_log_intensity(sample);
   return sample;
 }

@@ -13,11 +13,11 @@ template <std::size_t kRays>
 struct PixelSample {
   double t_s = 0;
   double log_intensity = 0;  ///< ln(eps + mean radiance)
-  std::array<RayView, kRays> rays;
+  std::array<RaySample, kRays> rays;
 
   [[nodiscard]] double radiance() const {
     double sum = 0;
-    for (const RayView& ray : rays) sum += ray.look.radiance();
+    for (const RaySample& ray : rays) sum += ray.surface.radiance();
     return sum / static_cast<double>(kRays);
   }
 };
@@ -37,10 +37,10 @@ class PixelSignal {
   [[nodiscard]] RadianceRange range(const Sample& lo, const Sample& hi) const;
   [[nodiscard]] Sample divide(const Sample& lo, const Sample& hi, int depth) const;
   /// With rays, whatever is seen before and after.
-  [[nodiscard]] Sample look(double t_s) const;
+  [[nodiscard]] Sample trace(double t_s) const;
   [[nodiscard]] Sample at(double t_s, const Sample& lo, const Sample& hi) const;
-  /// at(), whatever lamps light both ends.
-  [[nodiscard]] Sample look_again(double t_s, const Sample& lo, const Sample& hi) const;
+  /// at(), whatever lights light both ends.
+  [[nodiscard]] Sample resample(double t_s, const Sample& lo, const Sample& hi) const;
 
   void set_log_intensity(Sample& sample) const {
     sample.log_intensity = saccade::log_intensity(sample.radiance(), log_eps_);
@@ -54,8 +54,8 @@ class PixelSignal {
                                                   const Sample& hi) const;
   [[nodiscard]] Sample divide_at_change(std::size_t ray, const Sample& lo, const Sample& hi) const;
   /// A ray that sees one triangle at both ends.
-  [[nodiscard]] RayView between(std::size_t ray, const Sample& lo, const Sample& hi,
-                                double t_s) const;
+  [[nodiscard]] RaySample between(std::size_t ray, const Sample& lo, const Sample& hi,
+                                  double t_s) const;
 
   RayTracer& tracer_;
   std::span<const Eigen::Vector3d, kRays> directions_;

@@ -3,21 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulator/sensor/signal/mipmap_bounds.h"
 #include "simulator/sensor/signal/cell_bounds.h"
+#include "simulator/sensor/signal/mipmap_bounds.h"
 
 namespace saccade {
 namespace {
 
-/// Multiplies the albedo's range by the light. Under the same lamps the irradiance is taken to stay
+/// Multiplies the albedo's range by the light. Under the same lights the irradiance is taken to stay
 /// near the line between both ends; where they differ, it jumps at the edge of a shadow.
-RadianceRange illuminated(const Interval& values, const Interval& rates, const RayView& from,
-                          const RayView& to, double length_s) {
-  const double factor = from.look.texture != nullptr ? from.look.factor : 1;
-  const double a = factor * from.look.irradiance;
-  const double b = factor * to.look.irradiance;
+RadianceRange illuminated(const Interval& values, const Interval& rates, const RaySample& from,
+                          const RaySample& to, double length_s) {
+  const double factor = from.surface.texture != nullptr ? from.surface.factor : 1;
+  const double a = factor * from.surface.irradiance;
+  const double b = factor * to.surface.irradiance;
   if (a == b) return {a * values.low, a * values.high, a * rates.low, a * rates.high};
-  if (from.look.lamps != to.look.lamps) {
+  if (from.surface.lights != to.surface.lights) {
     const Interval radiance = product(values, {std::min(a, b), std::max(a, b)});
     return {radiance.low, radiance.high, -RadianceRange::kUnknown, RadianceRange::kUnknown};
   }
@@ -44,55 +44,58 @@ double RadianceRange::log_error(double log_eps, double length_s) const {
   return straying < spread ? straying : spread;  // also when one is not a number
 }
 
-RadianceRange radiance_range(const RayView& from, const RayView& to, double length_s) {
-  if (from.look.texture != to.look.texture) return {};
-  const Track x = x_track(from, to, length_s);
-  if (from.look.texture == nullptr) return illuminated(x.values(), x.rates(), from, to, length_s);
+RadianceRange radiance_range(const RaySample& from, const RaySample& to, double length_s) {
+  if (from.surface.texture != to.surface.texture) return {};
+  const HermiteCoordinate x = x_coordinate(from, to, length_s);
+  if (from.surface.texture == nullptr)
+    return illuminated(x.values(), x.rates(), from, to, length_s);
   const Interval across = x.values();
-  const Interval down = y_track(from, to, length_s).values();
+  const Interval down = y_coordinate(from, to, length_s).values();
   if (!(across.high - across.low < 1e6 && down.high - down.low < 1e6)) return {};
-  const PathRange range =
-      is_filtered(from, to) ? pyramid_range(from, to, length_s) : picture_range(from, to, length_s);
+  const TextureRange range =
+      is_filtered(from, to) ? mipmap_range(from, to, length_s) : texture_range(from, to, length_s);
   return illuminated(range.values, range.rates, from, to, length_s);
 }
 
-RayView interpolate(const RayView& from, const RayView& to, double length_s, double fraction) {
-  const Track x = x_track(from, to, length_s);
-  const Track y = y_track(from, to, length_s);
-  RayView view = from;
-  view.look.x = x.at(fraction);
-  view.look.y = y.at(fraction);
-  view.x_rate = x.rate_at(fraction);
-  view.y_rate = y.rate_at(fraction);
+RaySample interpolate(const RaySample& from, const RaySample& to, double length_s,
+                      double fraction) {
+  const HermiteCoordinate x = x_coordinate(from, to, length_s);
+  const HermiteCoordinate y = y_coordinate(from, to, length_s);
+  RaySample sample = from;
+  sample.surface.x = x.at(fraction);
+  sample.surface.y = y.at(fraction);
+  sample.x_rate = x.rate_at(fraction);
+  sample.y_rate = y.rate_at(fraction);
   if (is_filtered(from, to)) {
-    const Track level = level_track(from, to, length_s);
-    view.look.level = std::max(level.at(fraction), 0.0);
-    view.level_rate = level.rate_at(fraction);
+    const HermiteCoordinate level = level_coordinate(from, to, length_s);
+    sample.surface.level = std::max(level.at(fraction), 0.0);
+    sample.level_rate = level.rate_at(fraction);
   }
-  view.look.distance += fraction * (to.look.distance - from.look.distance);
-  view.look.irradiance += fraction * (to.look.irradiance - from.look.irradiance);
-  return view;
+  sample.surface.distance += fraction * (to.surface.distance - from.surface.distance);
+  sample.surface.irradiance += fraction * (to.surface.irradiance - from.surface.irradiance);
+  return sample;
 }
 
-bool is_straight(const RayView& from, const RayView& to, double length_s) {
+bool is_straight(const RaySample& from, const RaySample& to, double length_s) {
   constexpr double kLevelStraight = 1e-5;  // of kinks the cubic knows nothing
-  if (is_filtered(from, to) && level_track(from, to, length_s).stray() > kLevelStraight)
+  if (is_filtered(from, to) && level_coordinate(from, to, length_s).chord_error() > kLevelStraight)
     return false;
-  return x_track(from, to, length_s).stray() + y_track(from, to, length_s).stray() <
+  return x_coordinate(from, to, length_s).chord_error() +
+             y_coordinate(from, to, length_s).chord_error() <
          kStraight_texel;
 }
 
-double dividing_fraction(const RayView& from, const RayView& to, double length_s) {
-  if (from.look.texture == nullptr || from.look.texture != to.look.texture ||
-      from.look.lamps != to.look.lamps)
+double split_fraction(const RaySample& from, const RaySample& to, double length_s) {
+  if (from.surface.texture == nullptr || from.surface.texture != to.surface.texture ||
+      from.surface.lights != to.surface.lights)
     return 0.5;
-  if (is_filtered(from, to)) return pyramid_dividing_fraction(from, to, length_s);
-  const Track x = x_track(from, to, length_s);
-  const Track y = y_track(from, to, length_s);
-  Division division;
+  if (is_filtered(from, to)) return mipmap_split_fraction(from, to, length_s);
+  const HermiteCoordinate x = x_coordinate(from, to, length_s);
+  const HermiteCoordinate y = y_coordinate(from, to, length_s);
+  SplitPoint division;
   division.consider_cell(x, y);
   if (division.found()) return division.fraction();
-  return extremum_in_cell(*from.look.texture, x, y);
+  return extremum_in_cell(*from.surface.texture, x, y);
 }
 
 }  // namespace saccade

@@ -9,9 +9,9 @@
 namespace saccade {
 
 /// What one ray of a pixel sees at an instant, and how that place moves over the texture.
-struct RayView {
+struct RaySample {
   TriangleId triangle = kNothing;
-  SurfaceLook look;
+  SurfaceSample surface;
   double x_rate = 0,
          y_rate = 0;      ///< [texel/s]; without a texture x_rate is that of the albedo [1/s]
   double level_rate = 0;  ///< of the level of the texture's pyramid [1/s]
@@ -42,7 +42,7 @@ struct RadianceRange {
     rate_high *= factor;
   }
 
-  /// Bound of how far ln(eps + I) strays from its chord over `length_s`: a quarter of the spread of
+  /// Bound of how far ln(eps + I) departs from its chord over `length_s`: a quarter of the spread of
   /// its rates times the length, or the spread of its values.
   [[nodiscard]] double log_error(double log_eps, double length_s) const;
 
@@ -54,22 +54,23 @@ struct RadianceRange {
 };
 
 /// Of a ray that sees the same triangle at both ends of a stretch of `length_s` > 0 and all through
-/// it. Over the texture the ray follows the cubic with the given ends; it strays from the chord by
+/// it. Over the texture the ray follows the cubic with the given ends; it departs from the chord by
 /// at most 4/27 of the sum of both ends' differences from the chord's rate, times the length. A box
 /// within one cell of the texture is bounded by the bilinear function there, which also bounds the
 /// rate; a larger one by its texels. Filtered textures likewise, on both levels around the path's.
-[[nodiscard]] RadianceRange radiance_range(const RayView& from, const RayView& to, double length_s);
+[[nodiscard]] RadianceRange radiance_range(const RaySample& from, const RaySample& to,
+                                           double length_s);
 
 /// The cubic at `fraction` of the stretch. The irradiance is the line between both ends'.
-[[nodiscard]] RayView interpolate(const RayView& from, const RayView& to, double length_s,
-                                  double fraction);
+[[nodiscard]] RaySample interpolate(const RaySample& from, const RaySample& to, double length_s,
+                                    double fraction);
 
 /// Whether the cubic is as good as the true path: the path is nearly straight.
-[[nodiscard]] bool is_straight(const RayView& from, const RayView& to, double length_s);
+[[nodiscard]] bool is_straight(const RaySample& from, const RaySample& to, double length_s);
 
 /// Where to divide the stretch of a ray so that its parts become monotone: the crossing of a
 /// texel's (or level's) border nearest to the middle; within one cell the radiance's extremum; else
 /// the middle. A fraction within [0.02, 0.98].
-[[nodiscard]] double dividing_fraction(const RayView& from, const RayView& to, double length_s);
+[[nodiscard]] double split_fraction(const RaySample& from, const RaySample& to, double length_s);
 
 }  // namespace saccade

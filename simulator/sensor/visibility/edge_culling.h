@@ -11,15 +11,15 @@ namespace saccade {
 
 /// Sorts out, of many triangles at once, those that a ray cannot meet during a stretch of time: it
 /// is outside one of their edges all the time. The forms along the ray are parabolas, as in
-/// TriangleSight; floats in lanes, whose rounding is far below the margin.
-class OutsideTest {
+/// TriangleRayBounds; floats in lanes, whose rounding is far below the margin.
+class EdgeCulling {
  public:
   /// What is nearer to an edge than `margin` of the image plane does not count as outside.
-  explicit OutsideTest(double margin) : margin_(static_cast<float>(margin)) {}
+  explicit EdgeCulling(double margin) : margin_(static_cast<float>(margin)) {}
 
   void clear() { count_ = 0; }
 
-  void add(const PassingTriangle& triangle) {
+  void add(const TransitTriangle& triangle) {
     if (count_ % kLanes == 0 && count_ / kLanes == blocks_.size()) blocks_.emplace_back();
     Block& block = blocks_[count_ / kLanes];
     const std::size_t lane = count_++ % kLanes;
@@ -33,7 +33,7 @@ class OutsideTest {
 
   /// use(i) for those, counted in the order of add(), that the ray `direction` may meet.
   template <class Use>
-  void visit_others(const Eigen::Vector3d& direction, const Use& use) const {
+  void visit_candidates(const Eigen::Vector3d& direction, const Use& use) const {
     const std::array<float, 3> ray{static_cast<float>(direction.x()),
                                    static_cast<float>(direction.y()),
                                    static_cast<float>(direction.z())};
@@ -62,7 +62,7 @@ class OutsideTest {
     }
   };
   struct Block {
-    std::array<Forms, 3> planes{};                ///< at both ends and half way
+    std::array<Forms, 3> planes{};                ///< at both ends and in the middle
     std::array<std::array<Forms, 3>, 3> edges{};  ///< the same of each edge
     std::array<Lanes, 3> reach{};
   };

@@ -12,22 +12,22 @@
 
 namespace saccade {
 
-/// Finds when shadows come and go where a ray meets a plane, from its points at both ends of a
-/// stretch and half way.
-class PassingShadows {
+/// Finds when shadows come and go where a ray intersects a plane, from its points at both ends of a
+/// stretch and in the middle.
+class ShadowTransits {
  public:
-  /// use(begin, end), as fractions of the whole, with each time during which the lamp is hidden; in
+  /// use(begin, end), as fractions of the whole, with each time during which the light is hidden; in
   /// order, and as one where triangles that hide it follow on each other.
   template <class Use>
-  void find(const DoubtfulLamp& lamp, const std::array<Eigen::Vector3d, 3>& points,
+  void find(const PartlyOccludedLight& light, const std::array<Eigen::Vector3d, 3>& points,
             const Use& use) {
     constexpr double kNeighbours = 1e-6;
     hidden_.clear();
-    lamp.lanes.visit_others(points, [&](std::size_t i) {
+    light.lanes.visit_candidates(points, [&](std::size_t i) {
       std::array<std::array<double, 3>, 4> forms;
       for (std::size_t k = 0; k < forms.size(); ++k)
         for (std::size_t m = 0; m < points.size(); ++m)
-          forms[k][m] = lamp.casters[i].forms[k].at(points[m]);
+          forms[k][m] = light.occluders[i].forms[k].at(points[m]);
       find_stretches(forms, [&](double begin, double end) { hidden_.emplace_back(begin, end); });
       return true;
     });

@@ -25,7 +25,7 @@ inline void clip_to_line(double x, double y, double& low, double& high) {
 }
 
 /// use(begin, end), as fractions of the whole, with each stretch in which no form is negative. Each
-/// is given at both ends and half way, and taken to be the parabola through these, even between its
+/// is given at both ends and in the middle, and taken to be the parabola through these, even between its
 /// quarters.
 template <std::size_t kForms, class Use>
 void find_stretches(const std::array<std::array<double, 3>, kForms>& forms, const Use& use) {
@@ -50,55 +50,56 @@ void find_stretches(const std::array<std::array<double, 3>, kForms>& forms, cons
   if (end >= begin) use(begin, end);
 }
 
-/// A triangle that may pass through rays of a tile between two looks, with its edges at both and
-/// half way. Each edge's form along a ray is taken to be the parabola through these, and even
+/// A triangle that may pass through rays of a tile between two samples, with its edges at both and
+/// in the middle. Each edge's form along a ray is taken to be the parabola through these, and even
 /// between its quarters: exact enough for what is seen edge-on, too, because the forms are smooth
 /// while the triangle turns from one side to the other.
-struct PassingTriangle {
+struct TransitTriangle {
   TriangleId triangle;
-  std::array<TrianglePass, 3> at;
+  std::array<EdgeFunctions, 3> at;
 
   /// Whether, turned either way, some edge keeps all rays within `outline` out all the time.
   [[nodiscard]] bool misses(const std::array<Eigen::Vector3d, 4>& outline) const {
     const auto is_negative = [&](double sign, const auto& form) {
-      return std::all_of(at.begin(), at.end(), [&](const TrianglePass& pass) {
+      return std::all_of(at.begin(), at.end(), [&](const EdgeFunctions& pass) {
         return std::all_of(outline.begin(), outline.end(), [&](const Eigen::Vector3d& corner) {
           return sign * form(pass).dot(corner) < 0;
         });
       });
     };
     const auto is_outside = [&](double sign) {
-      if (is_negative(sign, [](const TrianglePass& pass) { return pass.w; })) return true;
+      if (is_negative(sign, [](const EdgeFunctions& pass) { return pass.w; })) return true;
       for (std::size_t k = 0; k < 3; ++k)
-        if (is_negative(sign, [k](const TrianglePass& pass) { return pass.edges[k]; })) return true;
+        if (is_negative(sign, [k](const EdgeFunctions& pass) { return pass.edges[k]; }))
+          return true;
       return false;
     };
     return is_outside(1) && is_outside(-1);
   }
 
-  /// Whether the ray `direction`, inside the edges at both looks, is outside half way.
+  /// Whether the ray `direction`, inside the edges at both samples, is outside in the middle.
   [[nodiscard]] bool leaves(const Eigen::Vector3d& direction) const {
     const double sign = at[1].w.dot(direction) < 0 ? -1 : 1;
     return std::any_of(at[1].edges.begin(), at[1].edges.end(),
                        [&](const Eigen::Vector3d& edge) { return sign * edge.dot(direction) < 0; });
   }
 
-  /// Whether the ray `direction` meets the plane behind `hidden_beyond`, or behind the camera, at
-  /// both looks and half way. Where it grazes the plane, its distance is anyone's guess.
-  [[nodiscard]] bool is_hidden(const Eigen::Vector3d& direction, double hidden_beyond) const {
+  /// Whether the ray `direction` intersects the plane behind `occluded_beyond`, or behind the camera, at
+  /// both samples and in the middle. Where it grazes the plane, its distance is undefined.
+  [[nodiscard]] bool is_occluded(const Eigen::Vector3d& direction, double occluded_beyond) const {
     constexpr double kGrazing = 1e-2;
     constexpr double kRoom = 1.001;
-    return std::all_of(at.begin(), at.end(), [&](const TrianglePass& pass) {
+    return std::all_of(at.begin(), at.end(), [&](const EdgeFunctions& pass) {
       const double w = pass.w.dot(direction);
       const double distance = pass.depth / w;
-      return std::abs(w) > kGrazing && !(distance > 0 && distance < kRoom * hidden_beyond);
+      return std::abs(w) > kGrazing && !(distance > 0 && distance < kRoom * occluded_beyond);
     });
   }
 
   /// use(begin, end), as fractions of the whole, with each time during which the ray `direction` is
   /// inside the edges.
   template <class Use>
-  void find_passages(const Eigen::Vector3d& direction, const Use& use) const {
+  void find_transits(const Eigen::Vector3d& direction, const Use& use) const {
     for (const double sign : {1.0, -1.0}) {
       std::array<std::array<double, 3>, 3> forms;
       for (std::size_t k = 0; k < 3; ++k)

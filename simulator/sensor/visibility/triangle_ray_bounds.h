@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "simulator/sensor/visibility/transit.h"
 #include "simulator/sensor/signal/cell_bounds.h"
+#include "simulator/sensor/visibility/transit.h"
 
 namespace saccade {
 
@@ -18,11 +18,12 @@ inline Interval parabola_bounds(double from, double middle, double to) {
 /// How a triangle lies to the ray of a pixel during a stretch of time. Its forms along the ray are
 /// taken to be parabolas in time; what is nearer to an edge than `margin` of the image plane is in
 /// doubt.
-class TriangleSight {
+class TriangleRayBounds {
  public:
-  TriangleSight(const PassingTriangle& triangle, const Eigen::Vector3d& direction, double margin)
+  TriangleRayBounds(const TransitTriangle& triangle, const Eigen::Vector3d& direction,
+                    double margin)
       : triangle_(triangle), direction_(direction), margin_(margin) {
-    const Interval w = along([](const TrianglePass& pass) { return pass.w; });
+    const Interval w = along([](const EdgeFunctions& pass) { return pass.w; });
     side_ = w.low > 0 ? 1 : w.high < 0 ? -1 : 0;
   }
 
@@ -38,7 +39,7 @@ class TriangleSight {
 
   /// The edge through which the ray, inside the others all the time, goes out of the triangle once,
   /// or with `inwards` comes in.
-  [[nodiscard]] std::optional<std::size_t> edge_passed(bool inwards) const {
+  [[nodiscard]] std::optional<std::size_t> edge_crossed(bool inwards) const {
     std::optional<std::size_t> passed;
     for (std::size_t k = 0; k < 3 && side_ != 0; ++k) {
       const Interval edge = from_edge(k);
@@ -64,7 +65,7 @@ class TriangleSight {
   }
 
   /// Whether the triangle's plane is behind another one's, or behind the eye, all the time.
-  [[nodiscard]] bool stays_behind(const PassingTriangle& other) const {
+  [[nodiscard]] bool stays_behind(const TransitTriangle& other) const {
     for (std::size_t m = 0; m < 3; ++m)
       if (!(nearness(triangle_.at[m]) < kBehind * nearness(other.at[m]))) return false;
     return true;
@@ -80,18 +81,18 @@ class TriangleSight {
                            form(at[2]).dot(direction_));
   }
   [[nodiscard]] Interval from_edge(std::size_t k) const {
-    return along([k](const TrianglePass& pass) { return pass.edges[k]; });
+    return along([k](const EdgeFunctions& pass) { return pass.edges[k]; });
   }
   /// What the form of edge `k` amounts to at the margin.
   [[nodiscard]] double reach(std::size_t k) const {
     return margin_ * triangle_.at[1].edges[k].head<2>().norm();
   }
   /// Inverse distance.
-  [[nodiscard]] double nearness(const TrianglePass& pass) const {
+  [[nodiscard]] double nearness(const EdgeFunctions& pass) const {
     return pass.w.dot(direction_) / pass.depth;
   }
 
-  const PassingTriangle& triangle_;
+  const TransitTriangle& triangle_;
   const Eigen::Vector3d& direction_;
   double margin_;
   int side_;

@@ -110,7 +110,7 @@ TEST(MovingScene, MixedPacketsAgreeWithSingleRays) {
       TriangleId alone = 0;
       scene.visible({&rays[i], 1}, {&alone, 1});
       EXPECT_EQ(triangles[i], alone);
-      EXPECT_TRUE(alone == kNothing || scene.meets(rays[i], alone));
+      EXPECT_TRUE(alone == kNothing || scene.intersects(rays[i], alone));
       if (alone == kNothing) continue;
       EXPECT_EQ(scene.moving_object(alone) == nullptr, scene.object(alone) == 0);
       ++seen[scene.object(alone)];

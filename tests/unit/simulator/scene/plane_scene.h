@@ -28,7 +28,7 @@ inline EventOptions in_nanoseconds() {
   return options;
 }
 
-/// The triangle that a ray meets first.
+/// The triangle that a ray intersects first.
 inline TriangleId look(const Scene& scene, const Ray& ray) {
   TriangleId triangle = 0;
   scene.visible({&ray, 1}, {&triangle, 1});

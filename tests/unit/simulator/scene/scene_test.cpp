@@ -111,13 +111,13 @@ TEST(Scene, PacketsOfAnySizeAgreeWithSingleRays) {
 TEST(Scene, MeetsAgreesWithVisibleAndIncludesEdges) {
   const Scene scene = single(square(), at(0, 0, 1));
   const Ray diagonal{{0.25, 0.25, 0}, Eigen::Vector3d::UnitZ()};
-  EXPECT_TRUE(scene.meets(diagonal, 0));
-  EXPECT_TRUE(scene.meets(diagonal, 1));
+  EXPECT_TRUE(scene.intersects(diagonal, 0));
+  EXPECT_TRUE(scene.intersects(diagonal, 1));
   const Ray inside{{0.5, -0.5, 0}, Eigen::Vector3d::UnitZ()};
-  EXPECT_TRUE(scene.meets(inside, look(scene, inside)));
-  EXPECT_NE(scene.meets(inside, 0), scene.meets(inside, 1));
-  EXPECT_FALSE(scene.meets({{0.5, -0.5, 2}, Eigen::Vector3d::UnitZ()}, 0)) << "behind the ray";
-  EXPECT_FALSE(scene.meets(inside, kNothing));
+  EXPECT_TRUE(scene.intersects(inside, look(scene, inside)));
+  EXPECT_NE(scene.intersects(inside, 0), scene.intersects(inside, 1));
+  EXPECT_FALSE(scene.intersects({{0.5, -0.5, 2}, Eigen::Vector3d::UnitZ()}, 0)) << "behind the ray";
+  EXPECT_FALSE(scene.intersects(inside, kNothing));
 }
 
 TEST(Scene, BackgroundIsWhereNothingIs) {
@@ -206,7 +206,7 @@ TEST(Scene, CutoutsLetRaysThrough) {
   scene.visible(both, triangles);
   EXPECT_EQ(scene.object(triangles[0]), 0U);
   EXPECT_EQ(scene.object(triangles[1]), 1U);
-  EXPECT_FALSE(scene.meets(through, triangles[1]));
+  EXPECT_FALSE(scene.intersects(through, triangles[1]));
 }
 
 TEST(Scene, TrianglesWithoutAreaAreLeftOut) {

@@ -18,7 +18,7 @@ struct Crop {
   int x0, y0;
   double start_s;
   double duration_s = 0.03;
-  /// Less where more triangles stand between a lamp and what it lights than are foreseen.
+  /// Less where more triangles stand between a light and what it lights than are predicted.
   double least_10_us = 0.999, least_1_us = 0.99;
 };
 

@@ -23,7 +23,7 @@ struct Survey {
   double nearest_m = std::numeric_limits<double>::infinity();  ///< z depth
   double farthest_m = 0;
   double mean_m = 0;
-  double covered = 0;           ///< share of the rays that hit something
+  double covered = 0;           ///< fraction of the rays that hit something
   double log_radiance_rms = 0;  ///< deviation from the mean
 };
 

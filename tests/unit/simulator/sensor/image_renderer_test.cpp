@@ -23,7 +23,7 @@ struct TiltedPlane {
   Rigid3 pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, -2, 3).normalized())),
               {0.3, -0.2, 0.1}};
 
-  /// Where the ray of an undistorted pixel direction meets the plane, as z depth.
+  /// Where the ray of an undistorted pixel direction intersects the plane, as z depth.
   [[nodiscard]] double depth(const Rigid3& world_from_camera, const Eigen::Vector3d& ray) const {
     const Eigen::Vector3d normal = right.cross(down);
     return normal.dot(corner - world_from_camera.translation()) /
@@ -31,9 +31,9 @@ struct TiltedPlane {
   }
 };
 
-TEST(ViewRenderer, DepthOfATiltedPlane) {
+TEST(ImageRenderer, DepthOfATiltedPlane) {
   const TiltedPlane world;
-  const ImageF depth = ViewRenderer(world.scene, world.camera, 4).depth({0, world.pose});
+  const ImageF depth = ImageRenderer(world.scene, world.camera, 4).depth({0, world.pose});
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 41; ++x) {
       const Eigen::Vector3d ray = world.camera.ray(world.camera.undistort({x, y}));
@@ -41,10 +41,10 @@ TEST(ViewRenderer, DepthOfATiltedPlane) {
     }
 }
 
-TEST(ViewRenderer, BackgroundHasNoDepth) {
+TEST(ImageRenderer, BackgroundHasNoDepth) {
   const Scene scene =
       testing::scene_of({testing::rectangle({0, 0, 2}, {9, 0, 0}, {0, 9, 0}, ImageF(2, 2, 0.4F))});
-  const ViewRenderer renderer(scene, {9, 7, 20, 20, 4, 3, {}}, 1);
+  const ImageRenderer renderer(scene, {9, 7, 20, 20, 4, 3, {}}, 1);
   const ImageF depth = renderer.depth({});
   const ImageF radiance = renderer.radiance(std::vector<StampedPose>(1));
   EXPECT_EQ(depth(0, 0), 0);
@@ -53,10 +53,10 @@ TEST(ViewRenderer, BackgroundHasNoDepth) {
   EXPECT_FLOAT_EQ(radiance(8, 6), 0.4F);
 }
 
-TEST(ViewRenderer, RadianceIsThatOfTheTextureAndAveragesOverPoses) {
+TEST(ImageRenderer, RadianceIsThatOfTheTextureAndAveragesOverPoses) {
   const ClosedFormPlane plane = ClosedFormPlane::smooth(20, 14);
   const Scene scene = testing::scene_of(plane);
-  const ViewRenderer renderer(scene, plane.camera, 1);
+  const ImageRenderer renderer(scene, plane.camera, 1);
   const Spline motion = plane.motion();
   const std::vector<StampedPose> poses{{0.1, motion.pose(0.1)}, {0.35, motion.pose(0.35)}};
   const ImageF image = renderer.radiance(poses);
@@ -70,13 +70,13 @@ TEST(ViewRenderer, RadianceIsThatOfTheTextureAndAveragesOverPoses) {
     }
 }
 
-TEST(ViewRenderer, FlowIsTheMotionOfTheSeenPoint) {
+TEST(ImageRenderer, FlowIsTheMotionOfTheSeenPoint) {
   const TiltedPlane world;
   SplineState state;
   state.world_from_body = world.pose;
   state.velocity_in_world = {0.4, 0.7, -0.3};
   state.angular_velocity_in_body = {0.5, -0.8, 1.1};
-  const FlowField flow = ViewRenderer(world.scene, world.camera, 1).flow(state, 0);
+  const FlowField flow = ImageRenderer(world.scene, world.camera, 1).flow(state, 0);
   constexpr double kStep_s = 1e-4;
   const auto pose_at = [&](double t) {
     return Rigid3(world.pose.rotation() * so3_exp(t * state.angular_velocity_in_body),
@@ -113,10 +113,10 @@ TEST(TextureFilter, FineTextureIsItsMeanInsteadOfAliasing) {
       {testing::rectangle({-2, -2, 3}, {4, 0, 0}, {0, 4, 0.5}, checkerboard(1024))});
   const PinholeCamera camera{31, 23, 40, 40, 15, 11, {-0.1, 0, 0, 0, 0}};
   const std::vector<StampedPose> pose{{0, {so3_exp({0.02, 0.03, 0.1}), {0.01, 0.02, 0}}}};
-  const ImageF point = ViewRenderer(scene, camera, 1).radiance(pose);
+  const ImageF point = ImageRenderer(scene, camera, 1).radiance(pose);
   EXPECT_GT(spread_of(point), 0.5);
   for (const int rays : {1, 4}) {
-    const ImageF mean = ViewRenderer(scene, camera, rays, TextureFilter::kMipmap).radiance(pose);
+    const ImageF mean = ImageRenderer(scene, camera, rays, TextureFilter::kMipmap).radiance(pose);
     EXPECT_LT(spread_of(mean), 0.01) << rays;
     EXPECT_NEAR(mean(15, 11), 0.5, 0.005) << rays;
   }
@@ -127,8 +127,8 @@ TEST(TextureFilter, CoarseTextureStaysAsItIs) {
       {testing::rectangle({-2, -2, 3}, {4, 0, 0}, {0, 4, 0.5}, checkerboard(16))});
   const PinholeCamera camera{31, 23, 40, 40, 15, 11, {}};
   const std::vector<StampedPose> pose{{0, {so3_exp({0.02, 0.03, 0.1}), {0.01, 0.02, 0}}}};
-  EXPECT_EQ(ViewRenderer(scene, camera, 1).radiance(pose),
-            ViewRenderer(scene, camera, 1, TextureFilter::kMipmap).radiance(pose));
+  EXPECT_EQ(ImageRenderer(scene, camera, 1).radiance(pose),
+            ImageRenderer(scene, camera, 1, TextureFilter::kMipmap).radiance(pose));
 }
 
 TEST(TextureFilter, LevelIsTheLargerTexelStepToTheNextPixel) {
@@ -144,11 +144,11 @@ TEST(TextureFilter, LevelIsTheLargerTexelStepToTheNextPixel) {
       TriangleId triangle = kNothing;
       scene.visible({&ray, 1}, {&triangle, 1});
       const Eigen::Matrix2d s = rays.spread(ray.direction);
-      return scene.look(ray, triangle, {{s(0, 0), s(1, 0), 0}, {s(0, 1), s(1, 1), 0}});
+      return scene.sample_surface(ray, triangle, {{s(0, 0), s(1, 0), 0}, {s(0, 1), s(1, 1), 0}});
     };
     const auto step = [&](double dx, double dy) {
-      const SurfaceLook a = look(-dx, -dy);
-      const SurfaceLook b = look(dx, dy);
+      const SurfaceSample a = look(-dx, -dy);
+      const SurfaceSample b = look(dx, dy);
       return std::hypot(b.x - a.x, b.y - a.y) / (2 * kStep_px);
     };
     const double expected = std::log2(std::max(step(kStep_px, 0), step(0, kStep_px)));

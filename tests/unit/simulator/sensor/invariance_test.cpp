@@ -27,7 +27,7 @@ Mesh card(std::uint64_t seed) {
 
 Scene still_scene() { return testing::scene_of({testing::slanted_wall(), card(2)}); }
 
-/// A card that moves and one that does not, under a lamp.
+/// A card that moves and one that does not, under a light.
 Scene lively_scene() {
   SceneBuilder builder;
   builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
@@ -72,7 +72,7 @@ SensedEvents sense(EventCamera& camera, double end_s) {
   return all;
 }
 
-// 0.137 divides neither the slabs nor the other steps.
+// 0.137 divides neither the slices nor the other steps.
 TEST(Invariance, DenserSamplingGivesTheSameEvents) {
   const Scene scene = still_scene();
   const Spline way = motion();

@@ -88,7 +88,7 @@ std::vector<double> counts(const SensedEvents& events, const PinholeCamera& came
   return counts;
 }
 
-// The texture is linear between texels: ln I strays by (ln 40 / 4096)^2 / 8 = 1e-7 from the ramp.
+// The texture is linear between texels: ln I departs by (ln 40 / 4096)^2 / 8 = 1e-7 from the ramp.
 TEST(NoisyCamera, RefractoryPeriodMakesARampFireAtItsReciprocalRate) {
   EventOptions options = testing::in_nanoseconds();
   options.noise.refractory.period_us = 20'000;

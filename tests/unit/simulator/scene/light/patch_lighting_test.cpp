@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// A floor of 2 x 2 m at z = 0 under squares at z = 1, with a lamp at z = 2 or light from above.
+/// A floor of 2 x 2 m at z = 0 under squares at z = 1, with a light at z = 2 or light from above.
 Scene floor_under(const std::vector<Eigen::AlignedBox2d>& squares, LightType type) {
   Mesh mesh;
   mesh.materials.emplace_back();
@@ -30,16 +30,16 @@ Scene floor_under(const std::vector<Eigen::AlignedBox2d>& squares, LightType typ
   for (const auto& square : squares) add(square, 1);
   SceneBuilder builder;
   builder.add(mesh, Eigen::Affine3d::Identity());
-  LightOptions lamp;
-  lamp.type = type;
-  lamp.position = {0, 0, 2};
-  builder.light(0.1, {lamp});
+  LightOptions light;
+  light.type = type;
+  light.position = {0, 0, 2};
+  builder.light(0.1, {light});
   return std::move(builder).build(Background(0.5));
 }
 
 /// From (0, 0, 0.5) onto the floor around `at`.
-SightPyramid sight_of(const Eigen::Vector2d& at) {
-  SightPyramid pyramid{{0, 0, 0.5}, {}, 0};
+Frustum sight_of(const Eigen::Vector2d& at) {
+  Frustum pyramid{{0, 0, 0.5}, {}, 0};
   const std::array<Eigen::Vector2d, 4> corners{
       {{-0.01, -0.01}, {0.01, -0.01}, {0.01, 0.01}, {-0.01, 0.01}}};
   for (std::size_t k = 0; k < corners.size(); ++k) pyramid.corners[k] << at + corners[k], -0.5;
@@ -55,13 +55,13 @@ class PatchLightOf : public ::testing::TestWithParam<LightType> {
 TEST_P(PatchLightOf, TellsShadowsExactly) {
   const Scene scene =
       floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.9, 0.2)}}, GetParam());
-  const SightPyramid sight = sight_of({edge(), -0.05});
-  PatchLight buffer;
-  const PatchLight* light = scene.find_light(0, {&sight, 1}, 100, buffer);
+  const Frustum sight = sight_of({edge(), -0.05});
+  PatchLighting buffer;
+  const PatchLighting* light = scene.find_lighting(0, {&sight, 1}, 100, buffer);
   ASSERT_NE(light, nullptr);
-  EXPECT_EQ(light->proven, 0U);
-  EXPECT_EQ(light->lamps_at({edge() - 1e-4, -0.05, 0}), 1U);
-  EXPECT_EQ(light->lamps_at({edge() + 1e-4, -0.05, 0}), 0U);
+  EXPECT_EQ(light->unoccluded, 0U);
+  EXPECT_EQ(light->lights_at({edge() - 1e-4, -0.05, 0}), 1U);
+  EXPECT_EQ(light->lights_at({edge() + 1e-4, -0.05, 0}), 0U);
 }
 
 TEST_P(PatchLightOf, LeavesNoLightBetweenNeighbours) {
@@ -69,42 +69,42 @@ TEST_P(PatchLightOf, LeavesNoLightBetweenNeighbours) {
       floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.6, 0.2)}}, GetParam());
   const double x = 2 * edge();  // on the shadow's diagonal
   const double y = 0;
-  const SightPyramid sight = sight_of({x, y});
-  PatchLight buffer;
-  const PatchLight* light = scene.find_light(0, {&sight, 1}, 100, buffer);
+  const Frustum sight = sight_of({x, y});
+  PatchLighting buffer;
+  const PatchLighting* light = scene.find_lighting(0, {&sight, 1}, 100, buffer);
   ASSERT_NE(light, nullptr);
   for (int k = -50; k <= 50; ++k) {
     const double shift = 1e-4 * k;
-    EXPECT_EQ(light->lamps_at({x + shift, y + shift, 0}), 0U);
+    EXPECT_EQ(light->lights_at({x + shift, y + shift, 0}), 0U);
   }
 }
 
 TEST_P(PatchLightOf, ProvesWhatNothingCanHide) {
   const Scene scene =
       floor_under({{Eigen::Vector2d(-0.6, -0.6), Eigen::Vector2d(-0.5, -0.5)}}, GetParam());
-  const SightPyramid sight = sight_of({0.7, 0.2});
-  PatchLight buffer;
-  const PatchLight* light = scene.find_light(0, {&sight, 1}, 100, buffer);
+  const Frustum sight = sight_of({0.7, 0.2});
+  PatchLighting buffer;
+  const PatchLighting* light = scene.find_lighting(0, {&sight, 1}, 100, buffer);
   ASSERT_NE(light, nullptr);
-  EXPECT_EQ(light->lamps_at({0.7, 0.2, 0}), 1U);
+  EXPECT_EQ(light->lights_at({0.7, 0.2, 0}), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PatchLightOf,
                          ::testing::Values(LightType::kPoint, LightType::kDirectional));
 
-TEST(PassingShadows, FindsAStripNarrowerThanTheWay) {
+TEST(ShadowTransits, FindsAStripNarrowerThanTheWay) {
   const Scene scene =
       floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.202, 0.2)}}, LightType::kPoint);
-  const SightPyramid sight = sight_of({0.4, 0.05});
-  PatchLight buffer;
-  const PatchLight* light = scene.find_light(0, {&sight, 1}, 100, buffer);
+  const Frustum sight = sight_of({0.4, 0.05});
+  PatchLighting buffer;
+  const PatchLighting* light = scene.find_lighting(0, {&sight, 1}, 100, buffer);
   ASSERT_NE(light, nullptr);
-  ASSERT_EQ(light->doubtful.size(), 1U);
+  ASSERT_EQ(light->partly_occluded.size(), 1U);
   std::array<Eigen::Vector3d, 3> points;
   for (std::size_t m = 0; m < points.size(); ++m)
     points[m] = Eigen::Vector3d(0.395 + 0.005 * static_cast<double>(m), 0.05, 0) + light->lift;
   std::vector<double> changes;
-  PassingShadows().find(light->doubtful[0], points, [&](double begin, double end) {
+  ShadowTransits().find(light->partly_occluded[0], points, [&](double begin, double end) {
     changes.push_back(begin);
     changes.push_back(end);
   });

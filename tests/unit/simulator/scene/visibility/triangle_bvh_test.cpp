@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// Looks along +z from (x, 0, 0) through a square of half the side `half` at z = 1.
-SightPyramid pyramid(double x, double half) {
+Frustum pyramid(double x, double half) {
   return {{x, 0, 0}, {{{-half, -half, 1}, {half, -half, 1}, {half, half, 1}, {-half, half, 1}}}};
 }
 
@@ -20,49 +20,49 @@ Mesh wall(double x, double y, double z, double side) {
                             ImageF(2, 2, 0.5F));
 }
 
-const std::vector<SightPyramid> kStill{pyramid(0, 0.1)};
-const std::vector<SightPyramid> kMoving{pyramid(-0.1, 0.1), pyramid(0, 0.1), pyramid(0.1, 0.1)};
+const std::vector<Frustum> kStaticBody{pyramid(0, 0.1)};
+const std::vector<Frustum> kMoving{pyramid(-0.1, 0.1), pyramid(0, 0.1), pyramid(0.1, 0.1)};
 
 /// The triangle of the first wall, which lies below its diagonal, with the pyramid inside it.
-std::vector<SightPyramid> aside(std::vector<SightPyramid> sweep) {
-  for (SightPyramid& p : sweep) p.eye += Eigen::Vector3d(1.5, -1.5, 0);
+std::vector<Frustum> aside(std::vector<Frustum> sweep) {
+  for (Frustum& p : sweep) p.eye += Eigen::Vector3d(1.5, -1.5, 0);
   return sweep;
 }
 
 TEST(Alone, ATriangleThatFillsTheView) {
   const Scene scene = testing::scene_of({wall(0, 0, 3, 10)});
-  EXPECT_TRUE(scene.is_alone(0, aside(kStill)));
-  EXPECT_TRUE(scene.is_alone(0, aside(kMoving)));
-  EXPECT_FALSE(scene.is_alone(1, aside(kStill))) << "the other half of the wall";
-  EXPECT_FALSE(scene.is_alone(0, kStill)) << "the diagonal crosses the view";
+  EXPECT_TRUE(scene.is_sole_visible(0, aside(kStaticBody)));
+  EXPECT_TRUE(scene.is_sole_visible(0, aside(kMoving)));
+  EXPECT_FALSE(scene.is_sole_visible(1, aside(kStaticBody))) << "the other half of the wall";
+  EXPECT_FALSE(scene.is_sole_visible(0, kStaticBody)) << "the diagonal crosses the view";
 }
 
 TEST(Alone, NotBehindWhatIsInView) {
   const Scene scene = testing::scene_of({wall(0, 0, 3, 10), wall(1.5, -1.5, 1, 0.001)});
-  EXPECT_FALSE(scene.is_alone(0, aside(kStill)));
+  EXPECT_FALSE(scene.is_sole_visible(0, aside(kStaticBody)));
 }
 
 TEST(Alone, NotBehindWhatComesIntoView) {
   const Scene scene = testing::scene_of({wall(0, 0, 3, 10), wall(1.5 + 0.15, -1.5, 1, 0.01)});
-  EXPECT_TRUE(scene.is_alone(0, aside(kStill)));
-  EXPECT_FALSE(scene.is_alone(0, aside(kMoving)));
+  EXPECT_TRUE(scene.is_sole_visible(0, aside(kStaticBody)));
+  EXPECT_FALSE(scene.is_sole_visible(0, aside(kMoving)));
 }
 
 TEST(Alone, WhateverIsBehindOrBesideTheView) {
   const Scene scene = testing::scene_of(
       {wall(0, 0, 3, 10), wall(1.5, -1.5, 5, 1), wall(3.5, -1.5, 1, 1), wall(1.5, -1.5, -2, 10)});
-  EXPECT_TRUE(scene.is_alone(0, aside(kMoving)));
+  EXPECT_TRUE(scene.is_sole_visible(0, aside(kMoving)));
 }
 
 TEST(Alone, TheBackgroundWhereNothingIs) {
   const Scene scene = testing::scene_of({wall(3, 0, 2, 1)});
-  EXPECT_TRUE(scene.is_alone(kNothing, kMoving));
-  std::vector<SightPyramid> towards = kMoving;
+  EXPECT_TRUE(scene.is_sole_visible(kNothing, kMoving));
+  std::vector<Frustum> towards = kMoving;
   towards.back().eye.x() = 2.5;
-  EXPECT_FALSE(scene.is_alone(kNothing, towards));
+  EXPECT_FALSE(scene.is_sole_visible(kNothing, towards));
 }
 
-// A proof may never be wrong: wherever it is given, no ray of the moving pyramid meets another
+// A proof may never be wrong: wherever it is given, no ray of the moving pyramid intersects another
 // triangle.
 TEST(Alone, HoldsForRaysAmongManyTriangles) {
   const Random random(4);
@@ -73,11 +73,11 @@ TEST(Alone, HoldsForRaysAmongManyTriangles) {
   const Scene scene = testing::scene_of(meshes);
   int proven = 0;
   for (std::uint64_t k = 0; k < 400; ++k) {
-    std::vector<SightPyramid> sweep{pyramid(0, 0.02), pyramid(0.03, 0.02), pyramid(0.06, 0.02)};
+    std::vector<Frustum> sweep{pyramid(0, 0.02), pyramid(0.03, 0.02), pyramid(0.06, 0.02)};
     const Eigen::Vector3d turn(random.uniform(5, k) - 0.2, 0.4 * random.uniform(6, k) - 0.6, 0);
-    for (SightPyramid& p : sweep)
+    for (Frustum& p : sweep)
       for (Eigen::Vector3d& corner : p.corners) corner += turn;
-    if (!scene.is_alone(0, sweep)) continue;
+    if (!scene.is_sole_visible(0, sweep)) continue;
     ++proven;
     for (std::uint64_t i = 0; i < 200; ++i) {
       const auto draw = [&](std::uint64_t j) { return random.uniform(7 + j, 1000 * k + i); };

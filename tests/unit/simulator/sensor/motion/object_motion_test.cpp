@@ -69,8 +69,8 @@ TEST(MovingView, PlaneBeforeACameraAtRestEqualsTheOppositeMotion) {
   moving.add_moving(textured_plane(), Eigen::Affine3d::Identity(), motion);
   const Scene still_scene = std::move(still).build(Background(0.5));
   const Scene moving_scene = std::move(moving).build(Background(0.5));
-  const ViewRenderer still_view(still_scene, kLensCamera, 4);
-  const ViewRenderer moving_view(moving_scene, kLensCamera, 4);
+  const ImageRenderer still_view(still_scene, kLensCamera, 4);
+  const ImageRenderer moving_view(moving_scene, kLensCamera, 4);
   for (const double t : {0.03, 0.31, 0.66, 0.97}) {
     const SplineState state = inverted(motion.state(t));
     const StampedPose pose{t, state.world_from_body};
@@ -105,7 +105,7 @@ TEST(MovingView, FlowIsTheMotionOfTheSeenPointWhenBothMove) {
   SceneBuilder builder;
   builder.add_moving(textured_plane(), Eigen::Affine3d::Identity(), object);
   const Scene scene = std::move(builder).build(Background(0.5));
-  const ViewRenderer view(scene, kLensCamera, 1);
+  const ImageRenderer view(scene, kLensCamera, 1);
   constexpr double kTime_s = 0.43;
   constexpr double kStep_s = 1e-4;
   const FlowField flow = view.flow(motion.state(kTime_s), kTime_s);
@@ -137,7 +137,7 @@ TEST(MovingView, LabelsOfEventsAgreeWithTheImages) {
   const Scene scene = std::move(builder).build(Background(0.5));
   const Spline motion = wobble({0, 0, 0}, 0.2, 0.3, 2);
   constexpr double kTime_s = 0.43;
-  const ViewRenderer view(scene, kLensCamera, 1);
+  const ImageRenderer view(scene, kLensCamera, 1);
   const ImageF depth = view.depth({kTime_s, motion.pose(kTime_s)});
   const FlowField flow = view.flow(motion.state(kTime_s), kTime_s);
   SensedEvents events;

@@ -167,7 +167,7 @@ TEST_P(Density, HardlyMovesSingleEvents) {
   EXPECT_LT(p99_s, 2e-4);
 }
 
-// At 3 kHz most silent stretches are longer than the low pass remembers.
+// At 3 kHz most without an event stretches are longer than the low pass remembers.
 INSTANTIATE_TEST_SUITE_P(OrdersAndCutoffs, Density,
                          ::testing::Combine(::testing::Values(1, 2),
                                             ::testing::Values(200.0, 3000.0)));

@@ -43,10 +43,12 @@ TEST(Mismatch, HasTheStatedSpreadOnBothSidesApart) {
   EventOptions options;
   options.contrast = {0.2, 0.3};
   options.noise.mismatch.sigma = 0.15;
-  const auto on = over_pixels(
-      kWidth, kHeight, [&](auto x, auto y) { return pixel_contrast(options, kSeed, x, y).on; });
-  const auto off = over_pixels(
-      kWidth, kHeight, [&](auto x, auto y) { return pixel_contrast(options, kSeed, x, y).off; });
+  const auto on = over_pixels(kWidth, kHeight, [&](auto x, auto y) {
+    return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).on;
+  });
+  const auto off = over_pixels(kWidth, kHeight, [&](auto x, auto y) {
+    return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).off;
+  });
   expect_normal(on, 0.2, 0.2 * 0.15);
   expect_normal(off, 0.3, 0.3 * 0.15);
   double product = 0;
@@ -61,7 +63,7 @@ TEST(Mismatch, KeepsEveryThresholdAboveTheFloor) {
   options.noise.mismatch.sigma = 0.5;
   int at_floor = 0;
   for (const double on : over_pixels(kWidth, kHeight, [&](auto x, auto y) {
-         return pixel_contrast(options, kSeed, x, y).on;
+         return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).on;
        })) {
     ASSERT_GE(on, kLeastContrast * 0.2);
     at_floor += on == kLeastContrast * 0.2 ? 1 : 0;

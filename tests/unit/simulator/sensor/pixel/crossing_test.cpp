@@ -98,7 +98,7 @@ TEST(Crossing, FallingRampUsesTheOffThreshold) {
 
 class CrossingOfSine : public ::testing::TestWithParam<int> {};
 
-// L = A sin(2 pi f t) meets k C on its first rise at asin(k C / A) / (2 pi f); later times follow
+// L = A sin(2 pi f t) intersects k C on its first rise at asin(k C / A) / (2 pi f); later times follow
 // by symmetry.
 TEST_P(CrossingOfSine, IsExactWhateverTheSteps) {
   const double amplitude = 0.93;

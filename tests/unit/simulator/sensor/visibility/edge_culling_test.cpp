@@ -32,16 +32,16 @@ Eigen::Vector3d random_point(Draws& random, double size) {
 }
 
 /// A triangle that moves past a camera at the origin.
-PassingTriangle random_triangle(Draws& random) {
+TransitTriangle random_triangle(Draws& random) {
   std::array<Eigen::Vector3d, 3> corners;
   const Eigen::Vector3d centre = random_point(random, 2);
   for (auto& corner : corners) corner = centre + 0.3 * random_point(random, 1);
   const Eigen::Vector3d motion = 0.1 * random_point(random, 1);
-  PassingTriangle triangle{0, {}};
+  TransitTriangle triangle{0, {}};
   for (std::size_t m = 0; m < 3; ++m) {
     std::array<Eigen::Vector3d, 3> at;
     for (std::size_t k = 0; k < 3; ++k) at[k] = corners[k] + static_cast<double>(m) * motion;
-    TrianglePass& pass = triangle.at[m];
+    EdgeFunctions& pass = triangle.at[m];
     for (std::size_t k = 0; k < 3; ++k) pass.edges[k] = at[(k + 1) % 3].cross(at[(k + 2) % 3]);
     pass.w = pass.edges[0] + pass.edges[1] + pass.edges[2];
     pass.depth = at[0].dot(at[1].cross(at[2]));
@@ -49,10 +49,10 @@ PassingTriangle random_triangle(Draws& random) {
   return triangle;
 }
 
-TEST(OutsideTest, KeepsAllThatMayBeMetAndLittleElse) {
+TEST(EdgeCulling, KeepsAllThatMayBeMetAndLittleElse) {
   Draws random(1);
-  std::vector<PassingTriangle> triangles;
-  OutsideTest test(kMargin);
+  std::vector<TransitTriangle> triangles;
+  EdgeCulling test(kMargin);
   for (int i = 0; i < 500; ++i) {
     triangles.push_back(random_triangle(random));
     test.add(triangles.back());
@@ -62,14 +62,14 @@ TEST(OutsideTest, KeepsAllThatMayBeMetAndLittleElse) {
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d direction(random.uniform() - 0.5, random.uniform() - 0.5, 1);
     std::set<std::size_t> found;
-    test.visit_others(direction, [&](std::size_t k) { found.insert(k); });
+    test.visit_candidates(direction, [&](std::size_t k) { found.insert(k); });
     kept += found.size();
     for (std::size_t k = 0; k < triangles.size(); ++k) {
       bool may_be_met = false;
-      triangles[k].find_passages(direction, [&](double, double) { may_be_met = true; });
+      triangles[k].find_transits(direction, [&](double, double) { may_be_met = true; });
       needed += may_be_met ? 1 : 0;
       EXPECT_TRUE(!may_be_met || found.count(k) == 1);
-      if (TriangleSight(triangles[k], direction, 2 * kMargin).stays_outside()) {
+      if (TriangleRayBounds(triangles[k], direction, 2 * kMargin).stays_outside()) {
         EXPECT_EQ(found.count(k), 0U);
       }
     }
@@ -78,13 +78,13 @@ TEST(OutsideTest, KeepsAllThatMayBeMetAndLittleElse) {
   EXPECT_LT(kept, 3 * needed);
 }
 
-TEST(OutsideTest, StartsAfresh) {
+TEST(EdgeCulling, StartsAfresh) {
   Draws random(2);
-  OutsideTest test(kMargin);
+  EdgeCulling test(kMargin);
   for (int i = 0; i < 40; ++i) test.add(random_triangle(random));
   test.clear();
   std::size_t found = 0;
-  test.visit_others({0, 0, 1}, [&](std::size_t) { ++found; });
+  test.visit_candidates({0, 0, 1}, [&](std::size_t) { ++found; });
   EXPECT_EQ(found, 0U);
 }
 

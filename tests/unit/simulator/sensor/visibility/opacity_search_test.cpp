@@ -8,16 +8,16 @@ namespace saccade {
 namespace {
 
 /// Opaque but for |t - 0.43| < `half_s`, with a parabola of that width.
-std::vector<OpaqueStretch> around_a_hole(double half_s, double sign = 1) {
+std::vector<OpacityInterval> around_a_hole(double half_s, double sign = 1) {
   const auto opacity = [&](double t_s) {
     return 0.5 + sign * (std::pow(t_s - 0.43, 2) - half_s * half_s);
   };
-  return OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 8).stretches();
+  return OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 8).intervals();
 }
 
 TEST(OpacitySearch, DividesTheWholeTime) {
   const auto ramp = [](double t_s) { return t_s + 0.2; };
-  const auto found = OpacitySearch(ramp, {0, ramp(0)}, {1, ramp(1)}, 4).stretches();
+  const auto found = OpacitySearch(ramp, {0, ramp(0)}, {1, ramp(1)}, 4).intervals();
   ASSERT_EQ(found.size(), 2U);
   EXPECT_FALSE(found[0].is_opaque);
   EXPECT_TRUE(found[1].is_opaque);
@@ -42,12 +42,12 @@ TEST(OpacitySearch, FindsHolesAndSpecksFarShorterThanAStep) {
 
 TEST(OpacitySearch, FindsAHoleWithAnEdgeAsAtTheBorderOfTexels) {
   const auto opacity = [](double t_s) { return 0.4999 + std::abs(t_s - 0.071); };
-  EXPECT_EQ(OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 4).stretches().size(), 3U);
+  EXPECT_EQ(OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 4).intervals().size(), 3U);
 }
 
 TEST(OpacitySearch, FindsNothingWhereAnExtremumStaysAway) {
   const auto opacity = [](double t_s) { return 0.5001 + std::pow(t_s - 0.43, 2); };
-  const auto found = OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 8).stretches();
+  const auto found = OpacitySearch(opacity, {0, opacity(0)}, {1, opacity(1)}, 8).intervals();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_TRUE(found[0].is_opaque);
   EXPECT_EQ(found[0].to_s, 1);
