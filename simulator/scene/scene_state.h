@@ -117,8 +117,9 @@ struct Scene::State {
   [[nodiscard]] LitPoint local_point(const Ray& ray, double distance, TriangleId triangle) const;
 
   /// nullopt: it casts none, edge-on to the light. `patch`: a point near where it may fall.
-  [[nodiscard]] std::optional<Occluder> occluder(TriangleId triangle, const LightOptions& light,
-                                                 const Eigen::Vector3d& patch) const;
+  [[nodiscard]] std::optional<Occluder> make_occluder(TriangleId triangle,
+                                                      const LightOptions& light,
+                                                      const Eigen::Vector3d& patch) const;
   /// What may stand between a light and a convex patch, given by points around it, above zero of
   /// `front`; false where that is not known.
   [[nodiscard]] bool collect_occluders(const LightOptions& light,

@@ -29,7 +29,7 @@ class EventDelivery {
   void deliver(double t_s, bool is_last, const Sink& sink);
 
   /// Events that met a full readout.
-  [[nodiscard]] std::uint64_t lost() const { return output_.counts().lost; }
+  [[nodiscard]] std::uint64_t lost() const { return output_.lost(); }
 
   /// Everything that later deliveries depend on.
   void save(StateWriter& state) const;

@@ -43,6 +43,11 @@ void describe(config::Fields& fields, EventOptions& options) {
   fields.choice("timestamp_unit", options.timestamp_unit,
                 {{"us", TimestampUnit::kMicroseconds}, {"ns", TimestampUnit::kNanoseconds}},
                 "Resolution of the recorded times.");
+  fields
+      .value("max_step_px", options.max_step_px,
+             "Largest image motion between two samples of a pixel, in pixels; smaller values miss "
+             "fewer thin objects and trace more rays.")
+      .range(0.01, 2);
   fields.choice("sampling", options.sampling,
                 {{"asynchronous", Sampling::kAsynchronous}, {"frames", Sampling::kFrames}},
                 "How the signal is sampled: every pixel at its own times, or whole frames with "

@@ -97,18 +97,19 @@ class LockstepTile final : public EventTile {
   using TileSamples = saccade::TileSamples<kRays>;
   using Triangles = typename TileSamples::Triangles;
 
-  /// Equal steps through a slice.
+  /// Some of the equal steps through a slice.
   struct Steps {
-    double from_s, to_s;
-    int count;
+    double from_s, to_s;  ///< of the slice
+    int count;            ///< in the slice
+    int first, last;      ///< times of these steps
+    std::size_t depth;    ///< halvings that led to them
 
-    [[nodiscard]] double operator()(int k) const {
+    [[nodiscard]] double time_s(int k) const {
       return k == count ? to_s : from_s + (to_s - from_s) * k / count;
     }
-  };
-  struct StepRange {
-    int from, to;
-    std::size_t depth;  ///< halvings that led to it
+    [[nodiscard]] Steps part(int from, int to) const {
+      return {from_s, to_s, count, from, to, depth + 1};
+    }
   };
 
   [[nodiscard]] static const PixelRays* footprints(const TileContext& context) {
@@ -133,7 +134,7 @@ class LockstepTile final : public EventTile {
     // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
     now.set_triangles(triangles_, t_s_);
     sample_at(end_s, next, all_pixels());
-    sense_between({0, count, 0}, {t_s_, end_s, count}, now, next, all_pixels());
+    sense_between({t_s_, end_s, count, 0, count, 0}, now, next, all_pixels());
     store_state(next);
   }
 
@@ -147,22 +148,21 @@ class LockstepTile final : public EventTile {
 
   /// Senses `pixels` between two samples: at once where they see one surface all the time, else in
   /// the two halves of the steps.
-  void sense_between(const StepRange& range, const Steps& steps, TileSamples& now,
-                     TileSamples& next, PixelSet pixels) {
-    predictor_.restrict_to(now.t_s, next.t_s, range.depth);
+  void sense_between(const Steps& steps, TileSamples& now, TileSamples& next, PixelSet pixels) {
+    predictor_.restrict_to(now.t_s, next.t_s, steps.depth);
     if (kRays == 1 && is_bilinear_ && (sees_one_triangle_ || predictor_.has_candidates()))
       pixels = sense_steady(now, next, pixels);
     if (pixels.none()) return;
-    if (range.to - range.from == 1) {
+    if (steps.last - steps.first == 1) {
       now.sample_surfaces(tracer_, directions_);
       next.sample_surfaces(tracer_, directions_);
       return sense_step(now, next, pixels);
     }
-    const int middle = (range.from + range.to) / 2;
+    const int middle = (steps.first + steps.last) / 2;
     TileSamples between;
-    sample_at(steps(middle), between, pixels);
-    sense_between({range.from, middle, range.depth + 1}, steps, now, between, pixels);
-    sense_between({middle, range.to, range.depth + 1}, steps, between, next, pixels);
+    sample_at(steps.time_s(middle), between, pixels);
+    sense_between(steps.part(steps.first, middle), now, between, pixels);
+    sense_between(steps.part(middle, steps.last), between, next, pixels);
   }
 
   /// Senses those pixels that see one textured plane all the time, or one and then another. Returns
@@ -184,7 +184,7 @@ class LockstepTile final : public EventTile {
   bool sense_plane(std::size_t i, TriangleId triangle, TileTrajectories& paths) {
     if (!sees_one_triangle_ && !predictor_.stays_visible(directions_[i], triangle)) return false;
     const PlaneTrajectories& trajectories = paths.over(triangle);
-    const TexelTrajectory path = trajectories.paths.path(i);
+    const TexelTrajectory path = trajectories.of_pixel(i);
     if (!is_usable(trajectories, path)) return false;
     sense_path(i, path, trajectories.surface, paths.from_s, paths.to_s);
     return true;
@@ -200,10 +200,10 @@ class LockstepTile final : public EventTile {
     const double after_s = change_s + kAroundChange * tolerance_s_;
     if (!(before_s > paths.from_s && after_s < paths.to_s)) return false;
     const PlaneTrajectories& first = paths.over(from);
-    const TexelTrajectory path = first.paths.path(i);
+    const TexelTrajectory path = first.of_pixel(i);
     if (!is_usable(first, path)) return false;
     const PlaneTrajectories& second = paths.over(to);
-    const TexelTrajectory next_path = second.paths.path(i);
+    const TexelTrajectory next_path = second.of_pixel(i);
     if (!is_usable(second, next_path)) return false;
     const Signal pixel_signal = signal(i);
     const Sample before = pixel_signal.trace(before_s);

@@ -99,20 +99,17 @@ std::optional<Frustum> pyramid_around(const Eigen::Vector3d& eye,
                  0};
 }
 
-struct Ball {
-  Eigen::Vector3d centre;
-  double radius;
-};
-
-/// Around lifted points, with room.
-Ball ball_around(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& lift) {
-  Ball ball{Eigen::Vector3d::Zero(), 0};
-  for (const Eigen::Vector3d& point : points) ball.centre += point + lift;
-  ball.centre /= static_cast<double>(points.size());
+/// Centre and radius of a sphere around lifted points, with a margin.
+std::pair<Eigen::Vector3d, double> sphere_around(std::span<const Eigen::Vector3d> points,
+                                                 const Eigen::Vector3d& lift) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0;
+  for (const Eigen::Vector3d& point : points) centre += point + lift;
+  centre /= static_cast<double>(points.size());
   for (const Eigen::Vector3d& point : points)
-    ball.radius = std::max(ball.radius, (point + lift - ball.centre).norm());
-  ball.radius *= 1 + 2 * kPyramidRoom;
-  return ball;
+    radius = std::max(radius, (point + lift - centre).norm());
+  radius *= 1 + 2 * kPyramidRoom;
+  return {centre, radius};
 }
 
 /// Adds room for the rounding between neighbours to the edges.
@@ -167,8 +164,8 @@ LightSet PatchLighting::lights_at(const Eigen::Vector3d& point) const {
   return lights;
 }
 
-std::optional<Occluder> Scene::State::occluder(TriangleId triangle, const LightOptions& light,
-                                               const Eigen::Vector3d& patch) const {
+std::optional<Occluder> Scene::State::make_occluder(TriangleId triangle, const LightOptions& light,
+                                                    const Eigen::Vector3d& patch) const {
   if (light.type == LightType::kPoint) {
     const EdgeFunctions pass =
         edge_functions(triangle, light.position, Eigen::Matrix3d::Identity());
@@ -250,30 +247,31 @@ bool Scene::State::select_occluders(const LightOptions& light, const Patch& patc
                                     const Eigen::Vector3d& lift, std::span<const TriangleId> found,
                                     std::vector<Occluder>& occluders) const {
   const auto& corners = patch.corners;
-  const Ball ball = ball_around(corners, lift);
+  const auto [centre, radius] = sphere_around(corners, lift);
   for (const TriangleId triangle : found) {
-    const auto occluder = occluder(triangle, light, corners[0]);
+    const auto occluder = make_occluder(triangle, light, corners[0]);
     if (!occluder) continue;
     bool covers = true;
     const bool is_beside =
-        std::any_of(occluder->forms.begin(), occluder->forms.end(), [&](const AffineForm& form) {
-          const double middle = form.at(ball.centre);
-          const double reach = ball.radius * form.gradient.norm();
-          if (std::abs(middle) > reach) {
-            covers = covers && middle > 0;
-            return middle < 0;
-          }
-          double low = std::numeric_limits<double>::infinity();
-          double high = -low;
-          for (const Eigen::Vector3d& corner : corners) {
-            const double value = form.at(corner + lift);
-            low = std::min(low, value);
-            high = std::max(high, value);
-          }
-          const double room = kPyramidRoom * (high - low);
-          covers = covers && low > room;
-          return high + room <= 0;
-        });
+        std::any_of(occluder->forms.begin(), occluder->forms.end(),
+                    [&, &centre = centre, &radius = radius](const AffineForm& form) {
+                      const double middle = form.at(centre);
+                      const double reach = radius * form.gradient.norm();
+                      if (std::abs(middle) > reach) {
+                        covers = covers && middle > 0;
+                        return middle < 0;
+                      }
+                      double low = std::numeric_limits<double>::infinity();
+                      double high = -low;
+                      for (const Eigen::Vector3d& corner : corners) {
+                        const double value = form.at(corner + lift);
+                        low = std::min(low, value);
+                        high = std::max(high, value);
+                      }
+                      const double room = kPyramidRoom * (high - low);
+                      covers = covers && low > room;
+                      return high + room <= 0;
+                    });
     if (is_beside) continue;
     if (covers) return false;
     occluders.push_back(*occluder);

@@ -59,7 +59,7 @@ void EventBus::enqueue(const Request& request) {
 void EventBus::serve_before(TimeNs t_ns) {
   while (!service_order_.empty()) {
     const Service service = service_order_.top();
-    const auto request_ns = static_cast<double>(lines_[service.line].front().event.t_ns);
+    const auto request_ns = static_cast<double>(lines_[service.second].front().event.t_ns);
     const double start_ns = std::max(free_ns_, request_ns);
     if (start_ns >= static_cast<double>(t_ns)) return;
     service_order_.pop();
@@ -68,7 +68,7 @@ void EventBus::serve_before(TimeNs t_ns) {
 }
 
 void EventBus::serve(const Service& service, double start_ns) {
-  std::deque<Request>& line = lines_[service.line];
+  std::deque<Request>& line = lines_[service.second];
   const TimeNs stamp_ns = step_ns_ * std::llround(start_ns / static_cast<double>(step_ns_));
   double busy_ns = 0;
   do {
@@ -80,7 +80,7 @@ void EventBus::serve(const Service& service, double start_ns) {
   } while (options_.rows && !line.empty() &&
            static_cast<double>(line.front().event.t_ns) <= start_ns);
   free_ns_ = start_ns + busy_ns;
-  if (!line.empty()) service_order_.push({line.front().number, service.line});
+  if (!line.empty()) service_order_.push({line.front().number, service.second});
 }
 
 void EventBus::take(TimeNs complete_ns, SensedEvents& out) {

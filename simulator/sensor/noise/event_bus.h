@@ -4,6 +4,7 @@
 #include <deque>
 #include <queue>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "simulator/sensor/noise/output_stage.h"
@@ -45,12 +46,9 @@ class EventBus final : public OutputStage {
   void load(StateReader& state) override;
 
  private:
-  /// The first request of a line of the queue, in the order of service.
-  struct Service {
-    std::uint64_t number;  ///< of the request, counted from the first one
-    std::size_t line;
-    bool operator>(const Service& other) const { return number > other.number; }
-  };
+  /// The first request of a line of the queue: its number, counted from the first one, and the line.
+  /// Served in the order of the numbers, which are unique.
+  using Service = std::pair<std::uint64_t, std::size_t>;
   struct Request {
     std::uint64_t number;
     SensedEvent event;

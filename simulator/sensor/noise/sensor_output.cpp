@@ -28,10 +28,10 @@ void SensorOutput::push(std::span<const SensedEvent> events, TimeNs complete_ns,
 
 void SensorOutput::finish(const Sink& sink) { push({}, std::numeric_limits<TimeNs>::max(), sink); }
 
-OutputCounts SensorOutput::counts() const {
-  OutputCounts counts{fired_, recorded_, 0};
-  for (const Stage& each : stages_) counts.lost += each.stage->lost();
-  return counts;
+std::uint64_t SensorOutput::lost() const {
+  std::uint64_t lost = 0;
+  for (const Stage& each : stages_) lost += each.stage->lost();
+  return lost;
 }
 
 std::string SensorOutput::state() const {

@@ -11,13 +11,6 @@
 
 namespace saccade {
 
-/// What became of the events behind the pixels.
-struct OutputCounts {
-  std::uint64_t fired = 0;     ///< by the pixels
-  std::uint64_t recorded = 0;  ///< handed out so far
-  std::uint64_t lost = 0;      ///< met a full queue of the bus
-};
-
 /// The part of the sensor behind the pixels: the stages of noise_models(), one after the other. It
 /// turns the stream of true times into the stream of recorded ones, event by event in time order,
 /// so how the stream is cut into calls changes nothing. With all stages off it hands out what it
@@ -37,7 +30,9 @@ class SensorOutput {
   /// Hands out what still waits, stamped beyond the last time if need be.
   void finish(const Sink& sink);
 
-  [[nodiscard]] OutputCounts counts() const;
+  /// Number of events handed out so far, and of those that met a full queue.
+  [[nodiscard]] std::uint64_t recorded() const { return recorded_; }
+  [[nodiscard]] std::uint64_t lost() const;
 
   /// Everything that later output depends on, for load() of an output made with the same arguments.
   [[nodiscard]] std::string state() const;

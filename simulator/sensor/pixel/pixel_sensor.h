@@ -324,8 +324,8 @@ bool PixelSensor<Signal, Emit>::proves_no_event(const FilteredPiece& piece,
                                                 const NoisyState& noisy) const {
   if (noisy.refractory_until_s >= input.t0_s) return noisy.refractory_until_s >= input.t1_s;
   if (noisy.spontaneous.next_s() < input.t1_s) return false;
-  const FilteredPiece::Reach reach = piece.reach();
-  return is_within_band(reach.low, input.t0_s, reach.high, input.t1_s);
+  const auto [low, high] = piece.bounds();
+  return is_within_band(low, input.t0_s, high, input.t1_s);
 }
 
 }  // namespace saccade

@@ -105,27 +105,11 @@ struct TexelTrajectory {
   /// Whether the path is as exact as times are wanted to be: its error is a small fraction of what the
   /// image moves within `tolerance_s`.
   [[nodiscard]] bool is_exact(double tolerance_s) const {
-    constexpr double kShare = 0.01;
+    constexpr double kFraction = 0.01;
     constexpr double kLeast_texel = 1e-6;
     const double motion = std::max(std::abs(x.chord()), std::abs(y.chord())) / length_s;
-    return std::max(x.error(), y.error()) <= std::max(kShare * tolerance_s * motion, kLeast_texel);
-  }
-};
-
-/// The paths of all pixels of a tile over a plane, from what they see at both ends of a stretch and
-/// in the middle.
-struct PlanePaths {
-  TexelLanes from, middle, to;
-  double from_s, length_s;
-
-  [[nodiscard]] TexelTrajectory path(std::size_t i) const {
-    const auto track = [&](const Lanes& a, const Lanes& a_rate, const Lanes& b, const Lanes& b_rate,
-                           const Lanes& c, const Lanes& c_rate) {
-      return TrajectoryCoordinate(a[i], a_rate[i] * length_s, b[i], b_rate[i] * length_s, c[i],
-                                  c_rate[i] * length_s);
-    };
-    return {track(from.x, from.x_rate, middle.x, middle.x_rate, to.x, to.x_rate),
-            track(from.y, from.y_rate, middle.y, middle.y_rate, to.y, to.y_rate), from_s, length_s};
+    return std::max(x.error(), y.error()) <=
+           std::max(kFraction * tolerance_s * motion, kLeast_texel);
   }
 };
 

@@ -9,14 +9,27 @@
 
 namespace saccade {
 
-/// The paths of a tile's rays over a triangle's plane.
+/// The trajectories of a tile's rays over the texture of a static triangle, from what they see at
+/// both ends of an interval of time and in its middle.
 struct PlaneTrajectories {
   TriangleId triangle;
   SurfaceSample surface;  ///< anywhere on it
-  PlanePaths paths;
+  TexelLanes from, middle, to;
+  double from_s, length_s;
+
+  [[nodiscard]] TexelTrajectory of_pixel(std::size_t i) const {
+    const auto coordinate = [&](const Lanes& a, const Lanes& a_rate, const Lanes& b,
+                                const Lanes& b_rate, const Lanes& c, const Lanes& c_rate) {
+      return TrajectoryCoordinate(a[i], a_rate[i] * length_s, b[i], b_rate[i] * length_s, c[i],
+                                  c_rate[i] * length_s);
+    };
+    return {coordinate(from.x, from.x_rate, middle.x, middle.x_rate, to.x, to.x_rate),
+            coordinate(from.y, from.y_rate, middle.y, middle.y_rate, to.y, to.y_rate), from_s,
+            length_s};
+  }
 };
 
-/// Those over the triangles that a tile has asked for last, for a stretch of time.
+/// Those over the triangles that a tile has asked for last, for an interval of time.
 class TileTrajectories {
  public:
   /// All outlive it.
@@ -31,13 +44,13 @@ class TileTrajectories {
       if (trajectories_[k].triangle == triangle) return trajectories_[k];
     PlaneTrajectories& trajectories = trajectories_[count_++ % trajectories_.size()];
     trajectories.triangle = triangle;
-    const PlaneSampler from = tracer_.plane_sampler(triangle, from_s);
-    from.at(lanes_, trajectories.paths.from);
-    tracer_.plane_sampler(triangle, 0.5 * (from_s + to_s)).at(lanes_, trajectories.paths.middle);
-    tracer_.plane_sampler(triangle, to_s).at(lanes_, trajectories.paths.to);
-    trajectories.paths.from_s = from_s;
-    trajectories.paths.length_s = to_s - from_s;
-    trajectories.surface = from.surface();
+    const PlaneSampler sampler = tracer_.plane_sampler(triangle, from_s);
+    sampler.at(lanes_, trajectories.from);
+    tracer_.plane_sampler(triangle, 0.5 * (from_s + to_s)).at(lanes_, trajectories.middle);
+    tracer_.plane_sampler(triangle, to_s).at(lanes_, trajectories.to);
+    trajectories.from_s = from_s;
+    trajectories.length_s = to_s - from_s;
+    trajectories.surface = sampler.surface();
     return trajectories;
   }
 

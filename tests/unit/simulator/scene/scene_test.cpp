@@ -132,11 +132,11 @@ TEST(Scene, EnvironmentMapIsSeenFromInside) {
   ImageF map(4, 2);
   for (int i = 0; i < 8; ++i) map.data()[i] = static_cast<float>(i);
   const Background background(map);
-  const double east = background.look({1, -1, 0}).radiance();  // right of the middle column
+  const double east = background.sample({1, -1, 0}).radiance();  // right of the middle column
   EXPECT_NEAR(east, 0.5 * (2 + 6), 1e-12);
-  EXPECT_NEAR(background.look({2, 2, 0}).radiance(), 0.5 * (1 + 5), 1e-12);
-  EXPECT_NEAR(background.look({-1, 1, 0}).radiance(), 0.5 * (0 + 4), 1e-12);
-  EXPECT_NEAR(background.look({1e-9, -1e-9, 1}).radiance(), 2, 1e-6) << "the top row is +z";
+  EXPECT_NEAR(background.sample({2, 2, 0}).radiance(), 0.5 * (1 + 5), 1e-12);
+  EXPECT_NEAR(background.sample({-1, 1, 0}).radiance(), 0.5 * (0 + 4), 1e-12);
+  EXPECT_NEAR(background.sample({1e-9, -1e-9, 1}).radiance(), 2, 1e-6) << "the top row is +z";
 }
 
 TEST(Scene, ObjectsAreNumberedInTheirOrder) {
