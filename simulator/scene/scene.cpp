@@ -23,14 +23,14 @@ constexpr double kCoplanar = 3e-7;
 
 /// As Scene::sample_surface() has it; everything in the surface's frame.
 double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction, double distance,
-                const RaySpread& spread) {
+                const RayDifferential& differential) {
   const Eigen::Vector3d& normal = surface.plane.gradient;
   const auto texels = [&](const Eigen::Vector3d& change) {
     const Eigen::Vector3d shift =
         distance * (change - normal.dot(change) / normal.dot(direction) * direction);
     return std::hypot(surface.x.gradient.dot(shift), surface.y.gradient.dot(shift));
   };
-  return std::max(0.0, std::log2(std::max(texels(spread.right), texels(spread.down))));
+  return std::max(0.0, std::log2(std::max(texels(differential.right), texels(differential.down))));
 }
 
 /// What is nearer than `farthest_m` of z depth. Such pyramids are narrow and move little, so that a
@@ -158,23 +158,24 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
 }
 
 SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
-                                    const RaySpread& spread) const {
+                                    const RayDifferential& differential) const {
   SurfaceSample seen = sample_surface(ray, triangle);
   if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (surface.body == kStaticBody) {
-    seen.level = level_of(surface, ray.direction, seen.distance, spread);
+    seen.level = level_of(surface, ray.direction, seen.distance, differential);
   } else {
     const Eigen::Matrix3d body_from_world =
         state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
-    seen.level = level_of(surface, body_from_world * ray.direction, seen.distance,
-                          {body_from_world * spread.right, body_from_world * spread.down});
+    seen.level =
+        level_of(surface, body_from_world * ray.direction, seen.distance,
+                 {body_from_world * differential.right, body_from_world * differential.down});
   }
   return seen;
 }
 
-Shade Scene::shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
-  SurfaceSample seen = sample_surface(ray, triangle, spread);
+Shade Scene::shade(const Ray& ray, TriangleId triangle, const RayDifferential& differential) const {
+  SurfaceSample seen = sample_surface(ray, triangle, differential);
   illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
   return {seen.radiance(), seen.distance};
 }

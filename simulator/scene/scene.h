@@ -27,7 +27,7 @@ struct Ray {
 
 /// How much the direction of a ray differs from those of the next rays to the right and below, in
 /// the world and in units of the direction: the ray stands for the parallelogram between them.
-struct RaySpread {
+struct RayDifferential {
   Eigen::Vector3d right;
   Eigen::Vector3d down;
 };
@@ -123,7 +123,8 @@ class Scene {
   /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
   /// The same with the texture's mean over the ray's footprint.
-  [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const;
+  [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle,
+                            const RayDifferential& differential) const;
 
   /// Where `ray` intersects the plane of `triangle`, as shade() has it, in terms of its texture and
   /// without the lights (irradiance 1).
@@ -134,7 +135,7 @@ class Scene {
   ///   level = max(0, log2 max(|J right|, |J down|)),   J = t grad(x, y) (1 - d n^T / (n . d))
   /// with t the distance, d the direction and n the plane's normal. Continuous in the ray.
   [[nodiscard]] SurfaceSample sample_surface(const Ray& ray, TriangleId triangle,
-                                             const RaySpread& spread) const;
+                                             const RayDifferential& differential) const;
   /// sample_surface() at once for all rays of a camera at `position`, given in its own frame. `triangle`
   /// is static.
   [[nodiscard]] TexelHomography texel_homography(TriangleId triangle,

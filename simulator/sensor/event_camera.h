@@ -20,9 +20,9 @@ namespace saccade {
 /// L = ln(eps + I) rises to L_ref + C_on and OFF when it falls to L_ref - C_off, L_ref moves by
 /// exactly that threshold, and the time is that of the crossing of the continuous signal.
 ///
-/// Time advances in slices of at most 30 ms and 8 px of image motion. What is in a tile of 4 x 4
-/// pixels or in the 24 around it, two rings, is all that gets before its rays within a slice; it
-/// bounds how far points move there. Every tile divides the slice as far as its pixels need, down to
+/// Time advances in slices of at most 30 ms and 8 px of image motion. Within a slice
+/// a tile of 4 x 4 pixels can see only what is in the tile itself or in the two rings of 24 tiles
+/// around it; the inverse depths there bound the image motion. Every tile divides the slice as far as its pixels need, down to
 /// equal steps of `max_step_px`. Tiles run in parallel and depend on one another only through the
 /// state at the slice's start, so the stream is the same for any number of threads.
 class EventCamera {

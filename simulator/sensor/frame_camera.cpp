@@ -89,18 +89,19 @@ FrameCamera::LogIntensities FrameCamera::sample_tile(std::size_t tile, const Ins
   const std::size_t per_pixel = rays_.rays_per_pixel();
   LogIntensities log_intensities{};
   tile_state.fastest_px_s = 0;
-  trace_tile(
-      scene_, directions, instant.pose, [&](std::size_t k, const Ray& ray, TriangleId triangle) {
-        const Eigen::Vector3d& direction = directions[k];
-        const Shade shade =
-            options_.texture_filter == TextureFilter::kBilinear
-                ? scene_.shade(ray, triangle)
-                : scene_.shade(ray, triangle, spread_in_world(rays_, instant.rotation, direction));
-        log_intensities[k / per_pixel] += shade.radiance;
-        const Eigen::Vector2d motion = point_motion(rays_.camera(), direction, shade.distance,
-                                                    instant.twists.relative_to(triangle));
-        tile_state.fastest_px_s = std::max(tile_state.fastest_px_s, motion.norm());
-      });
+  trace_tile(scene_, directions, instant.pose,
+             [&](std::size_t k, const Ray& ray, TriangleId triangle) {
+               const Eigen::Vector3d& direction = directions[k];
+               const Shade shade =
+                   options_.texture_filter == TextureFilter::kBilinear
+                       ? scene_.shade(ray, triangle)
+                       : scene_.shade(ray, triangle,
+                                      differential_in_world(rays_, instant.rotation, direction));
+               log_intensities[k / per_pixel] += shade.radiance;
+               const Eigen::Vector2d motion = point_motion(
+                   rays_.camera(), direction, shade.distance, instant.twists.relative_to(triangle));
+               tile_state.fastest_px_s = std::max(tile_state.fastest_px_s, motion.norm());
+             });
   tile_state.statistics.rays += directions.size();
   if (scene_.is_lit()) tile_state.statistics.lit_points += directions.size();
   for (double& value : log_intensities)

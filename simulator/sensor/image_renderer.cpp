@@ -32,7 +32,9 @@ ImageF ImageRenderer::radiance(std::span<const StampedPose> poses) const {
         sums[k / per_pixel] +=
             filter_ == TextureFilter::kBilinear
                 ? scene_.shade(ray, triangle).radiance
-                : scene_.shade(ray, triangle, spread_in_world(radiance_rays_, rotation, rays[k]))
+                : scene_
+                      .shade(ray, triangle,
+                             differential_in_world(radiance_rays_, rotation, rays[k]))
                       .radiance;
       });
     }

@@ -116,7 +116,8 @@ class BrutePixel {
   [[nodiscard]] double radiance(const Ray& ray, TriangleId triangle, const Rigid3& pose,
                                 const Eigen::Vector3d& direction) const {
     if (!filters_) return scene_.shade(ray, triangle).radiance;
-    return scene_.shade(ray, triangle, spread_in_world(rays_, pose.rotation_matrix(), direction))
+    return scene_
+        .shade(ray, triangle, differential_in_world(rays_, pose.rotation_matrix(), direction))
         .radiance;
   }
 

@@ -63,7 +63,7 @@ Tile PixelRays::tile(std::size_t index) const {
   return tile;
 }
 
-Eigen::Matrix2d PixelRays::spread(const Eigen::Vector3d& direction) const {
+Eigen::Matrix2d PixelRays::differential(const Eigen::Vector3d& direction) const {
   const double side_px = 1 / std::sqrt(static_cast<double>(rays_per_pixel_));
   const Eigen::Matrix2d ideal_from_distorted =
       distortion_jacobian(camera_, camera_.project(direction)).inverse();

@@ -59,7 +59,7 @@ class PixelRays {
   /// How much `direction`, the ray of an image point, differs from those of the next rays to the
   /// right and below (columns: x and y of the camera frame), when each stands for its fraction of the
   /// pixel.
-  [[nodiscard]] Eigen::Matrix2d spread(const Eigen::Vector3d& direction) const;
+  [[nodiscard]] Eigen::Matrix2d differential(const Eigen::Vector3d& direction) const;
 
  private:
   PinholeCamera camera_;

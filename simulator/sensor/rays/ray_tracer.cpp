@@ -52,7 +52,7 @@ SurfaceSample RayTracer::sample_surface(const Eigen::Vector3d& direction, Triang
   const Ray ray{camera.position, camera.rotation * direction, t_s};
   if (footprints_ == nullptr) return scene_.sample_surface(ray, triangle);
   return scene_.sample_surface(ray, triangle,
-                               spread_in_world(*footprints_, camera.rotation, direction));
+                               differential_in_world(*footprints_, camera.rotation, direction));
 }
 
 RaySample RayTracer::sample(const Eigen::Vector3d& direction, TriangleId triangle, double t_s) {

@@ -27,13 +27,13 @@ void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
   }
 }
 
-/// PixelRays::spread() of `direction` in the world.
-[[nodiscard]] inline RaySpread spread_in_world(const PixelRays& rays,
-                                               const Eigen::Matrix3d& world_from_camera,
-                                               const Eigen::Vector3d& direction) {
-  const Eigen::Matrix<double, 3, 2> spread =
-      world_from_camera.leftCols<2>() * rays.spread(direction);
-  return {spread.col(0), spread.col(1)};
+/// PixelRays::differential() of `direction` in the world.
+[[nodiscard]] inline RayDifferential differential_in_world(const PixelRays& rays,
+                                                           const Eigen::Matrix3d& world_from_camera,
+                                                           const Eigen::Vector3d& direction) {
+  const Eigen::Matrix<double, 3, 2> differential =
+      world_from_camera.leftCols<2>() * rays.differential(direction);
+  return {differential.col(0), differential.col(1)};
 }
 
 }  // namespace saccade

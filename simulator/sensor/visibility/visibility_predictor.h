@@ -11,18 +11,18 @@
 
 namespace saccade {
 
-/// What a ray sees at an instant.
+/// The sample of a ray with its time.
 struct StampedRaySample {
   double t_s;
   const RaySample& sample;
 };
 
-/// Knows, from their corners, when triangles and their shadows come before the rays of a tile, as
-/// long as only so many of them are within its reach.
+/// Predicts, from the corners of the candidate triangles, when triangles and their shadows cross the
+/// rays of a tile. Exact up to the parabolas of TransitTriangle; the number of candidates is limited.
 class VisibilityPredictor {
  public:
-  /// Of the rays within `outline`; what is nearer to an edge than `doubt` of the image plane is in
-  /// doubt. All outlive it.
+  /// Of the rays within `outline`. What is nearer to an edge than `edge_margin` on the image plane
+  /// counts as uncertain. All arguments outlive it.
   VisibilityPredictor(const Scene& scene, RayTracer& tracer,
                       const std::array<Eigen::Vector3d, 4>& outline, double edge_margin,
                       double tolerance_s)
@@ -33,16 +33,16 @@ class VisibilityPredictor {
         tolerance_s_(tolerance_s),
         culling_(edge_margin) {}
 
-  /// Takes in what can come into view between two times nearer than `farthest_m`; false, and
-  /// nothing is known then, where that is too much.
+  /// Collects the triangles that can become visible between two times nearer than `farthest_m`;
+  /// false, and no candidates, where there are too many.
   [[nodiscard]] bool collect(double farthest_m, double from_s, double to_s);
-  /// Nothing is known from now on.
+  /// Drops all candidates.
   void clear() { candidates_.clear(); }
 
-  /// Restricts itself to a part of that time: at `depth` 0 of all of it, else of the part that was
-  /// last set at the depth before.
+  /// Restricts the candidates to those of a part of that time: at `depth` 0 of all of it, else of the
+  /// part that was last set at the depth before.
   void restrict_to(double from_s, double to_s, std::size_t depth);
-  /// Whether there is anything in reach then.
+  /// Whether any triangle can be visible in that part.
   [[nodiscard]] bool has_candidates() const { return !transits_.empty(); }
 
   /// Whether a ray that sees `triangle` at the beginning and the end sees nothing else in between.

@@ -143,7 +143,7 @@ TEST(TextureFilter, LevelIsTheLargerTexelStepToTheNextPixel) {
       const Ray ray{{0, 0, 0}, camera.ray(camera.undistort(moved))};
       TriangleId triangle = kNothing;
       scene.visible({&ray, 1}, {&triangle, 1});
-      const Eigen::Matrix2d s = rays.spread(ray.direction);
+      const Eigen::Matrix2d s = rays.differential(ray.direction);
       return scene.sample_surface(ray, triangle, {{s(0, 0), s(1, 0), 0}, {s(0, 1), s(1, 1), 0}});
     };
     const auto step = [&](double dx, double dy) {
