@@ -61,7 +61,7 @@ struct Walk {
   Walk(const ClosedForm& signal, const Contrast& contrast, double duration_s, int steps) {
     const PixelTraits traits{0, 0, contrast, 0};
     PixelState state{EventPixel(signal.sample(0).log_intensity, contrast), 0};
-    Thresholds thresholds(state.level.band(), 0, kEps);
+    Thresholds thresholds(state.reference.band(), 0, kEps);
     const auto emit = [&](double t, int polarity, EventOrigin origin, double) {
       EXPECT_EQ(origin, EventOrigin::kSignal);
       events.push_back({t, polarity});
