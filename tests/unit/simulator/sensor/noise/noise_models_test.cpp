@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/leak.h"
 #include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/noise/noise_models.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/leak.h"
 #include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/noise/spontaneous_events.h"
