@@ -40,8 +40,9 @@ void describe_orientation(config::Fields& fields, PresetOrientation& options) {
 void describe_slider(config::Fields& fields, SliderOptions& options) {
   fields.value("from", options.from, "Position at the start, in metres.")
       .range(-kFarthest_m, kFarthest_m);
-  fields.value("direction", options.direction,
-               "Direction of the motion; its length does not matter.");
+  fields
+      .value("direction", options.direction, "Direction of the motion; its length does not matter.")
+      .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.direction.norm() > 0, "direction", "must not be zero");
   fields.value("distance_m", options.distance_m, "Length of the path, in metres.").at_least(0);
   fields.choice("profile", options.profile,
@@ -62,9 +63,11 @@ void describe_circle(config::Fields& fields, CircleOptions& options) {
                     1e-6 * options.normal.norm() * options.start.norm(),
                 "start", "must not be parallel to the normal");
   fields.value("radius_m", options.radius_m, "Radius of the circle, in metres.").above(0);
-  fields.value("revolutions", options.revolutions,
-               "Number of revolutions within duration_s, counter-clockwise as seen against the "
-               "normal; negative values are clockwise.");
+  fields
+      .value("revolutions", options.revolutions,
+             "Number of revolutions within duration_s, counter-clockwise as seen against the "
+             "normal; negative values are clockwise.")
+      .range(-1e6, 1e6);
   describe_orientation(fields, options.orientation);
 }
 
