@@ -33,14 +33,14 @@ double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction
   return std::max(0.0, std::log2(std::max(texels(differential.right), texels(differential.down))));
 }
 
-/// What is nearer than `farthest_m` of z depth. Such pyramids are narrow and move little, so that a
-/// plane before the first one, with some room, stands for all.
-AffineForm nearer_than(double farthest_m, const Frustum& pyramid) {
-  constexpr double kRoom = 1.2;
+/// What is nearer than `farthest_m` of z depth. Such frusta are narrow and move little, so that a
+/// plane before the first one, with some margin, stands for all.
+AffineForm nearer_than(double farthest_m, const Frustum& frustum) {
+  constexpr double kMargin = 1.2;
   if (!std::isfinite(farthest_m)) return {Eigen::Vector3d::Zero(), 1};
-  const Eigen::Vector3d middle = 0.5 * (pyramid.corners[0] + pyramid.corners[2]);
+  const Eigen::Vector3d middle = 0.5 * (frustum.corners[0] + frustum.corners[2]);
   const Eigen::Vector3d axis = middle.normalized();
-  return {-axis, axis.dot(pyramid.eye) + kRoom * farthest_m * axis.dot(middle)};
+  return {-axis, axis.dot(frustum.eye) + kMargin * farthest_m * axis.dot(middle)};
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) 
 }
 
 TriangleId Scene::visible_exactly(const Ray& ray) const {
-  constexpr double kFarther = 1.1;  // less than the room of nearer_than()
+  constexpr double kFarther = 1.1;  // less than the margin of nearer_than()
   constexpr double kAround = 1e-5;  // of the direction's length: far above single precision
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   const double half = kAround * ray.direction.norm();
@@ -249,34 +249,34 @@ const TriangleBvh& Scene::State::bvh(std::size_t body) {
   return bvhs[body];
 }
 
-bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> sweep) const {
+bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta) const {
   if (triangle == kNothing)
-    return !state_->bvh(0).may_intersect(sweep, {Eigen::Vector3d::Zero(), 1});
+    return !state_->bvh(0).may_intersect(frusta, {Eigen::Vector3d::Zero(), 1});
   if (triangle >= state_->surfaces.size() - state_->cutouts.size()) return false;
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (surface.body != kStaticBody) return false;
-  for (const Frustum& pyramid : sweep)
-    for (const Eigen::Vector3d& corner : pyramid.corners)
-      if (state_->min_barycentric({pyramid.eye, corner}, triangle) < 0) return false;
+  for (const Frustum& frustum : frusta)
+    for (const Eigen::Vector3d& corner : frustum.corners)
+      if (state_->min_barycentric({frustum.eye, corner}, triangle) < 0) return false;
   // On the eye's side of the plane; what lies in the plane itself, to single precision, is not.
   AffineForm front = surface.plane;
-  if (front.at(sweep.front().eye) < 0) front = {-front.gradient, -front.offset};
+  if (front.at(frusta.front().eye) < 0) front = {-front.gradient, -front.offset};
   front.offset -= kCoplanar * state_->size_m;
-  return !state_->bvh(0).may_intersect(sweep, front);
+  return !state_->bvh(0).may_intersect(frusta, front);
 }
 
-bool Scene::collect(std::span<const Frustum> sweep, double farthest_m, std::size_t most,
+bool Scene::collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
                     std::vector<TriangleId>& found) const {
   found.clear();
-  if (!state_->bvh(0).collect(sweep, nearer_than(farthest_m, sweep.front()), most, found))
+  if (!state_->bvh(0).collect(frusta, nearer_than(farthest_m, frusta.front()), most, found))
     return false;
-  std::vector<Frustum> local(sweep.size());
+  std::vector<Frustum> local(frusta.size());
   for (std::size_t k = 0; k < moving_objects().size(); ++k) {
-    for (std::size_t m = 0; m < sweep.size(); ++m) {
-      const CameraFrame frame = moving_objects()[k].frame(sweep[m].time_s);
-      local[m].eye = frame.rotation.transpose() * (sweep[m].eye - frame.position);
+    for (std::size_t m = 0; m < frusta.size(); ++m) {
+      const CameraFrame frame = moving_objects()[k].frame(frusta[m].time_s);
+      local[m].eye = frame.rotation.transpose() * (frusta[m].eye - frame.position);
       for (std::size_t c = 0; c < local[m].corners.size(); ++c)
-        local[m].corners[c] = frame.rotation.transpose() * sweep[m].corners[c];
+        local[m].corners[c] = frame.rotation.transpose() * frusta[m].corners[c];
     }
     if (!state_->bvh(k + 1).collect(local, nearer_than(farthest_m, local.front()), most, found))
       return false;

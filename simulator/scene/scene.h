@@ -149,13 +149,13 @@ class Scene {
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceSample& surface) const;
   [[nodiscard]] bool is_lit() const;
-  /// How the lights light what frusta that move evenly through those of `sweep` (at most
-  /// 4) see of `triangle`, found for the whole triangle before or else put into `light`; nullptr
-  /// where that is not known: for what moves or is moved around, where light goes through cutouts,
-  /// and where more than `most` triangles may hide a light.
+  /// Which lights reach the part of `triangle` that a frustum sees on its way through `frusta` (at
+  /// most 4): known for the whole triangle, or else put into `lighting`. nullptr where that is not
+  /// known: for moving triangles and among moving objects, where light goes through cutouts, and
+  /// where more than `most` triangles may occlude a light.
   [[nodiscard]] const PatchLighting* find_lighting(TriangleId triangle,
-                                                   std::span<const Frustum> sweep, std::size_t most,
-                                                   PatchLighting& light) const;
+                                                   std::span<const Frustum> frusta,
+                                                   std::size_t most, PatchLighting& lighting) const;
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
@@ -165,18 +165,18 @@ class Scene {
   [[nodiscard]] const MovingObject* moving_object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
 
-  /// Whether nothing but `triangle` can be seen in a frustum that moves evenly through
-  /// those of `sweep` (at most 5): it is opaque, is static and fills them, and no other triangle
-  /// that is static reaches into them before its plane. For kNothing: whether none is in them at
-  /// all.
-  [[nodiscard]] bool is_sole_visible(TriangleId triangle, std::span<const Frustum> sweep) const;
+  /// Whether nothing but `triangle` is visible in a frustum that moves evenly through `frusta` (at
+  /// most 5): it is opaque, static and fills them, and no other static triangle intersects them in
+  /// front of its plane. For kNothing: whether none intersects them at all.
+  [[nodiscard]] bool is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta) const;
 
-  /// The triangles, also of moving objects, that may reach into such pyramids nearer than
-  /// `farthest_m` of z depth, into `found`; false where there are more than `most`.
-  [[nodiscard]] bool collect(std::span<const Frustum> sweep, double farthest_m, std::size_t most,
+  /// The triangles, also of moving objects, that may intersect such frusta nearer than `farthest_m`
+  /// of z depth, into `found`; false where there are more than `most`.
+  [[nodiscard]] bool collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
                              std::vector<TriangleId>& found) const;
 
-  /// How all rays of a camera at `position`, given in its own frame, pass a triangle at `time_s`.
+  /// The edge functions of a triangle at `time_s` for all rays of a camera at `position`, given in its
+  /// own frame.
   [[nodiscard]] EdgeFunctions edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
                                              const Eigen::Matrix3d& world_from_camera,
                                              double time_s) const;

@@ -37,12 +37,12 @@ double extent_of(const Eigen::AlignedBox3f& box) {
   return static_cast<double>(box.diagonal().norm() + box.center().norm());
 }
 
-/// Corners are rounded to single precision, those of a plane lie on it: a hair of room for both.
+/// Corners are rounded to single precision, those of a plane lie on it: a hair of margin for both.
 Eigen::AlignedBox3d roomy(const Eigen::AlignedBox3f& box) {
-  constexpr double kRoom = 1e-5;
+  constexpr double kMargin = 1e-5;
   const Eigen::AlignedBox3d exact = box.cast<double>();
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant(kRoom * extent_of(box));
-  return {exact.min() - room, exact.max() + room};
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kMargin * extent_of(box));
+  return {exact.min() - margin, exact.max() + margin};
 }
 
 /// The corners of a triangle, whatever their order.

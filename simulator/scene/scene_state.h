@@ -128,7 +128,7 @@ struct Scene::State {
                                        std::vector<TriangleId>& found);
   /// Of the triangles `found` those that hide a part of the patch; false where one hides it all.
   [[nodiscard]] bool select_occluders(const LightOptions& light, const Patch& patch,
-                                      const Eigen::Vector3d& lift,
+                                      const Eigen::Vector3d& shadow_offset,
                                       std::span<const TriangleId> found,
                                       std::vector<Occluder>& occluders) const;
   /// Adds a light that the patch faces to its light.

@@ -371,7 +371,7 @@ class LockstepTile final : public EventTile {
   Triangles triangles_{};  ///< seen at t_s_
   VisibilityPredictor predictor_;
   std::vector<double> transit_times_s_;  ///< of the pixel that is at work
-  std::vector<double> shadow_times_s_;   ///< of a stretch of it
+  std::vector<double> shadow_times_s_;   ///< of an interval of it
 };
 
 }  // namespace

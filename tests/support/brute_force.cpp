@@ -23,7 +23,7 @@ namespace {
 constexpr double kBracket_s = 1e-9;
 /// Next to an edge rays may slip through for less than this.
 constexpr double kShortest_s = 1e-7;
-constexpr double kMostTexels = 0.1;
+constexpr double kMaxTexels = 0.1;
 
 /// What a pixel sees at one instant through all its rays.
 struct Look {
@@ -160,7 +160,7 @@ class BruteSensor {
     double farthest = 0;
     for (std::size_t k = 0; k < to.texels.size(); ++k)
       farthest = std::max(farthest, (to.texels[k] - last_.texels[k]).cwiseAbs().maxCoeff());
-    if (farthest > kMostTexels && depth < kDeepest && to.t_s - last_.t_s > 2 * kBracket_s) {
+    if (farthest > kMaxTexels && depth < kDeepest && to.t_s - last_.t_s > 2 * kBracket_s) {
       const Look middle = pixel_.between(last_, to);
       if (middle.triangles == last_.triangles) {
         advance_on_surface(middle, depth + 1);

@@ -14,7 +14,7 @@ namespace saccade {
 
 /// Sorts out, of many occluders at once, those whose shadow a point cannot meet along its path:
 /// one of their forms stays below zero. Floats in lanes, from a point near by so that their
-/// rounding is small, with room for it.
+/// rounding is small, with margin for it.
 class OccluderLanes {
  public:
   using Forms = std::array<AffineForm, 4>;
@@ -36,7 +36,7 @@ class OccluderLanes {
       block.y[k][lane] = static_cast<float>(forms[k].gradient.y());
       block.z[k][lane] = static_cast<float>(forms[k].gradient.z());
       block.offset[k][lane] = static_cast<float>(offset);
-      block.room[k][lane] = static_cast<float>(kRounding * size);
+      block.margin[k][lane] = static_cast<float>(kRounding * size);
     }
   }
 
@@ -63,7 +63,7 @@ class OccluderLanes {
   using Lanes = std::array<float, kLanes>;
 
   struct Block {
-    std::array<Lanes, 4> x{}, y{}, z{}, offset{}, room{};
+    std::array<Lanes, 4> x{}, y{}, z{}, offset{}, margin{};
   };
 
   static void test(const Block& block, const std::array<std::array<float, 3>, 3>& offsets,
@@ -80,7 +80,7 @@ class OccluderLanes {
         const float to = at(offsets[2]);
         const float turn = 2 * middle - 0.5F * (from + to);
         const float high = std::max(std::max(from, middle), std::max(to, turn));
-        beside = high < -block.room[k][lane] ? 1.0F : beside;
+        beside = high < -block.margin[k][lane] ? 1.0F : beside;
       }
       is_beside[lane] = beside;
     }

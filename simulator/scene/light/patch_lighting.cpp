@@ -15,10 +15,10 @@ namespace {
 
 /// Neighbours in a mesh must leave no light between them, whatever the rounding.
 constexpr double kLightTolerance = 1e-10;
-/// How much wider than a patch the pyramid from a light is, for what is seen by a hair beside it.
-constexpr double kPyramidRoom = 0.01;
+/// How much wider than a patch the frustum from a light is, for what is seen by a hair beside it.
+constexpr double kFrustumMargin = 0.01;
 /// A light without a place is taken to be this many sizes of the scene away where its triangles are
-/// searched for: less than the room off its parallel light.
+/// searched for: less than the margin off its parallel light.
 constexpr double kFar = 1e4;
 
 std::array<Eigen::Vector3d, 3> corners_of(const TriangleSurface& surface,
@@ -47,26 +47,26 @@ void clip(std::vector<Eigen::Vector3d>& polygon, const AffineForm& side) {
   polygon = std::move(kept);
 }
 
-/// Corners around all that pyramids see of a triangle.
+/// Corners around all that frusta see of a triangle.
 std::vector<Eigen::Vector3d> patch_corners(const std::array<Eigen::Vector3d, 3>& triangle,
-                                           std::span<const Frustum> sweep) {
+                                           std::span<const Frustum> frusta) {
   std::vector<Eigen::Vector3d> patch;
-  for (const Frustum& pyramid : sweep) {
+  for (const Frustum& frustum : frusta) {
     std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end());
-    const Eigen::Vector3d axis = pyramid.corners[0] + pyramid.corners[2];
+    const Eigen::Vector3d axis = frustum.corners[0] + frustum.corners[2];
     for (std::size_t k = 0; k < 4; ++k) {
-      Eigen::Vector3d normal = pyramid.corners[k].cross(pyramid.corners[(k + 1) % 4]);
+      Eigen::Vector3d normal = frustum.corners[k].cross(frustum.corners[(k + 1) % 4]);
       if (normal.dot(axis) < 0) normal = -normal;
-      clip(polygon, {normal, -normal.dot(pyramid.eye)});
+      clip(polygon, {normal, -normal.dot(frustum.eye)});
     }
     patch.insert(patch.end(), polygon.begin(), polygon.end());
   }
   return patch;
 }
 
-/// The narrowest pyramid with room from `eye` around points, of those along their longest extent;
+/// The narrowest frustum with margin from `eye` around points, of those along their longest extent;
 /// none where they are all around it.
-std::optional<Frustum> pyramid_around(const Eigen::Vector3d& eye,
+std::optional<Frustum> frustum_around(const Eigen::Vector3d& eye,
                                       std::span<const Eigen::Vector3d> points) {
   constexpr double kWidest = 0.2;  // cosine
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -87,12 +87,12 @@ std::optional<Frustum> pyramid_around(const Eigen::Vector3d& eye,
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& point : on_plane)
     box.extend(Eigen::Vector2d(point.dot(right), point.dot(down)));
-  const double room = kPyramidRoom * box.sizes().maxCoeff() + 1e-12;
+  const double margin = kFrustumMargin * box.sizes().maxCoeff() + 1e-12;
   const auto corner = [&](double x, double y) -> Eigen::Vector3d {
     return axis + x * right + y * down;
   };
-  const Eigen::Vector2d low = box.min().array() - room;
-  const Eigen::Vector2d high = box.max().array() + room;
+  const Eigen::Vector2d low = box.min().array() - margin;
+  const Eigen::Vector2d high = box.max().array() + margin;
   return Frustum{eye,
                  {corner(low.x(), low.y()), corner(high.x(), low.y()), corner(high.x(), high.y()),
                   corner(low.x(), high.y())},
@@ -101,18 +101,18 @@ std::optional<Frustum> pyramid_around(const Eigen::Vector3d& eye,
 
 /// Centre and radius of a sphere around lifted points, with a margin.
 std::pair<Eigen::Vector3d, double> sphere_around(std::span<const Eigen::Vector3d> points,
-                                                 const Eigen::Vector3d& lift) {
+                                                 const Eigen::Vector3d& shadow_offset) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0;
-  for (const Eigen::Vector3d& point : points) centre += point + lift;
+  for (const Eigen::Vector3d& point : points) centre += point + shadow_offset;
   centre /= static_cast<double>(points.size());
   for (const Eigen::Vector3d& point : points)
-    radius = std::max(radius, (point + lift - centre).norm());
-  radius *= 1 + 2 * kPyramidRoom;
+    radius = std::max(radius, (point + shadow_offset - centre).norm());
+  radius *= 1 + 2 * kFrustumMargin;
   return {centre, radius};
 }
 
-/// Adds room for the rounding between neighbours to the edges.
+/// Adds margin for the rounding between neighbours to the edges.
 Occluder with_tolerance(Occluder occluder, double scale) {
   for (std::size_t k = 0; k < 3; ++k) occluder.forms[k].offset += kLightTolerance * scale;
   return occluder;
@@ -152,7 +152,7 @@ Occluder directional_light_occluder(TriangleId triangle, const TriangleSurface& 
 
 LightSet PatchLighting::lights_at(const Eigen::Vector3d& point) const {
   LightSet lights = unoccluded;
-  const Eigen::Vector3d start = point + lift;
+  const Eigen::Vector3d start = point + shadow_offset;
   for (const PartlyOccludedLight& light : partly_occluded) {
     bool is_lit = true;
     light.lanes.visit_candidates({start, start, start}, [&](std::size_t i) {
@@ -184,9 +184,9 @@ bool Scene::State::collect_occluders(const LightOptions& light,
   const Eigen::Vector3d eye = light.type == LightType::kPoint
                                   ? light.position
                                   : Eigen::Vector3d(patch[0] - kFar * size_m * light.direction);
-  const auto pyramid = pyramid_around(eye, patch);
+  const auto frustum = frustum_around(eye, patch);
   found.clear();
-  return pyramid && bvh(0).collect({&*pyramid, 1}, front, most, found) &&
+  return frustum && bvh(0).collect({&*frustum, 1}, front, most, found) &&
          std::all_of(found.begin(), found.end(), [&](TriangleId triangle) {
            return triangle < surfaces.size() - cutouts.size();
          });
@@ -195,7 +195,7 @@ bool Scene::State::collect_occluders(const LightOptions& light,
 bool Scene::State::find_lighting(const Patch& patch, std::size_t most, PatchLighting& lighting) {
   const AffineForm& plane = surfaces[patch.triangle].plane;
   const double offset = illumination->shadow_offset();
-  lighting.lift = offset * patch.side * plane.gradient;
+  lighting.shadow_offset = offset * patch.side * plane.gradient;
   lighting.unoccluded = 0;
   lighting.partly_occluded.clear();
   // Paths to lights begin above the surface: what reaches less high cannot be in them.
@@ -217,7 +217,7 @@ bool Scene::State::find_lighting(const Patch& patch, std::size_t most, PatchLigh
 
 void Scene::State::find_lighting(const Patch& patch, const TriangleLighting& whole,
                                  PatchLighting& lighting) const {
-  lighting.lift =
+  lighting.shadow_offset =
       illumination->shadow_offset() * patch.side * surfaces[patch.triangle].plane.gradient;
   lighting.unoccluded = whole.unoccluded;
   lighting.partly_occluded.clear();
@@ -230,7 +230,7 @@ void Scene::State::add_light(LightSet bit, const Patch& patch, std::span<const T
   PartlyOccludedLight light{bit, {}, {}};
   const LightOptions& options =
       illumination->lights()[static_cast<std::size_t>(std::countr_zero(bit))];
-  if (!select_occluders(options, patch, lighting.lift, found, light.occluders)) return;
+  if (!select_occluders(options, patch, lighting.shadow_offset, found, light.occluders)) return;
   if (light.occluders.empty()) {
     lighting.unoccluded |= bit;
     return;
@@ -238,16 +238,17 @@ void Scene::State::add_light(LightSet bit, const Patch& patch, std::span<const T
   double reach_m = 0;
   for (const Eigen::Vector3d& corner : patch.corners)
     reach_m = std::max(reach_m, (corner - patch.corners[0]).norm());
-  light.lanes = OccluderLanes(patch.corners[0] + lighting.lift, 2 * reach_m);
+  light.lanes = OccluderLanes(patch.corners[0] + lighting.shadow_offset, 2 * reach_m);
   for (const Occluder& occluder : light.occluders) light.lanes.add(occluder.forms);
   lighting.partly_occluded.push_back(std::move(light));
 }
 
 bool Scene::State::select_occluders(const LightOptions& light, const Patch& patch,
-                                    const Eigen::Vector3d& lift, std::span<const TriangleId> found,
+                                    const Eigen::Vector3d& shadow_offset,
+                                    std::span<const TriangleId> found,
                                     std::vector<Occluder>& occluders) const {
   const auto& corners = patch.corners;
-  const auto [centre, radius] = sphere_around(corners, lift);
+  const auto [centre, radius] = sphere_around(corners, shadow_offset);
   for (const TriangleId triangle : found) {
     const auto occluder = make_occluder(triangle, light, corners[0]);
     if (!occluder) continue;
@@ -264,13 +265,13 @@ bool Scene::State::select_occluders(const LightOptions& light, const Patch& patc
                       double low = std::numeric_limits<double>::infinity();
                       double high = -low;
                       for (const Eigen::Vector3d& corner : corners) {
-                        const double value = form.at(corner + lift);
+                        const double value = form.at(corner + shadow_offset);
                         low = std::min(low, value);
                         high = std::max(high, value);
                       }
-                      const double room = kPyramidRoom * (high - low);
-                      covers = covers && low > room;
-                      return high + room <= 0;
+                      const double margin = kFrustumMargin * (high - low);
+                      covers = covers && low > margin;
+                      return high + margin <= 0;
                     });
     if (is_beside) continue;
     if (covers) return false;
@@ -281,7 +282,7 @@ bool Scene::State::select_occluders(const LightOptions& light, const Patch& patc
 
 const TriangleLighting& Scene::State::triangle_lighting(TriangleId triangle, double side) {
   constexpr std::size_t kSimple = 6;
-  constexpr std::size_t kMost = 96;
+  constexpr std::size_t kMax = 96;
   std::call_once(triangle_lightings_built, [this] {
     triangle_lightings = std::make_unique<TriangleLighting[]>(2 * surfaces.size());
   });
@@ -289,7 +290,7 @@ const TriangleLighting& Scene::State::triangle_lighting(TriangleId triangle, dou
   std::call_once(whole.found, [&] {
     const auto corners = corners_of(surfaces[triangle], interiors[triangle]);
     PatchLighting lighting;
-    if (!find_lighting({triangle, side, {corners.begin(), corners.end()}}, kMost, lighting)) return;
+    if (!find_lighting({triangle, side, {corners.begin(), corners.end()}}, kMax, lighting)) return;
     std::size_t count = 0;
     for (const PartlyOccludedLight& light : lighting.partly_occluded)
       count += light.occluders.size();
@@ -309,18 +310,18 @@ const TriangleLighting& Scene::State::triangle_lighting(TriangleId triangle, dou
   return whole;
 }
 
-const PatchLighting* Scene::find_lighting(TriangleId triangle, std::span<const Frustum> sweep,
+const PatchLighting* Scene::find_lighting(TriangleId triangle, std::span<const Frustum> frusta,
                                           std::size_t most, PatchLighting& lighting) const {
   if (!state_->illumination || !moving_objects().empty()) return nullptr;
   const AffineForm& plane = state_->surfaces[triangle].plane;
-  const double side = plane.at(sweep.front().eye) > 0 ? 1 : -1;
-  for (const Frustum& pyramid : sweep)
-    if (!(side * plane.at(pyramid.eye) > 0)) return nullptr;
+  const double side = plane.at(frusta.front().eye) > 0 ? 1 : -1;
+  for (const Frustum& frustum : frusta)
+    if (!(side * plane.at(frustum.eye) > 0)) return nullptr;
   const TriangleLighting& whole = state_->triangle_lighting(triangle, side);
   if (whole.lighting) return whole.lighting.get();
   const Patch patch{
       triangle, side,
-      patch_corners(corners_of(state_->surfaces[triangle], state_->interiors[triangle]), sweep)};
+      patch_corners(corners_of(state_->surfaces[triangle], state_->interiors[triangle]), frusta)};
   if (patch.corners.empty()) return nullptr;
   if (whole.candidates)
     state_->find_lighting(patch, whole, lighting);

@@ -36,7 +36,7 @@ struct PartlyOccludedLight {
 /// Which lights light the points of a patch of a triangle that is static.
 struct PatchLighting {
   /// From a point of the triangle to where its paths to the lights begin.
-  Eigen::Vector3d lift = Eigen::Vector3d::Zero();
+  Eigen::Vector3d shadow_offset = Eigen::Vector3d::Zero();
   LightSet unoccluded = 0;  ///< light all of the patch
   std::vector<PartlyOccludedLight> partly_occluded;
 

@@ -7,8 +7,8 @@
 namespace saccade {
 namespace {
 
-constexpr double kMostTriangles = 4e6;
-constexpr double kMostWaves = 2048;
+constexpr double kMaxTriangles = 4e6;
+constexpr double kMaxWaves = 2048;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void describe(config::Fields& fields, ReliefOptions& options) {
   fields
       .value("triangles", options.triangles,
              "Approximate number of triangles; the shape does not depend on it.")
-      .range(2, kMostTriangles);
+      .range(2, kMaxTriangles);
   fields.value("seed", options.seed,
                "Seed; another seed gives another relief with the same statistics.");
   fields.path("texture", options.texture, "Picture or *.texture.yaml that covers the whole relief.")
@@ -26,7 +26,7 @@ void describe(config::Fields& fields, ReliefOptions& options) {
   const double side = std::max(options.size_m[0], options.size_m[1]);
   const auto expect_few_waves = [side](config::Fields& group, std::string_view key,
                                        double wavelength) {
-    group.expect(side / wavelength <= kMostWaves, key, "must fit at most 2048 times into size_m");
+    group.expect(side / wavelength <= kMaxWaves, key, "must fit at most 2048 times into size_m");
   };
   fields.group(
       "dunes",

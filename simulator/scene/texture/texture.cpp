@@ -157,9 +157,9 @@ TexelRange Texture::range_across_border(const TexelBox& box) const {
 }
 
 TexelRange Texture::range_within(int i0, int i1, int j0, int j1) const {
-  constexpr unsigned kMost = 4;  // values examined per side
+  constexpr unsigned kMax = 4;  // values examined per side
   const auto extent = static_cast<unsigned>(std::max(i1 - i0, j1 - j0));
-  const int level = std::bit_width(extent / kMost);
+  const int level = std::bit_width(extent / kMax);
   TexelRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
   if (level == 0) {
     for (int j = j0; j <= j1; ++j) {

@@ -13,7 +13,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint64_t kMostShapes = 4'000'000;
+constexpr std::uint64_t kMaxShapes = 4'000'000;
 
 /// Half lengths from which leaves get a midrib and veins, and the width of these [texel].
 constexpr float kShortestRibbed = 3;
@@ -102,7 +102,7 @@ class Generator {
     const double margin = 0.5 * b * scale_;
     const double drawn_m2 = (width_ + 2 * margin) * (height_ + 2 * margin) / (scale_ * scale_);
     const auto count = static_cast<std::uint64_t>(coverage * drawn_m2 / mean_area);
-    for (std::uint64_t i = 0; i < std::min(count, kMostShapes); ++i) {
+    for (std::uint64_t i = 0; i < std::min(count, kMaxShapes); ++i) {
       Dice dice(random_, kShapes, i);
       const double shrink = 1 - (a / b) * (a / b);
       const double size = a / std::sqrt(1 - dice.uniform() * shrink);  // inverts the distribution

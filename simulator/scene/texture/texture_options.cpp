@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kMostTexels = 16384;
+constexpr double kMaxTexels = 16384;
 
 template <class Range>
 void ordered(config::Fields& fields, std::string_view key, const Range& range) {
@@ -78,7 +78,7 @@ void describe(config::Fields& fields, TextureOptions& options) {
   ordered(fields, "albedo", options.albedo);
   for (const double side : options.size_m) {
     const double texels = side * options.texels_per_m;
-    fields.expect(texels >= 2 && texels <= kMostTexels, "size_m",
+    fields.expect(texels >= 2 && texels <= kMaxTexels, "size_m",
                   "times texels_per_m must be 2 to 16384 texels");
   }
   fields.group(

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kLeaf = 4;
 /// Below this boxes are halved by number, so that the tree fits the stack that visits it.
 constexpr int kDeepest = 30;
-constexpr std::size_t kMostPyramids = 5;
+constexpr std::size_t kMaxFrusta = 5;
 /// Shares of the size of a box that float coordinates are trusted to.
 constexpr double kRounding = 1e-6;
 
@@ -23,23 +23,23 @@ struct Interval {
   double low, high;
 };
 
-/// The four sides of the pyramids and the plane through the eye across them, not negative inside,
+/// The four sides of the frusta and the plane through the eye across them, not negative inside,
 /// and the half space in front.
 class Region {
  public:
-  Region(std::span<const Frustum> sweep, const AffineForm& front)
-      : count_(sweep.size()), front_(front) {
-    SACCADE_CHECK(!sweep.empty() && sweep.size() <= kMostPyramids);
+  Region(std::span<const Frustum> frusta, const AffineForm& front)
+      : count_(frusta.size()), front_(front) {
+    SACCADE_CHECK(!frusta.empty() && frusta.size() <= kMaxFrusta);
     for (std::size_t m = 0; m < count_; ++m) {
-      const Frustum& pyramid = sweep[m];
-      const Eigen::Vector3d axis = pyramid.corners[0] + pyramid.corners[2];
+      const Frustum& frustum = frusta[m];
+      const Eigen::Vector3d axis = frustum.corners[0] + frustum.corners[2];
       for (std::size_t k = 0; k < 4; ++k) {
         Eigen::Vector3d normal =
-            pyramid.corners[k].cross(pyramid.corners[(k + 1) % 4]).normalized();
+            frustum.corners[k].cross(frustum.corners[(k + 1) % 4]).normalized();
         if (normal.dot(axis) < 0) normal = -normal;
-        sides_[k][m] = {normal, -normal.dot(pyramid.eye)};
+        sides_[k][m] = {normal, -normal.dot(frustum.eye)};
       }
-      sides_[4][m] = {axis, -axis.dot(pyramid.eye)};
+      sides_[4][m] = {axis, -axis.dot(frustum.eye)};
     }
     for (std::size_t k = 0; k < kLanes; ++k) {
       const AffineForm form = k < sides_.size()    ? sides_[k][0]
@@ -51,7 +51,7 @@ class Region {
     }
   }
 
-  /// Whether there is one pyramid, for which excludes_one() is quicker.
+  /// Whether there is one frustum, for which excludes_one() is quicker.
   [[nodiscard]] bool is_one() const { return count_ == 1; }
 
   [[nodiscard]] bool excludes_one(const Eigen::AlignedBox3f& box) const {
@@ -116,9 +116,9 @@ class Region {
   static constexpr std::size_t kLanes = 8;
 
   std::size_t count_;
-  std::array<std::array<AffineForm, kMostPyramids>, 5> sides_;
+  std::array<std::array<AffineForm, kMaxFrusta>, 5> sides_;
   AffineForm front_;
-  /// The sides of the first pyramid and the front, coefficient by coefficient, for vectors.
+  /// The sides of the first frustum and the front, coefficient by coefficient, for vectors.
   std::array<std::array<double, kLanes>, 4> lanes_;
 };
 
@@ -209,10 +209,10 @@ void TriangleBvh::build(std::uint32_t first, std::uint32_t count, int depth) {
 }
 
 template <class Use>
-void TriangleBvh::visit(std::span<const Frustum> sweep, const AffineForm& front,
+void TriangleBvh::visit(std::span<const Frustum> frusta, const AffineForm& front,
                         const Use& use) const {
   if (nodes_.empty()) return;
-  const Region region(sweep, front);
+  const Region region(frusta, front);
   const bool is_one = region.is_one();
   const auto over_box = [](const Eigen::AlignedBox3f& box) {
     const Eigen::Vector3d middle = box.center().cast<double>();
@@ -258,19 +258,19 @@ void TriangleBvh::visit(std::span<const Frustum> sweep, const AffineForm& front,
   }
 }
 
-bool TriangleBvh::may_intersect(std::span<const Frustum> sweep, const AffineForm& front) const {
+bool TriangleBvh::may_intersect(std::span<const Frustum> frusta, const AffineForm& front) const {
   bool any = false;
-  visit(sweep, front, [&](TriangleId) {
+  visit(frusta, front, [&](TriangleId) {
     any = true;
     return false;
   });
   return any;
 }
 
-bool TriangleBvh::collect(std::span<const Frustum> sweep, const AffineForm& front, std::size_t most,
-                          std::vector<TriangleId>& found) const {
+bool TriangleBvh::collect(std::span<const Frustum> frusta, const AffineForm& front,
+                          std::size_t most, std::vector<TriangleId>& found) const {
   bool all = true;
-  visit(sweep, front, [&](TriangleId id) {
+  visit(frusta, front, [&](TriangleId id) {
     all = found.size() < most;
     if (all) found.push_back(id);
     return all;

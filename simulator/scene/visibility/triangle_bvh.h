@@ -22,20 +22,20 @@ struct AffineForm {
   }
 };
 
-/// Triangles in a tree of boxes, to prove that none of them can come into view. Conservative: a
-/// triangle counts as long as no side of the pyramids separates it. Thread-safe once built.
+/// A bounding volume hierarchy of triangles, to prove that none of them can become visible. Conservative: a
+/// triangle counts as long as no side of the frusta separates it. Thread-safe once built.
 class TriangleBvh {
  public:
   /// `ids`: one per triangle.
   TriangleBvh(std::span<const Corners> triangles, std::span<const TriangleId> ids);
 
   /// Whether some triangle may reach into a frustum that moves evenly through those of
-  /// `sweep`, above zero of `front`.
-  [[nodiscard]] bool may_intersect(std::span<const Frustum> sweep, const AffineForm& front) const;
+  /// `frusta`, above zero of `front`.
+  [[nodiscard]] bool may_intersect(std::span<const Frustum> frusta, const AffineForm& front) const;
 
   /// Adds all such triangles to `found`, in a fixed order; false where it would hold more than
   /// `most`.
-  [[nodiscard]] bool collect(std::span<const Frustum> sweep, const AffineForm& front,
+  [[nodiscard]] bool collect(std::span<const Frustum> frusta, const AffineForm& front,
                              std::size_t most, std::vector<TriangleId>& found) const;
 
  private:
@@ -46,7 +46,7 @@ class TriangleBvh {
 
   /// use(id) for all such triangles, until it returns false.
   template <class Use>
-  void visit(std::span<const Frustum> sweep, const AffineForm& front, const Use& use) const;
+  void visit(std::span<const Frustum> frusta, const AffineForm& front, const Use& use) const;
 
   /// A box; its children follow, or as a leaf it holds triangles first..first + count.
   struct Node {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kInstants = 3;
 /// A pixel of a distorted image may be this many pixels of the ideal one.
-constexpr double kLensRoom = 2;
+constexpr double kLensMargin = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Keeps of [low, high] the z with slope * z >= least.
@@ -93,7 +93,7 @@ InverseDepthRange ObjectMotion::inverse_depths_in_cone(const Snapshot& snapshot,
 
 ImageSpeed ObjectMotion::bound(const PinholeCamera& camera, const Eigen::Vector3d& ray,
                                double radius_px, const InverseDepthRange& seen) const {
-  const double radius = kLensRoom * radius_px / std::min(camera.fx, camera.fy);
+  const double radius = kLensMargin * radius_px / std::min(camera.fx, camera.fy);
   ImageSpeed largest;
   for (const Snapshot& snapshot : snapshots_) {
     InverseDepthRange range = inverse_depths_in_cone(snapshot, ray, radius);

@@ -120,7 +120,7 @@ template <class Signal, class Sample>
 }
 
 /// The first part of (lo, hi] at whose end the signal is outside the band, if there is one: branch
-/// and bound. A stretch is done when the bounds of its radiance prove that it stays inside, when it
+/// and bound. An interval is done when the bounds of its radiance prove that it stays inside, when it
 /// is monotone, so that its ends tell, or when it is shorter than the tolerance; else it is divided
 /// where the signal says. Needs of `signal`: range(lo, hi), divide(lo, hi, depth), at(t, lo, hi),
 /// tolerance_s().

@@ -28,7 +28,7 @@ class PixelBank {
   /// Pixel `i` has seen `log_intensity` for long at `t_s`.
   void start(std::size_t i, double log_intensity, double t_s);
 
-  /// Senses a stretch of the signal of pixel `i`, which follows on the one before. Returns the
+  /// Senses an interval of the signal of pixel `i`, which follows on the one before. Returns the
   /// widest final bracket around a crossing [s].
   template <class Signal>
   double sense(std::size_t i, const Signal& signal, const typename Signal::Sample& from,

@@ -10,7 +10,7 @@
 
 namespace saccade {
 
-/// A pixel at work: turns stretches of its signal, one after the other, into events.
+/// A pixel at work: turns intervals of its signal, one after the other, into events.
 /// `Emit(t_s, polarity, origin, log_intensity)`.
 template <class Signal, class Emit>
 class PixelSensor {
@@ -58,18 +58,18 @@ class PixelSensor {
   /// Takes the candidate that is due, if there is one; whether the pixel fires at it.
   bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
                           NoisyState& noisy);
-  /// What advance() of a stretch has come to.
+  /// What advance() of an interval has come to.
   enum class Reached { kCrossing, kCandidate, kEnd };
-  class RawStretch;
-  class FilteredStretch;
+  class RawInterval;
+  class FilteredInterval;
 
   /// The one loop of a pixel with imperfections, whatever its signal: at most up to the next
   /// spontaneous candidate, with the refractory period after every event.
-  template <class Stretch>
-  void sense_stretch(Stretch& stretch, const PixelNoise& noise, NoisyState& noisy);
+  template <class AnyInterval>
+  void sense_interval(AnyInterval& interval, const PixelNoise& noise, NoisyState& noisy);
   void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
   /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
-  /// stays, prove that nothing happens over a stretch.
+  /// stays, prove that nothing happens over an interval.
   [[nodiscard]] bool proves_no_event(const RadianceRange& range, double from_s, double to_s,
                                      const NoisyState& noisy) const;
   /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
@@ -107,7 +107,7 @@ class PixelSensor {
 constexpr double kPieceError = 1e-3;
 /// The greatest change within a piece, for which its cutoff is constant [log units].
 constexpr double kPieceChange = 0.05;
-/// A stretch in which nothing happens is passed over up to what the filter remembers at its end,
+/// An interval in which nothing happens is passed over up to what the filter remembers at its end,
 /// where it is so many times as long as that.
 constexpr double kLongMemories = 1.5;
 
@@ -156,33 +156,33 @@ bool PixelSensor<Signal, Emit>::fire_spontaneously(double t_s, double log_intens
 }
 
 template <class Signal, class Emit>
-template <class Stretch>
-void PixelSensor<Signal, Emit>::sense_stretch(Stretch& stretch, const PixelNoise& noise,
-                                              NoisyState& noisy) {
-  while (stretch.t_s() < stretch.end_s()) {
-    if (noisy.refractory_until_s >= stretch.t_s()) {
-      if (noisy.refractory_until_s >= stretch.end_s()) break;
-      stretch.skip_to(noisy.refractory_until_s);
-      skip_candidates(stretch.t_s(), noise, noisy);
+template <class AnyInterval>
+void PixelSensor<Signal, Emit>::sense_interval(AnyInterval& interval, const PixelNoise& noise,
+                                               NoisyState& noisy) {
+  while (interval.t_s() < interval.end_s()) {
+    if (noisy.refractory_until_s >= interval.t_s()) {
+      if (noisy.refractory_until_s >= interval.end_s()) break;
+      interval.skip_to(noisy.refractory_until_s);
+      skip_candidates(interval.t_s(), noise, noisy);
       noisy.refractory_until_s = NoisyState::kNotRefractory;
-      reset(stretch.t_s(), stretch.signal());
+      reset(interval.t_s(), interval.signal());
     }
-    const Reached reached = stretch.advance(noisy.spontaneous.next_s());
-    const bool fires =
-        reached == Reached::kCrossing || (reached == Reached::kCandidate &&
-                                          fire_spontaneously(stretch.t_s(), stretch.log_intensity(),
-                                                             stretch.signal(), noise, noisy));
+    const Reached reached = interval.advance(noisy.spontaneous.next_s());
+    const bool fires = reached == Reached::kCrossing ||
+                       (reached == Reached::kCandidate &&
+                        fire_spontaneously(interval.t_s(), interval.log_intensity(),
+                                           interval.signal(), noise, noisy));
     if (fires && noise.refractory_s > 0)
-      noisy.refractory_until_s = stretch.event_s() + noise.refractory_s;
+      noisy.refractory_until_s = interval.event_s() + noise.refractory_s;
   }
 }
 
 /// The signal itself, whose crossings are searched by branch and bound.
 template <class Signal, class Emit>
-class PixelSensor<Signal, Emit>::RawStretch {
+class PixelSensor<Signal, Emit>::RawInterval {
  public:
   /// `repeatedly`: fires for every threshold that a bracket crosses.
-  RawStretch(PixelSensor& pixel, const Sample& lo, const Sample& hi, bool repeatedly)
+  RawInterval(PixelSensor& pixel, const Sample& lo, const Sample& hi, bool repeatedly)
       : pixel_(pixel), now_(lo), hi_(hi), repeatedly_(repeatedly), event_s_(lo.t_s) {}
   [[nodiscard]] double t_s() const { return now_.t_s; }
   [[nodiscard]] double end_s() const { return hi_.t_s; }
@@ -219,8 +219,8 @@ class PixelSensor<Signal, Emit>::RawStretch {
 template <class Signal, class Emit>
 double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, const PixelNoise& noise,
                                         NoisyState& noisy) {
-  RawStretch stretch(*this, lo, hi, noise.refractory_s == 0);
-  sense_stretch(stretch, noise, noisy);
+  RawInterval interval(*this, lo, hi, noise.refractory_s == 0);
+  sense_interval(interval, noise, noisy);
   return widest_s_;
 }
 
@@ -256,9 +256,9 @@ double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample&
 
 /// A piece of the photoreceptor's output, whose crossings follow in closed form.
 template <class Signal, class Emit>
-class PixelSensor<Signal, Emit>::FilteredStretch {
+class PixelSensor<Signal, Emit>::FilteredInterval {
  public:
-  FilteredStretch(PixelSensor& pixel, const FilteredPiece& piece, double from_s, double to_s)
+  FilteredInterval(PixelSensor& pixel, const FilteredPiece& piece, double from_s, double to_s)
       : pixel_(pixel),
         piece_(piece),
         drifting_(piece.drifting(pixel.traits_.drift_per_s)),
@@ -304,8 +304,8 @@ void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
   const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
   noisy.filter = piece.end_state();
   if (proves_no_event(piece, input, noisy)) return;
-  FilteredStretch stretch(*this, piece, lo.t_s, hi.t_s);
-  sense_stretch(stretch, noise, noisy);
+  FilteredInterval interval(*this, piece, lo.t_s, hi.t_s);
+  sense_interval(interval, noise, noisy);
 }
 
 template <class Signal, class Emit>

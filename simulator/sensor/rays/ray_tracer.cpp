@@ -298,9 +298,9 @@ double RayTracer::change_s(const Eigen::Vector3d& direction, const VisibleTriang
   }
   if ((a < 0) == (b < 0)) return std::numeric_limits<double>::quiet_NaN();
   // False position, Illinois variant, on the smallest barycentric coordinate.
-  constexpr int kMostSteps = 20;
+  constexpr int kMaxSteps = 20;
   double t = a_s;
-  for (int k = 0, last = 0; k < kMostSteps && b_s - a_s > tolerance_s; ++k) {
+  for (int k = 0, last = 0; k < kMaxSteps && b_s - a_s > tolerance_s; ++k) {
     const double before = t;
     t = a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.001, 0.999);
     const double value = min_barycentric(direction, triangle, t);

@@ -35,7 +35,7 @@ struct VisibleTriangle {
   double t_s;
 };
 
-/// How the rays of a camera see the scene at any time of a stretch of its motion. Counts what it
+/// How the rays of a camera see the scene at any time of an interval of its motion. Counts what it
 /// does.
 class RayTracer {
  public:
@@ -102,7 +102,7 @@ class RayTracer {
                              double from_s, double to_s, std::size_t most,
                              std::vector<TriangleId>& found) const;
 
-  /// The stretches, in order, in which a triangle that is cut out stops a ray or lets it through
+  /// The intervals, in order, in which a triangle that is cut out stops a ray or lets it through
   /// while the ray is inside its edges.
   [[nodiscard]] std::vector<OpacityInterval> find_opacity_intervals(
       const Eigen::Vector3d& direction, TriangleId triangle, double from_s, double to_s) const;
@@ -151,7 +151,7 @@ class RayTracer {
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double min_barycentric(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s) const;
-  /// How far from `t_s` the sample lies that gives the rates: backwards at the end of the stretch,
+  /// How far from `t_s` the sample lies that gives the rates: backwards at the end of the interval,
   /// where an object may come to rest.
   [[nodiscard]] double difference_s(double t_s) const;
   /// Of 30 ms at most: so many that what moves between two of them does so evenly.

@@ -33,7 +33,7 @@ inline Interval product(const Interval& a, const Interval& b) {
   return result;
 }
 
-/// One coordinate of the cubic over a stretch, u = 0..1: u (1 - u)^2 and u^2 (u - 1) weigh the
+/// One coordinate of the cubic over an interval, u = 0..1: u (1 - u)^2 and u^2 (u - 1) weigh the
 /// differences of the ends' slopes from the chord's.
 struct HermiteCoordinate {
   double from, to;
@@ -166,7 +166,7 @@ inline Cell cell_of(const Texture& texture, const CellIndex& index, const Interv
           {y.low - index.j, y.high - index.j}};
 }
 
-/// Where to divide a stretch: the border of a texel or of a level that is nearest to the middle.
+/// Where to divide an interval: the border of a texel or of a level that is nearest to the middle.
 class SplitPoint {
  public:
   static constexpr double kNearest = 0.02;  ///< to an end
@@ -204,7 +204,7 @@ class SplitPoint {
   double best_ = -1;
 };
 
-/// Fraction of a stretch within one cell at which the radiance turns; the middle if it does not or
+/// Fraction of an interval within one cell at which the radiance turns; the middle if it does not or
 /// the path leaves the cell.
 inline double extremum_in_cell(const Texture& texture, const HermiteCoordinate& x,
                                const HermiteCoordinate& y) {

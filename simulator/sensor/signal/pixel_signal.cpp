@@ -7,7 +7,7 @@ namespace saccade {
 namespace {
 
 /// Coordinates of an environment map go around; those of `view` are brought next to `near`.
-void follow(const RaySample& near, RaySample& sample) {
+void unwrap_next_to(const RaySample& near, RaySample& sample) {
   if (sample.triangle != kNothing || sample.surface.texture == nullptr) return;
   const double turn = sample.surface.texture->width();
   sample.surface.x += turn * std::round((near.surface.x - sample.surface.x) / turn);
@@ -42,7 +42,7 @@ RadianceRange PixelSignal<kRays>::range(const Sample& lo, const Sample& hi) cons
   return sum;
 }
 
-/// Both triangles' range over the whole stretch.
+/// Both triangles' range over the whole interval.
 template <std::size_t kRays>
 RadianceRange PixelSignal<kRays>::range_across_change(std::size_t ray, const Sample& lo,
                                                       const Sample& hi) const {
@@ -73,7 +73,7 @@ RaySample PixelSignal<kRays>::between(std::size_t ray, const Sample& lo, const S
   RaySample sample = from.surface.lights == to.surface.lights
                          ? tracer_.sample(directions_[ray], from.triangle, from.surface.lights, t_s)
                          : tracer_.sample(directions_[ray], from.triangle, t_s);
-  follow(from, sample);
+  unwrap_next_to(from, sample);
   return sample;
 }
 
@@ -87,7 +87,7 @@ auto PixelSignal<kRays>::at(double t_s, const Sample& lo, const Sample& hi) cons
     if (changing == kRays || lo.rays[k].triangle == hi.rays[k].triangle)
       sample.rays[k] = between(k, lo, hi, t_s);
     else
-      follow(lo.rays[k], sample.rays[k]);
+      unwrap_next_to(lo.rays[k], sample.rays[k]);
   set_log_intensity(sample);
   return sample;
 }
@@ -108,7 +108,7 @@ auto PixelSignal<kRays>::resample(double t_s, const Sample& lo, const Sample& hi
   sample.t_s = t_s;
   for (std::size_t k = 0; k < kRays; ++k) {
     sample.rays[k] = tracer_.sample(directions_[k], lo.rays[k].triangle, t_s);
-    follow(lo.rays[k], sample.rays[k]);
+    unwrap_next_to(lo.rays[k], sample.rays[k]);
   }
   set_log_intensity(sample);
   return sample;

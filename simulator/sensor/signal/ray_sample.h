@@ -21,7 +21,7 @@ struct RaySample {
 /// level would meet its former threshold in one place and miss it in another.
 [[nodiscard]] double log_intensity(double radiance, double log_eps);
 
-/// Bounds of a radiance and of its rate of change over a stretch of time.
+/// Bounds of a radiance and of its rate of change over an interval of time.
 struct RadianceRange {
   static constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -53,7 +53,7 @@ struct RadianceRange {
   }
 };
 
-/// Of a ray that sees the same triangle at both ends of a stretch of `length_s` > 0 and all through
+/// Of a ray that sees the same triangle at both ends of an interval of `length_s` > 0 and all through
 /// it. Over the texture the ray follows the cubic with the given ends; it departs from the chord by
 /// at most 4/27 of the sum of both ends' differences from the chord's rate, times the length. A box
 /// within one cell of the texture is bounded by the bilinear function there, which also bounds the
@@ -61,14 +61,14 @@ struct RadianceRange {
 [[nodiscard]] RadianceRange radiance_range(const RaySample& from, const RaySample& to,
                                            double length_s);
 
-/// The cubic at `fraction` of the stretch. The irradiance is the line between both ends'.
+/// The cubic at `fraction` of the interval. The irradiance is the line between both ends'.
 [[nodiscard]] RaySample interpolate(const RaySample& from, const RaySample& to, double length_s,
                                     double fraction);
 
 /// Whether the cubic is as good as the true path: the path is nearly straight.
 [[nodiscard]] bool is_straight(const RaySample& from, const RaySample& to, double length_s);
 
-/// Where to divide the stretch of a ray so that its parts become monotone: the crossing of a
+/// Where to divide the interval of a ray so that its parts become monotone: the crossing of a
 /// texel's (or level's) border nearest to the middle; within one cell the radiance's extremum; else
 /// the middle. A fraction within [0.02, 0.98].
 [[nodiscard]] double split_fraction(const RaySample& from, const RaySample& to, double length_s);

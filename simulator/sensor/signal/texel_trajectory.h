@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-/// One coordinate of the path of a ray over a plane during a stretch of time, u = 0..1: the cubic
+/// One coordinate of the path of a ray over a plane during an interval of time, u = 0..1: the cubic
 /// with the ends' values and slopes, plus 16 quartic u^2 (1 - u)^2, which puts the middle right.
 class TrajectoryCoordinate {
  public:

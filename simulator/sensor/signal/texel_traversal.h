@@ -32,7 +32,7 @@ class TexelBorders {
   }
 
  private:
-  static constexpr int kMost = 16;
+  static constexpr int kMax = 16;
   static constexpr int kLanes = 8;
 
   TexelBorders(const TrajectoryCoordinate& track, const CoordinateBounds& part, double u0,
@@ -41,8 +41,8 @@ class TexelBorders {
     const double start = std::floor(part.from);
     first_ = static_cast<std::int64_t>(start);
     if (step_ != 0)
-      count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMost + 1.0));
-    is_monotone_ = step_ != 0 ? count_ <= kMost : is_within_cell(part.values, start);
+      count_ = static_cast<int>(std::min(std::abs(std::floor(part.to) - start), kMax + 1.0));
+    is_monotone_ = step_ != 0 ? count_ <= kMax : is_within_cell(part.values, start);
     if (is_monotone_ && count_ > 0) is_monotone_ = find(track, part, u0, u1);
     crossings_[is_monotone_ ? static_cast<std::size_t>(count_) : 0] = u1;
   }
@@ -78,7 +78,7 @@ class TexelBorders {
     return true;
   }
 
-  std::array<double, kMost + kLanes> crossings_;
+  std::array<double, kMax + kLanes> crossings_;
   std::int64_t first_;
   int step_;
   int count_ = 0;

@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// Sorts out, of many triangles at once, those that a ray cannot meet during a stretch of time: it
+/// Sorts out, of many triangles at once, those that a ray cannot meet during an interval of time: it
 /// is outside one of their edges all the time. The forms along the ray are parabolas, as in
 /// TriangleRayBounds; floats in lanes, whose rounding is far below the margin.
 class EdgeCulling {

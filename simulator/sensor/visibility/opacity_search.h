@@ -7,7 +7,7 @@
 
 namespace saccade {
 
-/// A stretch of time in which a triangle that is cut out stops a ray or lets it through.
+/// An interval of time in which a triangle that is cut out stops a ray or lets it through.
 struct OpacityInterval {
   double from_s, to_s;
   bool is_opaque;
@@ -40,7 +40,7 @@ class OpacitySearch {
     samples_.push_back(to);
   }
 
-  /// All stretches, in order.
+  /// All intervals, in order.
   [[nodiscard]] std::vector<OpacityInterval> intervals() const {
     const auto is_earlier = [](const auto& a, const auto& b) { return a.t_s < b.t_s; };
     OpacitySample last = samples_.front();

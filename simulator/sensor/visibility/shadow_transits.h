@@ -13,7 +13,7 @@
 namespace saccade {
 
 /// Finds when shadows come and go where a ray intersects a plane, from its points at both ends of a
-/// stretch and in the middle.
+/// interval and in the middle.
 class ShadowTransits {
  public:
   /// use(begin, end), as fractions of the whole, with each time during which the light is hidden; in
@@ -28,7 +28,7 @@ class ShadowTransits {
       for (std::size_t k = 0; k < forms.size(); ++k)
         for (std::size_t m = 0; m < points.size(); ++m)
           forms[k][m] = light.occluders[i].forms[k].at(points[m]);
-      find_stretches(forms, [&](double begin, double end) { hidden_.emplace_back(begin, end); });
+      find_intervals(forms, [&](double begin, double end) { hidden_.emplace_back(begin, end); });
       return true;
     });
     std::sort(hidden_.begin(), hidden_.end());

@@ -24,11 +24,11 @@ inline void clip_to_line(double x, double y, double& low, double& high) {
   if (y < 0 && x >= 0) high = std::min(high, x / (x - y));
 }
 
-/// use(begin, end), as fractions of the whole, with each stretch in which no form is negative. Each
+/// use(begin, end), as fractions of the whole, with each interval in which no form is negative. Each
 /// is given at both ends and in the middle, and taken to be the parabola through these, even between its
 /// quarters.
 template <std::size_t kForms, class Use>
-void find_stretches(const std::array<std::array<double, 3>, kForms>& forms, const Use& use) {
+void find_intervals(const std::array<std::array<double, 3>, kForms>& forms, const Use& use) {
   std::array<std::array<double, 5>, kForms> quarters;
   for (std::size_t k = 0; k < kForms; ++k) {
     quarters[k] = parabola_quarters(forms[k]);
@@ -88,11 +88,11 @@ struct TransitTriangle {
   /// both samples and in the middle. Where it grazes the plane, its distance is undefined.
   [[nodiscard]] bool is_occluded(const Eigen::Vector3d& direction, double occluded_beyond) const {
     constexpr double kGrazing = 1e-2;
-    constexpr double kRoom = 1.001;
+    constexpr double kMargin = 1.001;
     return std::all_of(at.begin(), at.end(), [&](const EdgeFunctions& pass) {
       const double w = pass.w.dot(direction);
       const double distance = pass.depth / w;
-      return std::abs(w) > kGrazing && !(distance > 0 && distance < kRoom * occluded_beyond);
+      return std::abs(w) > kGrazing && !(distance > 0 && distance < kMargin * occluded_beyond);
     });
   }
 
@@ -104,7 +104,7 @@ struct TransitTriangle {
       std::array<std::array<double, 3>, 3> forms;
       for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t m = 0; m < 3; ++m) forms[k][m] = sign * at[m].edges[k].dot(direction);
-      find_stretches(forms, use);
+      find_intervals(forms, use);
     }
   }
 };

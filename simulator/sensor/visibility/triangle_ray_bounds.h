@@ -15,7 +15,7 @@ inline Interval parabola_bounds(double from, double middle, double to) {
   return {std::min({from, to, turn}), std::max({from, to, turn})};
 }
 
-/// How a triangle lies to the ray of a pixel during a stretch of time. Its forms along the ray are
+/// How a triangle lies to the ray of a pixel during an interval of time. Its forms along the ray are
 /// taken to be parabolas in time; what is nearer to an edge than `margin` of the image plane is in
 /// doubt.
 class TriangleRayBounds {

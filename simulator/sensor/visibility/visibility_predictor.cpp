@@ -10,7 +10,7 @@ namespace saccade {
 namespace {
 
 /// With more triangles than this in reach of a tile, looking at each of them costs more than steps.
-constexpr std::size_t kMostCandidates = 4096;
+constexpr std::size_t kMaxCandidates = 4096;
 
 /// Whether an edge of one triangle and one of another lie on the same line.
 bool share_edge(const TransitTriangle& a, std::size_t edge_of_a, const TransitTriangle& b,
@@ -27,8 +27,7 @@ bool share_edge(const TransitTriangle& a, std::size_t edge_of_a, const TransitTr
 }  // namespace
 
 bool VisibilityPredictor::collect(double farthest_m, double from_s, double to_s) {
-  const bool all =
-      tracer_.collect(outline_, farthest_m, from_s, to_s, kMostCandidates, candidates_);
+  const bool all = tracer_.collect(outline_, farthest_m, from_s, to_s, kMaxCandidates, candidates_);
   if (!all) clear();
   return all;
 }
@@ -145,14 +144,14 @@ void VisibilityPredictor::find_gaps(const Eigen::Vector3d& direction, TriangleId
                                     double from_s, double to_s, const StampedRaySample& lo,
                                     const StampedRaySample& hi,
                                     std::vector<double>& times_s) const {
-  for (const OpacityInterval& stretch :
+  for (const OpacityInterval& interval :
        tracer_.find_opacity_intervals(direction, triangle, from_s, to_s)) {
-    const bool is_known = (triangle == lo.sample.triangle && stretch.from_s == lo.t_s) ||
-                          (triangle == hi.sample.triangle && stretch.to_s == hi.t_s);
-    if (stretch.is_opaque && !is_known)
-      find_visible_times(direction, triangle, stretch.from_s, stretch.to_s, times_s);
-    if (!stretch.is_opaque && stretch.from_s > lo.t_s && stretch.to_s < hi.t_s)
-      times_s.push_back(0.5 * (stretch.from_s + stretch.to_s));
+    const bool is_known = (triangle == lo.sample.triangle && interval.from_s == lo.t_s) ||
+                          (triangle == hi.sample.triangle && interval.to_s == hi.t_s);
+    if (interval.is_opaque && !is_known)
+      find_visible_times(direction, triangle, interval.from_s, interval.to_s, times_s);
+    if (!interval.is_opaque && interval.from_s > lo.t_s && interval.to_s < hi.t_s)
+      times_s.push_back(0.5 * (interval.from_s + interval.to_s));
   }
 }
 
@@ -189,7 +188,7 @@ void VisibilityPredictor::find_shadows_on(const Eigen::Vector3d& direction, Tria
   for (std::size_t m = 0; m < points.size(); ++m)
     points[m] =
         tracer_.point_at(direction, triangle, from_s + 0.5 * static_cast<double>(m) * length_s) +
-        lighting->lift;
+        lighting->shadow_offset;
   if (!std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); }))
     return;
   for (const PartlyOccludedLight& light : lighting->partly_occluded) {

@@ -103,7 +103,7 @@ TEST_F(SceneFile, MissingFurnitureSaysHowToGetIt) {
               AllOf(HasSubstr("scene.yaml:1"), HasSubstr("apt-get install sweethome3d-furniture")));
 }
 
-TEST(Placement, ScalesThenRotatesThenTranslates) {
+TEST(WorldFromMesh, ScalesThenRotatesThenTranslates) {
   MeshOptions options;
   options.transform.scale = {2, 3, 4};
   options.transform.rotation_deg = {90, 0, 90};
@@ -115,7 +115,7 @@ TEST(Placement, ScalesThenRotatesThenTranslates) {
   EXPECT_LT((placed * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(14, 20, 30)).norm(), 1e-12);
 }
 
-TEST(Placement, SizeIsThatOfTheBoxAndAnchorsTakeItInPlace) {
+TEST(WorldFromMesh, SizeIsThatOfTheBoxAndAnchorsTakeItInPlace) {
   Mesh mesh;
   mesh.vertices = {{1, 1, 1}, {3, 1, 1}, {3, 2, 6}};
   mesh.triangles = {{{0, 1, 2}, 0}};

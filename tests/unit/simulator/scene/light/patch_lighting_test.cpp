@@ -102,7 +102,8 @@ TEST(ShadowTransits, FindsAStripNarrowerThanTheWay) {
   ASSERT_EQ(light->partly_occluded.size(), 1U);
   std::array<Eigen::Vector3d, 3> points;
   for (std::size_t m = 0; m < points.size(); ++m)
-    points[m] = Eigen::Vector3d(0.395 + 0.005 * static_cast<double>(m), 0.05, 0) + light->lift;
+    points[m] =
+        Eigen::Vector3d(0.395 + 0.005 * static_cast<double>(m), 0.05, 0) + light->shadow_offset;
   std::vector<double> changes;
   ShadowTransits().find(light->partly_occluded[0], points, [&](double begin, double end) {
     changes.push_back(begin);

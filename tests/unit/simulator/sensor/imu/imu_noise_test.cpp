@@ -60,7 +60,7 @@ TEST(ImuNoise, WhiteNoiseFallsWithTheRootOfTau) {
   EXPECT_NEAR(accel[4], 0.02, 0.04 * 0.02);
 }
 
-TEST(ImuNoise, TheWalkOfTheBiasRisesWithTheRootOfTau) {
+TEST(ImuNoise, TheRandomWalkOfTheBiasRisesWithTheRootOfTau) {
   ImuOptions options{.rate_hz = kRate_hz, .gyroscope = {.random_walk = 3e-4}};
   options.accelerometer.random_walk = 5e-3;
   const ImuRecording imu = record_imu(at_rest(3600), options, kStandardGravity, 6);

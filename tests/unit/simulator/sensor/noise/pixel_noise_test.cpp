@@ -184,7 +184,7 @@ TEST(ShotNoise, SavedStateGoesOnWithTheSameCandidates) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(events.take(state, 3, 4).t_s, events.take(copy, 3, 4).t_s);
 }
 
-TEST(HotPixels, AreTheStatedShareWithLogNormalRates) {
+TEST(HotPixels, AreTheStatedFractionWithLogNormalRates) {
   NoiseOptions options;
   options.hot = {0.05, 40, 0.5};
   const SpontaneousEvents events(options, kLogEps, kSeed);

@@ -43,7 +43,7 @@ TEST(TexelBorders, GoBackwards) {
   EXPECT_EQ(borders.index(3), 0);
 }
 
-TEST(TexelBorders, AreNotSteadyAcrossATurn) {
+TEST(TexelBorders, AreNotMonotoneAcrossATurningPoint) {
   EXPECT_FALSE(TexelBorders(track(5.3, -4, 4.3, 0.1, 5.4, 4.2)).is_monotone());
   EXPECT_TRUE(TexelBorders(track(5.3, -0.1, 5.29, 0, 5.3, 0.1)).is_monotone());
 }
