@@ -38,7 +38,7 @@ struct MappingOptions {
   /// they are. Of depth.method: rays.
   int adjust_rounds = 0;
   AdjustmentOptions adjustment;
-  MapOptions steep;  ///< of kGradient
+  MapOptions steep{.thin = true};  ///< of kGradient
   DepthConfig depth;
   /// Contrasts are stated: they matter for the image alone, and nothing comes from the dataset.
   ReconstructionConfig reconstruction = with_contrast(0.2);

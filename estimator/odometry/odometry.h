@@ -19,7 +19,7 @@
 #include "estimator/odometry/mapper.h"
 #include "estimator/odometry/start/first_map.h"
 #include "estimator/refinement/joint_refinement.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 
@@ -55,7 +55,7 @@ struct RelocationOptions {
   double every_s = 0.01;       ///< it is looked for so often, in the events' time; 0: never
   double looks_back_s = 0.05;  ///< first where it was so long before it was lost
   /// It is looked for, too, where the map explains much less of the frames than usual, though not
-  /// so little that the camera is lost (Tracker::fits).
+  /// so little that the camera is lost (EdgeTracker::fits).
   bool when_unlike = false;
 };
 
@@ -72,7 +72,7 @@ struct OdometryOptions {
   RelocationOptions relocation;
   EdgeMapOptions map;
   MappingOptions mapping;
-  TrackerOptions tracker;
+  EdgeTrackerOptions tracker;
   LastAdjustment last;
 };
 
@@ -163,7 +163,7 @@ class Odometry {
   PinholeCamera camera_;
   Mapper mapper_;
   EdgeMap map_;
-  Tracker tracker_;
+  EdgeTracker tracker_;
   std::vector<StampedPose> known_;  ///< the start, then what was tracked, as last adjusted
   double settled_until_s_ = 0;
   double given_until_s_ = kNothingGiven;

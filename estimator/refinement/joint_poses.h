@@ -4,7 +4,7 @@
 
 #include "core/io/covariance_file.h"
 #include "estimator/refinement/joint_refinement.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 

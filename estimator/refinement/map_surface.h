@@ -37,7 +37,7 @@ class MapSurface {
   };
   /// The place that a camera's ray meets near one that is seen there: the plane at the place, met
   /// by the ray, moved to where it was met. nullopt where that leaves the surface.
-  [[nodiscard]] std::optional<Hit> meet(const SeenPlace& seen, const Rigid3& map_from_camera,
+  [[nodiscard]] std::optional<Hit> meet(const MapSample& seen, const Rigid3& map_from_camera,
                                         const Eigen::Vector3d& ray) const;
 
  private:

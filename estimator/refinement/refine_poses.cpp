@@ -28,7 +28,7 @@ EventContrast contrast_of(const RefinementConfig& config, const TrackConfig& tra
 
 ReferenceOptions reference_of(const RefinementConfig& config, const TrackConfig& tracked) {
   ReferenceOptions reference = tracked.reference;
-  if (config.turn_deg) reference.turn_deg = config.turn_deg;
+  if (config.turn_deg) reference.new_view_deg = config.turn_deg;
   return reference;
 }
 

@@ -10,7 +10,7 @@
 #include "core/io/run_record.h"
 #include "core/trajectory.h"
 #include "estimator/run/run_request.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 

@@ -11,17 +11,17 @@ namespace {
 
 /// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
 /// the next ones go on in the same way.
-constexpr float kDepthStep = 0.03F;
+constexpr float kDepthDiscontinuity = 0.03F;
 
 /// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
 bool is_joined(float before, float b, float c, float after) {
   if (!(b > 0 && c > 0)) return false;
   const float step = std::abs(c - b);
-  if (step <= kDepthStep * std::max(b, c)) return true;
-  const auto goes_on = [&](float difference) {
+  if (step <= kDepthDiscontinuity * std::max(b, c)) return true;
+  const auto continues = [&](float difference) {
     return std::abs(difference - (c - b)) < 0.3F * step;
   };
-  return before > 0 && after > 0 && goes_on(b - before) && goes_on(after - c);
+  return before > 0 && after > 0 && continues(b - before) && continues(after - c);
 }
 
 /// Of every pixel, whether the square with its neighbours to the right and below is one surface.

@@ -62,12 +62,12 @@ float foreground_depth(const ImageF& depth, int x, int y) {
   return own > 0 && nearest > kStep * own ? own : nearest;
 }
 
-/// g_min as a gradient [1/px]: raised, where it must be, until `max_share` of the pixels lie above
-/// it.
+/// g_min as a gradient [1/px]: raised, where it must be, until `max_fraction` of the pixels lie
+/// above it.
 float gradient_threshold(const ImageF& magnitude, float largest, const MapOptions& options) {
   const float threshold = static_cast<float>(options.min_gradient) * largest;
   const auto most =
-      static_cast<std::size_t>(options.max_share * static_cast<double>(magnitude.size()));
+      static_cast<std::size_t>(options.max_fraction * static_cast<double>(magnitude.size()));
   if (most >= magnitude.size()) return threshold;
   std::vector<float> sorted(magnitude.pixels().begin(), magnitude.pixels().end());
   const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most);

@@ -6,7 +6,7 @@
 
 #include "core/rigid3.h"
 #include "estimator/tracking/map_extraction.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 
