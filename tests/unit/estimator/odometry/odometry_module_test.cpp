@@ -71,7 +71,7 @@ keyframe: {distance: 0.05, active: 3}
 mapping: {duration_s: 0.3, view: middle, edges: depth, image: false}
 depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_sigma: 0.05}}}
 tracking:
-  event_frame: {ratio: 0.2}
+  event_map_ratio: 0.2
   motion: {prediction: constant_velocity}
 )";
 
