@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-/// Which pixels of the reference frame become map points (thesis 4.4).
+/// Which pixels of the reference frame become map points (thesis section 4.4).
 struct MapOptions {
   double min_gradient = 0.1;  ///< g_min
   /// 0.12: the template of a denser map costs more than the alignment.

@@ -41,7 +41,7 @@ MotionModelOptions speed_dependent_motion() {
 void describe(config::Fields& fields, MapOptions& options) {
   fields
       .value("min_gradient", options.min_gradient,
-             "g_min: gradient magnitude of a map point, relative to the largest one (thesis 4.4). A "
+             "g_min: gradient magnitude of a map point, relative to the largest one. A "
              "larger one keeps fewer, stronger edges.")
       .range(0, 1);
   fields
@@ -90,7 +90,7 @@ void describe(config::Fields& fields, TrackConfig& config) {
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "Reference views that the map is made from.");
-  fields.section("map", config.map, "Pixels of a reference view that become map points (4.4).");
+  fields.section("map", config.map, "Pixels of a reference view that become map points (section 4.4 of the thesis).");
   fields.value("initial_pose", config.initial_pose,
                "Pose at the start, world from camera, as tx ty tz qx qy qz qw; ~ takes the ground "
                "truth.");

@@ -261,6 +261,7 @@ void TemplateDrawer::collect() {
     const float* value = blurred_mask_.row(y);
     const float* depth = blurred_depth_.row(y);
     const std::size_t found = find_points(y);
+    // The inverse depth is that of (4.20).
     for (std::size_t i = 0; i < found; ++i) {
       const std::size_t x = columns_[i];
       points_[count++] = {

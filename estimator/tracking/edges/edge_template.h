@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// How the map is drawn into the current view (thesis 4.5).
+/// How the map is drawn into the current view (thesis section 4.5).
 struct TemplateOptions {
   /// A point is spread over its four pixels; without, it goes to the nearest one (the thesis),
   /// which moves it by up to half a pixel.

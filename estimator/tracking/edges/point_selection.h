@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// Which points of a template an alignment runs over (thesis 4.3, fig. 4.1).
+/// Which points of a template an alignment runs over (thesis section 4.3, fig. 4.1).
 struct SelectionOptions {
   enum class Kind { kRandom, kDense, kSemiDense, kSparsePatches };
 

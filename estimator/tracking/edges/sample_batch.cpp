@@ -104,7 +104,7 @@ void SampleBatch::warp(const PinholeCamera& camera, const EventFrame& frame,
     const float pz = r(2, 0) * x + r(2, 1) * y + r(2, 2) + t.z() * w;
     const float px = r(0, 0) * x + r(0, 1) * y + r(0, 2) + t.x() * w;
     const float py = r(1, 0) * x + r(1, 1) * y + r(1, 2) + t.y() * w;
-    const float u = fx * px / pz + cx;
+    const float u = fx * px / pz + cx;  // (4.15)
     const float v = fy * py / pz + cy;
     const bool inside = (pz > 0) & (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
     const float safe_u = inside ? u : 0;
@@ -131,7 +131,7 @@ void SampleBatch::compare(const EventFrame& frame, bool smooth, float gain, floa
     read_bilinear(frame);
   }
   for (std::size_t i = 0; i < padded(); ++i)
-    residual_[i] = visible_[i] * (frame_value_[i] - gain * value_[i] - offset);
+    residual_[i] = visible_[i] * (frame_value_[i] - gain * value_[i] - offset);  // (4.3)
 }
 
 void SampleBatch::read_smooth(const EventFrame& frame) {
@@ -203,6 +203,7 @@ void SampleBatch::weigh(RobustLoss kind, float sigma) {
   const Lanes y = load_lanes(&ray_y_[i]);
   const Lanes inverse_depth = load_lanes(&inverse_depth_[i]);
   const Lanes radial = a * x + b * y;
+  // (4.4) with (4.17), for the motion of the point.
   return {a * inverse_depth, b * inverse_depth, -radial * inverse_depth,          -y * radial - b,
           x * radial + a,    b * x - a * y,     load_lanes(&value_[i]) * visible, visible};
 }

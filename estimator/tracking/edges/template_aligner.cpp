@@ -172,7 +172,7 @@ bool TemplateAligner::step(const Means& means, double step_length, State& state)
   Vector rhs = means.rhs;
   rhs.head<6>() -= state.step_gain * (state.prior * state.error);
   if (!options_.solve_brightness) rhs.tail<2>().setZero();
-  const Vector solution = state.factors.solve(rhs) * step_length;  // (4.6)
+  const Vector solution = state.factors.solve(rhs) * step_length;  // (4.7)
   const Twist xi = solution.head<6>() / state.step_gain;
   if (!xi.allFinite()) return false;
   state.current_from_template = state.current_from_template * Rigid3::exp(-xi);  // (4.19)

@@ -66,8 +66,8 @@ struct AlignResult {
 /// Inverse-compositional Lucas-Kanade on SE(3) (thesis 4.1-4.19; Baker & Matthews, IJCV 56(3),
 /// 2004):
 ///   r(u) = I(W(u; current_from_template)) - gain T(u) - offset            (4.3)
-///   J(u) = grad T(u) dW/dxi at xi = 0                                     (4.5), (4.17)
-///   xi   = (sum J^T J)^-1 sum J^T r / gain                                (4.6)
+///   J(u) = grad T(u) dW/dxi at xi = 0                                     (4.4), (4.17)
+///   xi   = (sum J^T J)^-1 sum J^T r / gain                                (4.7)
 ///   current_from_template <- current_from_template * exp(xi)^-1           (4.19)
 /// Sums run over `samples` template points drawn afresh per iteration (random sparse, thesis 4.3),
 /// or over the same selected points until the steps have become small.

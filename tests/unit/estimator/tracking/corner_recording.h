@@ -97,6 +97,14 @@ inline TrackConfig tracking_config(const std::string& name) {
   return config::read<TrackConfig>(config::load(file));
 }
 
+/// The edges that a method falls back to, as track_methods.cpp sets them.
+inline EdgeTrackerOptions fallback_options(const TrackConfig& config) {
+  EdgeTrackerOptions options;
+  options.templates.redraw_px = 0;
+  options.motion = config.motion;
+  return options;
+}
+
 /// The same bits.
 inline void expect_equal(const std::vector<TrackedPose>& a, const std::vector<TrackedPose>& b) {
   ASSERT_EQ(a.size(), b.size());

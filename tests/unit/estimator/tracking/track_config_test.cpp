@@ -30,13 +30,13 @@ TEST(TrackConfig, DefaultsAreTheAccurateSetting) {
 TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   const std::string folder = std::string(SACCADE_SOURCE_DIR) + "/configs/tracking/";
   const auto accurate = config::read<TrackConfig>(config::load(folder + "accurate.yaml"));
-  EXPECT_EQ(accurate.tracker.align.samples, 500);
-  EXPECT_EQ(accurate.tracker.align.iterations, 30);
-  EXPECT_EQ(accurate.tracker.event_frame.event_map_ratio, 0.4);
+  EXPECT_EQ(accurate.edges.align.samples, 500);
+  EXPECT_EQ(accurate.edges.align.iterations, 30);
+  EXPECT_EQ(accurate.edges.event_frame.event_map_ratio, 0.4);
   const auto fast = config::read<TrackConfig>(config::load(folder + "fast.yaml"));
-  EXPECT_EQ(fast.tracker.align.samples, 50);
-  EXPECT_EQ(fast.tracker.align.iterations, 5);
-  EXPECT_EQ(fast.tracker.event_frame.event_map_ratio, 0.09);
+  EXPECT_EQ(fast.edges.align.samples, 50);
+  EXPECT_EQ(fast.edges.align.iterations, 5);
+  EXPECT_EQ(fast.edges.event_frame.event_map_ratio, 0.09);
   const auto best = config::read<TrackConfig>(config::load(folder + "best.yaml"));
   EXPECT_EQ(best.method, "intensity");
   EXPECT_FALSE(best.intensity.events.has_value());
@@ -58,7 +58,7 @@ TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parse(printed)), printed);
   const TrackConfig again = parse(printed);
-  EXPECT_EQ(again.tracker.motion.acceleration_sigma_px, 123);
+  EXPECT_EQ(again.motion.acceleration_sigma_px, 123);
   EXPECT_EQ(again.initial_pose, config.initial_pose);
   EXPECT_EQ(again.reference.region_px, config.reference.region_px);
   EXPECT_EQ(again.edges.templates.blur_size_px, 5);
@@ -78,7 +78,8 @@ TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
   EXPECT_EQ(again.intensity.events, 321);
   EXPECT_EQ(again.intensity.map.blur_px, 0);
   EXPECT_EQ(again.contrast, 0.17);
-  EXPECT_EQ(again.tracker.motion.acceleration_per_speed, 3);
+  EXPECT_EQ(again.motion.acceleration_sigma_px, 3);
+  EXPECT_EQ(again.motion.acceleration_per_speed, 6) << "of the method, without a key";
 }
 
 TEST(TrackConfig, PrintedPolarityConfigurationMeansTheSame) {

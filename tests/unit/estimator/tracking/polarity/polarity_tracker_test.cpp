@@ -28,7 +28,7 @@ class PolarityTracking {
                             const ReferenceView& view = resolved_recording().view)
       : map_(resolved_recording().world.camera(), std::span(&view, 1), smoothing_of(config)),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
-        edges_(config.edges, map_.camera(), points_, map_.world_from_map(), config.seed),
+        edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(), config.seed),
         tracker_(config.polarity, config.motion, map_.camera(), map_, edges_) {
     tracker_.reset(0, view.world_from_reference);
   }
@@ -193,7 +193,7 @@ TEST(PolarityTracker, EdgesGoOnWhereTheCameraTurnsBack) {
   int by_edges = 0;
   for (const TrackedPose& pose : poses)
     if (seconds_from_ns(pose.t_ns) > kBeforeTheTurn_s)
-      by_edges += pose.iterations == polarity().tracker.align.iterations ? 1 : 0;
+      by_edges += pose.iterations == EdgeTrackerOptions{}.align.iterations ? 1 : 0;
   EXPECT_GT(by_edges, 0);
   EXPECT_LT(by_edges, 20);
   EXPECT_LT(resolved_recording().error_px(poses.back()), 1);
