@@ -116,8 +116,8 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
 
 void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
-  const bool may_be_lost =
-      pose.status == TrackStatus::kLost || (options_.relocation.when_unlike && !tracker_.is_consistent());
+  const bool may_be_lost = pose.status == TrackStatus::kLost ||
+                           (options_.relocation.when_unlike && !tracker_.is_consistent());
   if (may_be_lost && options_.relocation.every_s > 0 &&
       now_s >= last_search_s_ + options_.relocation.every_s) {
     last_search_s_ = now_s;

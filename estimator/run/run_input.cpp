@@ -46,9 +46,9 @@ Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
     const std::filesystem::path& from = *request.poses_from;
     if (!std::filesystem::is_directory(from)) return read_trajectory(from);
     const bool has_orientations_only = !std::filesystem::exists(from / "trajectory.txt") &&
-                            std::filesystem::exists(from / "orientation.txt");
+                                       std::filesystem::exists(from / "orientation.txt");
     return has_orientations_only ? read_orientations(from / "orientation.txt")
-                      : read_trajectory(from / "trajectory.txt");
+                                 : read_trajectory(from / "trajectory.txt");
   }
   if (dataset.groundtruth().empty())
     throw InputError(dataset.folder().string(),

@@ -46,10 +46,14 @@ void describe(config::Fields& fields, ViewWindowOptions& options) {
   fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
                 "Quantity that is equal in all windows: their duration or their number of events.");
   if (options.by == By::kTime)
-    fields.value("duration_s", options.duration_s, "Longest duration of a window, in seconds; all windows are equally long.")
+    fields
+        .value("duration_s", options.duration_s,
+               "Longest duration of a window, in seconds; all windows are equally long.")
         .range(1e-4, 1e5);
   if (options.by == By::kEvents)
-    fields.value("events", options.events, "Largest number of events of a window; all windows hold equally many.")
+    fields
+        .value("events", options.events,
+               "Largest number of events of a window; all windows hold equally many.")
         .range(100, 1e9);
   fields.choice(
       "reference", options.reference,

@@ -38,8 +38,8 @@ struct ViewWindow {
 [[nodiscard]] std::span<const Event> within(std::span<const Event> events,
                                             const Trajectory& trajectory);
 
-/// Cuts the stream into consecutive windows that together hold all of it, as few and as equal as the
-/// options allow. Windows without events, where the camera stood still, are left out.
+/// Cuts the stream into consecutive windows that together hold all of it, as few and as equal as
+/// the options allow. Windows without events, where the camera stood still, are left out.
 /// `trajectory` spans the events and outlives the windows; `frames` are those of kFrame.
 [[nodiscard]] std::vector<ViewWindow> cut_windows(std::span<const Event> events,
                                                   const Trajectory& trajectory,

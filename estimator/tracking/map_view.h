@@ -14,9 +14,9 @@ namespace saccade {
 
 /// The point of the map that a pixel of a camera sees.
 struct MapSample {
-  Eigen::Vector3f point;  ///< in the map's frame [m]
-  float inverse_depth;    ///< in the camera's frame [1/m]; 0: nothing known is visible
-  Eigen::Vector2f atlas_px;  ///< its reprojection into the map's atlas [px]
+  Eigen::Vector3f point;            ///< in the map's frame [m]
+  float inverse_depth;              ///< in the camera's frame [1/m]; 0: nothing known is visible
+  Eigen::Vector2f atlas_px;         ///< its reprojection into the map's atlas [px]
   Eigen::Matrix2f atlas_per_pixel;  ///< d atlas_px / d pixel
 };
 
@@ -24,8 +24,8 @@ struct MapSample {
 /// test. Between neighbours that are not joined nothing is known.
 class MapView {
  public:
-  /// `map` outlives the view. The view has a node at every `spacing_px`-th pixel, of the image as of
-  /// the map's pictures, and `margin` nodes more on all sides.
+  /// `map` outlives the view. The view has a node at every `spacing_px`-th pixel, of the image as
+  /// of the map's pictures, and `margin` nodes more on all sides.
   MapView(const IntensityMap& map, int margin, int spacing_px = 1);
 
   void draw(const Rigid3& map_from_camera);

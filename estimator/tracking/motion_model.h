@@ -20,7 +20,7 @@ struct MotionModelOptions {
   double acceleration_sigma_px = 500;
   /// The same per image speed [1/s], added: what moves fast is about to turn back.
   double acceleration_per_speed = 0;
-  double gyro_sigma = 0.05;                              ///< of a reading, its bias included [rad/s]
+  double gyro_sigma = 0.05;                             ///< of a reading, its bias included [rad/s]
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< sensor frame [rad/s]
   double gyro_offset_s = 0;
 };

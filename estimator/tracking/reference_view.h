@@ -29,9 +29,9 @@ struct ReferenceView {
 
 /// Loads the reference frame, as `camera` with its lens took it, with its depth and its true pose
 /// (identity where the dataset has no ground truth: the reference view is the world then), and with
-/// `new_view_deg` the later frames that the map needs. `start_s` chooses the first frame by default,
-/// `end_s` is the end of what is tracked. Throws InputError naming the dataset when a frame, a
-/// depth map at its time, or a pose is missing.
+/// `new_view_deg` the later frames that the map needs. `start_s` chooses the first frame by
+/// default, `end_s` is the end of what is tracked. Throws InputError naming the dataset when a
+/// frame, a depth map at its time, or a pose is missing.
 [[nodiscard]] std::vector<ReferenceView> load_references(const Dataset& dataset,
                                                          const PinholeCamera& camera,
                                                          const ReferenceOptions& options,

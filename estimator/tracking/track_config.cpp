@@ -17,14 +17,16 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
                "Left, top, right and bottom pixel of the part of the reference frame that becomes "
                "the map; ~ takes all of it.");
   fields
-      .value("new_view_deg", options.new_view_deg,
-             "Rotation in degrees from all views of the map at which a further frame joins it; ~ "
-             "keeps one view. A smaller one covers more and costs memory; it needs the ground truth.")
+      .value(
+          "new_view_deg", options.new_view_deg,
+          "Rotation in degrees from all views of the map at which a further frame joins it; ~ "
+          "keeps one view. A smaller one covers more and costs memory; it needs the ground truth.")
       .range(1, 180);
   fields
-      .value("time_offset_s", options.time_offset_s,
-             "True time of the reference frame minus its time stamp, in seconds, as of the exposure "
-             "or the readout.")
+      .value(
+          "time_offset_s", options.time_offset_s,
+          "True time of the reference frame minus its time stamp, in seconds, as of the exposure "
+          "or the readout.")
       .range(-1, 1);
 }
 
@@ -45,9 +47,10 @@ void describe(config::Fields& fields, MapOptions& options) {
              "larger one keeps fewer, stronger edges.")
       .range(0, 1);
   fields
-      .value("max_fraction", options.max_fraction,
-             "Largest fraction of the pixels that become map points, the steepest ones; 1 keeps all. "
-             "A map that fills the view leaves no contrast between edge and surface.")
+      .value(
+          "max_fraction", options.max_fraction,
+          "Largest fraction of the pixels that become map points, the steepest ones; 1 keeps all. "
+          "A map that fills the view leaves no contrast between edge and surface.")
       .above(0)
       .at_most(1);
 }
@@ -59,19 +62,22 @@ void describe(config::Fields& fields, IntensityOptions& options) {
              "them cost less time per second of recording and follow the motion more coarsely.")
       .range(1, 1e6);
   fields
-      .value("no_event_ratio", options.no_event_ratio,
-             "No-event constraints per aligned event: pixels between their events, which are within "
-             "a threshold of their last value. 0 disables them, which helps in dark scenes.")
+      .value(
+          "no_event_ratio", options.no_event_ratio,
+          "No-event constraints per aligned event: pixels between their events, which are within "
+          "a threshold of their last value. 0 disables them, which helps in dark scenes.")
       .range(0, 1000);
   fields
-      .value("correction_fraction", options.correction_fraction,
-             "Least fraction of its residual by which a pixel is corrected at each of its events. A "
-             "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
+      .value(
+          "correction_fraction", options.correction_fraction,
+          "Least fraction of its residual by which a pixel is corrected at each of its events. A "
+          "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
       .range(0, 1);
   fields
-      .value("map_blur_px", options.map.blur_px,
-             "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
-             "0 disables it.")
+      .value(
+          "map_blur_px", options.map.blur_px,
+          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
+          "0 disables it.")
       .range(0, 10);
 }
 
@@ -90,7 +96,8 @@ void describe(config::Fields& fields, TrackConfig& config) {
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "Reference views that the map is made from.");
-  fields.section("map", config.map, "Pixels of a reference view that become map points (section 4.4 of the thesis).");
+  fields.section("map", config.map,
+                 "Pixels of a reference view that become map points (section 4.4 of the thesis).");
   fields.value("initial_pose", config.initial_pose,
                "Pose at the start, world from camera, as tx ty tz qx qy qz qw; ~ takes the ground "
                "truth.");

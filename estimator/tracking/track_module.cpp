@@ -168,7 +168,8 @@ RunSummary run_track(const RunRequest& request) {
     write_poses(writer.path(), poses);
     write_map(writer.path() / "map.ply", world.edges, world.map.world_from_map());
   }
-  writer.finish("track", request, dataset, input.window, config.seed, config::print(config), timing);
+  writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
+                timing);
 
   const std::size_t lost = count_lost(poses);
   RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));

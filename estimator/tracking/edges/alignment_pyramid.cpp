@@ -22,13 +22,11 @@ PinholeCamera halved(const PinholeCamera& camera) {
 }  // namespace
 
 AlignmentPyramid::Level::Level(const TemplateOptions& templates, const AlignOptions& align,
-                           const PinholeCamera& camera)
-    : drawer(camera, templates),
-      aligner(align, camera),
-      frame(camera) {}
+                               const PinholeCamera& camera)
+    : drawer(camera, templates), aligner(align, camera), frame(camera) {}
 
 AlignmentPyramid::AlignmentPyramid(const TemplateOptions& templates, const AlignOptions& align,
-                           const PinholeCamera& camera) {
+                                   const PinholeCamera& camera) {
   TemplateOptions options = templates;
   PinholeCamera half = camera;
   for (int level = 1; level < align.pyramid_levels; ++level) {
@@ -48,8 +46,8 @@ void AlignmentPyramid::set_template(const TemplateDrawer& full) {
 }
 
 std::optional<Rigid3> AlignmentPyramid::approach(const EventFrame& full, const Rigid3& prediction,
-                                             const Matrix6& precision, std::uint64_t seed,
-                                             std::uint64_t draw) {
+                                                 const Matrix6& precision, std::uint64_t seed,
+                                                 std::uint64_t draw) {
   if (levels_.empty()) return std::nullopt;
   const EventFrame* finer = &full;
   for (Level& level : levels_) {

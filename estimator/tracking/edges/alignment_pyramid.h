@@ -17,10 +17,10 @@ namespace saccade {
 /// outcome is the first guess of the alignment at full resolution.
 class AlignmentPyramid {
  public:
-  /// `camera` is undistorted and of full resolution; `align.pyramid_levels` counts it, so that 1 makes no
-  /// level here. A level below 16 px is left out.
+  /// `camera` is undistorted and of full resolution; `align.pyramid_levels` counts it, so that 1
+  /// makes no level here. A level below 16 px is left out.
   AlignmentPyramid(const TemplateOptions& templates, const AlignOptions& align,
-               const PinholeCamera& camera);
+                   const PinholeCamera& camera);
 
   /// Takes over the last draw of the full template.
   void set_template(const TemplateDrawer& full);

@@ -16,7 +16,9 @@ class EdgeFallback {
   explicit EdgeFallback(EdgeTracker edges) : edges_(std::move(edges)) {}
 
   /// From a known pose.
-  void reset(TimeNs t_ns, const Rigid3& world_from_camera) { edges_.reset(t_ns, world_from_camera); }
+  void reset(TimeNs t_ns, const Rigid3& world_from_camera) {
+    edges_.reset(t_ns, world_from_camera);
+  }
   /// From a pose that is right within some pixels.
   void reset_near(TimeNs t_ns, const Rigid3& world_from_camera) {
     constexpr double kSigma_px = 4;

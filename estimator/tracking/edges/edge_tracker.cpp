@@ -219,14 +219,16 @@ TrackStatus EdgeTracker::judge(const AlignResult& aligned) {
 void EdgeTracker::compare_to_mean_agreement(const AlignResult& aligned) {
   constexpr double kInconsistent = 0.25, kLearningRate = 0.05;
   last_agreement_ = aligned.status == AlignStatus::kOk ? agreement(aligned) : 0;
-  inconsistent_frames_ = last_agreement_ < kInconsistent * mean_agreement_ ? inconsistent_frames_ + 1 : 0;
-  mean_agreement_ = mean_agreement_ == 0 ? last_agreement_
-                                           : std::lerp(mean_agreement_, last_agreement_, kLearningRate);
+  inconsistent_frames_ =
+      last_agreement_ < kInconsistent * mean_agreement_ ? inconsistent_frames_ + 1 : 0;
+  mean_agreement_ = mean_agreement_ == 0
+                        ? last_agreement_
+                        : std::lerp(mean_agreement_, last_agreement_, kLearningRate);
 }
 
 std::optional<TrackedPose> EdgeTracker::relocate(std::span<const Rigid3> world_from_camera) {
-  // Error of a candidate, the fraction of the mean agreement that it must reach, and how much better
-  // than at the last frame it must be.
+  // Error of a candidate, the fraction of the mean agreement that it must reach, and how much
+  // better than at the last frame it must be.
   constexpr double kCandidateSigma_px = 6;
   constexpr double kMeanFraction = 0.5, kGain = 2;
   const MotionModel before = motion_;

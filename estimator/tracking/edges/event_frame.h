@@ -26,8 +26,8 @@ struct EventFrameOptions {
   double new_fraction = 0.25;  ///< of the events of a sliding frame, (0, 1]: four times the poses
 };
 
-/// The image I of the tracker (thesis section 4.6): full where an event fell, on the undistorted sensor.
-/// Drawing and clearing cost O(events). One byte per pixel keeps a 240 x 180 frame in the
+/// The image I of the tracker (thesis section 4.6): full where an event fell, on the undistorted
+/// sensor. Drawing and clearing cost O(events). One byte per pixel keeps a 240 x 180 frame in the
 /// first-level cache, where both the drawing and the sampling of the aligner go to random places.
 class EventFrame {
  public:

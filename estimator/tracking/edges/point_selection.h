@@ -13,7 +13,7 @@ namespace saccade {
 struct SelectionOptions {
   enum class Kind { kRandom, kDense, kSemiDense, kSparsePatches };
 
-  Kind kind = Kind::kRandom;     ///< random points are drawn afresh per iteration, others fixed
+  Kind kind = Kind::kRandom;       ///< random points are drawn afresh per iteration, others fixed
   double steepest_fraction = 0.5;  ///< of kSemiDense: the points with the steepest gradients
   int cell_px = 20;  ///< of kSparsePatches: one patch per cell, some 100 on a 240 x 180 sensor
   int patch_px = 8;  ///< of kSparsePatches: its size, around the cell's steepest point

@@ -167,8 +167,7 @@ bool TemplateAligner::factor(Matrix normal, State& state) const {
 }
 
 bool TemplateAligner::step(const Means& means, double step_length, State& state) const {
-  if (options_.sampled_hessian && !factor(means.normal, state))
-    return false;
+  if (options_.sampled_hessian && !factor(means.normal, state)) return false;
   Vector rhs = means.rhs;
   rhs.head<6>() -= state.step_gain * (state.prior * state.error);
   if (!options_.solve_brightness) rhs.tail<2>().setZero();

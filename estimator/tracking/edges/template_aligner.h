@@ -79,10 +79,10 @@ class TemplateAligner {
   /// `points` must outlive the following calls of align().
   void set_template(std::span<const TemplatePoint> points);
 
-  /// `frame`: of the camera's size. `prediction` is the first guess, towards which its
-  /// inverse covariance `precision` pulls; `brightness` the first guess of the frame's brightness, whose gain also scales the
-  /// steps. `draw` names the alignment (the index of the frame): the samples depend on it and on
-  /// `seed`. `first_guess` is where to start when that is not the prediction.
+  /// `frame`: of the camera's size. `prediction` is the first guess, towards which its inverse
+  /// covariance `precision` pulls; `brightness` the first guess of the frame's brightness, whose
+  /// gain also scales the steps. `draw` names the alignment (the index of the frame): the samples
+  /// depend on it and on `seed`. `first_guess` is where to start when that is not the prediction.
   [[nodiscard]] AlignResult align(const EventFrame& frame, const Rigid3& prediction,
                                   const Matrix6& precision, const BrightnessModel& brightness,
                                   std::uint64_t seed, std::uint64_t draw,

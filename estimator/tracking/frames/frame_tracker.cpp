@@ -98,7 +98,8 @@ auto FrameTracker::align(const GreyFrame& frame, const PosePrediction& predicted
 int FrameTracker::coarsest_level() const {
   constexpr int kLeastPixels = 6;
   int level = kPyramidLevels - 1;
-  while (level > 0 && (std::min(rendered_.width(), rendered_.height()) >> level) < kLeastPixels) --level;
+  while (level > 0 && (std::min(rendered_.width(), rendered_.height()) >> level) < kLeastPixels)
+    --level;
   return level;
 }
 
@@ -110,7 +111,8 @@ void FrameTracker::draw(const Rigid3& map_from_camera) {
       const MapSample& at = view_(x, y);
       const bool is_visible =
           at.inverse_depth > 0 && is_inside(map_.atlas(), at.atlas_px.x(), at.atlas_px.y());
-      rendered_(x, y) = is_visible ? sample(map_.atlas(), at.atlas_px.x(), at.atlas_px.y()) : kUnknownLogIntensity;
+      rendered_(x, y) = is_visible ? sample(map_.atlas(), at.atlas_px.x(), at.atlas_px.y())
+                                   : kUnknownLogIntensity;
     }
 }
 

@@ -37,7 +37,8 @@ void EventResidualBatch::add(const LogIntensityObservation& event, const MapSamp
   scale_yy_[i] = at.atlas_per_pixel(1, 1);
 }
 
-void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion) {
+void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atlas,
+                                  const Motion& motion) {
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
@@ -69,7 +70,7 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atl
     const float u = atlas_x_[i] + scale_xx_[i] * ex + scale_xy_[i] * ey;
     const float z = atlas_y_[i] + scale_yx_[i] * ex + scale_yy_[i] * ey;
     const bool is_visible = (pz > 0) & (std::abs(ex) < kReach_px) & (std::abs(ey) < kReach_px) &
-                         (u >= 0) & (z >= 0) & (u < right) & (z < bottom);
+                            (u >= 0) & (z >= 0) & (u < right) & (z < bottom);
     visible_[i] = is_visible ? 1.0F : 0.0F;
     const float safe_u = is_visible ? u : 0;
     const float safe_v = is_visible ? z : 0;

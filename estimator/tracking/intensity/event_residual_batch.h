@@ -20,7 +20,7 @@ struct LogIntensityObservation {
   Eigen::Vector2f pixel;  ///< undistorted [px]
   float time_s;           ///< after the instant of the pose that is sought
   float log_intensity;
-  float confidence;       ///< weight, 0..1
+  float confidence;  ///< weight, 0..1
 };
 
 /// Up to kCapacity events in an iteration of the intensity tracker, structure of
@@ -43,7 +43,8 @@ class EventResidualBatch {
   };
 
   /// Residuals r = l - L(a) of the observed log intensity l from the map's at the reprojection a,
-  ///   a = atlas_px + atlas_per_pixel (pixel - pi(p)),   p = p_c - t (v + w x p_c),   p_c = R P + t_c
+  ///   a = atlas_px + atlas_per_pixel (pixel - pi(p)),
+  ///   p = p_c - t (v + w x p_c),   p_c = R P + t_c
   /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
   /// map's slope in the image:
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
@@ -51,8 +52,9 @@ class EventResidualBatch {
   void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
 
   /// Weights confidence (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
-  /// sigma^2 = n^2 + (s |grad L|)^2, n = `sigma` [log units] and s = `position_sigma_px` of a map of
-  /// point samples: at most 1, where the map is flat; 0 where it is not visible.
+  ///   sigma^2 = n^2 + (s |grad L|)^2,
+  /// n = `sigma` [log units] and s = `position_sigma_px` of a map of point samples: at most 1, where
+  /// the map is flat; 0 where it is not visible.
   void weigh(float sigma, float position_sigma_px);
 
   struct Sums : PoseEquations {

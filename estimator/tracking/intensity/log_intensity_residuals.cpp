@@ -46,8 +46,9 @@ float no_event_weight(const EventContrast& contrast) {
 
 }  // namespace
 
-LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options, const EventContrast& contrast,
-                                     const PinholeCamera& camera, const IntensityMap& map)
+LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
+                                             const EventContrast& contrast,
+                                             const PinholeCamera& camera, const IntensityMap& map)
     : options_(options),
       camera_(camera.undistorted()),
       undistortion_(camera),
@@ -90,7 +91,7 @@ void LogIntensityResiduals::read_pixels_from_map(float corrections) {
 }
 
 void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns,
-                             const EventResidualBatch::Motion& motion) {
+                                 const EventResidualBatch::Motion& motion) {
   batch_count_ = 0;
   loaded_pixels_.clear();
   const auto samples = static_cast<std::size_t>(options_.samples);
@@ -120,7 +121,8 @@ void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns,
   }
 }
 
-void LogIntensityResiduals::load_no_event_constraints(std::size_t count, const EventResidualBatch::Motion& motion) {
+void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
+                                                      const EventResidualBatch::Motion& motion) {
   // Every n-th of the steep pixels, others each time.
   const std::size_t every = std::max<std::size_t>(1, steep_pixels_.size() / count);
   constexpr std::size_t kNext = 7919;
@@ -160,7 +162,7 @@ void LogIntensityResiduals::list_steep_pixels() {
 }
 
 void LogIntensityResiduals::add(const LogIntensityObservation& observation, const MapSample& at,
-                            std::uint32_t pixel) {
+                                std::uint32_t pixel) {
   loaded_pixels_.push_back(pixel);
   if (batch_count_ == 0 || batches_[batch_count_ - 1].size() == EventResidualBatch::kCapacity) {
     if (batch_count_ == batches_.size()) batches_.emplace_back();

@@ -8,18 +8,18 @@
 #include "core/camera.h"
 #include "core/event.h"
 #include "estimator/tracking/intensity/event_residual_batch.h"
-#include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/intensity/intensity_options.h"
-#include "estimator/tracking/map_view.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
+#include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/map_view.h"
 
 namespace saccade {
 
 /// The residuals of the intensity tracker. Two kinds of observations say what log intensity a pixel
 /// sees: each event, at its instant, and beside them no-event constraints of pixels between their
-/// events, which are known to within a threshold C: l + p C/2 with p the polarity of the last event,
-/// with the uniform standard deviation C / sqrt(12) around it. Holds the pixels' state and the view
-/// of the map.
+/// events, which are known to within a threshold C: l + p C/2 with p the polarity of the last
+/// event, with the uniform standard deviation C / sqrt(12) around it. Holds the pixels' state and
+/// the view of the map.
 class LogIntensityResiduals {
  public:
   /// sigma of an observation [log units]: texture between the map's point samples, noise.

@@ -14,8 +14,10 @@ namespace saccade {
 /// first times fully, then ever less, down to a constant fraction (a running mean that forgets).
 class PixelLogIntensity {
  public:
-  /// Thresholds of an ON and an OFF event [log units], and the least fraction of a correction, 0..1.
-  PixelLogIntensity(int width, int height, double contrast_on, double contrast_off, double correction)
+  /// Thresholds of an ON and an OFF event [log units], and the least fraction of a correction,
+  /// 0..1.
+  PixelLogIntensity(int width, int height, double contrast_on, double contrast_off,
+                    double correction)
       : width_(width),
         on_(static_cast<float>(contrast_on)),
         off_(static_cast<float>(contrast_off)),
@@ -44,8 +46,8 @@ class PixelLogIntensity {
 
   /// At the pixel's last event.
   [[nodiscard]] float at_last_event(std::size_t i) const { return pixels_[i].log_intensity; }
-  /// Between its events a pixel is within a threshold of its last value, and most likely half of one
-  /// further in the direction of its last event.
+  /// Between its events a pixel is within a threshold of its last value, and most likely half of
+  /// one further in the direction of its last event.
   [[nodiscard]] float between_events(std::size_t i) const {
     return pixels_[i].log_intensity + pixels_[i].half_threshold;
   }

@@ -7,14 +7,14 @@
 #include "core/camera.h"
 #include "core/event.h"
 #include "core/image.h"
-#include "estimator/tracking/map_view.h"
 #include "estimator/tracking/image_motion.h"
+#include "estimator/tracking/map_view.h"
 
 namespace saccade {
 
 /// Brightness increment image: by how much the log intensity of every pixel changed while some
-/// events happened, in thresholds: the sum of their polarities, drawn bilinearly on the undistorted sensor where the camera's
-/// motion takes each of them until the frame's time.
+/// events happened, in thresholds: the sum of their polarities, drawn bilinearly on the undistorted
+/// sensor where the camera's motion takes each of them until the frame's time.
 ///
 /// With `reversals` an event of the other polarity than its pixel's last one counts twice. The
 /// signal stands anywhere within a threshold ahead of the last event, half of one in the mean, and

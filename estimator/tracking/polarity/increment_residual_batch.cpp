@@ -14,9 +14,9 @@ static_assert(IncrementPoints::kSpare >= kLanes);
 }  // namespace
 
 void IncrementResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& frame,
-                              const IncrementPoints& points, std::size_t first,
-                              const Rigid3& current_from_template, double gain,
-                              float sigma, float position_sigma_px) {
+                                      const IncrementPoints& points, std::size_t first,
+                                      const Rigid3& current_from_template, double gain, float sigma,
+                                      float position_sigma_px) {
   SACCADE_CHECK(first < points.count);
   count_ = std::min(points.count - first, kCapacity);
   padded_ = padded_to_lanes(count_);
@@ -42,8 +42,8 @@ void IncrementResidualBatch::evaluate(const PinholeCamera& camera, const ImageF&
 }
 
 void IncrementResidualBatch::warp(const PinholeCamera& camera, const ImageF& frame,
-                           const IncrementPoints& points, std::size_t first,
-                           const Rigid3& current_from_template) {
+                                  const IncrementPoints& points, std::size_t first,
+                                  const Rigid3& current_from_template) {
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
@@ -68,7 +68,7 @@ void IncrementResidualBatch::warp(const PinholeCamera& camera, const ImageF& fra
     const float u = fx * px * inverse + cx;
     const float v = fy * py * inverse + cy;
     const bool is_visible = (pz > 0) & (u >= 0) & (v >= 0) & (u < right) & (v < bottom) &
-                         (static_cast<std::int32_t>(i) < last);
+                            (static_cast<std::int32_t>(i) < last);
     const float safe_u = is_visible ? u : 0;
     const float safe_v = is_visible ? v : 0;
     const int column = static_cast<int>(safe_u);

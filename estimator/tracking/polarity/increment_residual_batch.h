@@ -21,15 +21,16 @@ class IncrementResidualBatch {
  public:
   static constexpr std::size_t kCapacity = 256;
 
-  /// sigma of a pixel's sum of polarities [thresholds], and of its reprojection, as the map consists
-  /// of point samples.
+  /// sigma of a pixel's sum of polarities [thresholds], and of its reprojection, as the map
+  /// consists of point samples.
   static constexpr float kSigma = 0.2F;
   static constexpr float kPositionSigma_px = 0.2F;
 
-  /// Residuals r = E(W(u; current_from_template)) - k M(u) of the points from `first` on, with
-  /// weights (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy), 0 outside of the frame, where
-  /// sigma^2 = n^2 + (s k |grad M|)^2, n = `sigma`, s = `position_sigma_px`. `gain`: k [thresholds /
-  /// (log unit/s)].
+  /// Residuals of the points from `first` on,
+  ///   r = E(W(u; current_from_template)) - k M(u),
+  /// with weights (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy), 0 outside of the frame, where
+  ///   sigma^2 = n^2 + (s k |grad M|)^2,
+  /// n = `sigma` and s = `position_sigma_px`. `gain`: k [thresholds / (log unit/s)].
   void evaluate(const PinholeCamera& camera, const ImageF& frame, const IncrementPoints& points,
                 std::size_t first, const Rigid3& current_from_template, double gain,
                 float sigma = kSigma, float position_sigma_px = kPositionSigma_px);

@@ -28,7 +28,7 @@ void IncrementTemplate::sample_map(const MapView& view, const ImageF& atlas) {
       const bool is_visible =
           at.inverse_depth > 0 && is_inside(atlas, at.atlas_px.x(), at.atlas_px.y());
       picture_(x, y) = is_visible ? sample(atlas, at.atlas_px.x(), at.atlas_px.y())
-                               : std::numeric_limits<float>::quiet_NaN();
+                                  : std::numeric_limits<float>::quiet_NaN();
     }
 }
 

@@ -121,8 +121,8 @@ bool PolarityTracker::track_frame(std::span<const Event> events, Poses& poses) {
   return true;
 }
 
-auto PolarityTracker::compare(const IncrementPoints& points,
-                                              const Rigid3& current_from_template, double gain) -> Sums {
+auto PolarityTracker::compare(const IncrementPoints& points, const Rigid3& current_from_template,
+                              double gain) -> Sums {
   Sums sums;
   for (std::size_t first = 0; first < points.count; first += IncrementResidualBatch::kCapacity) {
     batch_.evaluate(camera_, frame_.image(), points, first, current_from_template, gain);

@@ -77,10 +77,7 @@ void event_frame(benchmark::State& state) {
   }
   items_per_second(state, count);
 }
-BENCHMARK(event_frame)
-    ->Args({2000, 0})
-    ->Args({2000, 1})
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(event_frame)->Args({2000, 0})->Args({2000, 1})->Unit(benchmark::kMicrosecond);
 
 /// One Gauss-Newton step. Arguments: samples, J^T J of the samples (1) or of the template (0).
 void lucas_kanade_iteration(benchmark::State& state) {

@@ -12,9 +12,9 @@
 #include "core/config/config.h"
 #include "core/event.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
-#include "estimator/tracking/edges/edge_tracker.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade::testing {

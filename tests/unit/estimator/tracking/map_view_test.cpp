@@ -66,7 +66,8 @@ TEST(MapView, PointsAndPlacesAreThoseThatThePixelsSee) {
     EXPECT_LT((two_planes_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
     EXPECT_LT((two_planes_camera().project(point) - seen.atlas_px.cast<double>()).norm(), 0.02);
     EXPECT_NEAR(1 / in_camera.z(), static_cast<double>(seen.inverse_depth), 1e-4);
-    EXPECT_NEAR(point.z(), is_near(seen.atlas_px.x(), seen.atlas_px.y(), -0.5) ? kNear_m : kFar_m, 1e-4);
+    EXPECT_NEAR(point.z(), is_near(seen.atlas_px.x(), seen.atlas_px.y(), -0.5) ? kNear_m : kFar_m,
+                1e-4);
   });
   EXPECT_GT(seen_pixels, kWidth * kHeight * 7 / 10);
 }
@@ -159,7 +160,8 @@ TEST(MapView, ScaleIsHowPlacesDifferBetweenNeighbours) {
         return std::abs(other.inverse_depth - seen.inverse_depth) < 0.05F;
       };
       if (!(seen.inverse_depth > 0) || !goes_on(before) || !goes_on(after)) return;
-      EXPECT_LT((seen.atlas_per_pixel.col(column) - (after.place - before.place) / 2).norm(), 0.01F);
+      EXPECT_LT((seen.atlas_per_pixel.col(column) - (after.place - before.place) / 2).norm(),
+                0.01F);
       ++compared;
     };
     difference(1, 0, 0);
@@ -174,8 +176,9 @@ TEST(MapView, AtTheViewOfTheMapEveryPixelSeesItself) {
   for_every_pixel(0, [&](int x, int y) {
     const MapSample& seen = view(x, y);
     if (!(seen.inverse_depth > 0)) return;
-    EXPECT_LT((seen.atlas_px - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y))).norm(),
-              1e-3F);
+    EXPECT_LT(
+        (seen.atlas_px - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y))).norm(),
+        1e-3F);
     EXPECT_LT((seen.atlas_per_pixel - Eigen::Matrix2f::Identity()).norm(), 1e-3F);
   });
   EXPECT_GT(view.coverage(), 0.9);

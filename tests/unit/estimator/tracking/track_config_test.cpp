@@ -83,8 +83,7 @@ TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
 }
 
 TEST(TrackConfig, PrintedPolarityConfigurationMeansTheSame) {
-  const TrackConfig config = parse(
-      "{method: polarity, polarity: {events: 321, reversals: false}}");
+  const TrackConfig config = parse("{method: polarity, polarity: {events: 321, reversals: false}}");
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parse(printed)), printed);
   const TrackConfig again = parse(printed);

@@ -256,8 +256,8 @@ TEST_F(TrackModule, WithoutContrastNamesTheCure) {
 TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {
   // The second frame is turned by 1.7 degrees.
   const auto points = [&](const std::string& name, const std::string& new_view_deg) {
-    static_cast<void>(run_track(
-        request(name, "reference: {frame: 0, planar_depth_m: 1.5, new_view_deg: " + new_view_deg + "}")));
+    static_cast<void>(run_track(request(
+        name, "reference: {frame: 0, planar_depth_m: 1.5, new_view_deg: " + new_view_deg + "}")));
     const PointCloud map = read_ply(folder_.path() / name / "map.ply");
     for (const Eigen::Vector3f& point : map.positions)
       EXPECT_NEAR(point.z(), kDepth_m, 0.02) << "both are taken for planes at this depth";
@@ -352,8 +352,8 @@ TEST_F(TrackModule, AnEmptyMapIsLostTracking) {
 }
 
 TEST_F(TrackModule, TooFewEventsForAFrameStillMakeARun) {
-  RunRequest part = request("run",
-                            "{reference: {planar_depth_m: 1.5}, edges: {event_map_ratio: 100}}");
+  RunRequest part =
+      request("run", "{reference: {planar_depth_m: 1.5}, edges: {event_map_ratio: 100}}");
   const RunSummary summary = run_track(part);
   EXPECT_EQ(summary.poses, 0U);
   EXPECT_TRUE(fs::exists(folder_.path() / "run/run.yaml"));

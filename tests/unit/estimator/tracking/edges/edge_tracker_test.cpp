@@ -271,7 +271,7 @@ TEST(EdgeTracker, ResetStartsAnew) {
 TEST(EdgeTracker, DoesNotDependOnWhereTheWorldBegins) {
   const Rigid3 elsewhere(so3_exp({0.5, -1, 2}), {100, -20, 3});
   EdgeTracker tracker(accurate(), recording().world.camera(), map_points(),
-                  elsewhere * corner_motion(0), 1);
+                      elsewhere * corner_motion(0), 1);
   tracker.reset(0, elsewhere * corner_motion(0));
   const auto moved = tracker.track({recording().events});
   const auto poses = track(accurate());

@@ -74,22 +74,21 @@ TEST(EventFrame, RemoveTakesBackWhatAddDrew) {
   Events events;
   for (int i = 0; i < 600; ++i) events.push_back(at(i * 7 % 64, i * 5 % 48));  // some pixels twice
   for (const double k1 : {0.0, -0.25}) {
-      EventFrame sliding(lens_camera(k1));
-      for (std::size_t begin = 0; begin + 300 <= events.size(); begin += 100) {
-        if (begin > 0) sliding.remove(std::span(events).subspan(begin - 100, 100));
-        sliding.add(
-            std::span(events).subspan(begin == 0 ? 0 : begin + 200, begin == 0 ? 300 : 100));
-        EventFrame drawn(lens_camera(k1));
-        drawn.draw(std::span(events).subspan(begin, 300));
-        for (int y = 0; y < drawn.height(); ++y)
-          for (int x = 0; x < drawn.width(); ++x) ASSERT_EQ(sliding(x, y), drawn(x, y));
-      }
-      sliding.clear();
-      EXPECT_EQ(sum(sliding), 0);
-      sliding.add(std::span(events).first(1));
-      sliding.remove(std::span(events).first(1));
-      EXPECT_EQ(sum(sliding), 0) << "clear() forgets the counts, too";
+    EventFrame sliding(lens_camera(k1));
+    for (std::size_t begin = 0; begin + 300 <= events.size(); begin += 100) {
+      if (begin > 0) sliding.remove(std::span(events).subspan(begin - 100, 100));
+      sliding.add(std::span(events).subspan(begin == 0 ? 0 : begin + 200, begin == 0 ? 300 : 100));
+      EventFrame drawn(lens_camera(k1));
+      drawn.draw(std::span(events).subspan(begin, 300));
+      for (int y = 0; y < drawn.height(); ++y)
+        for (int x = 0; x < drawn.width(); ++x) ASSERT_EQ(sliding(x, y), drawn(x, y));
     }
+    sliding.clear();
+    EXPECT_EQ(sum(sliding), 0);
+    sliding.add(std::span(events).first(1));
+    sliding.remove(std::span(events).first(1));
+    EXPECT_EQ(sum(sliding), 0) << "clear() forgets the counts, too";
+  }
 }
 
 TEST(EventFrame, ASurfaceDecaysWithTheAgeOfTheLastEvent) {

@@ -118,16 +118,16 @@ TEST_P(AlignerFromOffsets, ConvergesInEveryDegreeOfFreedom) {
 
 INSTANTIATE_TEST_SUITE_P(
     Selections, AlignerFromOffsets,
-    ::testing::Values(
-        Setting{"AllSamples", options_with(1'000'000, 30), 0.15},
-        Setting{"Dense", options_with(SelectionOptions::Kind::kDense), 0.15},
-        Setting{"SemiDense", options_with(SelectionOptions::Kind::kSemiDense), 0.2},
-        Setting{"SparsePatches", options_with(SelectionOptions::Kind::kSparsePatches), 0.3},
-        Setting{"Accurate", options_with(500, 30), 0.25},
-        Setting{"AccurateSampledHessian", options_with(500, 30, true), 0.25},
-        Setting{"Huber", options_with(RobustLoss::kHuber, false), 0.25},
-        Setting{"TukeySampledHessian", options_with(RobustLoss::kTukey, true), 0.25},
-        Setting{"Sparse", options_with(100, 30), 0.5}),
+    ::testing::Values(Setting{"AllSamples", options_with(1'000'000, 30), 0.15},
+                      Setting{"Dense", options_with(SelectionOptions::Kind::kDense), 0.15},
+                      Setting{"SemiDense", options_with(SelectionOptions::Kind::kSemiDense), 0.2},
+                      Setting{"SparsePatches", options_with(SelectionOptions::Kind::kSparsePatches),
+                              0.3},
+                      Setting{"Accurate", options_with(500, 30), 0.25},
+                      Setting{"AccurateSampledHessian", options_with(500, 30, true), 0.25},
+                      Setting{"Huber", options_with(RobustLoss::kHuber, false), 0.25},
+                      Setting{"TukeySampledHessian", options_with(RobustLoss::kTukey, true), 0.25},
+                      Setting{"Sparse", options_with(100, 30), 0.5}),
     [](const auto& test) { return test.param.name; });
 
 TEST(TemplateAligner, RecoversATrueMotion) {

@@ -51,14 +51,14 @@ Sight sight(const Eigen::Vector2d& pixel, double depth_m, float level, float tim
   sight.seen.point = point.cast<float>();
   sight.seen.inverse_depth = static_cast<float>(1 / depth_m);
   sight.seen.atlas_px = {std::floor(static_cast<float>(pixel.x())) + 0.5F,
-                      std::floor(static_cast<float>(pixel.y())) + 0.5F};
+                         std::floor(static_cast<float>(pixel.y())) + 0.5F};
   sight.seen.atlas_per_pixel << 0.9F, 0.1F, -0.2F, 1.1F;
   return sight;
 }
 
 EventResidualBatch::Sums sums_of(EventResidualBatch& batch, float sigma, const ImageF& atlas,
-                         const Rigid3& pose = some_pose(),
-                         const Vector6& velocity = Vector6::Zero()) {
+                                 const Rigid3& pose = some_pose(),
+                                 const Vector6& velocity = Vector6::Zero()) {
   batch.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
   batch.weigh(sigma, 0);
   EventResidualBatch::Sums sums;
@@ -118,7 +118,8 @@ TEST(EventResidualBatch, JacobianHoldsBeforeAndAfterTheInstantOfThePose) {
 TEST(EventResidualBatch, ResidualIsTheLevelAboveTheMapWhereTheEventLooks) {
   const ImageF atlas = some_atlas();
   const Sight here = sight({20, 30}, 2, -0.4F);
-  const double shown = static_cast<double>(sample(atlas, here.seen.atlas_px.x(), here.seen.atlas_px.y()));
+  const double shown =
+      static_cast<double>(sample(atlas, here.seen.atlas_px.x(), here.seen.atlas_px.y()));
   EXPECT_NEAR(residual_of(here, some_pose(), Vector6::Zero(), atlas), -0.4 - shown, 1e-4);
 }
 
@@ -177,7 +178,8 @@ TEST(EventResidualBatch, SteepPlacesWeighLess) {
   EXPECT_NEAR(sums.normal(0, 0) / (weight * row_squared), 1, 1e-3);
 }
 
-void expect_nothing(EventResidualBatch& batch, const ImageF& atlas, const Rigid3& pose = some_pose()) {
+void expect_nothing(EventResidualBatch& batch, const ImageF& atlas,
+                    const Rigid3& pose = some_pose()) {
   const EventResidualBatch::Sums sums = sums_of(batch, kEventSigma, atlas, pose);
   EXPECT_TRUE(std::isnan(batch.residual(0)));
   EXPECT_EQ(sums.rhs, Vector6(Vector6::Zero()));

@@ -31,7 +31,8 @@ class IntensityTracking {
                              const ReferenceView& view = resolved_recording().view)
       : map_(resolved_recording().world.camera(), std::span(&view, 1), config.intensity.map),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
-        edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(), config.seed),
+        edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(),
+               config.seed),
         tracker_(config.intensity, config.motion, {contrast, contrast}, map_.camera(), map_,
                  edges_) {
     tracker_.reset(0, view.world_from_reference);

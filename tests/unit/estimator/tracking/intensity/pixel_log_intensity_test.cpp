@@ -30,7 +30,8 @@ TEST(PixelLogIntensity, EventsStepByTheThresholdOfTheirPolarity) {
 TEST(PixelLogIntensity, BetweenEventsAPixelIsHalfwayToTheNextOfItsKind) {
   PixelLogIntensity pixels = some_pixels();
   pixels.set(kPixel, -1, 3);
-  EXPECT_EQ(pixels.between_events(kPixel), -1) << "before the first event nothing says where it goes";
+  EXPECT_EQ(pixels.between_events(kPixel), -1)
+      << "before the first event nothing says where it goes";
   pixels.add_event(kPixel, 1);
   EXPECT_FLOAT_EQ(pixels.between_events(kPixel), pixels.at_last_event(kPixel) + kOn / 2);
   pixels.add_event(kPixel, -1);

@@ -62,9 +62,9 @@ ImageF frame_of(double excess = 0) {
 }
 
 IncrementResidualBatch::Sums sums_of(const IncrementPoints& points, const ImageF& frame,
-                             const Rigid3& current_from_template, double gain = kGain,
-                             float sigma = kIncrementSigma,
-                             float position_sigma_px = 0.2F) {
+                                     const Rigid3& current_from_template, double gain = kGain,
+                                     float sigma = kIncrementSigma,
+                                     float position_sigma_px = 0.2F) {
   IncrementResidualBatch batch;
   IncrementResidualBatch::Sums sums;
   for (std::size_t first = 0; first < points.count; first += IncrementResidualBatch::kCapacity) {
@@ -119,11 +119,13 @@ TEST(IncrementResidualBatch, WeightsAreCauchysWithinWhatIsExpected) {
 
 TEST(IncrementResidualBatch, PointsOutsideOfTheFrameWeighNothing) {
   const IncrementPoints points = some_points(100);
-  const IncrementResidualBatch::Sums behind = sums_of(points, frame_of(), Rigid3({1, 0, 0, 0}, {0, 0, -5}));
+  const IncrementResidualBatch::Sums behind =
+      sums_of(points, frame_of(), Rigid3({1, 0, 0, 0}, {0, 0, -5}));
   EXPECT_EQ(behind.visible, 0);
   EXPECT_EQ(behind.weight, 0);
   EXPECT_EQ(behind.normal, Matrix7(Matrix7::Zero()));
-  const IncrementResidualBatch::Sums beside = sums_of(points, frame_of(), Rigid3({1, 0, 0, 0}, {1, 0, 0}));
+  const IncrementResidualBatch::Sums beside =
+      sums_of(points, frame_of(), Rigid3({1, 0, 0, 0}, {1, 0, 0}));
   EXPECT_GT(beside.visible, 0);
   EXPECT_LT(beside.visible, 80);
 }

@@ -28,7 +28,8 @@ class PolarityTracking {
                             const ReferenceView& view = resolved_recording().view)
       : map_(resolved_recording().world.camera(), std::span(&view, 1), smoothing_of(config)),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
-        edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(), config.seed),
+        edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(),
+               config.seed),
         tracker_(config.polarity, config.motion, map_.camera(), map_, edges_) {
     tracker_.reset(0, view.world_from_reference);
   }
