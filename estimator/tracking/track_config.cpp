@@ -13,9 +13,12 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
              "Depth in metres of a plane parallel to the reference view that is the map; ~ reads "
              "the depth map. A wrong depth scales the translation.")
       .above(0);
-  fields.value("region_px", options.region_px,
-               "Left, top, right and bottom pixel of the part of the reference frame that becomes "
-               "the map; ~ takes all of it.");
+  fields
+      .value(
+          "region_px", options.region_px,
+          "Left, top, right and bottom pixel of the part of the reference frame that becomes the "
+          "map; ~ takes all of it.")
+      .at_least(0);
   fields
       .value(
           "new_view_deg", options.new_view_deg,
@@ -53,32 +56,6 @@ void describe(config::Fields& fields, MapOptions& options) {
           "A map that fills the view leaves no contrast between edge and surface.")
       .above(0)
       .at_most(1);
-}
-
-void describe(config::Fields& fields, IntensityOptions& options) {
-  fields
-      .value("events", options.events,
-             "Events per pose; ~ takes 1000, times (width / 240 px)^1.5 on a wider sensor. More of "
-             "them cost less time per second of recording and follow the motion more coarsely.")
-      .range(1, 1e6);
-  fields
-      .value(
-          "no_event_ratio", options.no_event_ratio,
-          "No-event constraints per aligned event: pixels between their events, which are within "
-          "a threshold of their last value. 0 disables them, which helps in dark scenes.")
-      .range(0, 1000);
-  fields
-      .value(
-          "correction_fraction", options.correction_fraction,
-          "Least fraction of its residual by which a pixel is corrected at each of its events. A "
-          "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
-      .range(0, 1);
-  fields
-      .value(
-          "map_blur_px", options.map.blur_px,
-          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
-          "0 disables it.")
-      .range(0, 10);
 }
 
 void describe(config::Fields& fields, TrackConfig& config) {

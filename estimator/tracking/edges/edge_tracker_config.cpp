@@ -41,9 +41,11 @@ void describe_gyroscope(config::Fields& fields, MotionModelOptions& options) {
              "Standard deviation of a reading of the gyroscope, its bias included, in rad/s. A "
              "smaller one trusts the gyroscope more.")
       .range(1e-6, 10);
-  fields.value("gyro_bias", options.gyro_bias,
-               "Known bias in rad/s, in the frame of the sensor, which is subtracted from every "
-               "reading.");
+  fields
+      .value("gyro_bias", options.gyro_bias,
+             "Known bias in rad/s, in the frame of the sensor, which is subtracted from every "
+             "reading.")
+      .range(-10, 10);
   fields
       .value("gyro_offset_s", options.gyro_offset_s,
              "True time of a reading of the gyroscope minus its time stamp, in seconds.")

@@ -27,6 +27,32 @@ constexpr double kSilence_px = 2;
 
 }  // namespace
 
+void describe(config::Fields& fields, IntensityOptions& options) {
+  fields
+      .value("events", options.events,
+             "Events per pose; ~ takes 1000, times (width / 240 px)^1.5 on a wider sensor. More of "
+             "them cost less time per second of recording and follow the motion more coarsely.")
+      .range(1, 1e6);
+  fields
+      .value(
+          "no_event_ratio", options.no_event_ratio,
+          "No-event constraints per aligned event: pixels between their events, which are within "
+          "a threshold of their last value. 0 disables them, which helps in dark scenes.")
+      .range(0, 1000);
+  fields
+      .value(
+          "correction_fraction", options.correction_fraction,
+          "Least fraction of its residual by which a pixel is corrected at each of its events. A "
+          "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
+      .range(0, 1);
+  fields
+      .value(
+          "map_blur_px", options.map.blur_px,
+          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
+          "0 disables it.")
+      .range(0, 10);
+}
+
 IntensityTracker::IntensityTracker(const IntensityOptions& options,
                                    const MotionModelOptions& motion, const EventContrast& contrast,
                                    const PinholeCamera& camera, const IntensityMap& map,
