@@ -112,8 +112,8 @@ TEST(MapView, ACoarseViewSeesAtItsNodesWhatAFineOneSees) {
         ++seen_nodes;
         EXPECT_NEAR(node.inverse_depth, pixel.inverse_depth, 1e-5) << x << " " << y;
         EXPECT_LT((node.point - pixel.point).norm(), 1e-3) << x << " " << y;
-        EXPECT_LT((node.place - pixel.place).norm(), 5e-3) << x << " " << y;
-        EXPECT_LT((node.scale - pixel.scale).norm(), 5e-3) << x << " " << y;
+        EXPECT_LT((node.atlas_px - pixel.atlas_px).norm(), 5e-3) << x << " " << y;
+        EXPECT_LT((node.atlas_per_pixel - pixel.atlas_per_pixel).norm(), 5e-3) << x << " " << y;
       }
     EXPECT_GT(seen_nodes, kWidth * kHeight / (step * step) / 2);
   }
@@ -160,7 +160,7 @@ TEST(MapView, ScaleIsHowPlacesDifferBetweenNeighbours) {
         return std::abs(other.inverse_depth - seen.inverse_depth) < 0.05F;
       };
       if (!(seen.inverse_depth > 0) || !goes_on(before) || !goes_on(after)) return;
-      EXPECT_LT((seen.atlas_per_pixel.col(column) - (after.place - before.place) / 2).norm(),
+      EXPECT_LT((seen.atlas_per_pixel.col(column) - (after.atlas_px - before.atlas_px) / 2).norm(),
                 0.01F);
       ++compared;
     };
@@ -222,7 +222,7 @@ TEST(MapView, DrawingAgainForgetsTheLastView) {
   for_every_pixel(kMargin, [&](int x, int y) {
     EXPECT_EQ(view(x, y).inverse_depth, fresh(x, y).inverse_depth);
     if (fresh(x, y).inverse_depth > 0) {
-      EXPECT_EQ(view(x, y).place, fresh(x, y).place);
+      EXPECT_EQ(view(x, y).atlas_px, fresh(x, y).atlas_px);
     }
   });
 }

@@ -58,9 +58,10 @@ Sight sight(const Eigen::Vector2d& pixel, double depth_m, float level, float tim
 
 EventResidualBatch::Sums sums_of(EventResidualBatch& batch, float sigma, const ImageF& atlas,
                                  const Rigid3& pose = some_pose(),
-                                 const Vector6& velocity = Vector6::Zero()) {
+                                 const Vector6& velocity = Vector6::Zero(),
+                                 float position_sigma_px = 0) {
   batch.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
-  batch.weigh(sigma, 0);
+  batch.weigh(sigma, position_sigma_px);
   EventResidualBatch::Sums sums;
   batch.add_to(sums);
   return sums;
@@ -158,7 +159,7 @@ TEST(EventResidualBatch, WeightsAreCauchysTimesTrust) {
     }
 }
 
-TEST(EventResidualBatch, SteepPlacesWeighLess) {
+TEST(EventResidualBatch, SteepPixelsWeighLess) {
   // L = 0.3 x: the slope in the image is 0.3 times the first row of the scale.
   ImageF atlas(64, 48);
   for (int y = 0; y < 48; ++y)
@@ -166,14 +167,14 @@ TEST(EventResidualBatch, SteepPlacesWeighLess) {
   const Sight here = sight({20, 30}, 2, 6.2F);
   EventResidualBatch batch;
   batch.add(here.event, here.seen);
-  const Matrix6 plain = sums_of(batch, {0.05F, 0}, atlas).normal;
+  const Matrix6 plain = sums_of(batch, 0.05F, atlas).normal;
   const double r = static_cast<double>(batch.residual(0));
   const double plain_x = r / (2.4 * 0.05);
   const double row_squared = plain(0, 0) * (1 + plain_x * plain_x) / 0.8;
   const double slope_squared = 0.09 * (0.9 * 0.9 + 0.1 * 0.1);
   const double precision = 1 / (0.05 * 0.05 + 0.3 * 0.3 * slope_squared);
   const double x = r * std::sqrt(precision) / 2.4;
-  const EventResidualBatch::Sums sums = sums_of(batch, {0.05F, 0.3F}, atlas);
+  const EventResidualBatch::Sums sums = sums_of(batch, 0.05F, atlas, some_pose(), Vector6::Zero(), 0.3F);
   const double weight = 0.8 * 0.05 * 0.05 * precision / (1 + x * x);
   EXPECT_NEAR(sums.normal(0, 0) / (weight * row_squared), 1, 1e-3);
 }
@@ -273,7 +274,7 @@ TEST(EventResidualBatch, LanesBehindTheLastEventWeighNothing) {
       const EventResidualBatch::Sums sums = sums_of(alone, kEventSigma, atlas);
       singly.rhs += sums.rhs;
       singly.normal += sums.normal;
-      singly.trust += sums.confidence;
+      singly.confidence += sums.confidence;
       singly.weight += sums.weight;
     }
     EventResidualBatch fresh = chunk_of(sights, 0, count);
@@ -282,7 +283,7 @@ TEST(EventResidualBatch, LanesBehindTheLastEventWeighNothing) {
       const EventResidualBatch::Sums sums = sums_of(*batch, kEventSigma, atlas);
       EXPECT_LT((sums.rhs - singly.rhs).norm(), 1e-5 * (1 + singly.rhs.norm()));
       EXPECT_LT((sums.normal - singly.normal).norm(), 1e-5 * singly.normal.norm());
-      EXPECT_NEAR(sums.confidence, singly.trust, 1e-4);
+      EXPECT_NEAR(sums.confidence, singly.confidence, 1e-4);
       EXPECT_NEAR(sums.weight, singly.weight, 1e-4);
     }
   }
