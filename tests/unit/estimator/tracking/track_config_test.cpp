@@ -157,6 +157,15 @@ TEST(TrackConfig, TheThesisPresetLeavesOutTheImprovements) {
   EXPECT_EQ(parse("{edges: {preset: thesis}, map: {max_fraction: 0.5}}").map.max_fraction, 0.5);
 }
 
+TEST(TrackConfig, EveryMethodPrintsAConfigurationThatItReads) {
+  for (const TrackMethod& method : track_methods()) {
+    const std::string name(method.name);
+    EXPECT_TRUE(method.help.ends_with('.')) << name;
+    const std::string printed = config::print(parse("{method: " + name + "}"));
+    EXPECT_EQ(config::print(parse(printed)), printed) << name;
+  }
+}
+
 TEST(TrackConfig, EveryKeyHasHelp) {
   const std::string printed = config::print_documented(TrackConfig{});
   std::size_t begin = 0;

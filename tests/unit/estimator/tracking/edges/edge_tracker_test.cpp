@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "estimator/tracking/edges/edge_fallback.h"
 #include "tests/unit/estimator/tracking/corner_recording.h"
 
 namespace saccade {
@@ -356,6 +357,31 @@ TEST(EdgeTracker, FindsNothingWhereTheCameraIsNot) {
   const std::optional<TrackedPose> next = tracker.next();
   ASSERT_TRUE(next);
   EXPECT_LT(error_px(*next), 1.5);
+}
+
+TEST(EdgeFallback, HandsOverThePoseOfItsLastFrame) {
+  EdgeFallback fallback(tracker_from(accurate()));
+  std::vector<TrackedPose> poses(1);  // of before
+  TrackTiming timing;
+  const std::size_t done = fallback.follow(recording().events, poses, timing);
+  EXPECT_GT(done, 0U);
+  EXPECT_EQ(poses.size(), 7U);
+  EXPECT_TRUE(fallback.fits());
+  EXPECT_EQ(poses.back().status, TrackStatus::kOk);
+  EXPECT_LT(error_px(poses.back()), 1.5);
+  EXPECT_GT(timing.align_s, 0);
+  EXPECT_EQ(fallback.follow(std::span(recording().events).first(10), poses, timing), 0U);
+  EXPECT_EQ(poses.size(), 7U) << "too few events give no pose";
+}
+
+TEST(EdgeFallback, PosesThatDoNotFitAreLost) {
+  EdgeFallback fallback(tracker_from(accurate()));
+  fallback.reset_near(0, corner_motion(0) * Rigid3(so3_exp({0, 3, 0}), {}));
+  std::vector<TrackedPose> poses;
+  TrackTiming timing;
+  EXPECT_GT(fallback.follow(recording().events, poses, timing), 0U);
+  EXPECT_FALSE(fallback.fits());
+  testing::expect_lost_but_finite(poses);
 }
 
 }  // namespace

@@ -174,7 +174,8 @@ TEST(EventResidualBatch, SteepPixelsWeighLess) {
   const double slope_squared = 0.09 * (0.9 * 0.9 + 0.1 * 0.1);
   const double precision = 1 / (0.05 * 0.05 + 0.3 * 0.3 * slope_squared);
   const double x = r * std::sqrt(precision) / 2.4;
-  const EventResidualBatch::Sums sums = sums_of(batch, 0.05F, atlas, some_pose(), Vector6::Zero(), 0.3F);
+  const EventResidualBatch::Sums sums =
+      sums_of(batch, 0.05F, atlas, some_pose(), Vector6::Zero(), 0.3F);
   const double weight = 0.8 * 0.05 * 0.05 * precision / (1 + x * x);
   EXPECT_NEAR(sums.normal(0, 0) / (weight * row_squared), 1, 1e-3);
 }
