@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
+/// Neighbours whose inverse depths differ by more than this fraction belong to two surfaces, unless
 /// the next ones go on in the same way.
 constexpr float kDepthDiscontinuity = 0.03F;
 
@@ -90,7 +90,7 @@ ImageF smoothed(const ImageF& image, double blur_px) {
   return pass(pass(image, 1, 0), 0, 1);
 }
 
-/// The greatest step between neighbours within two pixels.
+/// The largest difference between neighbours within two pixels.
 ImageF steepness(const ImageF& image) {
   constexpr int kReach = 2;
   ImageF steepest(image.width(), image.height());
@@ -116,8 +116,8 @@ ImageF smoothed_at_edges(const ImageF& image, double blur_px, double step) {
   ImageF result = image;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
-      const float share = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
-      result(x, y) += share * (blurred(x, y) - image(x, y));
+      const float fraction = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
+      result(x, y) += fraction * (blurred(x, y) - image(x, y));
     }
   return result;
 }
