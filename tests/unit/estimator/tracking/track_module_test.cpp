@@ -244,8 +244,11 @@ TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
   EXPECT_GT(summary.poses, 20U);
   EXPECT_EQ(summary.lost_poses, 0U);
   const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  // Until then the velocity, and with it the expected increments, is not known yet.
+  constexpr double kVelocityKnown_s = 0.05;
   for (const StampedPose& pose : trajectory.poses())
-    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 1.5) << pose.t_s;
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), pose.t_s < kVelocityKnown_s ? 3 : 1.5)
+        << pose.t_s;
 }
 
 TEST_F(TrackModule, WithoutContrastNamesTheCure) {
