@@ -8,8 +8,8 @@
 
 #include "core/random.h"
 #include "core/spline.h"
-#include "estimator/depth/sweep_depth.h"
-#include "estimator/reconstruction/point_surface.h"
+#include "estimator/depth/sweep/sweep_depth.h"
+#include "estimator/reconstruction/surface/point_surface.h"
 
 namespace saccade {
 namespace {
@@ -19,7 +19,7 @@ double median_depth(const DepthResult& result, double otherwise) {
   if (result.points.empty()) return otherwise;
   std::vector<float> inverse;
   inverse.reserve(result.points.size());
-  for (const EdgeDepth& point : result.points) inverse.push_back(point.inverse_depth);
+  for (const EdgePoint& point : result.points) inverse.push_back(point.inverse_depth);
   const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
   std::nth_element(inverse.begin(), middle, inverse.end());
   return 1 / static_cast<double>(*middle);
@@ -29,7 +29,7 @@ double median_depth(const DepthResult& result, double otherwise) {
 std::vector<SurfacePoint> surface_points(const DepthResult& result, const PinholeCamera& camera) {
   std::vector<SurfacePoint> points;
   points.reserve(result.points.size());
-  for (const EdgeDepth& point : result.points) {
+  for (const EdgePoint& point : result.points) {
     const double depth = 1 / static_cast<double>(point.inverse_depth);
     points.push_back({depth * camera.ray({point.x_px, point.y_px}),
                       static_cast<double>(point.sigma / point.inverse_depth)});
@@ -124,7 +124,7 @@ Mapping Mapper::map_once(std::span<const Event> events, const KnownPath& path) c
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;
   const double expected_m = path.typical_depth_m ? *path.typical_depth_m : sweep_depth(window);
-  const std::optional<RayEdges> edges = adjust_path(window, adjusted, path, expected_m);
+  const std::optional<WindowEdgels> edges = adjust_path(window, adjusted, path, expected_m);
   mapping.world_from_before =
       adjusted.at_clamped(keyframe.end_s) * smooth.at_clamped(keyframe.end_s).inverse();
   for (const StampedPose& pose : adjusted.poses())
@@ -165,12 +165,13 @@ RayDepth Mapper::rays() const {
   return RayDepth(options_.depth.rays, options_.depth.limits, camera_);
 }
 
-std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
-                                            const KnownPath& known, double typical_depth_m) const {
-  std::optional<RayEdges> edges;
+std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
+                                                const KnownPath& known,
+                                                double typical_depth_m) const {
+  std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
-    edges = depth.find_edges(window);
+    edges = depth.find_edgels(window);
     Adjustment adjustment =
         adjust(window, *edges, camera_,
                {known.settled_until_s, known.given_until_s, typical_depth_m, known.landmarks},
@@ -214,8 +215,7 @@ double Mapper::sweep_depth(const ViewWindow& window) const {
 
 ImageF Mapper::dense_depth(const Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
-  return surface_through(surface_points(keyframe.depth, camera), camera,
-                         options_.reconstruction.depth.planes);
+  return surface_through(surface_points(keyframe.depth, camera), camera);
 }
 
 void Mapper::reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const {
@@ -240,7 +240,7 @@ void Mapper::add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const {
 void Mapper::add_points(Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
   const auto max_sigma = static_cast<float>(options_.max_sigma);
-  for (const EdgeDepth& point : keyframe.depth.points)
+  for (const EdgePoint& point : keyframe.depth.points)
     if (point.sigma < max_sigma * point.inverse_depth)
       append(keyframe.edges,
              keyframe.world_from_camera *

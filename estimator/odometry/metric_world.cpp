@@ -80,7 +80,7 @@ void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPos
   for (Keyframe& keyframe : keyframes) {
     keyframe.world_from_camera = moved(keyframe.world_from_camera);
     keyframe.typical_depth_m *= found.scale;
-    for (EdgeDepth& point : keyframe.depth.points) {
+    for (EdgePoint& point : keyframe.depth.points) {
       point.inverse_depth /= scale;
       point.sigma /= scale;
     }

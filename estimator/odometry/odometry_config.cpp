@@ -238,7 +238,7 @@ void describe(config::Fields& fields, OdometryConfig& config) {
       fields.has("reconstruction"))
     fields.group(
         "reconstruction",
-        [&](Fields& f) { describe_image_method(f, odometry.mapping.reconstruction); },
+        [&](Fields& f) { describe_reconstruction_method(f, odometry.mapping.reconstruction); },
         "as of saccade run reconstruct");
   fields.group(
       "tracking", [&](Fields& f) { describe(f, odometry.tracker); },

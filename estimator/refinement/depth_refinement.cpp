@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/depth/event_rays.h"
-#include "estimator/depth/ray_gather.h"
+#include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/ray_gatherer.h"
 #include "estimator/refinement/edge_residual.h"
 #include "estimator/refinement/held_cost.h"
 #include "estimator/refinement/jacobian_block.h"
@@ -55,8 +55,8 @@ class EdgeOptimizer {
         gatherer_(rays_, {options.reach_px, options.half_length_px}) {}
 
   /// False where too few events say anything, or no optimum is found.
-  bool optimize(FittedEdge& fitted, RefinedDepth& sums) {
-    gatherer_.gather({0, rays_.slab_count(), 1}, fitted.edge, near_);
+  bool optimize(FittedEdgel& fitted, RefinedDepth& sums) {
+    gatherer_.gather({0, rays_.slice_count(), 1}, fitted.edge, near_);
     if (near_.count < kFewestEvents) return false;
     EdgeUnknowns unknowns(fitted.edge.inverse_depth, 0, 0, 0);
     ceres::Problem problem;
@@ -82,7 +82,7 @@ class EdgeOptimizer {
   }
 
  private:
-  std::vector<ceres::ResidualBlockId> add_events(const FittedEdge& fitted, EdgeUnknowns& unknowns,
+  std::vector<ceres::ResidualBlockId> add_events(const FittedEdgel& fitted, EdgeUnknowns& unknowns,
                                                  ceres::Problem& problem) {
     const double sigma_px = std::max(options_.noise_px, static_cast<double>(fitted.residual_px));
     std::vector<ceres::ResidualBlockId> ids;
@@ -120,8 +120,8 @@ class EdgeOptimizer {
     return std::sqrt(of_depth[0] * spread / options_.information);
   }
 
-  static void take(const EdgeUnknowns& x, double deviation, FittedEdge& fitted) {
-    RayEdge& edge = fitted.edge;
+  static void take(const EdgeUnknowns& x, double deviation, FittedEdgel& fitted) {
+    Edgel& edge = fitted.edge;
     const Eigen::Vector2f tangent = edge.tangent();
     edge.pixel += static_cast<float>(x[1]) * edge.normal;
     edge.normal = (edge.normal - static_cast<float>(x[2]) * tangent).normalized();
@@ -142,7 +142,7 @@ class EdgeOptimizer {
 /// A run's points by their pixel.
 class PointsByPixel {
  public:
-  PointsByPixel(std::span<const EdgeDepth> points, const PinholeCamera& camera)
+  PointsByPixel(std::span<const EdgePoint> points, const PinholeCamera& camera)
       : points_(points), width_(camera.width), height_(camera.height) {
     cells_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -154,16 +154,16 @@ class PointsByPixel {
   }
 
   /// The nearest point within reach and alike in depth; nullptr where there is none.
-  [[nodiscard]] const EdgeDepth* near(const RayEdge& edge,
+  [[nodiscard]] const EdgePoint* near(const Edgel& edge,
                                       const DepthRefinementOptions& options) const {
     const int reach = static_cast<int>(std::ceil(options.near_px)) + 1;
     const int x0 = static_cast<int>(edge.pixel.x()), y0 = static_cast<int>(edge.pixel.y());
-    const EdgeDepth* nearest = nullptr;
+    const EdgePoint* nearest = nullptr;
     auto least = static_cast<float>(options.near_px);
     for (int y = std::max(0, y0 - reach); y <= std::min(height_ - 1, y0 + reach); ++y)
       for (int x = std::max(0, x0 - reach); x <= std::min(width_ - 1, x0 + reach); ++x)
         for (const std::size_t i : cells_[static_cast<std::size_t>(y * width_ + x)]) {
-          const EdgeDepth& point = points_[i];
+          const EdgePoint& point = points_[i];
           const float away = (edge.pixel - Eigen::Vector2f(point.x_px, point.y_px)).norm();
           const float other = std::abs(point.inverse_depth / edge.inverse_depth - 1);
           if (away > least || other > static_cast<float>(options.same_depth)) continue;
@@ -174,23 +174,23 @@ class PointsByPixel {
   }
 
  private:
-  std::span<const EdgeDepth> points_;
+  std::span<const EdgePoint> points_;
   int width_, height_;
   std::vector<std::vector<std::size_t>> cells_;
 };
 
 }  // namespace
 
-RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgeDepth> start,
+RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint> start,
                              const PinholeCamera& camera, const RayDepth& depth, int slabs,
                              const DepthRefinementOptions& options) {
   RefinedDepth refined;
-  RayEdges edges = depth.find_edges(window);
+  WindowEdgels edges = depth.find_edgels(window);
   const PointsByPixel points(start, camera);
   EdgeOptimizer optimizer(window, camera, options, slabs);
-  std::vector<FittedEdge> kept;
-  for (FittedEdge& fitted : edges.edges) {
-    const EdgeDepth* point = points.near(fitted.edge, options);
+  std::vector<FittedEdgel> kept;
+  for (FittedEdgel& fitted : edges.edges) {
+    const EdgePoint* point = points.near(fitted.edge, options);
     if (point == nullptr) continue;
     fitted.edge.inverse_depth = point->inverse_depth;
     if (optimizer.optimize(fitted, refined)) kept.push_back(fitted);

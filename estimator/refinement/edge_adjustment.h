@@ -5,7 +5,7 @@
 
 #include "core/camera.h"
 #include "core/trajectory.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/refinement/landmarks.h"
 #include "estimator/run/view_windows.h"
 
@@ -57,7 +57,7 @@ struct KnownScene {
 /// What the adjustment found.
 struct Adjustment {
   Trajectory trajectory;  ///< the poses given, corrected
-  RayEdges edges;         ///< all of those given that still fit, in the view's corrected pose
+  WindowEdgels edges;     ///< all of those given that still fit, in the view's corrected pose
   double residual_before_px = 0;  ///< robust deviation of the events
   double residual_after_px = 0;
   bool ok = false;  ///< false: too little to adjust; nothing is changed
@@ -68,7 +68,7 @@ struct Adjustment {
 /// edge_residual.h robustly, by Ceres with the edges eliminated first (Schur). Scale and place are
 /// held by the poses that are known and by the landmarks that edges lie on. All edges are then
 /// fitted to the corrected path one by one. Deterministic; one thread.
-[[nodiscard]] Adjustment adjust(const ViewWindow& window, const RayEdges& edges,
+[[nodiscard]] Adjustment adjust(const ViewWindow& window, const WindowEdgels& edges,
                                 const PinholeCamera& camera, const KnownScene& known,
                                 const AdjustmentOptions& options);
 

@@ -12,10 +12,10 @@ constexpr double kReach_px = 2;
 constexpr double kDepthTolerance = 0.1;  ///< relative
 constexpr float kLeastCosine = 0.966F;   ///< of 15 degrees
 
-std::vector<Landmark> places_of(std::span<const FittedEdge> edges, const PinholeCamera& camera) {
+std::vector<Landmark> places_of(std::span<const FittedEdgel> edges, const PinholeCamera& camera) {
   std::vector<Landmark> places;
   places.reserve(edges.size());
-  for (const FittedEdge& fitted : edges) {
+  for (const FittedEdgel& fitted : edges) {
     const auto rho = static_cast<double>(fitted.edge.inverse_depth);
     places.push_back({camera.ray(fitted.edge.pixel.cast<double>()) / rho,
                       static_cast<double>(fitted.sigma) / rho});
@@ -25,9 +25,9 @@ std::vector<Landmark> places_of(std::span<const FittedEdge> edges, const Pinhole
 
 }  // namespace
 
-std::optional<FittedEdge> seen_by(const Rigid3& other_from_view, FittedEdge fitted,
-                                  const PinholeCamera& camera) {
-  RayEdge& edge = fitted.edge;
+std::optional<FittedEdgel> seen_by(const Rigid3& other_from_view, FittedEdgel fitted,
+                                   const PinholeCamera& camera) {
+  Edgel& edge = fitted.edge;
   const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
   const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {
     return other_from_view * (depth_m * camera.ray(pixel.cast<double>()));
@@ -44,14 +44,14 @@ std::optional<FittedEdge> seen_by(const Rigid3& other_from_view, FittedEdge fitt
   return fitted;
 }
 
-EdgeMatcher::EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+EdgeMatcher::EdgeMatcher(std::span<const FittedEdgel> edges, const Rigid3& other_from_view,
                          const PinholeCamera& camera)
     : edges_(edges),
       other_from_view_(other_from_view),
       camera_(camera),
       places_(places_of(edges, camera), other_from_view, camera) {}
 
-std::optional<std::size_t> EdgeMatcher::on(const RayEdge& edge) const {
+std::optional<std::size_t> EdgeMatcher::on(const Edgel& edge) const {
   const SeenLandmarks::Seen* place = places_.near(edge, kReach_px, kDepthTolerance);
   if (place == nullptr) return std::nullopt;
   const auto seen = seen_by(other_from_view_, edges_[place->index], camera_);
@@ -61,8 +61,8 @@ std::optional<std::size_t> EdgeMatcher::on(const RayEdge& edge) const {
 
 std::vector<std::vector<KeyframeEdge>> seen_again(std::span<const KeyframeEdge> edges,
                                                   std::span<const ViewWindow> windows,
-                                                  std::span<const RayEdges> found, double apart_s,
-                                                  const PinholeCamera& camera) {
+                                                  std::span<const WindowEdgels> found,
+                                                  double apart_s, const PinholeCamera& camera) {
   std::vector<std::vector<KeyframeEdge>> again(edges.size());
   const auto find = [&](std::size_t keyframe) {
     const auto before = [](const KeyframeEdge& edge, std::size_t k) { return edge.keyframe < k; };

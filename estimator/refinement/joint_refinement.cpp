@@ -67,8 +67,8 @@ struct Adjusted {
 class Problem {
  public:
   Problem(const Trajectory& path, const std::vector<ViewWindow>& windows,
-          const std::vector<RayEdges>& found, const JointStart& start, const PinholeCamera& camera,
-          const JointRefinementOptions& options)
+          const std::vector<WindowEdgels>& found, const JointStart& start,
+          const PinholeCamera& camera, const JointRefinementOptions& options)
       : path_(path),
         windows_(windows),
         found_(found),
@@ -149,8 +149,8 @@ class Problem {
   /// Against an edge some of the events that were found on `seen`: on itself, or on what another
   /// keyframe sees of it.
   void add_events(Adjusted& adjusted, const KeyframeEdge& seen, const auto& choose) {
-    const RayEdges& found = found_[seen.keyframe];
-    const FittedEdge& edge = found.edges[seen.edge];
+    const WindowEdgels& found = found_[seen.keyframe];
+    const FittedEdgel& edge = found.edges[seen.edge];
     std::vector<std::uint32_t> events(found.events.event.begin() + edge.first,
                                       found.events.event.begin() + edge.last);
     std::sort(events.begin(), events.end());
@@ -193,7 +193,7 @@ class Problem {
   void add_event(Adjusted& adjusted, const Event& event, double step, double residual_px) {
     const auto& [keyframe, number] = adjusted.found;
     const ViewWindow& view = windows_[keyframe];
-    const RayEdge& edge = found_[keyframe].edges[number].edge;
+    const Edgel& edge = found_[keyframe].edges[number].edge;
     const double t_s = seconds_from_ns(event.t_ns);
     EdgeObservation observation;
     observation.view_from_camera = view.world_from_reference().inverse() * path_.at_clamped(t_s);
@@ -282,7 +282,7 @@ class Problem {
 
   const Trajectory& path_;
   const std::vector<ViewWindow>& windows_;
-  const std::vector<RayEdges>& found_;
+  const std::vector<WindowEdgels>& found_;
   const PinholeCamera& camera_;
   PinholeCamera undistorted_;
   const JointRefinementOptions& options_;
@@ -328,8 +328,8 @@ JointResult refine_jointly(std::span<const Event> events, const JointStart& star
     std::vector<ViewWindow> windows;
     for (const double t_s : views)
       windows.push_back({events_around(events, t_s, options.window_s), &before, t_s});
-    std::vector<RayEdges> found(windows.size());
-    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });
+    std::vector<WindowEdgels> found(windows.size());
+    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edgels(windows[k]); });
     Problem problem(before, windows, found, start, camera, options);
     problem.solve(result.costs, [&] { advance_to(done + 1); });
     if (i + 1 == options.rounds) problem.judge(result);

@@ -8,7 +8,7 @@
 
 #include "core/camera.h"
 #include "core/trajectory.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/refinement/cost_log.h"
 #include "estimator/refinement/inertial_rows.h"
 #include "estimator/refinement/path_correction.h"

@@ -22,7 +22,7 @@ SeenLandmarks::SeenLandmarks(std::span<const Landmark> landmarks, const Rigid3& 
   }
 }
 
-const SeenLandmarks::Seen* SeenLandmarks::near(const RayEdge& edge, double reach_px,
+const SeenLandmarks::Seen* SeenLandmarks::near(const Edgel& edge, double reach_px,
                                                double tolerance) const {
   const Eigen::Vector2d at = edge.pixel.cast<double>();
   const auto inverse_depth = static_cast<double>(edge.inverse_depth);

@@ -9,7 +9,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
-#include "estimator/depth/ray_gather.h"
+#include "estimator/depth/rays/ray_gatherer.h"
 
 namespace saccade {
 
@@ -35,7 +35,7 @@ class SeenLandmarks {
 
   /// The one nearest to an edge, within `reach_px` of its place and at its depth but for
   /// `tolerance`, relative; nullptr for none.
-  [[nodiscard]] const Seen* near(const RayEdge& edge, double reach_px, double tolerance) const;
+  [[nodiscard]] const Seen* near(const Edgel& edge, double reach_px, double tolerance) const;
 
  private:
   static constexpr int kNone = -1;

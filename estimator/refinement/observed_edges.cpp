@@ -12,7 +12,7 @@ constexpr double kFirstLag = 0.25;
 
 }  // namespace
 
-ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
+ObservedEdges::ObservedEdges(const ViewWindow& window, const WindowEdgels& edges,
                              const PinholeCamera& camera, const NodeCorrection& correction,
                              const EventShares& shares)
     : window_(window),
@@ -33,7 +33,7 @@ ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
   }
 }
 
-std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
+std::vector<ChosenEvent> ObservedEdges::of(const FittedEdgel& edge) const {
   std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
                                     edges_.events.event.begin() + edge.last);
   std::sort(events.begin(), events.end());
@@ -56,7 +56,7 @@ std::vector<ChosenEvent> ObservedEdges::of(const FittedEdge& edge) const {
   return chosen;
 }
 
-ChosenEvent ObservedEdges::observed(const FittedEdge& edge, double mean_step,
+ChosenEvent ObservedEdges::observed(const FittedEdgel& edge, double mean_step,
                                     std::uint32_t index) const {
   const Event& event = window_.events[index];
   const double t_s = seconds_from_ns(event.t_ns);

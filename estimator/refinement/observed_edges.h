@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/refinement/edge_residual.h"
 #include "estimator/refinement/node_correction.h"
 #include "estimator/run/view_windows.h"
@@ -31,20 +31,20 @@ struct EventShares {
 class ObservedEdges {
  public:
   /// All but `camera`, which may have a lens, outlive it.
-  ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+  ObservedEdges(const ViewWindow& window, const WindowEdgels& edges, const PinholeCamera& camera,
                 const NodeCorrection& correction, const EventShares& shares);
 
   /// In order of time, evenly spread.
-  [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdge& edge) const;
+  [[nodiscard]] std::vector<ChosenEvent> of(const FittedEdgel& edge) const;
   /// Undistorted.
   [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
 
  private:
-  [[nodiscard]] ChosenEvent observed(const FittedEdge& edge, double mean_step,
+  [[nodiscard]] ChosenEvent observed(const FittedEdgel& edge, double mean_step,
                                      std::uint32_t index) const;
 
   const ViewWindow& window_;
-  const RayEdges& edges_;
+  const WindowEdgels& edges_;
   PinholeCamera camera_;
   PinholeCamera undistorted_;
   const NodeCorrection& correction_;

@@ -132,7 +132,7 @@ void write_keyframes(const std::filesystem::path& folder, const PinholeCamera& c
     view.depth = folder / "depth" / fmt::format("depth_{:08}.exr", k);
     write_depth_map(view.depth, camera, depths[k]);
     views.push_back(view);
-    for (const EdgeDepth& point : depths[k].points) {
+    for (const EdgePoint& point : depths[k].points) {
       const Eigen::Vector3d in_world =
           view.world_from_camera *
           (camera.ray({point.x_px, point.y_px}) / static_cast<double>(point.inverse_depth));

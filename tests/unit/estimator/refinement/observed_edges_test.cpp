@@ -28,12 +28,12 @@ std::map<int, std::size_t> most_after_nodes(const EventShares& shares) {
   static const Trajectory path = trajectory_of(corner_glide, kEnd_s);
   static const ViewWindow window{events, &path, kEnd_s / 2};
   static const DepthConfig config;
-  static const RayEdges edges =
-      RayDepth(config.rays, config.limits, world.camera()).find_edges(window);
+  static const WindowEdgels edges =
+      RayDepth(config.rays, config.limits, world.camera()).find_edgels(window);
   const NodeCorrection correction(0, kEnd_s, kSpacing_s);
   const ObservedEdges observed(window, edges, world.camera(), correction, shares);
   std::map<int, std::size_t> most;
-  for (const FittedEdge& edge : edges.edges) {
+  for (const FittedEdgel& edge : edges.edges) {
     std::map<int, std::size_t> own;
     for (const ChosenEvent& event : observed.of(edge)) ++own[event.node];
     for (const auto& [node, count] : own) most[node] = std::max(most[node], count);
