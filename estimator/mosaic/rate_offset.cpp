@@ -26,10 +26,10 @@ Events subsampled(std::span<const Event> events, int most) {
 }
 
 /// Contrast of the image of events in one panorama.
-class Contrast {
+class PanoramaContrast {
  public:
-  Contrast(std::span<const Event> events, const PinholeCamera& camera,
-           const Trajectory& world_from_camera, const Panorama& panorama)
+  PanoramaContrast(std::span<const Event> events, const PinholeCamera& camera,
+                   const Trajectory& world_from_camera, const Panorama& panorama)
       : events_(events),
         poses_(world_from_camera),
         panorama_(panorama),
@@ -60,7 +60,8 @@ class Contrast {
 
 /// Maximises along the three axes by parabolas through points at distance `step`, which shrinks where
 /// nothing improves.
-Eigen::Vector3d maximise(const Contrast& contrast, Eigen::Vector3d rate, double step, double most) {
+Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate, double step,
+                         double most) {
   constexpr int kMaxIterations = 40;
   const double least = step / 16;
   double here = contrast(rate);
@@ -142,7 +143,7 @@ Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events, const Pinhol
         panorama_around(FieldOfView(camera), orientations, pixels_per_radian / (1 << level));
     // One pixel between the first and the last event.
     const double step = 1 / (panorama.pixels_per_radian() * duration_s);
-    rate = maximise(Contrast(sample, camera, world_from_camera, panorama), rate, step,
+    rate = maximise(PanoramaContrast(sample, camera, world_from_camera, panorama), rate, step,
                     options.max_rad_s);
   }
   return rate;

@@ -194,9 +194,9 @@ double Reprojector::moved_px(const CameraPose& reference_from_camera,
   return motion(reference_from_camera, earlier_from_reference, earlier_from_reference).length;
 }
 
-ImageMotion Reprojector::motion(const CameraPose& reference_from_first,
-                                const CameraPose& middle_from_reference,
-                                const CameraPose& last_from_reference) const {
+ImagePath Reprojector::motion(const CameraPose& reference_from_first,
+                              const CameraPose& middle_from_reference,
+                              const CameraPose& last_from_reference) const {
   const CameraPose first_from_reference = inverse_of(reference_from_first);
   const auto projected = [&](const CameraPose& camera_from_reference,
                              const Eigen::Vector3f& point) {

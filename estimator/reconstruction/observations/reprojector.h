@@ -41,7 +41,7 @@ struct ReprojectionField {
 };
 
 /// Image motion [px] of what a camera sees, the maximum over a few points.
-struct ImageMotion {
+struct ImagePath {
   double length = 0;  ///< from the first pose to the last
   double bend = 0;    ///< deviation from a straight line at the middle pose
 };
@@ -93,9 +93,9 @@ class Reprojector {
                                 const CameraPose& earlier_from_reference) const;
 
   /// Image motion along three poses; infinity where a point gets behind the camera.
-  [[nodiscard]] ImageMotion motion(const CameraPose& reference_from_first,
-                                   const CameraPose& middle_from_reference,
-                                   const CameraPose& last_from_reference) const;
+  [[nodiscard]] ImagePath motion(const CameraPose& reference_from_first,
+                                 const CameraPose& middle_from_reference,
+                                 const CameraPose& last_from_reference) const;
 
  private:
   /// The plane n . p = 1 of the surface at a pixel of the reference view.

@@ -45,7 +45,7 @@ void SurfaceReprojection::advance(const Trajectory& world_from_camera, TimeNs la
     pose = pose_at(world_from_camera, reference_from_world_, end_.t_ns);
     const CameraPose middle = pose_at(world_from_camera, reference_from_world_,
                                       begin_.t_ns + (end_.t_ns - begin_.t_ns) / 2);
-    const ImageMotion motion =
+    const ImagePath motion =
         projector_.motion(begin_.reference_from_camera, inverse_of(middle), inverse_of(pose));
     const double ratio =
         std::max(motion.length / max_motion_px_, std::sqrt(motion.bend / kMaxBend_px));

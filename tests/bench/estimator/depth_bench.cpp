@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/parallel.h"
@@ -167,7 +168,9 @@ BENCHMARK(local_plane)->Unit(benchmark::kNanosecond);
 /// The whole recording in four windows. Arguments: method, threads.
 void depth(benchmark::State& state) {
   DepthConfig config;
-  config.method = static_cast<DepthConfig::Method>(state.range(0));
+  constexpr std::string_view kMethods[] = {DepthConfig::Method::kThesis, DepthConfig::Method::kRays,
+                                           DepthConfig::Method::kSweep};
+  config.method = kMethods[state.range(0)];
   set_thread_count(static_cast<int>(state.range(1)));
   const Recording& r = recording();
   const auto windows = cut_windows(r.events, r.trajectory, {.duration_s = 0.1});
