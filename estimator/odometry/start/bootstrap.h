@@ -16,8 +16,8 @@ struct BootstrapOptions {
   double window_s = 0.25;  ///< of the path that is found, at most
   PlaneSearchOptions plane;
   PathRefinementOptions refinement = start_refinement();
-  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
-  double felt_turn_share = 0.05;
+  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
+  double gyro_rotation_sigma_ratio = 0.05;
   int first_rounds = 1;        ///< of every hypothesis, before the best goes on
   int rounds = 3;              ///< of the best
   double growth = 1.15;        ///< of its window, from round to round after these
@@ -36,7 +36,7 @@ struct Bootstrap {
   Status status = Status::kNoMotion;
   Trajectory path;         ///< world_from_camera, the identity at its first pose
   std::size_t edges = 0;   ///< found with it
-  double residual_px = 0;  ///< robust deviation of their events
+  double residual_px = 0;  ///< robust standard deviation of their events
   double parallax_px = 0;  ///< of the typical depth, between the ends of the path
 };
 

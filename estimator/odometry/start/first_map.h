@@ -15,8 +15,8 @@ struct FirstMapOptions {
   std::size_t min_edges = 0;  ///< with fewer, given poses are carried on; 0: never
   double window_s = 0.3;      ///< of the path with the given poses, to a millisecond; at most
   double growth = 1.15;       ///< of the path, from round to round
-  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
-  double felt_turn_share = 0.05;
+  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
+  double gyro_rotation_sigma_ratio = 0.05;
   PathRefinementOptions refinement = given_refinement();
 
  private:
