@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-/// Gaussian prior on an edge's unknowns: what is assumed before its events are looked at.
+/// Gaussian prior on an edge's unknowns: what is assumed before its events.
 struct EdgePrior {
   EdgeUnknowns mean;
   EdgeUnknowns sigma;

@@ -14,7 +14,7 @@
 
 namespace saccade {
 
-/// The edge as another view sees it; nullopt for behind it. `camera` is undistorted.
+/// The edge in another view; nullopt for behind it. `camera` is undistorted.
 [[nodiscard]] std::optional<FittedEdge> transformed(const Rigid3& other_from_view,
                                                     FittedEdge fitted, const PinholeCamera& camera);
 

@@ -50,16 +50,16 @@ double edge_residual(const EdgeObservation& observation, const PinholeCamera& ca
   // Of o and a by (v, w): o' = R v, (R q)' = -R [q]x w.
   Eigen::Matrix<double, 3, 6> origin_by_motion = Eigen::Matrix<double, 3, 6>::Zero();
   origin_by_motion.leftCols<3>() = rotation;
-  const Eigen::Matrix3d turn = -rotation * skew(observation.ray);
+  const Eigen::Matrix3d by_rotation = -rotation * skew(observation.ray);
   Eigen::Matrix<double, 2, 6> a_by_motion = Eigen::Matrix<double, 2, 6>::Zero();
-  a_by_motion.rightCols<3>() = (turn.topRows<2>() - a * turn.row(2)) / direction.z();
+  a_by_motion.rightCols<3>() = (by_rotation.topRows<2>() - a * by_rotation.row(2)) / direction.z();
   const Eigen::Matrix<double, 2, 6> x_by_motion =
       (1 - rho * line.origin_z) * a_by_motion +
       rho * (origin_by_motion.topRows<2>() - a * origin_by_motion.row(2));
   Eigen::Matrix<double, 1, 6> larger_by_motion = -rho * origin_by_motion.row(2);
-  larger_by_motion.tail<3>() -= larger * turn.row(2);
+  larger_by_motion.tail<3>() -= larger * by_rotation.row(2);
   larger_by_motion /= direction.z();
-  // exp(motion + d) = exp(motion) exp(J_r d).
+  // exp(motion + d) = exp(motion) exp(J_r d) (Barfoot, 2017, section 7.1.5).
   derivatives->motion =
       (across * x_by_motion - residual * larger_by_motion) / larger * se3_left_jacobian(-motion);
   derivatives->edge = line.by_edge(edge);

@@ -7,7 +7,8 @@
 
 namespace saccade {
 
-/// What an event says of the edge that it saw, in the edge's view (docs/odometry.md):
+/// The event-to-edge residual, in the edge's view (docs/odometry.md, "The window adjustment"); its
+/// noise model is edge_noise.h:
 ///   r = (n . (x(rho) - e) - c - m t . (x(rho) - e) - h l) / g,   g = (1 - rho o_z) / (R q)_z,
 ///   x(rho) = K (a + rho (o_xy - o_z a)),   a = (R q)_xy / (R q)_z,   (R, o) = view_from_camera.
 /// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
@@ -27,8 +28,7 @@ struct EdgeObservation {
 /// The unknowns of an edge in the order rho [1/m], c [px], m, h [px].
 using EdgeUnknowns = Eigen::Vector4d;
 
-/// What an event says of an edge while the camera stays where it is: numerator and g are linear in
-/// the unknowns.
+/// The residual of an event and a fixed camera: numerator and g are linear in the unknowns.
 struct EdgeLine {
   double across_px = 0, across_by_rho = 0;  ///< n . (x(rho) - e) at rho = 0, and its change
   double along_px = 0, along_by_rho = 0;    ///< t . (x(rho) - e)

@@ -74,13 +74,13 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
 
-  /// Depth and edges of a keyframe anew, by poses that have become better; `events` hold its own.
+  /// Depth and edges of a keyframe anew, by better poses; `events` contain its own.
   /// Of depth.method: rays and Edges::kDepth.
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
   [[nodiscard]] RayDepth rays() const;
 
-  /// The image of a keyframe that was tracked without one; `events` hold its own.
+  /// The image of a keyframe that was tracked without one; `events` contain its own.
   void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMinEdges = 50;  ///< of a keyframe: fewer track nothing
 /// The camera is searched for so often, in the events' time, and first where it was kLookBack_s
-/// before, ahead of the frames that took it astray.
+/// before, ahead of the frames that diverged.
 constexpr double kSearchInterval_s = 0.01, kLookBack_s = 0.05;
 
 /// Number of leading events until `t_s`.

@@ -67,7 +67,7 @@ struct KeyframeChange {
 struct OdometryResult {
   std::vector<TrackedPose> poses;
   std::vector<KeyframeChange> changes;
-  double extrapolated_s = 0;  ///< for so long given poses were carried on (first_map())
+  double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
   double tracking_s = 0;      ///< seconds of work
   double mapping_s = 0;
   // Of adjust().
@@ -81,7 +81,7 @@ struct OdometryResult {
 
 /// Visual odometry (thesis chapter 7): the camera is tracked by a map of edges until it has moved
 /// on, then the newest events and their poses make the next keyframe. Mapping runs beside tracking
-/// on a thread of its own; which events it sees, and from which event on its keyframe is used, is
+/// on a thread of its own; which events it uses, and from which event on its keyframe is used, is
 /// fixed by event time, so that the result does not depend on the threads.
 class Odometry {
  public:

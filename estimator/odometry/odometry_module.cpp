@@ -22,7 +22,7 @@
 namespace saccade {
 namespace {
 
-/// The poses of the start. None beyond is looked at.
+/// The given poses of the start. None beyond is read.
 Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
                        const StartOptions& options) {
   const double from_s = seconds_from_ns(events.front().t_ns);

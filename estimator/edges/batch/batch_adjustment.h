@@ -16,12 +16,12 @@
 namespace saccade {
 
 struct BatchAdjustmentOptions {
-  double smoothing_s = 0.025;    ///< knots of the given path: keeps a hand's motion, loses jitter
-  double knot_spacing_s = 0.05;  ///< of the path's correction, which is slower than the motion
-  double window_s = 1.6;         ///< of the events around a view in which its edges are found
-  int edges = 600;               ///< of a view, at most, evenly chosen
-  int events_per_edge = 30;      ///< at most, evenly in time
-  int given_events_per_edge = 100;  ///< beside them, while the poses are given: they tell the scale
+  double smoothing_s = 0.025;  ///< knots of the given path: follows a hand's motion, removes jitter
+  double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
+  double window_s = 1.6;            ///< of the events around a view in which its edges are found
+  int edges = 600;                  ///< of a view, at most, evenly chosen
+  int events_per_edge = 30;         ///< at most, evenly in time
+  int given_events_per_edge = 100;  ///< beside them, while poses are given: the scale is theirs
   int reobserved_keyframes = 4;     ///< later ones that observe an edge again, at most
   int reobserved_events = 10;       ///< of an edge in each of them, at most
   double correction_sigma_px = 30;  ///< of the correction from 0, as image motion
@@ -42,10 +42,10 @@ struct BatchAdjustmentOptions {
 /// What is adjusted.
 struct BatchInput {
   std::vector<StampedPose> path;  ///< spans the events
-  /// Poses that constrain the place and, where there is more than one, the scale.
+  /// Poses that fix the position and, where there is more than one, the scale.
   std::vector<StampedPose> given;
   std::vector<double> keyframe_s;  ///< times of the keyframes' views
-  double typical_depth_m = 1;      ///< turns pixels into metres
+  double typical_depth_m = 1;      ///< converts pixels to metres
   std::optional<MountedImu> imu;   ///< for options.use_imu
   bool is_metric = true;           ///< the path is in metres; else the readings say the scale
 };

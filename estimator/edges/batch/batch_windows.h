@@ -13,7 +13,7 @@ namespace saccade {
 
 /// The keyframes' times, in order and at least one, and more between them and behind the last, so
 /// that a view is never farther than a third of a window from the next and from the end: where no
-/// window reaches, nothing holds the path.
+/// window reaches, nothing constrains the path.
 [[nodiscard]] std::vector<double> batch_views(std::vector<double> keyframe_s, double end_s,
                                               double window_s);
 

@@ -60,33 +60,34 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   const Pose at_i = pose(0, parameters, shared[InertialFrame::kOffset]);
   const Pose at_j = pose(1, parameters, shared[InertialFrame::kOffset]);
   const Eigen::Matrix3d back = at_i.world_from_camera.rotation_matrix().transpose();
-  const Eigen::Matrix3d turn = back * at_j.world_from_camera.rotation_matrix();
-  const Vector3 way = at_j.world_from_camera.translation() - at_i.world_from_camera.translation();
+  const Eigen::Matrix3d rotation = back * at_j.world_from_camera.rotation_matrix();
+  const Vector3 baseline =
+      at_j.world_from_camera.translation() - at_i.world_from_camera.translation();
   const Vector3 gravity = frame_.gravity_at(shared.head<2>());
   const ImuBias other{bias.head<3>(), bias.tail<3>()};
   const Eigen::Quaterniond rotation_error =
-      sum_.turn_with(other).conjugate() * Eigen::Quaterniond(turn);
+      sum_.turn_with(other).conjugate() * Eigen::Quaterniond(rotation);
   const Vector3 turned = so3_log(rotation_error);
   const Vector3 gained = back * (v_j - v_i - t_s * gravity);
-  const Vector3 moved = back * (scale * way - t_s * v_i - 0.5 * t_s * t_s * gravity);
+  const Vector3 moved = back * (scale * baseline - t_s * v_i - 0.5 * t_s * t_s * gravity);
   Eigen::Matrix<double, 9, 1> error;
   error.head<3>() = turned;
   error.segment<3>(3) = gained - sum_.velocity_with(other);
-  error.tail<3>() = moved + turn * place_ - place_ - sum_.position_with(other);
+  error.tail<3>() = moved + rotation * place_ - place_ - sum_.position_with(other);
   Eigen::Map<Eigen::Matrix<double, 9, 1>> whitened(residuals);
   whitened = root_ * error;
   if (jacobians == nullptr) return true;
 
-  // By the right perturbations (v, w) of both poses.
+  // By the right perturbations (v, w) of both poses; that of Log is J_r^-1 (Forster et al., 2017).
   const Eigen::Matrix3d by_last = so3_left_jacobian_inverse(-turned);
   Rows6 by_i = Rows6::Zero(), by_j = Rows6::Zero();
-  by_i.block<3, 3>(0, 3) = -by_last * turn.transpose();
+  by_i.block<3, 3>(0, 3) = -by_last * rotation.transpose();
   by_j.block<3, 3>(0, 3) = by_last;
   by_i.block<3, 3>(3, 3) = skew(gained);
   by_i.block<3, 3>(6, 0) = -scale * Eigen::Matrix3d::Identity();
-  by_i.block<3, 3>(6, 3) = skew(moved + turn * place_);
-  by_j.block<3, 3>(6, 0) = scale * turn;
-  by_j.block<3, 3>(6, 3) = -turn * skew(place_);
+  by_i.block<3, 3>(6, 3) = skew(moved + rotation * place_);
+  by_j.block<3, 3>(6, 0) = scale * rotation;
+  by_j.block<3, 3>(6, 3) = -rotation * skew(place_);
   by_i = root_ * by_i;
   by_j = root_ * by_j;
   const Rows6 by_twist_i = by_i * at_i.by_twist, by_twist_j = by_j * at_j.by_twist;
@@ -114,7 +115,7 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   const Eigen::Matrix<double, 3, 2> falling = back * frame_.by_turn(shared.head<2>());
   by_frame.block<3, 2>(3, 0) = -t_s * falling;
   by_frame.block<3, 2>(6, 0) = -0.5 * t_s * t_s * falling;
-  by_frame.block<3, 1>(6, InertialFrame::kScale) = back * way;
+  by_frame.block<3, 1>(6, InertialFrame::kScale) = back * baseline;
   by_frame = root_ * by_frame;
   by_frame.col(InertialFrame::kOffset) = by_i * nodes_[0].motion + by_j * nodes_[1].motion;
   write_block(jacobians[n + 3], by_frame);

@@ -13,8 +13,8 @@
 
 namespace saccade {
 
-/// What all inertial residuals share: gravity's turn t about a direction d, metres in the path's
-/// unit s, and by how much later the readings were taken than was thought, o [s].
+/// What all inertial residuals share: gravity's rotation t about a direction d, metres in the path's
+/// unit s, and the offset of the readings' clock, o [s].
 struct InertialFrame {
   static constexpr int kSize = 4;
   static constexpr int kScale = 2, kOffset = 3;
@@ -36,15 +36,16 @@ struct InertialFrame {
 struct InertialNode {
   Rigid3 given;              ///< world_from_camera before the correction
   Twist motion;              ///< of the camera, in its axes [unit/s, rad/s]
-  SplineKnots::Place place;  ///< in the correction
+  SplineKnots::Place place;  ///< its four controls in the correction
 };
 
-/// Readings between two instants of a path (Preintegration) against the path:
+/// Preintegrated readings between two instants of a path (Forster et al., TRO 2017, with the
+/// sensor beside the camera and an unknown scale) against the path:
 ///   X_i = given_i Exp(xi_i) Exp(o motion_i) = (R_i, p_i)
 ///   r = W ( Log(Q(b)^T R_i^T R_j),
 ///           R_i^T (v_j - v_i - g T) - V(b),
 ///           R_i^T (s (p_j - p_i) + R_j x - v_i T - g T^2 / 2) - x - P(b) )
-/// with x the sensor's place in the camera, v its velocity [m/s], b its biases. Parameters: the
+/// with x the sensor's position in the camera, v its velocity [m/s], b its biases. Parameters: the
 /// controls of the correction from the first of node i's to the last of node j's, v_i, v_j, b
 /// (gyroscope, accelerometer), the shared frame (t, s, o).
 class InertialCost : public ceres::CostFunction {

@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// Covariance of a pose of a cubic spline, propagated to first order (Barfoot, 2017, eq. 2.69):
+/// Covariance of a pose of a cubic spline, propagated to first order:
 ///   J C J^T,
 /// C the part of `covariance` that belongs to the four controls from `first_control` on, six
 /// unknowns each, and J the derivative of the pose's twist (v, w), in the camera's axes, by them. 0

@@ -49,7 +49,7 @@ class LinearPriorCost : public ceres::CostFunction {
 };
 
 /// The root of the information of independent unknowns with these standard deviations; one of
-/// infinity holds nothing.
+/// infinity constrains nothing.
 template <int kSize>
 [[nodiscard]] Eigen::Matrix<double, kSize, kSize> root_of_sigma(
     const Eigen::Matrix<double, kSize, 1>& sigma) {

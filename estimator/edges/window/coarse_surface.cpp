@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 constexpr int kEdgeSize = 4;
-/// Of neighbouring nodes, relative: holds those that no edge is near to.
+/// Sigma of neighbouring nodes, relative: constrains those that no edge is near to.
 constexpr double kRoughness = 0.3;
 
 /// (rho - sum_k weight_k node_k) / sigma.

@@ -16,7 +16,7 @@ namespace saccade {
 
 /// A surface that edges lie on but for outliers: inverse depths at nodes, bilinear in between. An
 /// edge alone says how fast it moves across itself, which depth explains whatever the camera does;
-/// it is edges of several directions at one depth that tell a turn from a step.
+/// it is edges of several directions at one depth that distinguish rotation from translation.
 class CoarseSurface {
  public:
   /// Nodes every `spacing_px` > 0 or less over the camera's view, at `inverse_depth` > 0 [1/m].

@@ -26,9 +26,9 @@ std::pair<int, double> NodeCorrection::before(double t_s) const {
 }
 
 Twist NodeCorrection::at(double t_s) const {
-  const auto [node, share] = before(t_s);
+  const auto [node, s] = before(t_s);
   const auto twist = [&](int i) { return Eigen::Map<const Twist>(data(i)); };
-  return (1 - share) * twist(node) + share * twist(node + 1);
+  return (1 - s) * twist(node) + s * twist(node + 1);
 }
 
 }  // namespace saccade

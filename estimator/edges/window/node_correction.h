@@ -26,7 +26,7 @@ class NodeCorrection {
   [[nodiscard]] const double* data(int node) const {
     return nodes_[static_cast<std::size_t>(node)].data();
   }
-  /// The node before a time and the share s of the one after it; times beyond the ends are theirs.
+  /// The node before a time and the fraction s of the one after it; times are clamped to the ends.
   [[nodiscard]] std::pair<int, double> before(double t_s) const;
   [[nodiscard]] Twist at(double t_s) const;
 

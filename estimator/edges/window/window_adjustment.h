@@ -19,7 +19,7 @@ struct WindowAdjustmentOptions {
   double node_spacing_s = 0.04;  ///< the correction of the poses is linear between nodes
   int edges = 1000;              ///< at most so many, evenly chosen
   int pairs = 1;                 ///< of an edge's events between two nodes, at most, evenly in time
-  /// The same where the poses are given: there events tell the scale, so that more of them count.
+  /// The same where the poses are given: there events determine the scale, so more of them count.
   int given_pairs = 1;
   int iterations = 10;  ///< of Levenberg-Marquardt, at most
   /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
@@ -41,7 +41,7 @@ struct WindowAdjustmentOptions {
 /// A time before all others.
 inline constexpr double kNoGivenPoses = std::numeric_limits<double>::lowest();
 
-/// What is known before the window's events are looked at.
+/// What is known before the window's events.
 struct WindowPriors {
   double fixed_until_s = 0;              ///< poses until then are fixed; the active window begins
   double given_until_s = kNoGivenPoses;  ///< those until then are exact

@@ -30,7 +30,7 @@ Trajectory path_of(const PlaneFit& fit, const Gyroscope& gyroscope) {
   return Trajectory(std::move(poses));
 }
 
-/// Largest distance from the first pose, seen at depth 1 [px].
+/// Parallax at depth 1 of the largest distance from the first pose [px].
 double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
   const Eigen::Vector3d first = path.poses().front().world_from_camera.translation();
   double most = 0;

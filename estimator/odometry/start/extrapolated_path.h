@@ -7,7 +7,7 @@
 
 namespace saccade {
 
-/// Between the poses of paths that are carried on [s].
+/// Spacing of the poses of extrapolated paths [s].
 inline constexpr double kPoseSpacing_s = 1e-3;
 
 /// Replaces the rotations of the poses from `first` >= 1 on by the integral of the gyroscope's

@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// `path` with the given poses as they are, and what follows after the last of them.
-Trajectory held(const Trajectory& path, const KnownPath& start) {
+Trajectory with_given_poses(const Trajectory& path, const KnownPath& start) {
   const double until_s = start.given_until_s;
   const Rigid3 given_from_found =
       start.poses.at_clamped(until_s) * path.at_clamped(until_s).inverse();
@@ -45,7 +45,8 @@ FirstMap first_map(std::span<const Event> events, const KnownPath& start, const 
     const std::span<const Event> window = within(events, longer);
     if (window.empty()) continue;
     // Where there is too little to adjust it by, the path is the longer one as it is.
-    path.poses = held(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
+    path.poses =
+        with_given_poses(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
     Mapping mapping = mapper.map(window, path);
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};

@@ -30,15 +30,15 @@ struct FreePath {
   bool is_clear = false;   ///< there were enough edges in every round
 };
 
-/// Path and edges of a window, adjusted in turn: edges are found with the path (RayDepth), then
-/// both are adjusted (edge_adjustment.h). Of a path without given poses nothing is held, and the
+/// Path and edges of a window, adjusted alternately: edges are found with the path (RayDepth), then
+/// both are adjusted (window_adjustment.h). Of a path without given poses no pose is fixed, and the
 /// typical depth stays the unit of length.
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);
 
   /// `events` of the window, at least one, none beyond `path`; `rounds` of finding edges and
-  /// adjusting them with the path, whose nodes until `given_until_s` are held.
+  /// adjusting them with the path, whose nodes until `given_until_s` are fixed.
   [[nodiscard]] FreePath refine(std::span<const Event> events, const Trajectory& path, int rounds,
                                 double given_until_s = kNoGivenPoses) const;
 

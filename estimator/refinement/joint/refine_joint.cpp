@@ -57,7 +57,7 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
   std::vector<StampedPose> found =
       known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
                  run.folder.string());
-  // Without given poses the first that was found holds the place.
+  // Without given poses the first that was found fixes the position.
   if (!has_truth) given.assign(1, found.front());
   start.is_metric = has_truth;
   start.path = given;

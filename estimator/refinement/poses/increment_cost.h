@@ -10,7 +10,7 @@ namespace saccade {
 
 /// A pixel's brightness increment over a window of events before the map, by the control poses of
 /// map_from_camera that rule its two ends:
-///   r = (L(place at the end) - L(place at the begin) - increment) / sigma.
+///   r = (L(u, end) - L(u, begin) - increment) / sigma.
 class IncrementCost : public ceres::CostFunction {
  public:
   /// An end of the window.

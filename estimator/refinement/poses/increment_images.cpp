@@ -10,16 +10,16 @@ namespace {
 
 constexpr std::size_t kNotChosen = static_cast<std::size_t>(-1);
 
-/// The pixels that are looked at, and their numbers by index on the sensor; kNotChosen of the
+/// The pixels that are used, and their numbers by index on the sensor; kNotChosen of the
 /// others.
-std::vector<std::size_t> choose(const PinholeCamera& camera, double share,
+std::vector<std::size_t> choose(const PinholeCamera& camera, double fraction,
                                 IncrementImages& images) {
   const UndistortionTable undistortion(camera);
   const PinholeCamera undistorted = camera.undistorted();
   std::vector<std::size_t> numbers;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
-      const bool chosen = is_chosen(numbers.size(), share);
+      const bool chosen = is_chosen(numbers.size(), fraction);
       numbers.push_back(chosen ? images.pixels.size() : kNotChosen);
       if (!chosen) continue;
       const Eigen::Vector2f& place = undistortion(x, y);

@@ -6,7 +6,7 @@
 
 namespace saccade {
 
-IncrementResiduals::Row IncrementResiduals::look(VisibleSurface& surfaces, double t_s) const {
+IncrementResiduals::Row IncrementResiduals::sample(VisibleSurface& surfaces, double t_s) const {
   Row row;
   for (const IncrementImages::Pixel& pixel : images_.pixels) {
     std::optional<Seen>& seen = row.emplace_back();
@@ -29,17 +29,17 @@ double IncrementResiduals::sigma(const Seen& begin, const Seen& end) const {
 }
 
 void IncrementResiduals::add_to(PathProblem& problem) const {
-  constexpr double kLeastSlope = 0.1;  ///< pixels that see less on the way tell nothing
+  constexpr double kMinSlope = 0.1;  ///< [log units/px]; less says nothing of the motion
   VisibleSurface surfaces(surface_, problem.path(), PoseRefinementOptions::kRedraw_px);
   const SplineKnots& knots = problem.path().knots;
   MeanDepth depth;
   Row begin;
   for (std::size_t w = 0; w < images_.times_s.size(); ++w) {
-    Row end = look(surfaces, images_.times_s[w]);
+    Row end = sample(surfaces, images_.times_s[w]);
     for (std::size_t i = 0; w > 0 && i < images_.pixels.size(); ++i) {
       if (!begin[i] || !end[i]) continue;
       depth.add(surface_, end[i]->hit);
-      if (std::max(begin[i]->slope.norm(), end[i]->slope.norm()) < kLeastSlope) continue;
+      if (std::max(begin[i]->slope.norm(), end[i]->slope.norm()) < kMinSlope) continue;
       IncrementCost::Observation o;
       o.ray = images_.pixels[i].ray;
       o.begin = {knots.at(images_.times_s[w - 1]), begin[i]->hit};

@@ -21,17 +21,17 @@ class IncrementResiduals {
                      const PoseRefinementOptions& options)
       : surface_(surface), images_(images), contrast_(contrast), options_(options) {}
 
-  /// Those of the places that the problem's path sees, and a loose hold of its control poses.
+  /// Those of the points visible from the problem's path, and a weak prior of its control poses.
   void add_to(PathProblem& problem) const;
 
  private:
-  /// What a pixel sees at an end of a window.
+  /// The map at a pixel at an end of a window.
   struct Seen {
     MapSurface::Hit hit;
     Eigen::Vector2d slope;  ///< of the map [log units/px]
   };
   using Row = std::vector<std::optional<Seen>>;  ///< as the images' pixels
-  [[nodiscard]] Row look(VisibleSurface& surfaces, double t_s) const;
+  [[nodiscard]] Row sample(VisibleSurface& surfaces, double t_s) const;
   [[nodiscard]] double sigma(const Seen& begin, const Seen& end) const;
 
   const MapSurface& surface_;

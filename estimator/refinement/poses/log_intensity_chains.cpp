@@ -37,7 +37,7 @@ LogIntensityChains observe_log_intensity(std::span<const Event> events, const Pi
                                          const EventContrast& contrast, int max_events,
                                          int max_length) {
   SACCADE_CHECK(max_events > 0 && max_length >= 2);
-  const double share = static_cast<double>(max_events) / static_cast<double>(events.size());
+  const double fraction = static_cast<double>(max_events) / static_cast<double>(events.size());
   const UndistortionTable undistortion(camera);
   const PinholeCamera undistorted = camera.undistorted();
   std::vector<PixelChain> pixels(static_cast<std::size_t>(camera.width) *
@@ -46,7 +46,7 @@ LogIntensityChains observe_log_intensity(std::span<const Event> events, const Pi
   for (const Event& event : events) {
     const std::size_t index =
         static_cast<std::size_t>(event.y) * static_cast<std::size_t>(camera.width) + event.x;
-    if (!is_chosen(index, share)) continue;
+    if (!is_chosen(index, fraction)) continue;
     PixelChain& pixel = pixels[index];
     pixel.level += event.polarity > 0 ? contrast.on : -contrast.off;
     if (pixel.chain == kNone || pixel.length == max_length) {

@@ -10,7 +10,7 @@ namespace saccade {
 
 /// One event before the map, by the four control poses of map_from_camera at its time and the
 /// offset of its chain:
-///   r = (L(place) - level - offset) / sigma.
+///   r = (L(u, t) - level - offset) / sigma.
 class LogIntensityCost : public ceres::SizedCostFunction<1, kControlSize, kControlSize,
                                                          kControlSize, kControlSize, 1> {
  public:

@@ -16,7 +16,7 @@ class LogIntensityResiduals {
                         const PoseRefinementOptions& options)
       : surface_(surface), levels_(levels), options_(options) {}
 
-  /// Those of the places that the problem's path sees, and a loose hold of its control poses. This
+  /// Those of the points visible from the problem's path, and a weak prior of its control poses. This
   /// outlives the problem's solution.
   void add_to(PathProblem& problem);
 

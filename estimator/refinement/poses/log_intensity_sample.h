@@ -13,7 +13,7 @@ namespace saccade {
 inline constexpr int kControlSize = 6;
 [[nodiscard]] Rigid3 corrected(const Rigid3& control, const double* correction);
 
-/// What a pixel sees of the map at an instant, by the four control poses of map_from_camera.
+/// The map's log intensity at a pixel and an instant, by the four control poses of map_from_camera.
 struct LogIntensitySample {
   bool is_valid = false;  ///< false: the ray leaves the plane or the picture
   double value = 0;       ///< L [log units]

@@ -24,34 +24,34 @@ class MapSurface {
   [[nodiscard]] SampleWithGradient<double> read(std::size_t view,
                                                 const Eigen::Vector2d& pixel) const;
 
-  /// The plane through the square of pixels at a place. nullopt beside an occluding edge: unless
+  /// The tangent plane: through the square of pixels around `pixel`. nullopt beside an occluding edge: unless
   /// all squares around belong to one surface.
   [[nodiscard]] std::optional<ViewPlane> plane(std::size_t view,
                                                const Eigen::Vector2d& pixel) const;
 
-  /// A place of the map that a ray meets.
+  /// Intersection of a ray with the map.
   struct Hit {
     std::size_t view = 0;
     ViewPlane plane;
     Eigen::Vector2d pixel;  ///< of the view
   };
-  /// The place that a camera's ray meets near one that is seen there: the plane at the place, met
-  /// by the ray, moved to where it was met. nullopt where that leaves the surface.
-  [[nodiscard]] std::optional<Hit> meet(const SeenPlace& seen, const Rigid3& map_from_camera,
-                                        const Eigen::Vector3d& ray) const;
+  /// The intersection of a camera's ray with the surface, near a known point of it: the ray meets the
+  /// tangent plane there, then the one at that intersection. nullopt where that leaves the surface.
+  [[nodiscard]] std::optional<Hit> intersect(const SeenPlace& seen, const Rigid3& map_from_camera,
+                                             const Eigen::Vector3d& ray) const;
 
  private:
   const IntensityMap& map_;
 };
 
-/// Harmonic mean of the depths of places in their views.
+/// Harmonic mean of the depths of points of the map in their views.
 class MeanDepth {
  public:
   void add(const MapSurface& surface, const MapSurface::Hit& hit) {
     inverse_ += hit.plane.dot(surface.map().camera().ray(hit.pixel));
     ++count_;
   }
-  /// 1 without any place.
+  /// 1 without any point.
   [[nodiscard]] double value_m() const {
     return count_ == 0 ? 1 : static_cast<double>(count_) / inverse_;
   }

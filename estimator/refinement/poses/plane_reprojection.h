@@ -11,7 +11,7 @@ namespace saccade {
 /// linear in the image.
 using ViewPlane = Eigen::Vector3d;
 
-/// Where a view sees the point of a plane that another camera's ray meets.
+/// Reprojection into a view of the point of a plane that another camera's ray meets.
 struct PlaneReprojection {
   Eigen::Vector2d pixel;                  ///< in the view
   Eigen::Matrix<double, 2, 6> by_motion;  ///< by the camera's motion, see reproject_on_plane()

@@ -11,21 +11,21 @@ VisibleSurface::VisibleSurface(const MapSurface& surface, const SplineControls& 
 
 std::optional<MapSurface::Hit> VisibleSurface::at(double t_s, const Eigen::Vector2f& pixel,
                                                   const Eigen::Vector3d& ray) {
-  activate_around(t_s);
+  draw_from(t_s);
   const Eigen::Vector2i node = view_.node_at(pixel);
   if (!view_.contains(node.x(), node.y())) return std::nullopt;
-  return surface_.meet(view_(node.x(), node.y()), pose_, ray);
+  return surface_.intersect(view_(node.x(), node.y()), pose_, ray);
 }
 
-void VisibleSurface::activate_around(double t_s) {
+void VisibleSurface::draw_from(double t_s) {
   constexpr double kStep_s = 1e-3;
   if (is_drawn_ && t_s == t_s_) return;
   t_s_ = t_s;
   pose_ = path_.pose(t_s);
-  if (is_drawn_ && t_s - looked_s_ <= kStep_s) return;
+  if (is_drawn_ && t_s - drawn_s_ <= kStep_s) return;
   if (!is_drawn_ || view_.moved_px(pose_) > redraw_px_) view_.draw(pose_);
   is_drawn_ = true;
-  looked_s_ = t_s;
+  drawn_s_ = t_s;
 }
 
 }  // namespace saccade

@@ -7,8 +7,8 @@
 
 namespace saccade {
 
-/// The places of a map that pixels see along a path; asked for in the order of time, for the map is
-/// drawn anew as the view moves on.
+/// The points of a map that are visible to pixels along a path; asked for in the order of time, for
+/// the map is drawn anew as the view moves on.
 class VisibleSurface {
  public:
   /// `redraw_px`: motion of the view after which the map is drawn anew. `surface` outlives this.
@@ -20,14 +20,14 @@ class VisibleSurface {
                                                   const Eigen::Vector3d& ray);
 
  private:
-  void activate_around(double t_s);
+  void draw_from(double t_s);
 
   const MapSurface& surface_;
   Spline path_;
   double redraw_px_;
   MapView view_;
   bool is_drawn_ = false;
-  double t_s_ = 0, looked_s_ = 0;
+  double t_s_ = 0, drawn_s_ = 0;
   Rigid3 pose_;  ///< at t_s_
 };
 

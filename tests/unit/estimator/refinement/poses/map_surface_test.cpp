@@ -37,7 +37,7 @@ TEST(MapSurface, ARayMeetsTheSurfaceThatItsPixelSees) {
   int hits = 0, exact = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
-      const auto hit = surface.meet(view(x, y), map_from_camera, camera.ray({x, y}));
+      const auto hit = surface.intersect(view(x, y), map_from_camera, camera.ray({x, y}));
       if (!hit) continue;
       ++hits;
       const double z = 1 / hit->plane.dot(camera.ray(hit->pixel));
