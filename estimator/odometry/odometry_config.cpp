@@ -94,8 +94,7 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
       .range(0, 100);
   fields
       .value("edges", adjustment.edges,
-             "The most edges that are adjusted. More are more accurate; the time grows in "
-             "proportion.")
+             "The most edges that are adjusted. More are more accurate and take longer.")
       .range(30, 1e7);
   fields
       .value("given_pairs", adjustment.given_pairs,
@@ -220,8 +219,7 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                    {"events_and_imu", BatchMode::kEventsAndImu}},
                   "Whether the whole path and the edges of all keyframes are adjusted together "
                   "after the last event, with or without the readings of the inertial sensor. Of "
-                  "mode: offline, and where no pose was lost; it takes several times as long as "
-                  "the run.");
+                  "mode: offline, and where no pose was lost; it is slow.");
   }
   describe_parts(fields, odometry);
   fields.group(

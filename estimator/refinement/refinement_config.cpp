@@ -51,9 +51,10 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
              "else the dataset's.")
       .range(1e-3, 10);
   fields
-      .value("rounds", options.rounds,
-             "How often the surface that each event samples is found anew on the refined path. One "
-             "round is enough for a run within a fraction of a pixel of the optimum.")
+      .value(
+          "rounds", options.rounds,
+          "How often the surface that each event samples is found anew on the refined path. More "
+          "rounds help a run that is farther from the optimum and take longer.")
       .range(1, 100);
 }
 
@@ -71,8 +72,7 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
       .range(1e-3, 100);
   fields
       .value("edges", options.edges,
-             "The most edges of a keyframe that are adjusted. More reduce drift; the time grows in "
-             "proportion.")
+             "The most edges of a keyframe that are adjusted. More reduce drift and take longer.")
       .range(30, 1e7);
   fields
       .value("given_events_per_edge", options.given_events_per_edge,
