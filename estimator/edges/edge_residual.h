@@ -14,12 +14,12 @@ namespace saccade {
 /// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
 /// scatter, and a residual in the view would be made small by any motion that shrinks the picture.
 /// With q = K^-1 u the event's ray, rho the edge's inverse depth, c its offset, m its tilt and h
-/// the hysteresis of the thresholds, in steps l.
+/// the hysteresis of the thresholds, over a lag of l contrasts.
 struct EdgeObservation {
-  Rigid3 view_from_camera;  ///< at the event's time, as it is assumed
+  Rigid3 view_from_camera;  ///< at the event's time, before any correction
   Eigen::Vector3d ray;      ///< q, z = 1
   /// What h is multiplied by: the polarity p, +1 or -1, or p times the contrasts by which the
-  /// brightness had changed (run_positions.h).
+  /// brightness had changed (event_runs.h).
   double lag = 0;
   Eigen::Vector2d pixel;   ///< e, in the view
   Eigen::Vector2d normal;  ///< n, unit

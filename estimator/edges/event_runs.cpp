@@ -13,7 +13,7 @@ std::vector<std::uint8_t> run_positions(std::span<const Event> events,
   // beginning nobody saw, the sign alone, from kUnseen on.
   constexpr int kUnseen = kMaxRunPosition + 1;
   Image<int> run(camera.width, camera.height, 0);
-  std::vector<std::uint8_t> steps(events.size());
+  std::vector<std::uint8_t> positions(events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const int p = events[i].polarity;
     int& length = run(events[i].x, events[i].y);
@@ -23,16 +23,16 @@ std::vector<std::uint8_t> run_positions(std::span<const Event> events,
       length = p;
     else if (std::abs(length) < kMaxRunPosition)
       length += p;
-    steps[i] = static_cast<std::uint8_t>(length * p == kUnseen ? 0 : length * p);
+    positions[i] = static_cast<std::uint8_t>(length * p == kUnseen ? 0 : length * p);
   }
-  return steps;
+  return positions;
 }
 
-double mean_run_position(std::span<const std::uint8_t> steps,
+double mean_run_position(std::span<const std::uint8_t> positions,
                          std::span<const std::uint32_t> events) {
   double sum = 0, count = 0;
   for (const std::uint32_t e : events)
-    if (steps[e] > 0) sum += steps[e], ++count;
+    if (positions[e] > 0) sum += positions[e], ++count;
   return count > 0 ? sum / count : 0;
 }
 

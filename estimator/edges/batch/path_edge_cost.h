@@ -9,7 +9,7 @@
 namespace saccade {
 
 /// The unknowns of an edge (edge_residual.h) and, last, k [px]: how far further in each event of a
-/// run (run_positions.h) lies than the one before. h is of the polarity alone.
+/// run (event_runs.h) lies than the one before. h is of the polarity alone.
 using BatchEdgeUnknowns = Eigen::Matrix<double, 5, 1>;
 
 /// One event against an edge of a keyframe (edge_residual.h) over its sigma (edge_noise.h), by the

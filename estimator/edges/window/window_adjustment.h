@@ -30,8 +30,7 @@ struct WindowAdjustmentOptions {
   double pose_sigma_px = 3;          ///< as image motion
   double smoothness_sigma_px = 0.3;  ///< between neighbouring nodes
   double fixed_sigma_px = 0.05;      ///< of poses before the active window
-  double rotation_sigma_ratio =
-      1;  ///< of kPose: on the sigmas of rotations, where a gyroscope measures them
+  double rotation_sigma_ratio = 1;   ///< of kPose: on rotations, where a gyroscope measures them
   /// Of the edges from a smooth surface (CoarseSurface), relative to the typical inverse depth; 0:
   /// edges are independent.
   double surface_sigma = 0;
@@ -64,7 +63,8 @@ struct WindowAdjustment {
 /// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic;
 /// one thread.
 [[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const RayEdges& edges,
-                                             const PinholeCamera& camera, const WindowPriors& known,
+                                             const PinholeCamera& camera,
+                                             const WindowPriors& priors,
                                              const WindowAdjustmentOptions& options);
 
 }  // namespace saccade

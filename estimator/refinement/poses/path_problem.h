@@ -20,7 +20,7 @@ struct PathEvidence {
   std::size_t observations = 0;
   std::size_t inliers = 0;  ///< of them within 2.4 sigma
   double residual = 0;      ///< robust standard deviation [log units]
-  /// Of the control poses' corrections (e, w), see sample_log_intensity.h; empty where they are not
+  /// Of the control poses' corrections (e, w), see log_intensity_sample.h; empty where they are not
   /// determined.
   Eigen::MatrixXd covariance;
 };
