@@ -42,7 +42,7 @@ MappingOptions quick_mapping() {
   options.adjust_rounds = 1;
   options.adjustment.node_spacing_s = 0.02;
   options.adjustment.edges = 400;
-  options.adjustment.known_sigma_px = 0.02;
+  options.adjustment.fixed_sigma_px = 0.02;
   options.depth.method = DepthConfig::Method::kRays;
   options.depth.rays.refiner.max_sigma = 0.03;
   options.depth.rays.fusion.min_neighbours = 1;

@@ -44,8 +44,7 @@ double median_error(const std::vector<EdgeDepth>& points) {
 
 RefinedDepth refined(const std::vector<EdgeDepth>& start) {
   const DepthRecording& r = depth_recording();
-  return refine_depth_of(r.window(), start, r.world.camera(), r.depth, DepthConfig{}.rays.slabs,
-                         {});
+  return refine_depth_of(r.window(), start, r.world.camera(), r.depth, DepthConfig{}.rays.slabs);
 }
 
 TEST(DepthRefinement, BringsDisturbedDepthsBack) {
