@@ -84,7 +84,7 @@ std::string adjusted() {
 std::string with_short_start() {
   std::string yaml = adjusted();
   yaml.replace(yaml.find("truth_s: 0.2"), 12, "truth_s: 0.1");
-  yaml.replace(yaml.find("min_edges: 0"), 12, "min_edges: 600");
+  yaml.replace(yaml.find("min_edges: 0"), 12, "min_edges: 900");
   return yaml;
 }
 
@@ -257,7 +257,9 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
     events.insert(events.end(), some.begin(), some.end());
   }
   const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  RunRequest run = request("found", std::string(kQuick) + "relocation: inconsistent\n");
+  std::string yaml = std::string(kQuick) + "relocation: inconsistent\n";
+  yaml.replace(yaml.find("ratio: 0.2"), 10, "ratio: 0.1");
+  RunRequest run = request("found", yaml);
   run.dataset = folder_.path() / "leap";
   testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
                            poses_until(kEnd_s));
@@ -297,7 +299,7 @@ keyframe: {distance: 1}
 
 TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   std::string yaml = adjusted();
-  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 30, "truth_s: 0, depth_m: 2.2");
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33, "truth_s: 0, depth_m: 2.2");
   const RunSummary summary = run_odometry(request("with", yaml));
   EXPECT_EQ(summary.lost_poses, 0U);
   fs::remove(dataset() / "groundtruth.txt");
