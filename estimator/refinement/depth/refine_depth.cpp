@@ -13,6 +13,7 @@
 #include "core/time_search.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
+#include "estimator/refinement/depth/depth_refinement.h"
 #include "estimator/run/run_input.h"
 
 namespace saccade {
