@@ -74,7 +74,7 @@ Trajectory sharpened(const Trajectory& world_from_camera, std::span<const Event>
       events, camera, world_from_camera, fineness_of(camera, config), config.rate_offset);
   const Trajectory corrected =
       without_rate(world_from_camera, rate, seconds_from_ns(events.front().t_ns));
-  return source.imu ? levelled(corrected, *source.imu) : corrected;
+  return source.imu ? gravity_aligned(corrected, *source.imu) : corrected;
 }
 
 /// Everything but reading and writing.

@@ -25,8 +25,8 @@ void describe(config::Fields& fields, InertialRecord& record) {
   fields.choice("status", found.status,
                 {{"ok", Status::kOk},
                  {"no_readings", Status::kNoReadings},
-                 {"even_motion", Status::kEvenMotion},
-                 {"disagrees", Status::kDisagrees}},
+                 {"even_motion", Status::kUnobservableScale},
+                 {"disagrees", Status::kInconsistent}},
                 "whether the readings say what the scale is");
   fields.value("applied", record.applied, "the run is in metres, its world's z axis points up");
   fields.value("scale", found.scale, "metres in the unit that the path was found in");
@@ -62,9 +62,10 @@ void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPos
                             std::span<Keyframe> keyframes,
                             std::span<StampedCovariance> covariances) {
   SACCADE_CHECK(found.status == InertialAlignment::Status::kOk);
-  const Eigen::Quaterniond level = found.level();
+  const Eigen::Quaterniond gravity_alignment = found.gravity_alignment();
   const auto moved = [&](const Rigid3& pose) {
-    return Rigid3(level * pose.rotation(), level * (found.scale * pose.translation()));
+    return Rigid3(gravity_alignment * pose.rotation(),
+                  gravity_alignment * (found.scale * pose.translation()));
   };
   for (TrackedPose& pose : poses) {
     pose.world_from_camera = moved(pose.world_from_camera);
@@ -76,7 +77,7 @@ void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPos
     one.covariance.leftCols<3>() *= found.scale;
   }
   const auto scale = static_cast<float>(found.scale);
-  const Eigen::Matrix3f metres = scale * level.toRotationMatrix().cast<float>();
+  const Eigen::Matrix3f metres = scale * gravity_alignment.toRotationMatrix().cast<float>();
   for (Keyframe& keyframe : keyframes) {
     keyframe.world_from_camera = moved(keyframe.world_from_camera);
     keyframe.typical_depth_m *= found.scale;

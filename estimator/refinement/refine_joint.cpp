@@ -88,12 +88,12 @@ std::vector<StampedCovariance> take(const JointResult& result, std::vector<Track
 /// The path in metres and a world whose z axis points up.
 void take_into_metres(JointResult& result) {
   const double scale = result.inertial->scale;
-  const Eigen::Quaterniond level = result.inertial->level();
+  const Eigen::Quaterniond gravity_alignment = result.inertial->gravity_alignment();
   std::vector<StampedPose> poses(result.path.poses().begin(), result.path.poses().end());
   for (StampedPose& pose : poses) {
     const Rigid3& before = pose.world_from_camera;
-    pose.world_from_camera =
-        Rigid3(level * before.rotation(), level * (scale * before.translation()));
+    pose.world_from_camera = Rigid3(gravity_alignment * before.rotation(),
+                                    gravity_alignment * (scale * before.translation()));
   }
   result.path = Trajectory(std::move(poses));
   for (Eigen::Index i = 0; i < result.covariance.rows(); ++i) {

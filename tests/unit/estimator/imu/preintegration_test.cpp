@@ -27,7 +27,7 @@ const Motion& motion() {
 
 Eigen::Matrix<double, 9, 1> sums(const Preintegration& about, const Preintegration& sum) {
   Eigen::Matrix<double, 9, 1> all;
-  all.head<3>() = so3_log(about.turn.conjugate() * sum.turn);
+  all.head<3>() = so3_log(about.rotation.conjugate() * sum.rotation);
   all.segment<3>(3) = sum.velocity;
   all.tail<3>() = sum.position;
   return all;
@@ -64,11 +64,11 @@ TEST(Preintegration, DerivativesByTheBiases) {
   const Vector6 at = (Vector6() << kReadingBias.gyro, kReadingBias.accel).finished();
   const Preintegration sum = with(at);
   testing::expect_jacobian<9, 6>(
-      sum.by_bias, [&](const Vector6& bias) { return sums(sum, with(bias)); }, at);
+      sum.bias_jacobian, [&](const Vector6& bias) { return sums(sum, with(bias)); }, at);
   const ImuBias other{kReadingBias.gyro + Eigen::Vector3d(0.01, 0, -0.01),
                       kReadingBias.accel * 1.1};
   const Preintegration anew = *preintegrate(motion().readings, 0.3, 0.6, other, kNoise);
-  EXPECT_LT(angle_between(sum.turn_with(other), anew.turn), 1e-5);
+  EXPECT_LT(angle_between(sum.rotation_with(other), anew.rotation), 1e-5);
   EXPECT_LT((sum.velocity_with(other) - anew.velocity).norm(), 1e-4);
   EXPECT_LT((sum.position_with(other) - anew.position).norm(), 1e-4);
 }
