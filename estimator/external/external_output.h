@@ -17,8 +17,8 @@ namespace saccade {
                                                                 const TrajectoryFormat& format);
 
 /// Takes what the program left in `out` into the run folder `run`; how many poses there are.
-/// InputError where something that was promised is missing or malformed.
-std::size_t take_external_output(const std::filesystem::path& out, const AdapterOutput& output,
+/// InputError where something that the adapter promises is missing or malformed.
+std::size_t import_external_output(const std::filesystem::path& out, const AdapterOutput& output,
                                  const std::filesystem::path& run);
 
 }  // namespace saccade

@@ -32,6 +32,6 @@ struct ExternalEnd {
 [[nodiscard]] ExternalEnd run_external_program(const ExternalCall& call);
 
 /// The last lines of a log, for a reason of failure: at most three, without those of its begin.
-[[nodiscard]] std::string last_words(const std::filesystem::path& log);
+[[nodiscard]] std::string log_tail(const std::filesystem::path& log);
 
 }  // namespace saccade

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Whether the adapter hands {name} to the program.
-bool asks_for(const AdapterConfig& config, std::string_view name) {
+bool uses_placeholder_of(const AdapterConfig& config, std::string_view name) {
   const auto uses = [&](const std::string& text) { return uses_placeholder(text, name); };
   return uses(config.command) ||
          std::any_of(config.environment.begin(), config.environment.end(),
@@ -54,7 +54,7 @@ fs::path write_events(const fs::path& folder, const AdapterConfig& config,
   return file;
 }
 
-void write_inertial(const fs::path& file, const Dataset& dataset, const RunRecord::Window& window) {
+void write_imu_window(const fs::path& file, const Dataset& dataset, const RunRecord::Window& window) {
   if (!dataset.has_imu())
     throw InputError(dataset.folder().string(), "holds no imu.txt, which {imu} asks for");
   std::vector<ImuSample> samples = dataset.load_imu();
@@ -67,7 +67,7 @@ void write_inertial(const fs::path& file, const Dataset& dataset, const RunRecor
 
 }  // namespace
 
-Trajectory start_of_truth(const Dataset& dataset, double from_s, double groundtruth_start_s) {
+Trajectory groundtruth_start(const Dataset& dataset, double from_s, double groundtruth_start_s) {
   std::vector<StampedPose> start;
   for (const StampedPose& pose : dataset.groundtruth().poses()) {
     if (pose.t_s > from_s + groundtruth_start_s) break;
@@ -105,12 +105,12 @@ Handover write_handover(const fs::path& folder, const AdapterConfig& config,
                      {"threads", std::to_string(request.threads)},
                      {"width", std::to_string(camera.width)},
                      {"height", std::to_string(camera.height)}};
-  if (asks_for(config, "imu")) {
-    write_inertial(folder / "imu.txt", dataset, window);
+  if (uses_placeholder_of(config, "imu")) {
+    write_imu_window(folder / "imu.txt", dataset, window);
     handover.values["imu"] = folder / "imu.txt";
   }
   if (config.groundtruth_start_s > 0) {
-    const Trajectory start = start_of_truth(dataset, first_s, config.groundtruth_start_s);
+    const Trajectory start = groundtruth_start(dataset, first_s, config.groundtruth_start_s);
     write_tum_trajectory(folder / "groundtruth.txt", start.poses());
     handover.values["groundtruth_start"] = folder / "groundtruth.txt";
     window.start_s = std::max(window.start_s, start.end_s());
