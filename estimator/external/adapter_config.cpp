@@ -33,9 +33,12 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
       "trajectory",
       [&](config::Fields& trajectory) { describe_trajectory(trajectory, output.trajectory); },
       "The trajectory that the program writes.");
-  fields.value("covariance", output.covariance, "File in the format of covariance.txt. Empty: the program writes none.");
-  fields.value("map", output.map, "PLY file with the tracked points. Empty: the program writes none.");
-  fields.value("views", output.views, "Folder with views.yaml and depth maps. Empty: the program writes none.");
+  fields.value("covariance", output.covariance,
+               "File in the format of covariance.txt. Empty: the program writes none.");
+  fields.value("map", output.map,
+               "PLY file with the tracked points. Empty: the program writes none.");
+  fields.value("views", output.views,
+               "Folder with views.yaml and depth maps. Empty: the program writes none.");
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
@@ -53,20 +56,30 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
 
 void describe(config::Fields& fields, AdapterConfig& config) {
   fields.value("name", config.name, "Name of the method in tables and reports.");
-  fields.value("command", config.command, "Command line with placeholders in braces. It is run without a shell.");
-  fields.value("version_command", config.version_command, "Command that prints the version of the program. Empty: none.");
-  fields.value("files", config.files, "Further placeholders and the files that they stand for, relative to the adapter.");
-  fields.value("environment", config.environment, "Environment variables of the program, with placeholders.");
+  fields.value("command", config.command,
+               "Command line with placeholders in braces. It is run without a shell.");
+  fields.value("version_command", config.version_command,
+               "Command that prints the version of the program. Empty: none.");
+  fields.value("files", config.files,
+               "Further placeholders and the files that they stand for, relative to the adapter.");
+  fields.value("environment", config.environment,
+               "Environment variables of the program, with placeholders.");
   fields.group(
       "input", [&](config::Fields& input) { describe_input(input, config); },
       "Events that the program receives.");
-  fields.value("groundtruth_start_s", config.groundtruth_start_s, "Duration of the ground-truth poses that the program receives, from the first event on, in "
+  fields
+      .value("groundtruth_start_s", config.groundtruth_start_s,
+             "Duration of the ground-truth poses that the program receives, from the first event "
+             "on, in "
              "seconds. 0 gives none.")
       .at_least(0);
   fields.group(
       "output", [&](config::Fields& output) { describe_output(output, config.output); },
       "Results that the program leaves in {out}.");
-  fields.value("timeout_s", config.timeout_s, "Time limit of one repetition, in seconds. The program is ended after it.").above(0);
+  fields
+      .value("timeout_s", config.timeout_s,
+             "Time limit of one repetition, in seconds. The program is ended after it.")
+      .above(0);
   fields.value("seed", config.seed, "Value of the placeholder {seed}.");
   fields.expect(!config.name.empty(), "name", "must not be empty");
   for (const char* key : {"command", "version_command"}) {

@@ -21,7 +21,7 @@ constexpr std::array<const char*, 15> kPlaceholders{
 /// Calls `on_text` for what stands between placeholders and `on_name` for each of them. False where
 /// a brace is not closed.
 bool split_template(std::string_view text, const std::function<void(std::string_view)>& on_text,
-                const std::function<void(std::string_view)>& on_name) {
+                    const std::function<void(std::string_view)>& on_name) {
   while (!text.empty()) {
     const std::size_t brace = text.find_first_of("{}");
     on_text(text.substr(0, brace));

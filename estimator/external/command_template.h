@@ -24,6 +24,6 @@ using Placeholders = std::map<std::string, std::string, std::less<>>;
 
 /// The words of a command line (core/shell.h), each substituted: a value with blanks stays one word.
 [[nodiscard]] std::vector<std::string> substituted_words(std::string_view line,
-                                                    const Placeholders& values);
+                                                         const Placeholders& values);
 
 }  // namespace saccade

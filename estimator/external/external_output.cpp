@@ -92,11 +92,12 @@ std::vector<StampedPose> read_external_trajectory(const fs::path& file,
 }
 
 std::size_t import_external_output(const fs::path& out, const AdapterOutput& output,
-                                 const fs::path& run) {
+                                   const fs::path& run) {
   const std::vector<StampedPose> poses = read_external_trajectory(
       expected_output(out, output.trajectory.file, "trajectory.file"), output.trajectory);
   if (!output.covariance.empty()) {
-    const auto covariances = read_covariances(expected_output(out, output.covariance, "covariance"));
+    const auto covariances =
+        read_covariances(expected_output(out, output.covariance, "covariance"));
     write_covariances(run / "covariance.txt", covariances);
   }
   if (!output.map.empty()) {

@@ -19,6 +19,6 @@ namespace saccade {
 /// Takes what the program left in `out` into the run folder `run`; how many poses there are.
 /// InputError where something that the adapter promises is missing or malformed.
 std::size_t import_external_output(const std::filesystem::path& out, const AdapterOutput& output,
-                                 const std::filesystem::path& run);
+                                   const std::filesystem::path& run);
 
 }  // namespace saccade

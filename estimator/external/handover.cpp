@@ -54,7 +54,8 @@ fs::path write_events(const fs::path& folder, const AdapterConfig& config,
   return file;
 }
 
-void write_imu_window(const fs::path& file, const Dataset& dataset, const RunRecord::Window& window) {
+void write_imu_window(const fs::path& file, const Dataset& dataset,
+                      const RunRecord::Window& window) {
   if (!dataset.has_imu())
     throw InputError(dataset.folder().string(), "holds no imu.txt, which {imu} asks for");
   std::vector<ImuSample> samples = dataset.load_imu();

@@ -23,7 +23,7 @@ struct Handover {
 /// The true poses of the first `groundtruth_start_s` from `from_s` on, and the one before. Throws
 /// InputError where there is none.
 [[nodiscard]] Trajectory groundtruth_start(const Dataset& dataset, double from_s,
-                                        double groundtruth_start_s);
+                                           double groundtruth_start_s);
 
 /// Writes into `folder` the events and the calibration, and what else the adapter's words ask for:
 /// the start of the ground truth, inertial readings. Times stay those of the dataset. Nothing in

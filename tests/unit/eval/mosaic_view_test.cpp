@@ -34,7 +34,7 @@ class MosaicScores : public testing::SharedFolder<MosaicScores> {
   static void fill() { testing::write_sky_dataset(dataset(), turning(), kTurn_s); }
 
  protected:
-  [[nodiscard]] static testing::Turning turning() { return testing::sweep(0.4, 1.5); }
+  [[nodiscard]] static testing::OrientationFunction turning() { return testing::sweep(0.4, 1.5); }
   [[nodiscard]] static fs::path dataset() { return path("sky"); }
 
   /// The true mosaic in a world whose heading is another one, its orientations drifting.
