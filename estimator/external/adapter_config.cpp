@@ -44,7 +44,9 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
 void describe_input(config::Fields& fields, AdapterConfig& config) {
   fields.choice(
       "events", config.events,
-      {{"txt", HandoverEvents::kText}, {"h5", HandoverEvents::kH5}, {"csv", HandoverEvents::kCsv}},
+      {{"txt", EventFileFormat::kText},
+       {"h5", EventFileFormat::kH5},
+       {"csv", EventFileFormat::kCsv}},
       "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout of DSEC "
       "(`h5`), or lines t,x,y,p (`csv`).");
   fields.choice("time_unit", config.event_unit,

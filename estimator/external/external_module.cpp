@@ -15,9 +15,9 @@
 #include "core/stopwatch.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"
+#include "estimator/external/external_input.h"
 #include "estimator/external/external_output.h"
 #include "estimator/external/external_process.h"
-#include "estimator/external/handover.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 
@@ -122,23 +122,23 @@ RunSummary run_external(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   check_program(config);
   const Events events = load_events(request, dataset);
-  Handover handover = write_handover(run / "input", config, request, dataset, events);
-  for (const auto& [name, file] : config.files) handover.values[name] = fs::absolute(file);
-  handover.values["out"] = run / "output";
+  ExternalInput input = write_external_input(run / "input", config, request, dataset, events);
+  for (const auto& [name, file] : config.files) input.values[name] = fs::absolute(file);
+  input.values["out"] = run / "output";
   fs::create_directories(run / "output");
   io.reset();
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
-  const std::string version = version_of(config, handover.values, run);
-  RunRecord::External external = run_repetitions(
-      call_of(config, config.command, handover.values, run), config, request.repeat, timing);
+  const std::string version = version_of(config, input.values, run);
+  RunRecord::External external = run_repetitions(call_of(config, config.command, input.values, run),
+                                                 config, request.repeat, timing);
   external.version = version;
   io.emplace(timing.io_s);
   timing.poses = take_output(run, config, external);
   fs::remove_all(run / "input");
   io.reset();
-  writer.finish("external", request, dataset, handover.window, config.seed, config::print(config),
+  writer.finish("external", request, dataset, input.window, config.seed, config::print(config),
                 timing, external);
   RunSummary summary = summary_of(timing, fmt::format("{} poses", *timing.poses));
   if (external.status != "ok")

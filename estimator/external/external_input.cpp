@@ -1,4 +1,4 @@
-#include "estimator/external/handover.h"
+#include "estimator/external/external_input.h"
 
 #include <fmt/format.h>
 
@@ -40,12 +40,12 @@ void write_events_csv(const fs::path& file, std::span<const Event> events, Stamp
 
 fs::path write_events(const fs::path& folder, const AdapterConfig& config,
                       std::span<const Event> events) {
-  if (config.events == HandoverEvents::kCsv) {
+  if (config.events == EventFileFormat::kCsv) {
     write_events_csv(folder / "events.csv", events, config.event_unit);
     return folder / "events.csv";
   }
   const fs::path file =
-      folder / (config.events == HandoverEvents::kH5 ? "events.h5" : "events.txt");
+      folder / (config.events == EventFileFormat::kH5 ? "events.h5" : "events.txt");
   const std::unique_ptr<EventWriter> writer = make_event_writer(
       file, config.event_unit == StampUnit::kNanoseconds ? TimestampUnit::kNanoseconds
                                                          : TimestampUnit::kMicroseconds);
@@ -83,40 +83,40 @@ Trajectory groundtruth_start(const Dataset& dataset, double from_s, double groun
   return Trajectory(std::move(start));
 }
 
-Handover write_handover(const fs::path& folder, const AdapterConfig& config,
-                        const RunRequest& request, const Dataset& dataset,
-                        std::span<const Event> events) {
+ExternalInput write_external_input(const fs::path& folder, const AdapterConfig& config,
+                                   const RunRequest& request, const Dataset& dataset,
+                                   std::span<const Event> events) {
   fs::create_directories(folder);
-  Handover handover;
+  ExternalInput input;
   const double first_s = seconds_from_ns(events.front().t_ns);
-  RunRecord::Window& window = handover.window;
+  RunRecord::Window& window = input.window;
   window = window_of(request, first_s, seconds_from_ns(events.back().t_ns));
   const PinholeCamera& camera = dataset.camera();
   write_calib_txt(folder / "calib.txt", camera);
   write_camera_yaml(folder / "camera.yaml", camera);
-  handover.values = {{"input", folder},
-                     {"dataset", fs::absolute(dataset.folder()).lexically_normal()},
-                     {"events", write_events(folder, config, events)},
-                     {"calib", folder / "calib.txt"},
-                     {"camera", folder / "camera.yaml"},
-                     {"start_s", fmt::format("{:.9f}", window.start_s)},
-                     {"end_s", fmt::format("{:.9f}", window.end_s)},
-                     {"duration_s", fmt::format("{:.9f}", window.end_s - window.start_s)},
-                     {"seed", std::to_string(config.seed)},
-                     {"threads", std::to_string(request.threads)},
-                     {"width", std::to_string(camera.width)},
-                     {"height", std::to_string(camera.height)}};
+  input.values = {{"input", folder},
+                  {"dataset", fs::absolute(dataset.folder()).lexically_normal()},
+                  {"events", write_events(folder, config, events)},
+                  {"calib", folder / "calib.txt"},
+                  {"camera", folder / "camera.yaml"},
+                  {"start_s", fmt::format("{:.9f}", window.start_s)},
+                  {"end_s", fmt::format("{:.9f}", window.end_s)},
+                  {"duration_s", fmt::format("{:.9f}", window.end_s - window.start_s)},
+                  {"seed", std::to_string(config.seed)},
+                  {"threads", std::to_string(request.threads)},
+                  {"width", std::to_string(camera.width)},
+                  {"height", std::to_string(camera.height)}};
   if (uses_placeholder_of(config, "imu")) {
     write_imu_window(folder / "imu.txt", dataset, window);
-    handover.values["imu"] = folder / "imu.txt";
+    input.values["imu"] = folder / "imu.txt";
   }
   if (config.groundtruth_start_s > 0) {
     const Trajectory start = groundtruth_start(dataset, first_s, config.groundtruth_start_s);
     write_tum_trajectory(folder / "groundtruth.txt", start.poses());
-    handover.values["groundtruth_start"] = folder / "groundtruth.txt";
+    input.values["groundtruth_start"] = folder / "groundtruth.txt";
     window.start_s = std::max(window.start_s, start.end_s());
   }
-  return handover;
+  return input;
 }
 
 }  // namespace saccade
