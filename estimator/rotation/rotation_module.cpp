@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
+#include "estimator/rotation/rate_fusion.h"
 #include "estimator/rotation/rotation_config.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
