@@ -42,7 +42,7 @@ TEST(Preintegration, CarriesTheTrueStateOn) {
   const double t_s = kTo_s - kFrom_s;
   EXPECT_NEAR(sum->duration_s, t_s, 1e-12);
   const Eigen::Quaterniond& rotation = from.world_from_body.rotation();
-  EXPECT_LT(angle_between(rotation * sum->turn, to.world_from_body.rotation()), 1e-5);
+  EXPECT_LT(angle_between(rotation * sum->rotation, to.world_from_body.rotation()), 1e-5);
   EXPECT_LT(
       (from.velocity_in_world + kGravity * t_s + rotation * sum->velocity - to.velocity_in_world)
           .norm(),
