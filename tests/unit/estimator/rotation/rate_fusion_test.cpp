@@ -59,7 +59,7 @@ Errors run(RateFusion& fusion, const World& world) {
 
 TEST(RateFusion, IsBetterThanEitherByTheirVariances) {
   const World world{.density = 4e-3, .events_px = 0.03};
-  RateFusion fusion({.density = world.density});
+  RateFusion fusion(GyroscopeNoise{.density = world.density});
   const Errors errors = run(fusion, world);
   const double best = 1 / std::sqrt(1 / (errors.gyroscope * errors.gyroscope) +
                                     1 / (errors.events * errors.events));
@@ -67,7 +67,7 @@ TEST(RateFusion, IsBetterThanEitherByTheirVariances) {
 }
 
 TEST(RateFusion, FindsTheBiasAsWellAsItSays) {
-  RateFusion fusion({});
+  RateFusion fusion;
   run(fusion, {});
   for (int k = 0; k < 3; ++k)
     EXPECT_LT(std::abs(fusion.bias()[k] - kBias[k]), 4 * fusion.bias_sigma()[k]);
@@ -75,13 +75,13 @@ TEST(RateFusion, FindsTheBiasAsWellAsItSays) {
 }
 
 TEST(RateFusion, LearnsTheErrorOfTheEvents) {
-  RateFusion fusion({});
+  RateFusion fusion;
   run(fusion, {.events_px = 0.2});
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(fusion.events_sigma_px()[k], 0.2, 0.05);
 }
 
 TEST(RateFusion, LeavesOutliersOut) {
-  RateFusion fusion({});
+  RateFusion fusion;
   const World world;
   run(fusion, world);
   RateMeasurements measured = world.measured(kWindows);
