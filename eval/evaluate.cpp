@@ -10,14 +10,15 @@
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
-#include "eval/metrics/consistency.h"
-#include "eval/metrics/keyframe_metrics.h"
 #include "eval/metrics/orientation_metrics.h"
-#include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/trajectory/consistency.h"
+#include "eval/metrics/trajectory/keyframe_metrics.h"
+#include "eval/metrics/trajectory/reprojection.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/mosaic_view.h"
 #include "eval/refined_ratio.h"
+#include "eval/score_inputs.h"
 
 namespace saccade {
 namespace {
@@ -113,7 +114,8 @@ Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOpti
   if (options.refined)
     merge(metrics,
           refined_ratios(metrics, score_refined(*options.refined, run, dataset, mean_depth_m)), "");
-  write_atomically(run_folder / "metrics.json", to_json(metrics));
+  write_atomically(run_folder / "metrics.json",
+                   to_json(metrics, score_inputs(run_folder, dataset)));
   if (!depth.views.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth.errors);
   return metrics;
 }

@@ -11,7 +11,7 @@ namespace saccade {
 
 /// What the pairs of a scope say about a metric.
 struct Effect {
-  GateMetric metric;
+  MetricInfo metric;
   std::string scope;
   bool pooled = false;             ///< over several sequences
   std::vector<double> worsenings;  ///< of the pairs, above 0 is worse

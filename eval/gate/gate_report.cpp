@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eval/number_text.h"
 #include "eval/report/html.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

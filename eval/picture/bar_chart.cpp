@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "eval/number_text.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/legend.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

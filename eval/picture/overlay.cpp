@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "eval/metrics/scored_samples.h"
+#include "eval/metrics/trajectory/scored_samples.h"
 #include "eval/picture/depth_occlusion.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/io/image_file.h"
-#include "eval/metrics/scored_samples.h"
+#include "eval/metrics/trajectory/scored_samples.h"
 #include "eval/picture/film.h"
 #include "eval/picture/mosaic_picture.h"
 #include "eval/picture/odometry_view.h"

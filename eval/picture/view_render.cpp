@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/io/image_file.h"
-#include "eval/number_text.h"
 #include "eval/picture/canvas.h"
 #include "eval/picture/film.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "eval/metrics/metrics.h"
-#include "eval/report/report_table.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 
@@ -63,6 +63,6 @@ struct Leaderboard {
 /// the interval from three sequences on.
 [[nodiscard]] std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries);
 
-[[nodiscard]] ReportTable leaderboard_table(const Leaderboard& board);
+[[nodiscard]] Table leaderboard_table(const Leaderboard& board);
 
 }  // namespace saccade

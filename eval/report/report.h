@@ -24,8 +24,9 @@ struct ReportOptions {
 /// Writes one HTML page about the runs that needs nothing beside it: a leaderboard where there
 /// is more than one run, methods against each other in charts, the runs against others, tables
 /// against the thesis, and for every run its trajectory in 3-D, errors over time, pictures, speed
-/// and provenance. Runs are scored anew against their datasets; where a dataset is gone, the page
-/// shows what metrics.json holds. At least one run; a folder that is named twice is shown once.
+/// and provenance. The scores are those that evaluate_run() wrote; a run whose scores are missing or
+/// stale (eval/score_inputs.h) is scored again, and a notice says so. Where a dataset is gone, the
+/// page shows what metrics.json holds. At least one run; a folder that is named twice is shown once.
 /// Throws InputError for a folder that is no run, or where none of the runs has a partner among the
 /// others.
 void write_report(std::span<const std::filesystem::path> run_folders,

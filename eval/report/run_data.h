@@ -6,7 +6,7 @@
 
 #include "core/io/dataset.h"
 #include "eval/keyframe_history.h"
-#include "eval/metrics/reprojection.h"
+#include "eval/metrics/trajectory/reprojection.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
@@ -19,17 +19,18 @@ struct DatasetNumbers {
   std::optional<double> path_m;
 };
 
-/// A run with everything that the page says about it, scored anew where its dataset is there.
+/// A run with everything that the page says about it, with the scores that `eval` wrote, or
+/// scored again where those are stale and its dataset is there.
 struct RunData {
   std::string id;       ///< unique on the page, an HTML id
   std::string dataset;  ///< name
   /// Module with its configuration's name, or what an external estimator is called; with what tells
   /// it from another of that name (tell_methods_apart).
   std::string method;
-  bool fast = false;  ///< its name says it used the thesis's fast setting
   RunFolder run;
   std::optional<Dataset> data;  ///< nullopt: the folder is gone, `missing` says why
   std::string missing;
+  std::string stale;  ///< why it was scored again; empty: the scores are those of metrics.json
   DatasetNumbers numbers;
   Metrics metrics;
   TrajectoryScoreInput input;
@@ -40,7 +41,7 @@ struct RunData {
   std::optional<KeyframeHistory> keyframes;  ///< of an odometry run
 };
 
-/// Reads and scores the run folder; `index` is its place on the page.
+/// Reads the run folder and scores it where its scores are stale; `index` is its place on the page.
 [[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
 
 /// refined_ratio.* of every run that has a run of refine beside it.

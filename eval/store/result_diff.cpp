@@ -13,7 +13,7 @@
 #include "core/config/suggest.h"
 #include "core/error.h"
 #include "core/median.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
 
 namespace saccade {
 namespace {

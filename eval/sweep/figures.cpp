@@ -5,9 +5,9 @@
 
 #include "core/config/convert.h"
 #include "core/io/image_file.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/picture/bar_chart.h"
 #include "eval/picture/line_chart.h"
-#include "eval/sweep/metric_info.h"
 
 namespace saccade {
 namespace {

@@ -19,7 +19,7 @@
 #include "core/io/dataset_record.h"
 #include "core/io/scratch_folder.h"
 #include "eval/metrics/statistics.h"
-#include "eval/number_text.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

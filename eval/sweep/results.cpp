@@ -9,10 +9,10 @@
 #include "core/io/dataset_record.h"
 #include "core/progress.h"
 #include "eval/evaluate.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/run_folder.h"
 #include "eval/sweep/expected.h"
 #include "eval/sweep/figures.h"
-#include "eval/sweep/metric_info.h"
 #include "eval/sweep/tables.h"
 
 namespace saccade {
@@ -115,7 +115,7 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
   results.rows = read_rows(plan.rows(), plan.runs.empty() ? states.simulations : states.runs);
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
-    for (const MetricInfo& metric : usual_metrics())
+    for (const MetricInfo& metric : default_metrics())
       if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
   return results;
 }

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "eval/number_text.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
-#include "eval/report/page_data.h"
+#include "eval/report/charts/page_data.h"
 #include "tests/support/html_page.h"
 #include "tests/unit/eval/fake_folders.h"
 

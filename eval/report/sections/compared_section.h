@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/report/charts/page_chart.h"
+#include "eval/report/leaderboard.h"
+#include "eval/report/run_data.h"
+
+namespace saccade {
+
+/// A part of the page with the charts that its boxes name.
+struct ChartSection {
+  std::string html;
+  std::vector<PageChart> charts;
+};
+
+/// Methods against each other, in charts: error against speed, and for every sequence with several
+/// methods the errors over time and their distributions. Empty where there is nothing to compare.
+/// `boards`: of the runs.
+[[nodiscard]] ChartSection compared_section(std::span<const RunData> runs,
+                                            std::span<const Leaderboard> boards);
+
+}  // namespace saccade
