@@ -44,13 +44,13 @@ Json number(double value) {
   return value;
 }
 
-Json parse_object(std::string_view text, const std::string& place) {
+Json parse_object(std::string_view text, const std::string& source) {
   try {
     Json root = Json::parse(text);
-    if (!root.is_object()) throw InputError(place, "must be a JSON object");
+    if (!root.is_object()) throw InputError(source, "must be a JSON object");
     return root;
   } catch (const Json::parse_error& error) {
-    throw InputError(place, "byte " + std::to_string(error.byte) + " is no valid JSON");
+    throw InputError(source, "byte " + std::to_string(error.byte) + " is no valid JSON");
   }
 }
 
@@ -83,9 +83,9 @@ std::string to_json(const Metrics& metrics, const std::map<std::string, std::str
   return root.dump(2) + "\n";
 }
 
-Metrics parse_json_metrics(std::string_view text, const std::string& place) {
+Metrics parse_json_metrics(std::string_view text, const std::string& source) {
   Metrics metrics;
-  flatten(parse_object(text, place), "", metrics);
+  flatten(parse_object(text, source), "", metrics);
   return metrics;
 }
 

@@ -35,9 +35,9 @@ class Metrics {
                                   const std::map<std::string, std::string>& inputs = {});
 
 /// Reads what to_json() wrote. Numbers become values, null becomes nullopt, and every other leaf
-/// (text, truth values, lists) is skipped. `place` names the text in errors. Throws InputError
+/// (text, truth values, lists) is skipped. `source` names the text in errors. Throws InputError
 /// where the text is no JSON object.
-[[nodiscard]] Metrics parse_json_metrics(std::string_view text, const std::string& place);
+[[nodiscard]] Metrics parse_json_metrics(std::string_view text, const std::string& source);
 
 /// The same from a file.
 [[nodiscard]] Metrics read_json_metrics(const std::filesystem::path& file);

@@ -100,9 +100,9 @@ Metrics score_rates(std::span<const StampedTwist> estimate, std::span<const Stam
         truth.begin(), truth.end(), [&](const StampedTwist& t) { return t.t_s <= one.t_s; });
     if (after == truth.begin() || after == truth.end()) continue;
     const StampedTwist& a = *(after - 1);
-    const double share = (one.t_s - a.t_s) / (after->t_s - a.t_s);
+    const double weight = (one.t_s - a.t_s) / (after->t_s - a.t_s);
     const Eigen::Vector3d rate =
-        a.angular_velocity + share * (after->angular_velocity - a.angular_velocity);
+        a.angular_velocity + weight * (after->angular_velocity - a.angular_velocity);
     squares += (one.angular_velocity - rate).squaredNorm();
     peak = std::max(peak, rate.norm());
     ++count;

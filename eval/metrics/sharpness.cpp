@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-void draw(ImageF& image, const Eigen::Vector2d& place) {
-  if (is_inside(image, place.x(), place.y())) splat(image, place.x(), place.y(), 1.0F);
+void draw(ImageF& image, const Eigen::Vector2d& pixel) {
+  if (is_inside(image, pixel.x(), pixel.y())) splat(image, pixel.x(), pixel.y(), 1.0F);
 }
 
 /// First and one past the last event of a window.
@@ -57,9 +57,9 @@ WindowImages images_of(const StabilizedRun& run, std::size_t index, const Datase
     draw(images.stabilized, to);
     ++images.events;
     if (!has_truth) continue;
-    const Eigen::Quaterniond turn =
+    const Eigen::Quaterniond steady_from_camera =
         steady_from_world * truth.at_clamped(seconds_from_ns(run.events[i].t_ns)).rotation();
-    const Eigen::Vector2d expected = camera.project(turn * camera.ray(from));
+    const Eigen::Vector2d expected = camera.project(steady_from_camera * camera.ray(from));
     draw(images.truth, expected);
     if ((to - expected).norm() <= 1) ++images.within_1px;
   }

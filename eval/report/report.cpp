@@ -146,15 +146,15 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
   std::vector<Table> exported;
   for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));
-  ChartSection compared = compared_section(runs, boards);
-  std::vector<std::string> parts{runs.size() > 1 ? leaderboard_section(exported) : "",
-                                 compared.html};
+  std::vector<PageChart> charts;
+  std::vector<std::string> parts;
   if (sides) {
-    const ChartSection against = against_section(*sides);
-    parts.insert(parts.begin(), against.html);
-    compared.charts.insert(compared.charts.end(), against.charts.begin(), against.charts.end());
+    parts.push_back(against_section(*sides, charts));
     exported.push_back(against_table(*sides));
   }
+  if (runs.size() > 1)
+    parts.push_back(leaderboard_section(std::span(exported).first(boards.size())));
+  parts.push_back(compared_section(runs, boards, charts));
   for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
     parts.push_back(table(runs));
   const std::string tables = with_repeat(parts, options.command);
@@ -165,7 +165,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
        {"contents", contents(runs, tables)},
        {"style", std::string(assets::report_css)},
        {"body", tables + sections(runs, options.film)},
-       {"charts", charts_data(compared.charts)},
+       {"charts", charts_data(charts)},
        {"script", std::string(assets::report_js)},
        {"footer",
         fmt::format("Written by saccade {} ({}). Definitions of all scores: docs/metrics.md.",

@@ -55,21 +55,21 @@ std::string short_hash(const std::string& text) {
 
 }  // namespace
 
-DatasetNumbers numbers_of(const Dataset& dataset) {
-  DatasetNumbers numbers;
+Metrics facts_of(const Dataset& dataset) {
+  Metrics facts;
   if (!dataset.events_file().empty()) {
     const EventFileInfo info = read_event_file_info(dataset.events_file());
-    numbers.events = static_cast<double>(info.count);
-    numbers.duration_s = seconds_from_ns(info.last_ns - info.first_ns);
+    facts.set("dataset.events", static_cast<double>(info.count));
+    facts.set("dataset.duration_s", seconds_from_ns(info.last_ns - info.first_ns));
   }
-  numbers.mean_depth_m = dataset.facts().mean_depth_m;
-  if (!dataset.groundtruth().empty()) {
-    numbers.path_m = dataset.groundtruth().path_length();
-    // The last event of a simulation comes a little before its end.
-    if (dataset.record())
-      numbers.duration_s = dataset.groundtruth().end_s() - dataset.groundtruth().start_s();
-  }
-  return numbers;
+  facts.set("dataset.mean_scene_depth_m", dataset.facts().mean_depth_m);
+  if (dataset.groundtruth().empty()) return facts;
+  facts.set("dataset.path_length_m", dataset.groundtruth().path_length());
+  // The last event of a simulation comes a little before its end.
+  if (dataset.record())
+    facts.set("dataset.duration_s",
+              dataset.groundtruth().end_s() - dataset.groundtruth().start_s());
+  return facts;
 }
 
 RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
@@ -87,7 +87,7 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   }
   data.data = data.run.open_dataset();
   data.dataset = data.data->facts().name;
-  data.numbers = numbers_of(*data.data);
+  data.facts = facts_of(*data.data);
   set_scores(data);
   return data;
 }

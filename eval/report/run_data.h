@@ -11,14 +11,6 @@
 
 namespace saccade {
 
-/// What table 8.1 says about a dataset.
-struct DatasetNumbers {
-  std::optional<double> events;
-  std::optional<double> duration_s;
-  std::optional<double> mean_depth_m;
-  std::optional<double> path_m;
-};
-
 /// A run with everything that the page says about it, with the scores that `eval` wrote, or
 /// scored again where those are stale and its dataset is there.
 struct RunData {
@@ -31,7 +23,7 @@ struct RunData {
   std::optional<Dataset> data;  ///< nullopt: the folder is gone, `missing` says why
   std::string missing;
   std::string stale;  ///< why it was scored again; empty: the scores are those of metrics.json
-  DatasetNumbers numbers;
+  Metrics facts;      ///< of the dataset: those of thesis table 8.1, as dataset.*
   Metrics metrics;
   TrajectoryScoreInput input;
   ScoredSamples samples;
@@ -52,6 +44,7 @@ void compare_with_refined(std::vector<RunData>& runs);
 /// file, of equal values the first; where folders do not tell them apart, by a hash of the values.
 void tell_methods_apart(std::vector<RunData>& runs);
 
-[[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);
+/// dataset.{events,duration_s,mean_scene_depth_m,path_length_m}, as far as they are known.
+[[nodiscard]] Metrics facts_of(const Dataset& dataset);
 
 }  // namespace saccade

@@ -121,21 +121,21 @@ Row depth_row(const RunData& data, bool with_refined) {
 Row dataset_row(const RunData& data) {
   Row row{{data.dataset}};
   const auto theirs = [&](const char* key) {
-    return thesis_value(std::string("dataset.") + key, data.dataset, data.run.record);
+    return thesis_value(key, data.dataset, data.run.record);
   };
-  const auto add = [&](const Number& ours, const Number& thesis) {
+  const auto add = [&](const char* key, double scale) {
+    const Number ours = scaled(data.facts.get(key), scale), thesis = scaled(theirs(key), scale);
     std::string note = printed(thesis);
     if (const Number quotient = ratio(ours, thesis))
       note += fmt::format(" ({:+.0f} %)", std::round(100 * (*quotient - 1)) + 0.0);
     row.push_back(number_cell(ours, significant(ours), note));
   };
-  const DatasetNumbers& n = data.numbers;
-  add(scaled(n.events, 1e-6), scaled(theirs("events"), 1e-6));
-  add(n.duration_s, theirs("duration_s"));
-  add(n.mean_depth_m, theirs("mean_scene_depth_m"));
-  add(n.path_m, theirs("path_length_m"));
-  const Number ours = ratio(n.path_m, n.mean_depth_m);
-  const Number thesis = ratio(theirs("path_length_m"), theirs("mean_scene_depth_m"));
+  constexpr const char* kDepth = "dataset.mean_scene_depth_m";
+  constexpr const char* kPath = "dataset.path_length_m";
+  add("dataset.events", 1e-6);
+  for (const char* key : {"dataset.duration_s", kDepth, kPath}) add(key, 1);
+  const Number ours = ratio(data.facts.get(kPath), data.facts.get(kDepth));
+  const Number thesis = ratio(theirs(kPath), theirs(kDepth));
   row.push_back(number_cell(ours, fixed(ours, 2), thesis ? fixed(thesis, 2) : ""));
   return row;
 }

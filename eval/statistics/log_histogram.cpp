@@ -25,9 +25,8 @@ double LogHistogram::middle(std::size_t bin) const {
 void LogHistogram::add(double value) {
   const double last = static_cast<double>(counts_.size() - 1);
   // Rounding of the logarithm must not put a bin's own lower end below it.
-  const double place =
-      std::floor(std::log10(std::max(value, least_) / least_) * per_decade_ + 1e-9);
-  ++counts_[static_cast<std::size_t>(std::clamp(place, 0.0, last))];
+  const double bin = std::floor(std::log10(std::max(value, least_) / least_) * per_decade_ + 1e-9);
+  ++counts_[static_cast<std::size_t>(std::clamp(bin, 0.0, last))];
 }
 
 }  // namespace saccade

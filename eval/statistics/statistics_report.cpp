@@ -12,10 +12,10 @@
 namespace saccade {
 namespace {
 
-/// Rate of the pixel below which the share `share` of all pixels lies [1/s].
-double pixel_quantile_hz(const StreamStatistics& s, double share) {
+/// Rate of the pixel below which the fraction `quantile` of all pixels lies [1/s].
+double pixel_quantile_hz(const StreamStatistics& s, double quantile) {
   const std::vector<double>& all = s.pixels.ascending_hz;
-  return all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
+  return all[static_cast<std::size_t>(quantile * static_cast<double>(all.size() - 1))];
 }
 
 struct Quantity {
@@ -60,7 +60,7 @@ Line rate_line(const StreamStatistics& s) {
   return line;
 }
 
-/// Share of all gaps in each bin [%], from the first to the last bin that holds any.
+/// Fraction of all gaps in each bin [%], from the first to the last bin that holds any.
 Line gap_line(const LogHistogram& of, const EventGaps& gaps) {
   double all = 0;
   std::size_t first = of.bins(), last = 0;

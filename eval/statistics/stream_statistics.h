@@ -28,9 +28,9 @@ struct PixelRates {
   std::size_t hot_pixels = 0;
 };
 
-/// What fires where nothing is seen, as far as a recording of a moving camera tells.
+/// Noise, as far as it can be told from a recording of a moving camera.
 struct NoiseSigns {
-  /// Share of events with none in the eight neighbouring pixels within 5 ms before or after.
+  /// Fraction of events with none in the eight neighbouring pixels within 5 ms before or after.
   double isolated_share = 0;
   double isolated_hz = 0;  ///< of a pixel, mean
   /// Mean rates of a pixel in the quietest tenth of all blocks of 10 x 10 pixels [1/s]: an upper

@@ -121,15 +121,17 @@ std::string json_number(double value) {
 }
 
 std::string json_member(const ResultRow& row, const ResultColumn& column) {
-  struct Value {
-    std::string operator()(const std::string& text) const { return json_text(text); }
-    std::string operator()(std::uint64_t value) const { return std::to_string(value); }
-    std::string operator()(int value) const { return std::to_string(value); }
-    std::string operator()(const std::optional<double>& value) const {
+  const auto json = [&](auto pointer) -> std::string {
+    const auto& value = row.*pointer;
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
       return json_number(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-    }
+    else if constexpr (std::is_same_v<Value, std::string>)
+      return json_text(value);
+    else
+      return std::to_string(value);
   };
-  return std::visit([&](auto member) { return Value{}(row.*member); }, column.member);
+  return std::visit(json, column.member);
 }
 
 /// Written piece by piece: a tree of ten thousand runs would take longer than reading them.

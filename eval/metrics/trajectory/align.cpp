@@ -55,7 +55,7 @@ double best_scale(const PairMoments& m, const Eigen::Matrix3d& rotation) {
   return m.variance_estimate > 0 && product > 0 ? product / m.variance_estimate : 1;
 }
 
-/// `rotation`, turned about the unit vector `axis` so that it agrees best with `wanted`:
+/// `rotation`, rotated about the unit vector `axis` so that it agrees best with `wanted`:
 ///   tr(R(a)^T N) = cos a (tr N - u . N u) + sin a sum_ij [u]x_ij N_ij + u . N u,  N = wanted R^T.
 Eigen::Matrix3d rolled(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis,
                        const Eigen::Matrix3d& wanted) {
@@ -68,7 +68,7 @@ Eigen::Matrix3d rolled(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& a
 Eigen::Matrix3d best_rotation(const PairMoments& m, Alignment alignment) {
   constexpr double kStandstill_m2 = 1e-18;
   constexpr double kRankTolerance = 1e-6;
-  constexpr double kClear = 10;  // deviations of the positions
+  constexpr double kClear = 10;  // times the RMS error of the positions
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.covariance, Eigen::ComputeFullU);
   const Eigen::Vector3d singular = svd.singularValues();
   if (singular[0] < kStandstill_m2) return nearest_rotation(m.mean_rotation);

@@ -15,7 +15,7 @@ struct PosePair {
   Rigid3 truth;      ///< world_from_camera
 };
 
-/// truth ~ scale * rotation * estimate + translation. Orientations are turned, not scaled.
+/// truth ~ scale * rotation * estimate + translation. Orientations are rotated, not scaled.
 struct Similarity {
   double scale = 1;
   Rigid3 rigid;
@@ -39,7 +39,7 @@ struct Similarity {
 /// The same for poses. Where the positions leave the rotation open, the orientations decide the
 /// rest by their chordal mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a
 /// standstill, the roll about the main direction on a path that is straight (one singular value) or
-/// bends by less than ten times what the positions are off by, so that they would say the roll to
+/// bends by less than ten times the error of the positions, so that they would say the roll to
 /// no better than a tenth radian.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
 

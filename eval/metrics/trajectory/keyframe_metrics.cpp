@@ -36,8 +36,8 @@ Metrics score_keyframes(std::span<const KeyframeEntry> keyframes,
   for (const KeyframeJump& jump : jumps) {
     sum_m += jump.position_m;
     most_m = std::max(most_m, jump.position_m);
-    sum_deg += jump.turn_deg;
-    most_deg = std::max(most_deg, jump.turn_deg);
+    sum_deg += jump.rotation_deg;
+    most_deg = std::max(most_deg, jump.rotation_deg);
   }
   const auto count = static_cast<double>(jumps.size());
   const auto set = [&](const char* key, double value, double scale) {

@@ -9,11 +9,11 @@
 
 namespace saccade {
 
-/// How far the error of the pose changes where a keyframe comes into force.
+/// Change of the pose's error where a keyframe comes into use.
 struct KeyframeJump {
   double t_s = 0;
   double position_m = 0;
-  double turn_deg = 0;
+  double rotation_deg = 0;
 };
 
 /// With E(t) = truth(t)^-1 estimate(t): the translation and the angle of E(before)^-1 E(after),

@@ -63,9 +63,9 @@ void set_length_errors(Metrics& metrics, const std::string& key, const PairError
 std::vector<double> path_lengths(const ScoredSamples& samples) {
   std::vector<double> lengths;
   for (std::size_t i = 0; i < samples.truth.size(); ++i) {
-    const double step =
+    const double increment_m =
         i == 0 ? 0 : (samples.truth[i].translation() - samples.truth[i - 1].translation()).norm();
-    lengths.push_back(i == 0 ? 0 : lengths.back() + step);
+    lengths.push_back(i == 0 ? 0 : lengths.back() + increment_m);
   }
   return lengths;
 }

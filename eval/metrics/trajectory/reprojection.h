@@ -10,7 +10,7 @@
 namespace saccade {
 
 /// How far the map lies off in the image when it is drawn with the estimated instead of the true
-/// pose: over instants k and map points X_i that the camera sees from its true pose (in front of it
+/// pose: over instants k and map points X_i that are visible from the true pose (in front of it
 /// and inside the image; occlusion is not tested),
 ///   e_ik = | pi(T_est_k^-1 X_i) - pi(T_true_k^-1 X_i) |  [px, undistorted]
 /// at most the image diagonal, which is also the error of a point behind the estimated camera, so

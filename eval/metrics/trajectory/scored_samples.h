@@ -29,7 +29,7 @@ struct ScoredTime {
 /// last. `estimate` is not empty.
 [[nodiscard]] Rigid3 held_pose(const Trajectory& estimate, double t_s);
 
-/// Share of the interval with a pose not older than 20 ms, 0..1:
+/// Fraction of the interval with a pose not older than 20 ms, 0..1:
 ///   | interval and union of [t_i, t_i + 20 ms] | / | interval |.
 /// What is missing before the first and after the last pose counts against it. An interval of
 /// length zero has coverage 1 if a pose covers it, else 0.

@@ -29,7 +29,7 @@ ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>&
 
 void set_aligned(Metrics& metrics, const std::string& key, std::span<const PosePair> pairs,
                  Alignment alignment) {
-  // The least positions can be off by; a turn about their line is no error of theirs.
+  // The smallest error of the positions; a rotation about a straight path leaves them alone.
   const Similarity by_positions = align_positions(pairs, alignment);
   const Similarity by_poses = align(pairs, alignment);
   std::vector<double> trans_m, rot_deg;

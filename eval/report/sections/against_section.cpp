@@ -91,25 +91,23 @@ Table against_table(const Sides& sides) {
   return table;
 }
 
-ChartSection against_section(const Sides& sides) {
-  ChartSection section;
-  section.html = fmt::format(
+std::string against_section(const Sides& sides, std::vector<PageChart>& page) {
+  std::string html = fmt::format(
       "<section id=\"against\"><h2>A against B</h2>\n<p>A: {}. B: {}. Runs of the same sequence, "
       "module, configuration and seed are pairs; where A and B are configurations, all but that. "
       "The difference is the mean over the pairs of the ratio B / A, less 1, in logarithms; its "
       "99 % interval holds for all comparisons of the table together. Better or worse is what the "
       "gate would say: below six pairs only of a gross change.</p>\n",
       escape_html(sides.a), escape_html(sides.b));
-  section.html += table_html(against_table(sides)) + notes_html(sides.result);
+  html += table_html(against_table(sides)) + notes_html(sides.result);
   std::set<std::string> shown;
   std::string grid;
   for (const RunPair& pair : sides.pairs) {
     if (!shown.insert(pair.scope).second) continue;
-    const std::string charts = chart_grid(pair_charts(sides, pair), section.charts);
+    const std::string charts = chart_grid(pair_charts(sides, pair), page);
     if (!charts.empty()) grid += fmt::format("<h3>{}</h3>\n", escape_html(pair.scope)) + charts;
   }
-  section.html += grid + "</section>\n";
-  return section;
+  return html + grid + "</section>\n";
 }
 
 }  // namespace saccade

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/report/sections/compared_section.h"
+#include "eval/report/charts/page_chart.h"
 #include "eval/report/sides.h"
 #include "eval/table/table.h"
 
@@ -14,7 +14,7 @@ namespace saccade {
 [[nodiscard]] Table against_table(const Sides& sides);
 
 /// The section with this table, and for each sequence and method the errors of both sides over
-/// time, of the first seed.
-[[nodiscard]] ChartSection against_section(const Sides& sides);
+/// time, of the first seed. Appends the charts to those of the page.
+[[nodiscard]] std::string against_section(const Sides& sides, std::vector<PageChart>& page);
 
 }  // namespace saccade

@@ -47,10 +47,10 @@ std::string sequence_part(const std::string& sequence, std::span<const RunData> 
 
 }  // namespace
 
-ChartSection compared_section(std::span<const RunData> runs, std::span<const Leaderboard> boards) {
-  ChartSection section;
+std::string compared_section(std::span<const RunData> runs, std::span<const Leaderboard> boards,
+                             std::vector<PageChart>& page) {
   const MethodStyles styles(all_methods(runs, boards));
-  std::string html = chart_grid(compared_speed(boards, "", styles), section.charts);
+  std::string html = chart_grid(compared_speed(boards, "", styles), page);
   if (!html.empty())
     html =
         "<p>Each method's score against its speed, as geometric means over the sequences of the "
@@ -59,15 +59,15 @@ ChartSection compared_section(std::span<const RunData> runs, std::span<const Lea
         html;
   std::string sequences;
   for (const std::string& sequence : names(runs, &RunData::dataset))
-    sequences += sequence_part(sequence, runs, boards, styles, section.charts);
+    sequences += sequence_part(sequence, runs, boards, styles, page);
   if (!sequences.empty())
     html +=
-        "<p class=\"note\">Below, errors over time are those of a method's first run; shares are "
-        "of all its runs, whatever their seed.</p>\n" +
+        "<p class=\"note\">Below, errors over time are those of a method's first run; "
+        "distributions "
+        "are of all its runs, whatever their seed.</p>\n" +
         sequences;
-  if (!html.empty())
-    section.html = "<section id=\"compared\"><h2>Compared</h2>\n" + html + "</section>\n";
-  return section;
+  if (html.empty()) return "";
+  return "<section id=\"compared\"><h2>Compared</h2>\n" + html + "</section>\n";
 }
 
 }  // namespace saccade

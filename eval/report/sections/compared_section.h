@@ -10,16 +10,11 @@
 
 namespace saccade {
 
-/// A part of the page with the charts that its boxes name.
-struct ChartSection {
-  std::string html;
-  std::vector<PageChart> charts;
-};
-
 /// Methods against each other, in charts: error against speed, and for every sequence with several
 /// methods the errors over time and their distributions. Empty where there is nothing to compare.
-/// `boards`: of the runs.
-[[nodiscard]] ChartSection compared_section(std::span<const RunData> runs,
-                                            std::span<const Leaderboard> boards);
+/// `boards`: of the runs. Appends the charts that the HTML refers to to those of the page.
+[[nodiscard]] std::string compared_section(std::span<const RunData> runs,
+                                           std::span<const Leaderboard> boards,
+                                           std::vector<PageChart>& page);
 
 }  // namespace saccade

@@ -70,12 +70,12 @@ std::string view_pictures(const RunData& data, const EstimatedView& view, const 
   return html + "</div>\n";
 }
 
-/// Events around the view as they came and turned into its orientation (thesis fig. 5.2).
+/// Events around the view as they came and rotated into its orientation (thesis fig. 5.2).
 std::string derotation_pictures(const RunData& data, const EstimatedView& view) {
   const Trajectory& truth = data.data->groundtruth();
   if (truth.empty() || data.data->events_file().empty()) return "";
   const PinholeCamera& camera = data.data->camera();
-  // One per pixel: some 50 ms, over which turning blurs and moving hardly does.
+  // One per pixel: some 50 ms, over which rotation blurs and translation hardly does.
   const auto most =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   const Events around =
@@ -83,16 +83,16 @@ std::string derotation_pictures(const RunData& data, const EstimatedView& view) 
   const std::span<const Event> events = events_around(around, view.t_s, most, kDerotationReachS);
   if (events.empty()) return "";
   const ImageF plain = count_events(events, camera);
-  const ImageF turned = count_derotated_events(events, camera, truth, view.t_s);
-  const float top = quantile(turned, {}, 0.99);
+  const ImageF derotated = count_derotated_events(events, camera, truth, view.t_s);
+  const float top = quantile(derotated, {}, 0.99);
   const std::string what = fmt::format(
       "{} events of {:.0f} ms around {:.3f} s", grouped(static_cast<double>(events.size())),
       1e3 * seconds_from_ns(events.back().t_ns - events.front().t_ns), view.t_s);
   return "<div class=\"grid three\">" +
          upscaled_figure(draw_amount(plain, {}, top), what + ", as they came",
                          "events as they came") +
-         upscaled_figure(draw_amount(turned, {}, top),
-                         what + ", turned into the view's orientation by the true poses",
+         upscaled_figure(draw_amount(derotated, {}, top),
+                         what + ", rotated into the view's orientation by the true poses",
                          "derotated events") +
          "</div>\n";
 }

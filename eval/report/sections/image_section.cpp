@@ -27,7 +27,7 @@ std::string scores_row(double t_s, const std::optional<ImageScores>& s) {
       t_s, s->ssim, s->pearson, s->mse, s->gradient_pearson, 100 * s->observed, s->scale);
 }
 
-/// Deviation of the gradient in its least sure direction.
+/// Standard deviation of the gradient in its least sure direction.
 ImageF gradient_sigma(const ImageView& view) {
   ImageF sigma = view.covariance_xx;
   for (std::size_t i = 0; i < sigma.size(); ++i) {
@@ -60,10 +60,10 @@ std::string view_pictures(const ImageView& view, const Dataset& dataset, const I
     const float top = quantile(sigma, {}, 0.99);
     html += upscaled_figure(
         draw_amount(sigma, {}, top),
-        at + fmt::format("deviation of the gradient where it is least sure, 0 to {:.2g} "
+        at + fmt::format("standard deviation of the gradient where it is largest, 0 to {:.2g} "
                          "per px",
                          top),
-        "deviation of the gradient");
+        "standard deviation of the gradient");
   }
   return html + "</div>\n";
 }

@@ -20,7 +20,8 @@ namespace {
 std::string jump_cells(const std::vector<KeyframeJump>& jumps, double taken_s) {
   for (const KeyframeJump& jump : jumps)
     if (jump.t_s == taken_s)
-      return fmt::format("<td>{:.2f}</td><td>{:.3f}</td>", 1e3 * jump.position_m, jump.turn_deg);
+      return fmt::format("<td>{:.2f}</td><td>{:.3f}</td>", 1e3 * jump.position_m,
+                         jump.rotation_deg);
   return "<td>-</td><td>-</td>";
 }
 
@@ -55,10 +56,10 @@ std::string keyframe_table(const RunData& data, std::span<const KeyframeEntry> k
 std::string path_figure(const RunData& data, std::span<const KeyframeEntry> keyframes) {
   if (data.input.estimate.empty()) return "";
   const PathPicture path(data.input.truth, data.input.estimate, 640, 480, kLightTheme);
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::Vector3d> positions;
   for (const KeyframeEntry& keyframe : keyframes)
-    places.push_back(keyframe.world_from_camera.translation());
-  return figure(path.draw(data.input.estimate.end_s(), places),
+    positions.push_back(keyframe.world_from_camera.translation());
+  return figure(path.draw(data.input.estimate.end_s(), positions),
                 "The path from above: truth (grey), estimate (orange), keyframes (blue)",
                 "path from above");
 }

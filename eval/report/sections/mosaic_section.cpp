@@ -21,7 +21,7 @@ std::string scores_table(const Metrics& metrics) {
          cell("aligned.ssim") + cell("aligned.pearson") +
          fmt::format(
              "</tr></tbody></table></div>\n<p class=\"note\">The two alignments differ by "
-             "{} degrees; orientations are off by {} degrees RMS after the second. The "
+             "{} degrees; after the second the orientations have an error of {} degrees RMS. The "
              "mosaic spans {} fields of view by area, {} by width, and observed {} of what "
              "came into view.</p>\n",
              significant(metrics.get("mosaic.alignment.rotation_deg")),

@@ -120,8 +120,8 @@ std::string map_pictures(const RunData& data) {
   std::string html =
       "<h4>Map projected with the estimated pose, over the events</h4>"
       "<div class=\"grid three\">";
-  for (const double share : kMoments) {
-    const double t_s = start_s + share * length_s;
+  for (const double fraction : kMoments) {
+    const double t_s = start_s + fraction * length_s;
     const SensorView view(*data.data, t_s, t_s, {});
     const auto& map = data.keyframes ? data.keyframes->map_at(t_s) : data.map;
     html += figure(view.map_over_events(t_s, map, held_pose(data.input.estimate, t_s)),
@@ -197,10 +197,10 @@ std::string stages(const RunData& data) {
   if (!(total > 0)) return "";
   std::string bar, legend;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double share = 100 * parts[i].second / total;
-    bar += fmt::format("<i class=\"c{}\" style=\"width:{:.2f}%\"></i>", i % 6, share);
+    const double percent = 100 * parts[i].second / total;
+    bar += fmt::format("<i class=\"c{}\" style=\"width:{:.2f}%\"></i>", i % 6, percent);
     legend += fmt::format("<li><i class=\"c{}\"></i>{} {} ms ({:.0f} %)</li>", i % 6,
-                          escape_html(parts[i].first), significant(1e3 * parts[i].second), share);
+                          escape_html(parts[i].first), significant(1e3 * parts[i].second), percent);
   }
   const auto ms = [&](const char* key) {
     std::optional<double> v = speed_value(data.metrics, std::string("speed.") + key);

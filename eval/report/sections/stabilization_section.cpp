@@ -20,16 +20,16 @@ namespace {
 
 constexpr double kStabilizedMoments[] = {0.15, 0.5, 0.85};
 
-std::size_t index_at(double share, std::size_t count) {
-  return static_cast<std::size_t>(share * static_cast<double>(count - 1) + 0.5);
+std::size_t index_at(double fraction, std::size_t count) {
+  return static_cast<std::size_t>(fraction * static_cast<double>(count - 1) + 0.5);
 }
 
 std::string event_pictures(const std::filesystem::path& folder, const Dataset& dataset) {
   const StabilizedRun run = load_stabilized(folder);
   if (run.windows.empty()) return "";
   std::string html = "<h4>Events before and after stabilization</h4><div class=\"grid\">";
-  for (const double share : kStabilizedMoments) {
-    const std::size_t i = index_at(share, run.windows.size());
+  for (const double fraction : kStabilizedMoments) {
+    const std::size_t i = index_at(fraction, run.windows.size());
     const StabilizedWindow& window = run.windows[i];
     const WindowImages images = images_of(run, i, dataset);
     const float most = quantile(images.stabilized, {}, 0.99F);
@@ -49,8 +49,8 @@ std::string frame_pictures(const std::filesystem::path& folder, const Dataset& d
   const std::vector<StampedFile> files = read_file_list(folder / "images.txt");
   if (files.empty()) return "";
   std::string html = "<h4>Frames before and after stabilization</h4><div class=\"grid\">";
-  for (const double share : kStabilizedMoments) {
-    const StampedFile& file = files[index_at(share, files.size())];
+  for (const double fraction : kStabilizedMoments) {
+    const StampedFile& file = files[index_at(fraction, files.size())];
     for (std::size_t i = 0; i < dataset.frames().size(); ++i) {
       if (std::abs(dataset.frames()[i].t_s - file.t_s) > 1e-6) continue;
       const std::string at = fmt::format("{:.3f} s: ", file.t_s);
