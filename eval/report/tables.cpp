@@ -22,12 +22,6 @@ using Cell = Table::Cell;
 using Row = std::vector<Cell>;
 using Number = std::optional<double>;
 
-/// A number as `text`, with what stands small below it.
-Cell number_cell(const Number& value, const std::string& text, const std::string& note = "") {
-  if (!value) return {text, {}, note};
-  return {text, PooledValue{.mean = *value}, note};
-}
-
 /// The thesis's number as it is printed there; nothing where it has none.
 std::string printed(const Number& thesis) {
   return thesis ? fmt::format("{:.{}f}", *thesis, *thesis < 10 ? 1 : 0) : "";
@@ -85,10 +79,6 @@ bool has_any(std::span<const RunData> runs, std::string_view prefix) {
       return metric.first.starts_with(prefix) && metric.second;
     });
   });
-}
-
-void add_columns(Table& table, std::initializer_list<const char*> titles) {
-  for (const char* title : titles) table.columns.push_back({title, true});
 }
 
 std::string section(const char* id, const char* heading, const std::string& text,
@@ -172,9 +162,9 @@ std::string accuracy_table(std::span<const RunData> runs) {
   if (!has_any(runs, "trajectory.")) return "";
   Table table{"accuracy", "Errors of the poses, without alignment", {{"run"}}};
   const bool with_refined = has_any(runs, "refined_ratio.trajectory.");
-  add_columns(table, {"dt_rel [%]: mean", "σ", "max", "RMSE", "better by", "dtheta [deg]: mean",
-                      "σ", "max", "RMSE", "better by", "coverage [%]"});
-  if (with_refined) add_columns(table, {kRefined});
+  table.add_numeric({"dt_rel [%]: mean", "σ", "max", "RMSE", "better by", "dtheta [deg]: mean", "σ",
+                     "max", "RMSE", "better by", "coverage [%]"});
+  if (with_refined) table.add_numeric({kRefined});
   for (const RunData& data : runs) {
     if (!data.metrics.get("trajectory.poses")) continue;
     Row& row = table.rows.emplace_back();
@@ -202,7 +192,7 @@ std::string depth_table(std::span<const RunData> runs) {
   add_columns(table,
               {"median [%]", "mean [%]", "over 5 % [%]", "strict median [%]", "strict mean [%]",
                "complete [%]", "points per view", "within 1 σ [%]", "within 2 σ [%]"});
-  if (with_refined) add_columns(table, {kRefined});
+  if (with_refined) table.add_numeric({kRefined});
   for (const RunData& data : runs)
     if (data.metrics.get("depth.points")) table.rows.push_back(depth_row(data, with_refined));
   return section("depth", "Depth",
@@ -226,8 +216,8 @@ std::string dataset_table(std::span<const RunData> runs) {
 std::string speed_table(std::span<const RunData> runs) {
   if (!has_any(runs, "speed.")) return "";
   Table table{"speed", "Time without reading and writing files", {{"run"}}};
-  add_columns(table, {"time [ms]", "events/s [M]", "faster by", "poses/s", "faster by",
-                      "× real time", "threads"});
+  table.add_numeric(
+      {"time [ms]", "events/s [M]", "faster by", "poses/s", "faster by", "× real time", "threads"});
   for (const RunData& data : runs)
     if (speed_value(data.metrics, "speed.wall_s")) table.rows.push_back(speed_row(data));
   return section("speed", "Speed",

@@ -122,6 +122,16 @@ std::vector<std::vector<std::string>> text_rows(const Table& table) {
 
 }  // namespace
 
+void Table::add_numeric(std::initializer_list<const char*> titles) {
+  for (const char* title : titles) columns.push_back({title, true});
+}
+
+Table::Cell number_cell(const std::optional<double>& value, const std::string& text,
+                        const std::string& note) {
+  if (!value) return {text.empty() ? "–" : text, {}, note};
+  return {text, PooledValue{.mean = *value}, note};
+}
+
 void Table::add(const std::vector<std::string>& cells) {
   SACCADE_CHECK(cells.size() == columns.size());
   std::vector<Cell>& row = rows.emplace_back();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,9 +44,15 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows = {};  ///< as many cells as columns (contract)
 
+  /// Appends numeric columns.
+  void add_numeric(std::initializer_list<const char*> titles);
   /// Appends a row of plain text.
   void add(const std::vector<std::string>& cells);
 };
+
+/// A number, shown as `text` or with three digits where that is empty; a dash without the number.
+[[nodiscard]] Table::Cell number_cell(const std::optional<double>& value,
+                                      const std::string& text = {}, const std::string& note = {});
 
 /// For a terminal: columns as wide as their widest cell with two spaces between them, without the
 /// caption, and without the row of titles where all of them are empty.

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/time_search.h"
+
 namespace saccade {
 
 std::vector<KeyframeJump> keyframe_jumps(std::span<const KeyframeEntry> keyframes,
@@ -15,11 +17,9 @@ std::vector<KeyframeJump> keyframe_jumps(std::span<const KeyframeEntry> keyframe
     return input.truth.at_clamped(pose.t_s).inverse() * pose.world_from_camera;
   };
   for (const KeyframeEntry& keyframe : keyframes) {
-    const auto after =
-        std::upper_bound(poses.begin(), poses.end(), keyframe.taken_s,
-                         [](double t_s, const StampedPose& pose) { return t_s < pose.t_s; });
-    if (after == poses.begin() || after == poses.end()) continue;
-    const Rigid3 jump = error(*std::prev(after)).inverse() * error(*after);
+    const std::size_t after = count_until(poses, keyframe.taken_s, &StampedPose::t_s);
+    if (after == 0 || after == poses.size()) continue;
+    const Rigid3 jump = error(poses[after - 1]).inverse() * error(poses[after]);
     jumps.push_back(
         {keyframe.taken_s, jump.translation().norm(),
          angle_between(jump.rotation(), Eigen::Quaterniond::Identity()) * 180 / std::numbers::pi});

@@ -15,11 +15,6 @@ namespace {
 using Verdict = GateRow::Verdict;
 using Mark = Table::Mark;
 
-Table::Cell number_cell(const std::optional<double>& value) {
-  if (!value) return {"–", {}};
-  return {"", PooledValue{*value, {}, {}, 1}};
-}
-
 Mark mark_of(const GateRow& row) {
   if (row.verdict == Verdict::kSame) return Mark::kNone;
   return row.verdict == Verdict::kImproved ? Mark::kBetter : Mark::kWorse;
@@ -34,10 +29,6 @@ Table::Cell change_cell(const GateRow& row) {
     percent.high = 100 * *row.high;
   }
   return {"", percent};
-}
-
-Table::Cell count_cell(std::size_t count) {
-  return {std::to_string(count), PooledValue{static_cast<double>(count), {}, {}, 1}};
 }
 
 Table::Cell verdict_cell(const GateRow& row) {
@@ -83,7 +74,7 @@ Table against_table(const Sides& sides) {
   for (const GateRow& row : sides.result.rows)
     table.rows.push_back({{row.scope, {}},
                           {row.metric, {}},
-                          count_cell(row.pairs),
+                          number_cell(static_cast<double>(row.pairs), std::to_string(row.pairs)),
                           number_cell(row.before),
                           number_cell(row.after),
                           change_cell(row),

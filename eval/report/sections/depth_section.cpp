@@ -1,4 +1,4 @@
-#include "eval/report/sections/depth_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,7 @@
 #include "eval/picture/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
@@ -30,22 +31,21 @@ std::string percent(const Metrics& metrics, const char* key, int decimals = 2) {
   return fixed(value, decimals);
 }
 
-std::string views_table(const std::vector<DepthErrors>& views) {
-  std::string html =
-      "<div class=\"scroll\"><table><thead><tr><th>view [s]</th><th>points</th>"
-      "<th>median [%]</th><th>mean [%]</th><th>over 5 % [%]</th><th>strict median [%]</th>"
-      "<th>strict mean [%]</th><th>completeness [%]</th><th>within 1 sigma [%]</th>"
-      "<th>within 2 sigma [%]</th></tr></thead><tbody>\n";
+std::string views_table(const RunData& data, const std::vector<DepthErrors>& views) {
+  Table table{data.id + "_depth_views", "Depth, view by view"};
+  table.add_numeric({"view [s]", "points", "median [%]", "mean [%]", "over 5 % [%]",
+                     "strict median [%]", "strict mean [%]", "completeness [%]",
+                     "within 1 sigma [%]", "within 2 sigma [%]"});
   for (const DepthErrors& view : views) {
     const Metrics m = view_scores(view);
-    html += fmt::format("<tr><td>{:.3f}</td><td>{}</td>", view.t_s,
-                        grouped(static_cast<double>(view.points)));
+    const auto points = static_cast<double>(view.points);
+    auto& row = table.rows.emplace_back();
+    row = {number_cell(view.t_s, fixed(view.t_s, 3)), number_cell(points, grouped(points))};
     for (const char* key : {"rel_median", "rel_mean", "outlier_5_percent", "strict.rel_median",
                             "strict.rel_mean", "completeness", "within_1_sigma", "within_2_sigma"})
-      html += fmt::format("<td>{}</td>", percent(m, key));
-    html += "</tr>\n";
+      row.push_back(number_cell(m.get(key), percent(m, key)));
   }
-  return html + "</tbody></table></div>\n";
+  return table_html(table);
 }
 
 /// By mean relative error; views without a point come last.
@@ -130,7 +130,7 @@ std::string depth_section(const RunData& data) {
   const std::vector<EstimatedView> views = load_depth_views(data.run.folder);
   if (views.empty()) return "";
   const std::vector<DepthErrors> errors = compare_views(views, *data.data);
-  std::string html = "<h4>Depth</h4>" + views_table(errors) +
+  std::string html = views_table(data, errors) +
                      "<p class=\"note\">Relative errors against the best pixel of the 3 x 3 around "
                      "a point; strict: at its exact position.</p>";
   const std::vector<std::size_t> order = from_best_to_worst(errors);

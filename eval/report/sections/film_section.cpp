@@ -1,4 +1,4 @@
-#include "eval/report/sections/film_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 #include <algorithm>

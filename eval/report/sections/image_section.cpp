@@ -1,4 +1,4 @@
-#include "eval/report/sections/image_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 
@@ -15,16 +15,24 @@
 #include "eval/picture/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
 
-std::string scores_row(double t_s, const std::optional<ImageScores>& s) {
-  if (!s) return fmt::format("<tr><td>{:.3f}</td><td colspan=\"6\">no truth</td></tr>\n", t_s);
-  return fmt::format(
-      "<tr><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.4f}</td><td>{:.3f}</td>"
-      "<td>{:.1f}</td><td>{:.3f}</td></tr>\n",
-      t_s, s->ssim, s->pearson, s->mse, s->gradient_pearson, 100 * s->observed, s->scale);
+std::vector<Table::Cell> scores_row(double t_s, const std::optional<ImageScores>& s) {
+  std::vector<Table::Cell> row{number_cell(t_s, fixed(t_s, 3))};
+  const auto add = [&](double ImageScores::*member, double scale, int decimals) {
+    const auto value = s ? std::optional(scale * ((*s).*member)) : std::nullopt;
+    row.push_back(number_cell(value, fixed(value, decimals)));
+  };
+  add(&ImageScores::ssim, 1, 3);
+  add(&ImageScores::pearson, 1, 3);
+  add(&ImageScores::mse, 1, 4);
+  add(&ImageScores::gradient_pearson, 1, 3);
+  add(&ImageScores::observed, 100, 1);
+  add(&ImageScores::scale, 1, 3);
+  return row;
 }
 
 /// Standard deviation of the gradient in its least sure direction.
@@ -86,21 +94,20 @@ std::string image_section(const RunData& data) {
   if (!data.data) return "";
   const std::vector<ImageView> views = load_image_views(data.run.folder);
   if (views.empty()) return "";
-  std::string html =
-      "<h4>Images</h4><div class=\"scroll\"><table><thead><tr><th>view [s]</th><th>SSIM</th>"
-      "<th>Pearson</th><th>MSE</th><th>Pearson of |gradient|</th><th>observed [%]</th>"
-      "<th>scale of the fit</th></tr></thead><tbody>\n";
+  Table table{data.id + "_images", "Images, view by view"};
+  table.add_numeric({"view [s]", "SSIM", "Pearson", "MSE", "Pearson of |gradient|", "observed [%]",
+                     "scale of the fit"});
   std::optional<std::size_t> worst;
   std::vector<std::optional<ImageComparison>> comparisons;
   std::vector<std::optional<ImageScores>> scores;
   for (const ImageView& view : views) {
     comparisons.push_back(compare_image(view, *data.data));
     scores.push_back(comparisons.back() ? score_image(*comparisons.back()) : std::nullopt);
-    html += scores_row(view.t_s, scores.back());
+    table.rows.push_back(scores_row(view.t_s, scores.back()));
     const std::size_t i = scores.size() - 1;
     if (scores[i] && (!worst || scores[i]->ssim < scores[*worst]->ssim)) worst = i;
   }
-  html += "</tbody></table></div>\n";
+  std::string html = table_html(table);
   if (worst) html += view_pictures(views[*worst], *data.data, *comparisons[*worst]);
   return html + growth_pictures(data.run.folder, kUpscale);
 }

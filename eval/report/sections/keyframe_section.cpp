@@ -1,7 +1,10 @@
-#include "eval/report/sections/keyframe_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,18 +15,10 @@
 #include "eval/picture/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
-
-/// The jump at a keyframe's taking as two cells; dashes where there is none.
-std::string jump_cells(const std::vector<KeyframeJump>& jumps, double taken_s) {
-  for (const KeyframeJump& jump : jumps)
-    if (jump.t_s == taken_s)
-      return fmt::format("<td>{:.2f}</td><td>{:.3f}</td>", 1e3 * jump.position_m,
-                         jump.rotation_deg);
-  return "<td>-</td><td>-</td>";
-}
 
 std::string active_list(const KeyframeEntry& keyframe) {
   std::string list;
@@ -34,22 +29,29 @@ std::string active_list(const KeyframeEntry& keyframe) {
 
 std::string keyframe_table(const RunData& data, std::span<const KeyframeEntry> keyframes) {
   const std::vector<KeyframeJump> jumps = keyframe_jumps(keyframes, data.input);
-  std::string html =
-      "<h4>Keyframes</h4><div class=\"scroll\"><table><thead><tr><th></th><th>view [s]</th>"
-      "<th>made until [s]</th><th>taken at [s]</th><th>events</th><th>points</th><th>edges</th>"
-      "<th>median depth [m]</th><th>map</th><th>jump [mm]</th><th>jump [deg]</th></tr></thead>"
-      "<tbody>\n";
+  Table table{data.id + "_keyframes", "Keyframes"};
+  table.add_numeric({"keyframe", "view [s]", "made until [s]", "taken at [s]", "events", "points",
+                     "edges", "median depth [m]", "map", "jump [mm]", "jump [deg]"});
+  table.columns[8].numeric = false;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyframeEntry& k = keyframes[i];
-    html += fmt::format(
-        "<tr><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{}</td><td>{}</td>"
-        "<td>{}</td><td>{:.2f}</td><td>{}</td>{}</tr>\n",
-        i, k.t_s, k.made_s, k.taken_s, grouped(static_cast<double>(k.events)),
-        grouped(static_cast<double>(k.points)), grouped(static_cast<double>(k.edges)),
-        k.typical_depth_m, active_list(k), jump_cells(jumps, k.taken_s));
+    auto& row = table.rows.emplace_back();
+    const auto add = [&](const std::optional<double>& value, int decimals) {
+      row.push_back(number_cell(value, decimals == 0 ? grouped(value) : fixed(value, decimals)));
+    };
+    add(static_cast<double>(i), 0);
+    for (const double t_s : {k.t_s, k.made_s, k.taken_s}) add(t_s, 3);
+    for (const auto count : {k.events, k.points, k.edges}) add(static_cast<double>(count), 0);
+    add(k.typical_depth_m, 2);
+    row.push_back({active_list(k)});
+    const auto jump = std::find_if(jumps.begin(), jumps.end(),
+                                   [&](const KeyframeJump& each) { return each.t_s == k.taken_s; });
+    const bool has_jump = jump != jumps.end();
+    add(has_jump ? std::optional(1e3 * jump->position_m) : std::nullopt, 2);
+    add(has_jump ? std::optional(jump->rotation_deg) : std::nullopt, 3);
   }
-  return html +
-         "</tbody></table></div><p class=\"note\">Map: the keyframes whose edges are tracked from "
+  return table_html(table) +
+         "<p class=\"note\">Map: the keyframes whose edges are tracked from "
          "then on. Jump: change of the pose&rsquo;s error where the keyframe is taken.</p>\n";
 }
 

@@ -1,11 +1,10 @@
-#include "eval/report/sections/mosaic_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 
 #include "eval/mosaic_view.h"
 #include "eval/picture/mosaic_picture.h"
 #include "eval/report/html.h"
-#include "eval/report/sections/image_section.h"
 #include "eval/table/number_text.h"
 
 namespace saccade {

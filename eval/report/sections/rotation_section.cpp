@@ -1,11 +1,11 @@
-#include "eval/report/sections/rotation_section.h"
+#include "eval/report/sections/module_sections.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <vector>
 
 #include "core/io/trajectory_file.h"
+#include "core/time_search.h"
 #include "eval/picture/line_chart.h"
 #include "eval/report/html.h"
 
@@ -29,11 +29,9 @@ std::vector<LineChart::Point> line(std::span<const StampedTwist> rates, int axis
 /// Those between the first and the last estimate.
 std::span<const StampedTwist> during(std::span<const StampedTwist> truth,
                                      const std::vector<StampedTwist>& estimate) {
-  const auto first_after = [&](double t_s) {
-    return std::partition_point(truth.begin(), truth.end(),
-                                [t_s](const StampedTwist& one) { return one.t_s < t_s; });
-  };
-  return {first_after(estimate.front().t_s), first_after(estimate.back().t_s)};
+  const std::size_t first = count_before(truth, estimate.front().t_s, &StampedTwist::t_s);
+  const std::size_t end = count_before(truth, estimate.back().t_s, &StampedTwist::t_s);
+  return truth.subspan(first, end - first);
 }
 
 }  // namespace

@@ -12,14 +12,7 @@
 #include "eval/picture/sensor_view.h"
 #include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
-#include "eval/report/sections/depth_section.h"
-#include "eval/report/sections/film_section.h"
-#include "eval/report/sections/image_section.h"
-#include "eval/report/sections/keyframe_section.h"
-#include "eval/report/sections/mosaic_section.h"
-#include "eval/report/sections/rotation_section.h"
-#include "eval/report/sections/stabilization_section.h"
-#include "eval/report/sections/step_section.h"
+#include "eval/report/sections/module_sections.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
@@ -132,15 +125,9 @@ std::string map_pictures(const RunData& data) {
   return html + "</div>\n";
 }
 
-Table::Cell number_cell(const std::optional<double>& value, const std::string& text) {
-  if (!value) return {text};
-  return {text, PooledValue{.mean = *value}};
-}
-
 std::string alignment_table(const RunData& data) {
   Table table{data.id + "_alignments", "All poses, after alignment", {{"alignment"}}};
-  for (const char* title : {"ATE RMSE [mm]", "rotation RMSE [deg]", "scale"})
-    table.columns.push_back({title, true});
+  table.add_numeric({"ATE RMSE [mm]", "rotation RMSE [deg]", "scale"});
   for (const auto& [key, name] :
        {std::pair{"none", "none"}, {"se3", "SE(3)"}, {"sim3", "Sim(3)"}}) {
     const std::string prefix = std::string("trajectory.") + key;
@@ -158,8 +145,7 @@ std::string alignment_table(const RunData& data) {
 std::string relative_table(const RunData& data) {
   Table table{
       data.id + "_relative", "Relative errors over parts of the path", {{"part of the path"}}};
-  for (const char* title : {"translation [%]", "rotation [deg/m]"})
-    table.columns.push_back({title, true});
+  table.add_numeric({"translation [%]", "rotation [deg/m]"});
   for (int percent = 10; percent <= 50; percent += 10) {
     const std::string key = fmt::format("trajectory.rpe.length_{}_percent", percent);
     const auto translation = data.metrics.get(key + ".trans_percent");

@@ -1,4 +1,4 @@
-#include "eval/report/sections/stabilization_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <fmt/format.h>
 

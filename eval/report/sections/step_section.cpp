@@ -1,4 +1,4 @@
-#include "eval/report/sections/step_section.h"
+#include "eval/report/sections/module_sections.h"
 
 #include <vector>
 

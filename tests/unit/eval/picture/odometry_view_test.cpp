@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "core/io/image_file.h"
-#include "eval/report/sections/keyframe_section.h"
+#include "eval/report/sections/module_sections.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {

@@ -12,7 +12,7 @@
 #include "eval/picture/derotation_picture.h"
 #include "eval/picture/render.h"
 #include "eval/picture/step_pictures.h"
-#include "eval/report/sections/step_section.h"
+#include "eval/report/sections/module_sections.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
 #include "tests/unit/eval/fake_folders.h"
