@@ -10,7 +10,7 @@ namespace saccade {
 struct ReportOptions {
   std::string title = "saccade report";
   std::string command;  ///< command line that makes the page, for its readers; empty: not stated
-  /// Scores of other methods for the leaderboard (eval/published_rows.h); empty: none.
+  /// Scores of other methods for the leaderboard (eval/report/reference/published_rows.h); empty: none.
   std::filesystem::path published;
   /// Run folders that did the same work before, or with another configuration
   /// (eval/report/sides.h); empty: none.

@@ -189,9 +189,9 @@ std::string depth_table(std::span<const RunData> runs) {
   if (!has_any(runs, "depth.")) return "";
   Table table{"depth", "Relative errors of depth, over all views", {{"run"}}};
   const bool with_refined = has_any(runs, "refined_ratio.depth.");
-  add_columns(table,
-              {"median [%]", "mean [%]", "over 5 % [%]", "strict median [%]", "strict mean [%]",
-               "complete [%]", "points per view", "within 1 σ [%]", "within 2 σ [%]"});
+  table.add_numeric({"median [%]", "mean [%]", "over 5 % [%]", "strict median [%]",
+                     "strict mean [%]", "complete [%]", "points per view", "within 1 σ [%]",
+                     "within 2 σ [%]"});
   if (with_refined) table.add_numeric({kRefined});
   for (const RunData& data : runs)
     if (data.metrics.get("depth.points")) table.rows.push_back(depth_row(data, with_refined));
@@ -204,8 +204,8 @@ std::string depth_table(std::span<const RunData> runs) {
 
 std::string dataset_table(std::span<const RunData> runs) {
   Table table{"datasets", "Length and content of the datasets", {{"dataset"}}};
-  add_columns(table,
-              {"events [M]", "duration [s]", "mean depth [m]", "path length [m]", "path / depth"});
+  table.add_numeric(
+      {"events [M]", "duration [s]", "mean depth [m]", "path length [m]", "path / depth"});
   std::set<std::string> shown;
   for (const RunData& data : runs)
     if (shown.insert(data.dataset).second) table.rows.push_back(dataset_row(data));

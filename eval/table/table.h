@@ -41,7 +41,7 @@ struct Table {
 
   std::string name = {};     ///< of its files, without extension; only export_tables() needs one
   std::string caption = {};  ///< plain text
-  std::vector<Column> columns;
+  std::vector<Column> columns = {};
   std::vector<std::vector<Cell>> rows = {};  ///< as many cells as columns (contract)
 
   /// Appends numeric columns.

@@ -10,7 +10,7 @@
 namespace saccade {
 
 /// Error against speed on a sequence, or with an empty name over all of a board's
-/// (eval/report/pareto.h), with the Pareto front: a chart for each board but the speed's on which
+/// (eval/report/charts/pareto.h), with the Pareto front: a chart for each board but the speed's on which
 /// two methods or more have both. A board of a single sequence is drawn as the mean alone.
 [[nodiscard]] std::vector<PageChart> compared_speed(std::span<const Leaderboard> boards,
                                                     const std::string& sequence,

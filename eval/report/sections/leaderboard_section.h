@@ -11,7 +11,7 @@
 namespace saccade {
 
 /// The runs' methods against sequences. `published`: file of scores of other methods
-/// (eval/published_rows.h), of which those on the runs' sequences are taken, or empty. Throws
+/// (eval/report/reference/published_rows.h), of which those on the runs' sequences are taken, or empty. Throws
 /// InputError as read_published_rows().
 [[nodiscard]] std::vector<Leaderboard> leaderboards_of(std::span<const RunData> runs,
                                                        const std::filesystem::path& published);
