@@ -52,7 +52,7 @@ EventGaps gaps_of(std::span<const Event> events, SensorSize size) {
     before = event;
   }
   if (all_us.empty()) return gaps;
-  gaps.opposite_share = static_cast<double>(opposite) / static_cast<double>(all_us.size());
+  gaps.opposite_fraction = static_cast<double>(opposite) / static_cast<double>(all_us.size());
   std::sort(all_us.begin(), all_us.end());
   gaps.shortest_us = all_us.front();
   gaps.floor_us = all_us[all_us.size() / 1000];
@@ -82,7 +82,7 @@ PixelRates pixel_rates(const PixelCounts& counts, SensorSize size, double durati
   std::vector<double>& all = rates.ascending_hz;
   std::sort(all.begin(), all.end());
   const auto silent = std::distance(all.begin(), std::upper_bound(all.begin(), all.end(), 0.0));
-  rates.silent_share = static_cast<double>(silent) / static_cast<double>(all.size());
+  rates.silent_fraction = static_cast<double>(silent) / static_cast<double>(all.size());
   rates.hot_pixels = hot_pixels(counts, size);
   return rates;
 }
@@ -102,7 +102,7 @@ void mark_supported(std::span<const std::size_t> order, std::span<const Event> e
   }
 }
 
-double isolated_share(std::span<const Event> events, SensorSize size) {
+double isolated_fraction(std::span<const Event> events, SensorSize size) {
   std::vector<std::size_t> order(events.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<bool> supported(events.size());
@@ -129,8 +129,8 @@ NoiseSigns noise_signs(std::span<const Event> events, const PixelCounts& counts,
         }
     }
   NoiseSigns noise;
-  noise.isolated_share = isolated_share(events, size);
-  noise.isolated_hz = noise.isolated_share * static_cast<double>(events.size()) / duration_s /
+  noise.isolated_fraction = isolated_fraction(events, size);
+  noise.isolated_hz = noise.isolated_fraction * static_cast<double>(events.size()) / duration_s /
                       static_cast<double>(counts.on.size());
   if (blocks.empty()) return noise;
   std::stable_sort(blocks.begin(), blocks.end(),
@@ -172,7 +172,7 @@ StreamStatistics stream_statistics(std::span<const Event> events, SensorSize siz
   return {.events = events.size(),
           .duration_s = duration_s,
           .pixel_rate_hz = all / duration_s / static_cast<double>(counts.on.size()),
-          .on_share = static_cast<double>(on) / all,
+          .on_fraction = static_cast<double>(on) / all,
           .rates = rates_over_time(events, rate_bin_s),
           .gaps = gaps_of(events, size),
           .pixels = pixel_rates(counts, size, duration_s),

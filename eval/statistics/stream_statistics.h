@@ -14,7 +14,7 @@ namespace saccade {
 struct EventGaps {
   LogHistogram same;      ///< next of the same polarity [us]
   LogHistogram opposite;  ///< next of the other polarity [us]
-  double opposite_share = 0;
+  double opposite_fraction = 0;
   double shortest_us = 0;
   double floor_us = 0;   ///< one gap in a thousand is shorter: the blind time, where it shows
   double median_us = 0;  ///< these four are 0 where no pixel has two events
@@ -23,7 +23,7 @@ struct EventGaps {
 /// How the events are spread over the pixels.
 struct PixelRates {
   std::vector<double> ascending_hz;  ///< events/s of every pixel
-  double silent_share = 0;           ///< of the pixels, without any event
+  double silent_fraction = 0;        ///< of the pixels, without any event
   /// Pixels with at least 10 events and more than five times as many as the neighbours' median + 1.
   std::size_t hot_pixels = 0;
 };
@@ -31,7 +31,7 @@ struct PixelRates {
 /// Noise, as far as it can be told from a recording of a moving camera.
 struct NoiseSigns {
   /// Fraction of events with none in the eight neighbouring pixels within 5 ms before or after.
-  double isolated_share = 0;
+  double isolated_fraction = 0;
   double isolated_hz = 0;  ///< of a pixel, mean
   /// Mean rates of a pixel in the quietest tenth of all blocks of 10 x 10 pixels [1/s]: an upper
   /// end of the noise where textureless parts stay in view, but counts of a short recording scatter
@@ -53,7 +53,7 @@ struct StreamStatistics {
   std::size_t events = 0;
   double duration_s = 0;     ///< first to last event
   double pixel_rate_hz = 0;  ///< events/s of a pixel, mean
-  double on_share = 0;
+  double on_fraction = 0;
   std::vector<RateBin> rates;  ///< of consecutive bins; the last one, not full, is left out
   EventGaps gaps;
   PixelRates pixels;

@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::pair kShares{0.0, 100.0};
+constexpr std::pair kPercent{0.0, 100.0};
 
 /// The runs of one method, in the style that it has everywhere.
 struct MethodRuns {
@@ -40,8 +40,8 @@ PageChart over_time(std::span<const MethodRuns> methods, const TimedError& error
 }
 
 /// Adds the distribution of the values of all runs of each method that has any.
-void add_shares(PageChart& chart, std::span<const MethodRuns> methods,
-                const std::function<std::vector<double>(const RunData&)>& values) {
+void add_distributions(PageChart& chart, std::span<const MethodRuns> methods,
+                       const std::function<std::vector<double>(const RunData&)>& values) {
   for (const MethodRuns& method : methods) {
     std::vector<double> pool;
     for (const RunData* run : method.runs) {
@@ -49,20 +49,20 @@ void add_shares(PageChart& chart, std::span<const MethodRuns> methods,
       pool.insert(pool.end(), own.begin(), own.end());
     }
     ChartCurve curve = method.style;
-    curve.points = shares_at_most(std::move(pool));
+    curve.points = cumulative_percent(std::move(pool));
     if (!curve.points.x.empty()) chart.curves.push_back(std::move(curve));
   }
 }
 
-PageChart shares_of_time(std::span<const MethodRuns> methods, const TimedError& error) {
+PageChart distribution_over_time(std::span<const MethodRuns> methods, const TimedError& error) {
   const std::string& sequence = methods.front().runs.front()->dataset;
   PageChart chart{fmt::format("{}/{}/shares", sequence, error.id),
-                  "Share of the time with at most this " + error.label,
+                  "Fraction of the time with at most this " + error.label,
                   fmt::format("{}: {}, cumulative", sequence, error.label),
                   {error.axis(), true},
-                  {"share of the time [%]", false, kShares},
+                  {"fraction of the time [%]", false, kPercent},
                   {}};
-  add_shares(chart, methods, [&](const RunData& run) { return error.values_of(run); });
+  add_distributions(chart, methods, [&](const RunData& run) { return error.values_of(run); });
   return chart;
 }
 
@@ -75,15 +75,15 @@ std::vector<double> relative_depth_errors(const RunData& run) {
   return values;
 }
 
-PageChart shares_of_points(std::span<const MethodRuns> methods) {
+PageChart distribution_over_points(std::span<const MethodRuns> methods) {
   const std::string& sequence = methods.front().runs.front()->dataset;
   PageChart chart{sequence + "/depth/shares",
-                  "Share of the points with at most this error of depth",
+                  "Fraction of the points with at most this error of depth",
                   sequence + ": relative error of depth, cumulative",
                   {"relative error of depth [%]", true},
-                  {"share of the points [%]", false, kShares},
+                  {"fraction of the points [%]", false, kPercent},
                   {}};
-  add_shares(chart, methods, relative_depth_errors);
+  add_distributions(chart, methods, relative_depth_errors);
   return chart;
 }
 
@@ -96,9 +96,9 @@ std::vector<PageChart> compared_errors(std::span<const RunData* const> runs,
   if (methods.size() < 2) return charts;
   for (const TimedError& error : timed_errors(runs)) {
     charts.push_back(over_time(methods, error));
-    charts.push_back(shares_of_time(methods, error));
+    charts.push_back(distribution_over_time(methods, error));
   }
-  charts.push_back(shares_of_points(methods));
+  charts.push_back(distribution_over_points(methods));
   std::erase_if(charts, [](const PageChart& chart) { return chart.curves.size() < 2; });
   return charts;
 }

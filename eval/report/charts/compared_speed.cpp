@@ -27,7 +27,7 @@ ChartCurve front_curve(std::span<const SpeedAndScore> points, bool higher_is_bet
 PageChart speed_chart(const Leaderboard& board, std::span<const SpeedAndScore> points,
                       const std::string& sequence, const MethodStyles& styles) {
   const std::string scope = scope_of(board, sequence);
-  // A score of which more is better is a share or an index, an error may differ by decades.
+  // A score of which more is better is a fraction or an index, an error may differ by decades.
   PageChart chart{fmt::format("{}/{}/speed", sequence, board.key),
                   fmt::format("{}, {}", board.label, scope),
                   fmt::format("{} against speed, {}", board.label, scope),

@@ -44,14 +44,14 @@ CurvePoints thinned(std::span<const double> t_s, std::span<const double> values,
   return points;
 }
 
-CurvePoints shares_at_most(std::vector<double> values) {
+CurvePoints cumulative_percent(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   std::sort(values.begin(), values.end());
   CurvePoints points;
   for (std::size_t percent = 1; percent <= 100 && !values.empty(); ++percent) {
     // The least value that so many of a hundred do not exceed.
     const double value = five_digits(values[(percent * values.size() + 99) / 100 - 1]);
-    // uPlot asks for ascending x: of equal values the largest share holds.
+    // uPlot asks for ascending x: of equal values the largest fraction counts.
     if (!points.x.empty() && points.x.back() == value)
       points.y.back() = static_cast<double>(percent);
     else if (value > 0)

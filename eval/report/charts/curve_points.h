@@ -27,8 +27,8 @@ struct CurvePoints {
 [[nodiscard]] CurvePoints thinned(std::span<const double> t_s, std::span<const double> values,
                                   std::size_t most);
 
-/// Over x, the share [%] of the values that are at most x, at 0, 1, ..., 100 %. For an axis of
+/// Over x, the fraction [%] of the values that are at most x, at 0, 1, ..., 100 %. For an axis of
 /// logarithms: what is not above 0 counts, but has no point.
-[[nodiscard]] CurvePoints shares_at_most(std::vector<double> values);
+[[nodiscard]] CurvePoints cumulative_percent(std::vector<double> values);
 
 }  // namespace saccade

@@ -25,8 +25,8 @@ TEST(StreamStatistics, CountsByHand) {
   EXPECT_EQ(s.events, 5U);
   EXPECT_DOUBLE_EQ(s.duration_s, 0.01);
   EXPECT_DOUBLE_EQ(s.pixel_rate_hz, 5 / 0.01 / 600);
-  EXPECT_DOUBLE_EQ(s.on_share, 0.8);
-  EXPECT_DOUBLE_EQ(s.pixels.silent_share, 597.0 / 600);
+  EXPECT_DOUBLE_EQ(s.on_fraction, 0.8);
+  EXPECT_DOUBLE_EQ(s.pixels.silent_fraction, 597.0 / 600);
   ASSERT_EQ(s.pixels.ascending_hz.size(), 600U);
   EXPECT_DOUBLE_EQ(s.pixels.ascending_hz[598], 100);
   EXPECT_DOUBLE_EQ(s.pixels.ascending_hz[599], 300);
@@ -37,7 +37,7 @@ TEST(StreamStatistics, GapsAreThoseOfOnePixel) {
   EXPECT_DOUBLE_EQ(gaps.shortest_us, 3000);
   EXPECT_DOUBLE_EQ(gaps.floor_us, 3000);
   EXPECT_DOUBLE_EQ(gaps.median_us, 7000);
-  EXPECT_DOUBLE_EQ(gaps.opposite_share, 0.5);
+  EXPECT_DOUBLE_EQ(gaps.opposite_fraction, 0.5);
   const LogHistogram& same = gaps.same;
   const LogHistogram& opposite = gaps.opposite;
   for (std::size_t i = 0; i < same.bins(); ++i) {
@@ -59,7 +59,7 @@ TEST(StreamStatistics, RatesOfWholeBins) {
 TEST(StreamStatistics, AnEventIsIsolatedWithoutANeighboursWithinFiveMilliseconds) {
   // The lone pixel's event, and the one 6 ms after its neighbour's. A pixel's own do not count.
   const NoiseSigns noise = stream_statistics(five_events(), {30, 20}).noise;
-  EXPECT_DOUBLE_EQ(noise.isolated_share, 0.4);
+  EXPECT_DOUBLE_EQ(noise.isolated_fraction, 0.4);
   EXPECT_DOUBLE_EQ(noise.isolated_hz, 2 / 0.01 / 600);
 }
 

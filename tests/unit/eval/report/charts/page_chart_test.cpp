@@ -28,7 +28,7 @@ TEST(CurvePoints, KeepTheExtremesOfEveryStretch) {
 TEST(CurvePoints, SharesAscendToAHundredPercent) {
   std::vector<double> values;
   for (int i = 200; i >= 0; --i) values.push_back(i);
-  const CurvePoints points = shares_at_most(values);
+  const CurvePoints points = cumulative_percent(values);
   EXPECT_EQ(points.x.front(), 2) << "0 has no logarithm";
   EXPECT_EQ(points.y.front(), 1);
   EXPECT_EQ(points.x[49], 100);
@@ -38,12 +38,12 @@ TEST(CurvePoints, SharesAscendToAHundredPercent) {
 }
 
 TEST(CurvePoints, OfEqualValuesTheLargestShareHolds) {
-  const CurvePoints points = shares_at_most({3, 1, 1, 1, 1});
+  const CurvePoints points = cumulative_percent({3, 1, 1, 1, 1});
   EXPECT_EQ(points.x, (std::vector<double>{1, 3}));
   EXPECT_EQ(points.y, (std::vector<double>{80, 100}));
-  EXPECT_EQ(shares_at_most({2, std::nan("")}).y, (std::vector<double>{100}));
-  EXPECT_TRUE(shares_at_most({}).x.empty());
-  EXPECT_TRUE(shares_at_most({0, 0}).x.empty());
+  EXPECT_EQ(cumulative_percent({2, std::nan("")}).y, (std::vector<double>{100}));
+  EXPECT_TRUE(cumulative_percent({}).x.empty());
+  EXPECT_TRUE(cumulative_percent({0, 0}).x.empty());
 }
 
 TEST(PageChart, StylesAreByMethodAndTellNineApart) {
