@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "core/config/config.h"
 #include "core/config/convert.h"
@@ -27,7 +28,8 @@ void describe(config::Fields& fields, PublishedMethod& method) {
   fields.value("paper", method.paper, "Address or citation of the method's paper.");
   fields.value("settings", method.settings,
                "Values of a run's configuration with which the method's scores are compared: "
-               "{align.samples: 50}; empty compares them with every configuration.");
+               "{a.key or a.former_key: 50}; empty compares them with every "
+               "configuration.");
 }
 
 struct PublishedTable {
@@ -77,6 +79,27 @@ void describe(config::Fields& fields, PublishedFile& file) {
   fields.list("tables", file.tables, "Tables of one dataset, metric and protocol each.").required();
 }
 
+bool states(const config::Node& root, const std::string& key, double value) {
+  const config::Node* node = &root;
+  std::istringstream path(key);
+  for (std::string part; node != nullptr && std::getline(path, part, '.');) {
+    const config::Entry* entry = node->find(part);
+    node = entry == nullptr ? nullptr : &entry->value;
+  }
+  return node != nullptr && config::number_of(*node) == value;
+}
+
+/// `keys`: "edges.samples or align.samples".
+bool any_states(const config::Node& root, const std::string& keys, double value) {
+  constexpr std::string_view kOr = " or ";
+  std::size_t begin = 0;
+  for (std::size_t end = keys.find(kOr); end != std::string::npos; end = keys.find(kOr, begin)) {
+    if (states(root, keys.substr(begin, end - begin), value)) return true;
+    begin = end + kOr.size();
+  }
+  return states(root, keys.substr(begin), value);
+}
+
 }  // namespace
 
 bool has_settings(const PublishedRow& row, const RunRecord& run) {
@@ -84,13 +107,7 @@ bool has_settings(const PublishedRow& row, const RunRecord& run) {
   if (run.config_yaml.empty()) return false;
   const config::Document configuration = config::parse(run.config_yaml, "configuration");
   return std::all_of(row.settings.begin(), row.settings.end(), [&](const auto& setting) {
-    const config::Node* node = &configuration.root();
-    std::istringstream path(setting.first);
-    for (std::string key; node != nullptr && std::getline(path, key, '.');) {
-      const config::Entry* entry = node->find(key);
-      node = entry == nullptr ? nullptr : &entry->value;
-    }
-    return node != nullptr && config::number_of(*node) == setting.second;
+    return any_states(configuration.root(), setting.first, setting.second);
   });
 }
 

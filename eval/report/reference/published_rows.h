@@ -22,7 +22,8 @@ struct PublishedRow {
   std::string paper;     ///< of the method; empty where the source names none
   std::string citation;  ///< where the number was read
   std::string url;       ///< of that
-  /// Settings of the configurations that it is compared with ("align.samples"); empty: of any.
+  /// Settings of the configurations that it is compared with ("edges.samples or align.samples":
+  /// either key); empty: of any.
   std::map<std::string, double> settings = {};
 };
 

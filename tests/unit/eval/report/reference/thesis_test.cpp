@@ -15,6 +15,13 @@ RunRecord run_with(const std::string& config) {
 const RunRecord kAccurate = run_with("align: {samples: 500, iterations: 30}\n");
 const RunRecord kFast = run_with("align:\n  samples: 50\n  iterations: 5\n");
 
+TEST(Thesis, ReadsTheKeysOfFormerVersionsToo) {
+  const RunRecord fast = run_with("edges: {samples: 50, iterations: 5}\n");
+  EXPECT_EQ(thesis_value("speed.poses_per_s", "walls", fast), 11427);
+  const RunRecord other = run_with("edges: {samples: 50, iterations: 6}\n");
+  EXPECT_EQ(thesis_value("speed.poses_per_s", "walls", other), 633);
+}
+
 TEST(Thesis, HasItsTablesByTheConfiguration) {
   EXPECT_EQ(thesis_value("dataset.events", "Walls", kAccurate), 1.8e6);
   EXPECT_EQ(thesis_value("dataset.events", "Walls", kFast), 1.8e6);
