@@ -21,7 +21,7 @@ TEST(Catalogue, HoldsEveryKeyOnce) {
   for (const MetricInfo& metric : metric_catalogue()) {
     EXPECT_TRUE(keys.insert(metric.key).second) << metric.key;
     EXPECT_FALSE(metric.needs.empty()) << metric.key;
-    if (metric.floor) EXPECT_GT(*metric.floor, 0) << metric.key;
+    EXPECT_GT(metric.floor.value_or(1), 0) << metric.key;
   }
 }
 
