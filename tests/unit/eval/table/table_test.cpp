@@ -69,7 +69,7 @@ TEST(Table, HtmlCarriesItsFilesAndTheValuesToSortBy) {
 
 TEST(Table, ExportsBothFiles) {
   const testing::TemporaryFolder folder;
-  export_tables({table()}, folder.path() / "new");
+  export_tables(std::vector{table()}, folder.path() / "new");
   EXPECT_EQ(testing::read_file(folder.path() / "new/errors.tex"), table_latex(table()));
   EXPECT_EQ(testing::read_file(folder.path() / "new/errors.csv"), table_csv(table()));
 }
