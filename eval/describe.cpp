@@ -11,7 +11,7 @@
 #include "core/io/event_file.h"
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
-#include "eval/picture/sensor_view.h"
+#include "eval/picture/view/sensor_view.h"
 #include "eval/run_folder.h"
 
 namespace saccade {

@@ -13,7 +13,7 @@
 #include "core/io/view_list.h"
 #include "core/srgb.h"
 #include "eval/metrics/depth_truth.h"
-#include "eval/picture/image_picture.h"
+#include "eval/picture/image/image_picture.h"
 
 namespace saccade {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/io/csv_file.h"
 #include "core/io/image_file.h"
 #include "eval/number_text.h"
-#include "eval/picture/line_chart.h"
+#include "eval/picture/chart/line_chart.h"
 #include "eval/store/text_grid.h"
 
 namespace saccade {

@@ -8,14 +8,14 @@
 #include "core/error.h"
 #include "core/io/image_file.h"
 #include "eval/metrics/scored_samples.h"
-#include "eval/picture/film.h"
-#include "eval/picture/mosaic_picture.h"
-#include "eval/picture/odometry_view.h"
-#include "eval/picture/sensor_view.h"
-#include "eval/picture/sheet.h"
-#include "eval/picture/stabilized_view.h"
-#include "eval/picture/trajectory_picture.h"
-#include "eval/picture/view_render.h"
+#include "eval/picture/video.h"
+#include "eval/picture/view/mosaic_picture.h"
+#include "eval/picture/view/odometry_view.h"
+#include "eval/picture/view/sensor_view.h"
+#include "eval/picture/canvas/contact_sheet.h"
+#include "eval/picture/view/stabilized_view.h"
+#include "eval/picture/image/trajectory_picture.h"
+#include "eval/picture/view/view_render.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
@@ -138,8 +138,8 @@ std::string title_of(const Subject& subject) {
 ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
   const Subject& subject = scene.subject;
   const SensorView& view = scene.view;
-  Sheet sheet(title_of(subject), view.theme());
-  for (const double share : kSheetMoments) {
+  ContactSheet sheet(title_of(subject), view.theme());
+  for (const double share : kSheetTimes) {
     const double t_s = span.start_s + share * (span.end_s - span.start_s);
     sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(scene, t_s));
   }
@@ -154,7 +154,7 @@ ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
 }
 
 ImageRgb8 moment(const Scene& scene, double t_s) {
-  Sheet sheet(title_of(scene.subject), scene.view.theme());
+  ContactSheet sheet(title_of(scene.subject), scene.view.theme());
   sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(scene, t_s));
   return sheet.draw();
 }
@@ -194,7 +194,7 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
                                 options.dark ? kDarkTheme : kLightTheme}),
                     std::move(overlay), options.upscale};
   if (ending == ".mp4")
-    return write_slow_film(output, span, options, [&](double t_s) { return moment(scene, t_s); });
+    return write_slow_motion_video(output, span, options, [&](double t_s) { return moment(scene, t_s); });
   write_png(output, single ? moment(scene, *options.time_s) : contact_sheet(scene, span));
 }
 

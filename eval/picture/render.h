@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "eval/picture/overlay.h"
+#include "eval/picture/overlay/overlay.h"
 
 namespace saccade {
 

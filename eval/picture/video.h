@@ -1,37 +1,22 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <string>
+#include <functional>
 
 #include "core/image.h"
-#include "core/io/atomic_file.h"
+#include "eval/picture/render.h"
+#include "eval/picture/view/sensor_view.h"
 
 namespace saccade {
 
-/// An H.264 MP4 file, encoded by the program ffmpeg, which gets the frames through a pipe. The file
-/// appears under its name when finish() is done.
-class VideoWriter {
- public:
-  /// `crf`: H.264's constant rate factor, 0..51, more is smaller and worse. Throws InputError where
-  /// ffmpeg is not on the PATH; `fps` > 0.
-  VideoWriter(const std::filesystem::path& file, int width, int height, double fps, int crf);
-  ~VideoWriter();
-  VideoWriter(const VideoWriter&) = delete;
-  VideoWriter& operator=(const VideoWriter&) = delete;
+/// Writes `count` > 0 frames of one size as a video (VideoWriter), with progress; `fps` > 0.
+void write_video(const std::filesystem::path& output, std::size_t count, double fps, int crf,
+                const std::function<ImageRgb8(std::size_t)>& frame);
 
-  /// Of the size given at the start (contract). Throws InputError when ffmpeg stopped early.
-  void add(const ImageRgb8& frame);
-  void finish();
-
- private:
-  [[noreturn]] void fail() const;
-  [[nodiscard]] bool wait_for_success();
-
-  AtomicFile file_;
-  int width_;
-  int height_;
-  int socket_ = -1;
-  int process_ = -1;
-};
+/// A film of a stretch of time, `options.slow_motion` times as long, by default of 30 frames per
+/// second; `frame` draws a moment [s].
+void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
+                     const RenderOptions& options, const std::function<ImageRgb8(double)>& frame);
 
 }  // namespace saccade

@@ -12,8 +12,8 @@
 #include "core/io/webp_file.h"
 #include "eval/mosaic_view.h"
 #include "eval/picture/render.h"
-#include "eval/picture/sensor_view.h"
-#include "eval/picture/view_pictures.h"
+#include "eval/picture/view/sensor_view.h"
+#include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 #include "core/check.h"
 #include "core/io/image_file.h"
 #include "core/io/webp_file.h"
-#include "eval/picture/canvas.h"
+#include "eval/picture/canvas/canvas.h"
 
 namespace saccade {
 std::string escape_html(std::string_view text) {

@@ -4,7 +4,7 @@
 
 #include "eval/mosaic_view.h"
 #include "eval/number_text.h"
-#include "eval/picture/mosaic_picture.h"
+#include "eval/picture/view/mosaic_picture.h"
 #include "eval/report/html.h"
 #include "eval/report/image_section.h"
 

@@ -6,7 +6,7 @@
 #include "core/shell.h"
 #include "eval/evaluate.h"
 #include "eval/number_text.h"
-#include "eval/picture/sensor_view.h"
+#include "eval/picture/view/sensor_view.h"
 #include "eval/report/depth_section.h"
 #include "eval/report/film_section.h"
 #include "eval/report/html.h"

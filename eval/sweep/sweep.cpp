@@ -16,11 +16,11 @@
 #include "core/progress.h"
 #include "core/shell.h"
 #include "eval/sweep/folder_lock.h"
-#include "eval/sweep/job_record.h"
-#include "eval/sweep/manifest.h"
-#include "eval/sweep/pilot.h"
-#include "eval/sweep/plan.h"
-#include "eval/sweep/results.h"
+#include "eval/sweep/plan/job_record.h"
+#include "eval/sweep/result/manifest.h"
+#include "eval/sweep/plan/calibration_run.h"
+#include "eval/sweep/plan/plan.h"
+#include "eval/sweep/result/results.h"
 
 namespace saccade {
 namespace {
@@ -72,16 +72,16 @@ void remove_half_written(const fs::path& folder) {
 /// Runs the jobs of one kind that are due.
 class Phase {
  public:
-  /// Of `jobs` those of a wave. `states`: one for each of them.
-  Phase(const std::vector<SweepJob>& jobs, int wave, const fs::path& folder,
+  /// Of `jobs` those of a stage. `states`: one for each of them.
+  Phase(const std::vector<SweepJob>& jobs, int stage, const fs::path& folder,
         std::vector<JobState>& states)
-      : jobs_(jobs), wave_(wave), folder_(folder), states_(states) {}
+      : jobs_(jobs), wave_(stage), folder_(folder), states_(states) {}
 
   /// Jobs whose dataset or whose source could not be made fail with it.
   void fail_without_inputs(const std::vector<JobState>& simulations) {
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       const SweepJob& job = jobs_[i];
-      if (job.wave != wave_) continue;
+      if (job.stage != wave_) continue;
       const bool no_dataset = job.made_by && simulations[*job.made_by] == JobState::kFailed;
       const bool no_source =
           std::any_of(job.sources.begin(), job.sources.end(),
@@ -95,7 +95,7 @@ class Phase {
     select_due();
     if (due_.empty()) return true;
     const auto all = static_cast<std::size_t>(std::count_if(
-        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.wave == wave_; }));
+        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.stage == wave_; }));
     Progress progress(label, all, "jobs", all - due_.size());
     const auto on_end = [&](std::size_t i, const LaunchResult& result) {
       finish(i, result, progress);
@@ -110,7 +110,7 @@ class Phase {
   void select_due() {
     JobInputs inputs;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      if (jobs_[i].wave != wave_ || states_[i] == JobState::kFailed) continue;
+      if (jobs_[i].stage != wave_ || states_[i] == JobState::kFailed) continue;
       const SweepJob& job = jobs_[i];
       const fs::path job_folder = folder_ / "jobs" / job.name;
       Fingerprint job_inputs = inputs.of(job);
@@ -167,7 +167,7 @@ class Phase {
 LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions& options,
                                    const Launcher& launcher) {
   const int threads = sweep.generate ? sweep.threads : 0;
-  const int usual = launcher.usual_at_once(threads);
+  const int usual = launcher.default_parallel_jobs(threads);
   if (sweep.generate && options.jobs > 0) return {options.jobs, threads};
   return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, threads};
 }
@@ -175,8 +175,8 @@ LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions&
 LaunchLimits limits_of_runs(const SweepConfig& sweep, const SweepOptions& options,
                             const Launcher& launcher) {
   if (sweep.timing) return {1, 0};
-  const int at_once = options.jobs > 0 ? options.jobs : launcher.usual_at_once(sweep.threads);
-  return {at_once, sweep.threads};
+  const int parallel_jobs = options.jobs > 0 ? options.jobs : launcher.default_parallel_jobs(sweep.threads);
+  return {parallel_jobs, sweep.threads};
 }
 
 std::size_t count(const SweepStates& states, JobState state) {
@@ -218,11 +218,11 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   Phase simulations(plan.simulations, 0, folder, states.simulations);
   bool complete =
       simulations.run(launcher, limits_of_simulations(sweep, options, launcher), "simulating");
-  for (int wave = 0; complete && wave < plan.waves(); ++wave) {
-    Phase runs(plan.runs, wave, folder, states.runs);
+  for (int stage = 0; complete && stage < plan.stages(); ++stage) {
+    Phase runs(plan.runs, stage, folder, states.runs);
     runs.fail_without_inputs(states.simulations);
     complete = runs.run(launcher, limits_of_runs(sweep, options, launcher),
-                        wave == 0 ? "running" : "running on");
+                        stage == 0 ? "running" : "running on");
   }
   SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
                        count(states, JobState::kFailed), 0, !complete};
@@ -247,8 +247,8 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
   if (due.empty()) return text;
   text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
   const std::unique_ptr<Launcher> here = make_launcher("local");
-  const int at_once = limits_of_simulations(sweep, options, *here).at_once;
-  return text + pilot_text(run_pilot(due, *here), due.size(), at_once);
+  const int parallel_jobs = limits_of_simulations(sweep, options, *here).parallel_jobs;
+  return text + calibration_text(run_calibration(due, *here), due.size(), parallel_jobs);
 }
 
 std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "eval/sweep/launcher.h"
-#include "eval/sweep/sweep_config.h"
+#include "eval/sweep/launch/launcher.h"
+#include "eval/sweep/plan/sweep_config.h"
 
 namespace saccade {
 
@@ -34,7 +34,7 @@ SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& fo
                        Launcher& launcher, const SweepOptions& options = {});
 
 /// What a sweep that generates would still make: how many datasets, the first of their command
-/// lines, and what they take, from a pilot on this machine (run_pilot). Writes nothing but that.
+/// lines, and what they take, from a pilot on this machine (run_calibration). Writes nothing but that.
 [[nodiscard]] std::string estimate_generation(const SweepConfig& sweep,
                                               const std::filesystem::path& folder,
                                               const SweepOptions& options = {});

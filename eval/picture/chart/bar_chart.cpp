@@ -1,0 +1,114 @@
+#include "eval/picture/chart/bar_chart.h"
+
+#include <algorithm>
+
+#include "eval/number_text.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/chart/legend.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kPlotWidth = 250;
+constexpr int kBar = 13;
+constexpr int kRowGap = 12;
+constexpr int kAbovePlots = 36;
+constexpr int kBelowPlots = 30;
+constexpr int kPanelGap = 70;  ///< between panels: the longest value stands there
+
+int row_height(const BarChart& chart) {
+  return kBar * static_cast<int>(std::max<std::size_t>(1, chart.names.size())) + kRowGap;
+}
+
+int label_width(const BarChart& chart) {
+  int width = 0;
+  for (const std::string& category : chart.categories)
+    width = std::max(width, Canvas::text_width(category, kChartLetters));
+  return width + 28;
+}
+
+std::vector<double> values(const BarChart::Panel& panel) {
+  std::vector<double> all;
+  for (const auto& category : panel.bars)
+    for (const auto& bar : category)
+      if (bar) all.insert(all.end(), {bar->value, bar->low, bar->high});
+  return all;
+}
+
+void draw_rectangle(Canvas& canvas, double left, double right, int top, const Rgb8& colour) {
+  const int width = std::max(1, static_cast<int>(right - left));
+  canvas.paste(ImageRgb8(width, kBar - 2, colour), static_cast<int>(left), top);
+}
+
+class BarPlot {
+ public:
+  BarPlot(Canvas& canvas, const BarChart& chart, const BarChart::Panel& panel, double left,
+          const Theme& theme)
+      : canvas_(canvas), left_(left), theme_(theme), axis_(values(panel), true) {
+    const int rows = static_cast<int>(chart.categories.size()) * row_height(chart);
+    draw_frame(panel.title, kAbovePlots + rows);
+    for (std::size_t category = 0; category < panel.bars.size(); ++category)
+      for (std::size_t name = 0; name < panel.bars[category].size(); ++name)
+        if (const std::optional<ChartValue>& bar = panel.bars[category][name])
+          draw_bar(*bar, name,
+                   kAbovePlots + static_cast<int>(category) * row_height(chart) + kRowGap / 2 +
+                       static_cast<int>(name) * kBar);
+  }
+
+ private:
+  [[nodiscard]] double column(double value) const {
+    return left_ + kPlotWidth * axis_.share(value);
+  }
+
+  void draw_frame(const std::string& title, int bottom) {
+    canvas_.text(title, {left_, kAbovePlots - 14.0}, theme_.text, kChartLetters + 1);
+    double free_from = 0;
+    for (const double tick : axis_.ticks()) {
+      canvas_.line({column(tick), static_cast<double>(kAbovePlots)},
+                   {column(tick), static_cast<double>(bottom)}, theme_.faint);
+      const std::string text = Axis::text(tick);
+      const double half = Canvas::text_width(text, kChartLetters - 1) / 2.0;
+      if (column(tick) - half < free_from) continue;
+      canvas_.text(text, {column(tick) - half, bottom + 16.0}, mix(theme_.faint, theme_.text, 0.55),
+                   kChartLetters - 1);
+      free_from = column(tick) + half + 6;
+    }
+  }
+
+  void draw_bar(const ChartValue& bar, std::size_t name, int top) {
+    const double base = axis_.is_logarithmic() ? axis_.ticks().front() : 0;
+    const double from = column(base), to = column(bar.value);
+    draw_rectangle(canvas_, std::min(from, to), std::max(from, to), top, series_colour(name));
+    const double middle = top + (kBar - 2) / 2.0;
+    if (bar.low < bar.high)
+      canvas_.line({column(bar.low), middle}, {column(bar.high), middle}, theme_.text, 1);
+    canvas_.text(rounded(bar.value), {std::max(to, column(bar.high)) + 5, middle + 4}, theme_.text,
+                 kChartLetters - 1);
+  }
+
+  Canvas& canvas_;
+  double left_;
+  const Theme& theme_;
+  Axis axis_;
+};
+
+}  // namespace
+
+ImageRgb8 draw(const BarChart& chart, const Theme& theme) {
+  const int labels = label_width(chart);
+  const int rows = static_cast<int>(chart.categories.size()) * row_height(chart);
+  const int width = labels + static_cast<int>(chart.panels.size()) * (kPlotWidth + kPanelGap);
+  const int plots = kAbovePlots + rows + kBelowPlots;
+  Canvas canvas(width, plots + legend_height(chart.names, width), theme.background);
+  for (std::size_t i = 0; i < chart.categories.size(); ++i) {
+    const double middle = kAbovePlots + (static_cast<double>(i) + 0.5) * row_height(chart);
+    canvas.text(chart.categories[i], {14, middle + 4}, theme.text, kChartLetters);
+  }
+  for (std::size_t i = 0; i < chart.panels.size(); ++i)
+    const BarPlot plot(canvas, chart, chart.panels[i],
+                       labels + static_cast<double>(i) * (kPlotWidth + kPanelGap), theme);
+  draw_legend(canvas, chart.names, plots, theme);
+  return canvas.image();
+}
+
+}  // namespace saccade

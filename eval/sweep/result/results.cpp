@@ -1,0 +1,135 @@
+#include "eval/sweep/result/results.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "core/config/suggest.h"
+#include "core/io/atomic_file.h"
+#include "core/io/dataset_record.h"
+#include "core/progress.h"
+#include "eval/evaluate.h"
+#include "eval/run_folder.h"
+#include "eval/sweep/result/expectations.h"
+#include "eval/sweep/result/charts.h"
+#include "eval/sweep/metric_info.h"
+#include "eval/sweep/result/tables.h"
+
+namespace saccade {
+namespace {
+
+Metrics dataset_facts(const std::filesystem::path& folder) {
+  const DatasetRecord record = read_dataset_record(folder / "dataset.yaml");
+  Metrics facts;
+  if (record.counts)
+    facts.set("dataset.events",
+              static_cast<double>(record.counts->events_on + record.counts->events_off));
+  facts.set("dataset.duration_s", record.duration_s);
+  facts.set("dataset.mean_scene_depth_m", record.mean_scene_depth_m);
+  facts.set("dataset.path_length_m", record.path_length_m);
+  facts.set("dataset.rays_per_event", record.rays_per_event);
+  facts.set("dataset.time_bound_us", record.time_bound_us);
+  return facts;
+}
+
+SweepRow read_row(const SweepJob& job) {
+  SweepRow row{&job, false, {}, {}, {}};
+  if (job.is_simulation()) {
+    row.metrics = dataset_facts(job.output);
+    return row;
+  }
+  const RunRecord record = read_run_record(job.output / "run.yaml");
+  row.problem = record.problem();
+  row.metrics = read_json_metrics(job.output / "metrics.json");
+  row.machine = record.machine;
+  row.tool_version = record.tool_version;
+  return row;
+}
+
+bool any_has(const std::vector<SweepRow>& rows, const std::string& key) {
+  return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
+    return speed_value(row.metrics, key).has_value();
+  });
+}
+
+std::vector<std::string> known_keys(const std::vector<SweepRow>& rows) {
+  std::set<std::string> keys;
+  for (const SweepRow& row : rows)
+    for (const auto& [key, value] : row.metrics.values()) keys.insert(key);
+  return {keys.begin(), keys.end()};
+}
+
+/// A metric that nobody has is no reason to lose the table.
+void warn_of_unknown(const SweepResults& results) {
+  const std::vector<std::string> keys = known_keys(results.rows);
+  for (const std::string& metric : results.metrics)
+    if (!keys.empty() && !any_has(results.rows, metric))
+      show_notice("metrics: no job has '" + metric + "'; " +
+                  config::suggestion(metric, keys, "metrics"));
+}
+
+}  // namespace
+
+std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs,
+                                const std::vector<JobState>& states) {
+  std::vector<SweepRow> rows;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const bool failed = states[i] == JobState::kFailed;
+    rows.push_back(failed ? SweepRow{&jobs[i], true, {}, {}, {}} : read_row(jobs[i]));
+  }
+  return rows;
+}
+
+std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
+  std::vector<SweepGroup> groups;
+  for (const SweepRow& row : rows) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const SweepGroup& group) {
+      return group.point.differs_in_seed_only(row.job->point);
+    });
+    if (same == groups.end())
+      groups.push_back({row.job->point, {&row}});
+    else
+      same->rows.push_back(&row);
+  }
+  return groups;
+}
+
+std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
+  std::vector<double> values;
+  for (const SweepRow* row : group.rows) {
+    if (!row->problem.empty()) continue;  // to crash fast is no speed
+    if (const std::optional<double> value = speed_value(row->metrics, key))
+      values.push_back(*value);
+  }
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  const double median = (values[(n - 1) / 2] + values[n / 2]) / 2;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
+  return MetricSummary{metric_info(key).is_speed ? median : mean, values.front(), values.back(), n};
+}
+
+SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
+                             const SweepStates& states) {
+  SweepResults results{sweep, plan, {}, {}, sweep.metrics};
+  results.rows = read_rows(plan.rows(), plan.runs.empty() ? states.simulations : states.runs);
+  results.groups = group_by_seed(results.rows);
+  if (sweep.metrics.empty())
+    for (const MetricInfo& metric : usual_metrics())
+      if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
+  return results;
+}
+
+std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const SweepStates& states, const std::filesystem::path& folder) {
+  const SweepResults results = collect_results(sweep, plan, states);
+  warn_of_unknown(results);
+  sweep_csv(results).save(folder / "sweep.csv");
+  const std::vector<SweepChart> figures = write_charts(results, folder);
+  const std::vector<ExpectationResult> verdicts = check_expectations(results);
+  write_atomically(folder / "sweep.md", sweep_markdown(results, figures, verdicts));
+  return static_cast<std::size_t>(std::count_if(
+      verdicts.begin(), verdicts.end(), [](const ExpectationResult& verdict) { return !verdict.met; }));
+}
+
+}  // namespace saccade

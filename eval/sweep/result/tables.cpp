@@ -1,0 +1,284 @@
+#include "eval/sweep/result/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "eval/number_text.h"
+#include "eval/sweep/metric_info.h"
+
+namespace saccade {
+namespace {
+
+using Better = MetricInfo::Better;
+
+CsvTable::Cell seed_cell(const std::optional<std::uint64_t>& seed) {
+  if (!seed) return std::string();
+  return std::to_string(*seed);
+}
+
+/// '|' would end a cell.
+std::string cell_text(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
+    text.insert(at, 1, '\\');
+  return text;
+}
+
+/// Which columns tell the rows of a table apart.
+struct Columns {
+  bool configuration = false;
+  bool variant = false;
+  bool seeds = false;
+};
+
+Columns columns_of(const SweepResults& results) {
+  Columns columns;
+  columns.configuration = results.sweep.configurations.size() > 1;
+  columns.variant = !results.sweep.variants.empty();
+  columns.seeds = std::any_of(results.groups.begin(), results.groups.end(),
+                              [](const SweepGroup& group) { return group.rows.size() > 1; });
+  return columns;
+}
+
+using Row = std::vector<std::string>;
+
+std::string table_line(const Row& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) line += " " + cell + " |";
+  return line + "\n";
+}
+
+Row header(const SweepResults& results, const Columns& columns, bool with_dataset,
+           const std::vector<std::string>& metrics) {
+  Row cells;
+  if (with_dataset) cells.emplace_back("dataset");
+  if (columns.configuration) cells.emplace_back("configuration");
+  if (columns.variant) cells.emplace_back("variant");
+  for (const std::string& axis : results.plan.axes) cells.push_back("`" + axis + "`");
+  if (columns.seeds) cells.emplace_back("seeds");
+  for (const std::string& metric : metrics) cells.push_back(cell_text(metric_info(metric).label));
+  return cells;
+}
+
+bool was_lost(const SweepGroup& group) {
+  const std::optional<MetricSummary> lost_s = summarise(group, "trajectory.lost_s");
+  return lost_s && lost_s->high > 0;
+}
+
+/// The best value of a metric among the rows of a table; nullopt where it makes no difference. The
+/// speed of an estimator that got lost is no merit.
+std::optional<double> best_of(const std::vector<const SweepGroup*>& groups,
+                              const std::string& metric) {
+  const MetricInfo info = metric_info(metric);
+  std::set<double> all, eligible;
+  for (const SweepGroup* group : groups)
+    if (const auto summary = summarise(*group, metric)) {
+      all.insert(summary->value);
+      if (!info.is_speed || !was_lost(*group)) eligible.insert(summary->value);
+    }
+  if (all.size() < 2 || eligible.empty() || info.better == Better::kNeither) return std::nullopt;
+  return info.better == Better::kLower ? *eligible.begin() : *eligible.rbegin();
+}
+
+bool has_failed(const SweepRow& row) { return row.failed || !row.problem.empty(); }
+
+std::string value_cell(const SweepGroup& group, const std::string& metric,
+                       const std::optional<double>& best) {
+  const std::optional<MetricSummary> summary = summarise(group, metric);
+  if (!summary) return rounded(std::nullopt);
+  std::string text = rounded(summary->value);
+  if (best && summary->value == *best) text = "**" + text + "**";
+  if (summary->low < summary->high && !metric_info(metric).is_speed)
+    text += fmt::format(" ({}–{})", rounded(summary->low), rounded(summary->high));
+  return text;
+}
+
+/// `best`: by the metric's key.
+Row body(const Columns& columns, bool with_dataset, const SweepGroup& group,
+         const std::vector<std::pair<std::string, std::optional<double>>>& best) {
+  Row cells;
+  if (with_dataset) cells.push_back(cell_text(group.point.dataset));
+  if (columns.configuration) cells.push_back(cell_text(group.point.configuration));
+  if (columns.variant) cells.push_back(cell_text(group.point.variant));
+  for (const std::string& value : group.point.grid) cells.push_back(cell_text(value));
+  const auto failed = std::count_if(group.rows.begin(), group.rows.end(),
+                                    [](const SweepRow* row) { return has_failed(*row); });
+  if (columns.seeds)
+    cells.push_back(failed == 0 ? std::to_string(group.rows.size())
+                                : fmt::format("{} ({} failed)", group.rows.size(), failed));
+  for (const auto& [metric, value] : best) cells.push_back(value_cell(group, metric, value));
+  return cells;
+}
+
+using Groups = std::vector<const SweepGroup*>;
+
+/// Of the metrics those that a row of the table has: modules measure different things.
+std::vector<std::string> measured_of(const SweepResults& results, const Groups& groups) {
+  std::vector<std::string> metrics;
+  for (const std::string& metric : results.metrics)
+    if (std::any_of(groups.begin(), groups.end(),
+                    [&](const SweepGroup* group) { return summarise(*group, metric).has_value(); }))
+      metrics.push_back(metric);
+  return metrics.empty() ? results.metrics : metrics;
+}
+
+std::string table(const SweepResults& results, const Groups& groups, bool with_dataset) {
+  const Columns columns = columns_of(results);
+  const std::vector<std::string> metrics = measured_of(results, groups);
+  const Row head = header(results, columns, with_dataset, metrics);
+  std::vector<std::pair<std::string, std::optional<double>>> best;
+  // Datasets are not compared with each other.
+  for (const std::string& metric : metrics)
+    best.emplace_back(metric, with_dataset ? std::nullopt : best_of(groups, metric));
+  std::string text = table_line(head) + "|";
+  for (std::size_t i = 0; i < head.size(); ++i)
+    text += i + metrics.size() < head.size() ? "---|" : "---:|";
+  text += "\n";
+  for (const SweepGroup* group : groups)
+    text += table_line(body(columns, with_dataset, *group, best));
+  return text + "\n";
+}
+
+/// The groups of each dataset, in the order of the plan.
+std::vector<Groups> by_dataset(const SweepResults& results) {
+  std::vector<Groups> parts;
+  for (const SweepGroup& group : results.groups) {
+    if (parts.empty() || parts.back().front()->point.dataset != group.point.dataset)
+      parts.emplace_back();
+    parts.back().push_back(&group);
+  }
+  return parts;
+}
+
+/// The groups of each module, as they come first.
+std::vector<Groups> by_module(const Groups& groups) {
+  std::vector<Groups> parts;
+  for (const SweepGroup* group : groups) {
+    const auto same = std::find_if(parts.begin(), parts.end(), [&](const Groups& part) {
+      return part.front()->point.module == group->point.module;
+    });
+    (same == parts.end() ? parts.emplace_back() : *same).push_back(group);
+  }
+  return parts;
+}
+
+std::string tables_of(const SweepResults& results, const Groups& groups) {
+  std::string text = "## " + groups.front()->point.dataset + "\n";
+  const std::vector<Groups> modules = by_module(groups);
+  for (const Groups& module : modules) {
+    if (modules.size() > 1) text += "### " + module.front()->point.module + "\n";
+    text += table(results, module, false);
+  }
+  return text;
+}
+
+std::string bound_of(const ExpectedMetric& figure) {
+  if (figure.at_most && figure.at_least)
+    return fmt::format("{} to {}", *figure.at_least, *figure.at_most);
+  return figure.at_most ? fmt::format("≤ {}", *figure.at_most)
+                        : fmt::format("≥ {}", *figure.at_least);
+}
+
+std::string expected_table(std::span<const ExpectationResult> verdicts) {
+  if (verdicts.empty()) return "";
+  const auto met = std::count_if(verdicts.begin(), verdicts.end(),
+                                 [](const ExpectationResult& verdict) { return verdict.met; });
+  std::string text =
+      fmt::format("## Expected figures\n{} of {} are met.\n\n", met, verdicts.size());
+  text +=
+      "| configuration | dataset | figure | expected | measured | |\n|---|---|---|---:|---:|---|\n";
+  for (const ExpectationResult& verdict : verdicts)
+    text +=
+        table_line({cell_text(verdict.figure->configuration), cell_text(verdict.dataset),
+                    cell_text(metric_info(verdict.figure->metric).label), bound_of(*verdict.figure),
+                    rounded(verdict.value), verdict.met ? "met" : "**missed**"});
+  return text + "\n";
+}
+
+std::string how_it_was_made(const SweepResults& results) {
+  std::string text;
+  if (columns_of(results).seeds)
+    text += "Errors are means over the seeds, with minimum and maximum in brackets. ";
+  if (results.plan.runs.empty()) return text + "\n\n";
+  text += results.sweep.repeat > 1
+              ? fmt::format("Speeds are medians of {} repetitions", results.sweep.repeat)
+              : "Speeds are of a single repetition";
+  text += results.sweep.timing ? ", one run at a time on one thread. "
+                               : ", while other runs may have shared the machine. ";
+  text += "The best value of a dataset is bold.\n";
+  std::set<std::string> machines, versions;
+  for (const SweepRow& row : results.rows) {
+    if (!row.machine.empty()) machines.insert(row.machine);
+    if (!row.tool_version.empty()) versions.insert(row.tool_version);
+  }
+  for (const std::string& machine : machines) text += "Machine: " + machine + ".\n";
+  for (const std::string& version : versions) text += "saccade " + version + ".\n";
+  return text + "\n";
+}
+
+std::string failures(const SweepResults& results) {
+  std::string text;
+  for (const SweepRow& row : results.rows)
+    if (has_failed(row))
+      text += fmt::format("- {0}: {1}\n", row.job->name,
+                          row.failed ? "jobs/" + row.job->name + "/log.txt" : row.problem);
+  return text.empty() ? "" : "## Failed jobs\n" + text;
+}
+
+/// "ok", "failed", or "timed out" and the like of an external program.
+std::string status_of(const SweepRow& row) {
+  if (row.failed) return "failed";
+  return row.problem.empty() ? "ok" : row.problem.substr(0, row.problem.find(':'));
+}
+
+}  // namespace
+
+CsvTable sweep_csv(const SweepResults& results) {
+  std::set<std::string> metrics;
+  for (const SweepRow& row : results.rows)
+    for (const auto& [key, value] : row.metrics.values()) metrics.insert(key);
+  std::vector<std::string> columns{"job", "dataset", "dataset_seed"};
+  const bool runs = !results.plan.runs.empty();
+  if (runs) columns.insert(columns.end(), {"module", "configuration", "variant"});
+  columns.insert(columns.end(), results.plan.axes.begin(), results.plan.axes.end());
+  if (runs) columns.emplace_back("seed");
+  columns.emplace_back("status");
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
+  CsvTable csv(columns);
+  for (const SweepRow& row : results.rows) {
+    const SweepPoint& point = row.job->point;
+    std::vector<CsvTable::Cell> cells{row.job->name, point.dataset, seed_cell(point.dataset_seed)};
+    if (runs) cells.insert(cells.end(), {point.module, point.configuration, point.variant});
+    for (const std::string& value : point.grid) cells.emplace_back(value);
+    if (runs) cells.push_back(seed_cell(point.seed));
+    cells.emplace_back(status_of(row));
+    for (const std::string& key : metrics)
+      cells.emplace_back(row.metrics.get(key).value_or(std::numeric_limits<double>::quiet_NaN()));
+    csv.add(cells);
+  }
+  return csv;
+}
+
+std::string sweep_markdown(const SweepResults& results, std::span<const SweepChart> figures,
+                           std::span<const ExpectationResult> verdicts) {
+  const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
+  std::string text = "# " + title + "\n\n" + how_it_was_made(results);
+  const auto parts = by_dataset(results);
+  if (results.plan.runs.empty() || parts.size() == results.groups.size()) {
+    // One row each: a table of datasets.
+    std::vector<const SweepGroup*> all;
+    for (const SweepGroup& group : results.groups) all.push_back(&group);
+    text += table(results, all, true);
+  } else {
+    for (const Groups& groups : parts) text += tables_of(results, groups);
+  }
+  text += expected_table(verdicts);
+  for (const SweepChart& figure : figures)
+    text += fmt::format("![{}]({})\n\n", figure.caption, figure.file);
+  return text + failures(results);
+}
+
+}  // namespace saccade
