@@ -25,7 +25,7 @@ const char* name_of(Verdict verdict) {
   return "unchanged";
 }
 
-/// "+5.2 %"; nothing that rounds to 0 has a sign.
+/// "+5.2 %"; a change that rounds to 0 has no sign.
 std::string percent(double change) {
   return std::abs(change) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", 100 * change);
 }
@@ -37,7 +37,7 @@ std::string change_text(const GateRow& row) {
   return text;
 }
 
-/// How sure it is.
+/// The p-value and the number of pairs.
 std::string evidence_text(const GateRow& row) {
   if (row.p) return fmt::format("p {:.2g}, {} pairs", *row.p, row.pairs);
   if (row.pairs == 0) return "";
@@ -55,7 +55,7 @@ std::string count_text(const GateResult& result) {
                      result.count(Verdict::kImproved), result.count(Verdict::kSame));
 }
 
-/// The width that a column of the rows needs; a dash of three bytes is one column wide.
+/// The width of a text on a terminal: its number of UTF-8 characters.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
@@ -104,7 +104,7 @@ std::string gate_markdown(const GateResult& result) {
                                  result.tripped() ? "tripped" : "passed", count_text(result));
   if (result.count(Verdict::kSame) < result.rows.size())
     text +=
-        "\n| | metric | where | before -> after | change | how sure |\n|---|---|---|---|---|---|\n";
+        "\n| | metric | scope | before -> after | change | evidence |\n|---|---|---|---|---|---|\n";
   for (const GateRow& row : result.rows) {
     if (row.verdict == Verdict::kSame) continue;
     text += "|";

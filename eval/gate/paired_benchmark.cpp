@@ -2,7 +2,6 @@
 
 #include <poll.h>
 
-#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -12,35 +11,35 @@
 #include "core/error.h"
 #include "core/io/atomic_file.h"
 #include "core/io/scratch_folder.h"
+#include "core/stopwatch.h"
 #include "eval/evaluate.h"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr int kWaitMs = 200;
-constexpr std::size_t kShownOfLog = 2000;  // characters
+constexpr std::size_t kMaxShownOutput = 2000;  // [characters]
 
-/// What the programs print, gone with the object.
-class RaceLog {
+/// The output of the current repetition, in a temporary file.
+class OutputLog {
  public:
-  RaceLog() { clear(); }
+  OutputLog() { clear(); }
 
-  [[nodiscard]] fs::path file() const { return folder_.path() / "race.log"; }
+  [[nodiscard]] fs::path file() const { return folder_.path() / "output.log"; }
   void clear() const { write_atomically(file(), ""); }
   [[nodiscard]] std::string end() const {
     std::ifstream in(file(), std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(in), {});
-    return text.size() > kShownOfLog ? text.substr(text.size() - kShownOfLog) : text;
+    return text.size() > kMaxShownOutput ? text.substr(text.size() - kMaxShownOutput) : text;
   }
 
  private:
   ScratchFolder folder_;
 };
 
-/// The folder that the arguments have a run written to; empty where they are none of `run`.
+/// The run folder that the arguments of `saccade run` name; empty for other arguments.
 fs::path run_output(const std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments.front() != "run") return {};
   for (std::size_t i = 0; i + 1 < arguments.size(); ++i)
@@ -57,46 +56,50 @@ ChildEnd wait_for(ChildProcess& process, const InterruptGuard& interrupt) {
   }
 }
 
-double time_once(const fs::path& program, const PairedBenchmark& race, const RaceLog& log,
-                 const InterruptGuard& interrupt) {
+/// Wall time of one run [s].
+double time_once(const fs::path& program, const std::vector<std::string>& arguments,
+                 const OutputLog& log, const InterruptGuard& interrupt) {
   std::vector<std::string> words{program.string()};
-  words.insert(words.end(), race.arguments.begin(), race.arguments.end());
+  words.insert(words.end(), arguments.begin(), arguments.end());
   log.clear();
-  const Clock::time_point start = Clock::now();
+  const Stopwatch stopwatch;
   ChildProcess process(program, words, log.file());
   const ChildEnd end = wait_for(process, interrupt);
-  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const double wall_s = stopwatch.seconds();
   if (end.exit_code != 0)
     throw std::runtime_error(program.string() + " ended with " + end.text() + ":\n" + log.end());
-  const fs::path output = run_output(race.arguments);
+  const fs::path output = run_output(arguments);
   if (output.empty()) return wall_s;
   const fs::path timing = output / "timing.json";
-  const std::optional<double> own = speed_value(read_json_metrics(timing), "wall_s");
-  if (!own || *own <= 0) throw InputError(timing.string(), "wall_s: must be a time above 0");
-  return *own;
+  const std::optional<double> stated_s = speed_value(read_json_metrics(timing), "wall_s");
+  if (!stated_s || *stated_s <= 0)
+    throw InputError(timing.string(), "wall_s: must be a time above 0");
+  return *stated_s;
 }
 
 }  // namespace
 
 std::vector<Repetition> repetition_order(int repeats) {
   SACCADE_CHECK(repeats >= 2);
-  std::vector<Repetition> turns{{false, false}, {true, false}};
+  std::vector<Repetition> order{{false, false}, {true, false}};
   for (int i = 0; i < repeats; ++i) {
     const bool second_leads = i % 2 == 1;
-    turns.push_back({second_leads, true});
-    turns.push_back({!second_leads, true});
+    order.push_back({second_leads, true});
+    order.push_back({!second_leads, true});
   }
-  return turns;
+  return order;
 }
 
-PairedTimes run_paired_benchmark(const PairedBenchmark& race, const std::function<void(const Repetition&)>& before) {
-  const RaceLog log;
+PairedTimes run_paired_benchmark(const PairedBenchmark& benchmark,
+                                 const std::function<void(const Repetition&)>& before) {
+  const OutputLog log;
   const InterruptGuard interrupt;
   PairedTimes times;
-  for (const Repetition& turn : repetition_order(race.repeats)) {
-    before(turn);
-    const double wall_s = time_once(turn.second ? race.second : race.first, race, log, interrupt);
-    if (turn.timed) (turn.second ? times.second_s : times.first_s).push_back(wall_s);
+  for (const Repetition& repetition : repetition_order(benchmark.repeats)) {
+    before(repetition);
+    const fs::path& program = repetition.second ? benchmark.second : benchmark.first;
+    const double wall_s = time_once(program, benchmark.arguments, log, interrupt);
+    if (repetition.timed) (repetition.second ? times.second_s : times.first_s).push_back(wall_s);
   }
   return times;
 }

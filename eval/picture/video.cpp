@@ -6,7 +6,7 @@
 namespace saccade {
 
 void write_video(const std::filesystem::path& output, std::size_t count, double fps, int crf,
-                const std::function<ImageRgb8(std::size_t)>& frame) {
+                 const std::function<ImageRgb8(std::size_t)>& frame) {
   const ImageRgb8 first = frame(0);
   VideoWriter video(output, first.width(), first.height(), fps, crf);
   Progress progress("rendering", count, "frames");
@@ -18,13 +18,14 @@ void write_video(const std::filesystem::path& output, std::size_t count, double 
 }
 
 void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
-                     const RenderOptions& options, const std::function<ImageRgb8(double)>& frame) {
+                             const RenderOptions& options,
+                             const std::function<ImageRgb8(double)>& frame) {
   constexpr double kFps = 30;
   const double fps = options.fps.value_or(kFps);
   const double step_s = 1 / (fps * options.slow_motion);
   const auto count = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
   write_video(output, count, fps, options.crf,
-             [&](std::size_t i) { return frame(span.start_s + static_cast<double>(i) * step_s); });
+              [&](std::size_t i) { return frame(span.start_s + static_cast<double>(i) * step_s); });
 }
 
 }  // namespace saccade

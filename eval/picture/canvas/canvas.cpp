@@ -21,7 +21,7 @@ cv::Scalar scalar(const Rgb8& colour) {
           static_cast<double>(colour[2])};
 }
 
-/// OpenCV's fixed-point pixels; far outside coordinates are pulled to where they still fit an int.
+/// OpenCV's fixed-point pixels. Coordinates far outside are clamped so that they fit an int.
 cv::Point fixed_point(const Eigen::Vector2d& p) {
   constexpr double kFar = 1e6;
   const auto fixed = [=](double v) {

@@ -9,8 +9,8 @@
 
 namespace saccade {
 
-/// A picture that is drawn on, anti-aliased. Positions in pixels, (0, 0) the centre of the top-left
-/// one; what falls outside is cut off.
+/// A picture with anti-aliased drawing. Positions in pixels; (0, 0) is the centre of the top-left pixel.
+/// What falls outside is clipped.
 class Canvas {
  public:
   Canvas(int width, int height, const Rgb8& background);
@@ -27,7 +27,7 @@ class Canvas {
   void polyline(std::span<const Eigen::Vector2d> points, const Rgb8& colour, int thickness = 1);
   void disc(const Eigen::Vector2d& centre, double radius, const Rgb8& colour);
 
-  /// `baseline_left`: where the first letter stands; `height`: of a capital letter [px].
+  /// `baseline_left`: the start of the baseline; `height`: of a capital letter [px].
   void text(const std::string& text, const Eigen::Vector2d& baseline_left, const Rgb8& colour,
             double height = 9);
   /// Width of a text [px].

@@ -8,7 +8,7 @@ namespace saccade {
 struct Theme {
   Rgb8 background;
   Rgb8 text;
-  Rgb8 faint;  ///< axes, frames, what is missing
+  Rgb8 faint;  ///< axes, frames, missing values
   Rgb8 on;
   Rgb8 off;
   Rgb8 map;

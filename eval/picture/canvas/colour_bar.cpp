@@ -28,8 +28,8 @@ ImageRgb8 with_colour_bar(ImageRgb8 picture, const std::function<Rgb8(double)>& 
 }
 
 ImageRgb8 with_depth_bar(ImageRgb8 picture, const DepthRange& range) {
-  const auto colour = [&](double share) {
-    return depth_colour(1 / ((1 - share) / range.near_m + share / range.far_m), range);
+  const auto colour = [&](double fraction) {
+    return depth_colour(1 / ((1 - fraction) / range.near_m + fraction / range.far_m), range);
   };
   return with_colour_bar(std::move(picture), colour, fmt::format("{:.3g} m", range.near_m),
                          fmt::format("{:.3g} m", range.far_m));

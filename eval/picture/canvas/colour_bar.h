@@ -8,13 +8,13 @@
 
 namespace saccade {
 
-/// Writes a bar of colours along the lower edge, `colour` of 0 at its left end and of 1 at its
-/// right, with what the two mean above.
+/// Draws a colour bar along the lower edge, from colour(0) at its left end to colour(1) at its right
+/// end, with the texts above its ends.
 [[nodiscard]] ImageRgb8 with_colour_bar(ImageRgb8 picture,
                                         const std::function<Rgb8(double)>& colour,
                                         const std::string& left, const std::string& right);
 
-/// The colours of draw_depth(), in metres.
+/// The colour bar of draw_depth(), in metres.
 [[nodiscard]] ImageRgb8 with_depth_bar(ImageRgb8 picture, const DepthRange& range);
 
 }  // namespace saccade

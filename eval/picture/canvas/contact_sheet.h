@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image.h"
@@ -8,7 +9,7 @@
 
 namespace saccade {
 
-/// The moments that a sheet shows, as shares of the time.
+/// The times that a contact sheet shows, as fractions of the duration.
 inline constexpr double kSheetTimes[] = {0.08, 0.36, 0.64, 0.92};
 
 struct CaptionedPicture {
@@ -16,8 +17,7 @@ struct CaptionedPicture {
   ImageRgb8 image;
 };
 
-/// Rows of captioned pictures below a title, each row with its label; what scenes look like at a
-/// glance.
+/// Rows of captioned pictures below a title. The label of a row precedes its captions.
 class ContactSheet {
  public:
   ContactSheet(std::string title, const Theme& theme) : title_(std::move(title)), theme_(theme) {}
@@ -26,14 +26,9 @@ class ContactSheet {
   [[nodiscard]] ImageRgb8 draw() const;
 
  private:
-  struct Row {
-    std::string label;
-    std::vector<CaptionedPicture> pictures;
-  };
-
   std::string title_;
   Theme theme_;
-  std::vector<Row> rows_;
+  std::vector<std::pair<std::string, std::vector<CaptionedPicture>>> rows_;  ///< with labels
 };
 
 }  // namespace saccade

@@ -10,15 +10,15 @@ namespace saccade {
 namespace {
 
 constexpr double kDecade = 10;
-constexpr double kTicks = 5;
-/// Against rounding in divisions of ticks.
+constexpr double kIntervals = 5;  // about so many between the ticks
+/// Tolerance for the rounding of divisions by the tick spacing.
 constexpr double kSlack = 1e-9;
 
-/// The next of 1, 2, 5 times a power of ten that is at least `step`.
-double round_step(double step) {
-  const double decade = std::pow(10, std::floor(std::log10(step) + kSlack));
+/// The smallest of 1, 2, 5 times a power of ten that is at least `spacing`.
+double round_spacing(double spacing) {
+  const double decade = std::pow(10, std::floor(std::log10(spacing) + kSlack));
   for (const double factor : {1.0, 2.0, 5.0})
-    if (step <= factor * decade * (1 + kSlack)) return factor * decade;
+    if (spacing <= factor * decade * (1 + kSlack)) return factor * decade;
   return 10 * decade;
 }
 
@@ -42,20 +42,20 @@ void Axis::choose_linear(double low, double high) {
     low -= room;
     high += room;
   }
-  const double step = round_step((high - low) / kTicks);
-  const auto first = std::floor(low / step + kSlack);
-  const auto last = std::ceil(high / step - kSlack);
-  for (double i = first; i <= last; ++i) ticks_.push_back(i * step);
+  const double spacing = round_spacing((high - low) / kIntervals);
+  const auto first = std::floor(low / spacing + kSlack);
+  const auto last = std::ceil(high / spacing - kSlack);
+  for (double i = first; i <= last; ++i) ticks_.push_back(i * spacing);
 }
 
-/// Ticks at 1, 2 and 5 of each decade, over many decades at 1 alone.
+/// Ticks at 1, 2 and 5 of each decade; over many decades at 1 alone.
 void Axis::choose_logarithmic(double low, double high) {
   const double first = std::floor(std::log10(low) + kSlack);
   const double last = std::ceil(std::log10(high) - kSlack);
   for (double decade = first; decade <= last; ++decade)
     for (const double factor : {1.0, 2.0, 5.0})
       if (factor == 1 || last - first <= 3) ticks_.push_back(factor * std::pow(10, decade));
-  // The ends are the tick at or below the least value and that at or above the greatest.
+  // The ends are the tick at or below the smallest value and that at or above the largest.
   const auto above = std::find_if(ticks_.begin(), ticks_.end(),
                                   [&](double tick) { return tick >= high * (1 - kSlack); });
   if (above != ticks_.end()) ticks_.erase(above + 1, ticks_.end());
@@ -64,7 +64,7 @@ void Axis::choose_logarithmic(double low, double high) {
   if (below > ticks_.begin() + 1) ticks_.erase(ticks_.begin(), below - 1);
 }
 
-double Axis::share(double value) const {
+double Axis::position(double value) const {
   const auto at = [&](double v) { return is_logarithmic_ ? std::log(v) : v; };
   return (at(value) - at(ticks_.front())) / (at(ticks_.back()) - at(ticks_.front()));
 }

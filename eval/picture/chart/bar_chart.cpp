@@ -4,7 +4,7 @@
 
 #include "eval/number_text.h"
 #include "eval/picture/canvas/canvas.h"
-#include "eval/picture/chart/legend.h"
+#include "eval/picture/chart/chart_elements.h"
 
 namespace saccade {
 namespace {
@@ -14,7 +14,7 @@ constexpr int kBar = 13;
 constexpr int kRowGap = 12;
 constexpr int kAbovePlots = 36;
 constexpr int kBelowPlots = 30;
-constexpr int kPanelGap = 70;  ///< between panels: the longest value stands there
+constexpr int kPanelGap = 70;  ///< between panels: room for the longest value
 
 int row_height(const BarChart& chart) {
   return kBar * static_cast<int>(std::max<std::size_t>(1, chart.names.size())) + kRowGap;
@@ -46,7 +46,7 @@ class BarPlot {
           const Theme& theme)
       : canvas_(canvas), left_(left), theme_(theme), axis_(values(panel), true) {
     const int rows = static_cast<int>(chart.categories.size()) * row_height(chart);
-    draw_frame(panel.title, kAbovePlots + rows);
+    draw_frame(panel.title, rows);
     for (std::size_t category = 0; category < panel.bars.size(); ++category)
       for (std::size_t name = 0; name < panel.bars[category].size(); ++name)
         if (const std::optional<ChartValue>& bar = panel.bars[category][name])
@@ -57,22 +57,14 @@ class BarPlot {
 
  private:
   [[nodiscard]] double column(double value) const {
-    return left_ + kPlotWidth * axis_.share(value);
+    return left_ + kPlotWidth * axis_.position(value);
   }
 
-  void draw_frame(const std::string& title, int bottom) {
+  void draw_frame(const std::string& title, int rows) {
     canvas_.text(title, {left_, kAbovePlots - 14.0}, theme_.text, kChartLetters + 1);
-    double free_from = 0;
-    for (const double tick : axis_.ticks()) {
-      canvas_.line({column(tick), static_cast<double>(kAbovePlots)},
-                   {column(tick), static_cast<double>(bottom)}, theme_.faint);
-      const std::string text = Axis::text(tick);
-      const double half = Canvas::text_width(text, kChartLetters - 1) / 2.0;
-      if (column(tick) - half < free_from) continue;
-      canvas_.text(text, {column(tick) - half, bottom + 16.0}, mix(theme_.faint, theme_.text, 0.55),
-                   kChartLetters - 1);
-      free_from = column(tick) + half + 6;
-    }
+    draw_x_axis(canvas_, axis_, {left_, static_cast<double>(kAbovePlots)},
+                {static_cast<double>(kPlotWidth), static_cast<double>(rows)}, kChartLetters - 1,
+                theme_);
   }
 
   void draw_bar(const ChartValue& bar, std::size_t name, int top) {

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/image.h"
-#include "eval/picture/chart/axis.h"
 #include "eval/picture/canvas/colour.h"
+#include "eval/picture/chart/axis.h"
 
 namespace saccade {
 
-/// Several quantities compared between categories, each in a panel of its own.
+/// Several quantities compared between categories, one panel each.
 struct BarChart {
   struct Panel {
     std::string title;                                         ///< quantity and unit

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "eval/picture/canvas/canvas.h"
-#include "eval/picture/chart/legend.h"
+#include "eval/picture/chart/chart_elements.h"
 
 namespace saccade {
 namespace {
@@ -45,27 +45,19 @@ class LinePlot {
 
   [[nodiscard]] static double width() { return kPanelWidth - kLeft - kRight; }
   [[nodiscard]] static double height() { return kPanelHeight - kTop - kBottom; }
-  [[nodiscard]] double column(double x) const { return left_ + width() * x_.share(x); }
-  [[nodiscard]] double row(double y) const { return kTop + height() * (1 - y_.share(y)); }
+  [[nodiscard]] double column(double x) const { return left_ + width() * x_.position(x); }
+  [[nodiscard]] double row(double y) const { return kTop + height() * (1 - y_.position(y)); }
 
   void draw_frame(const std::string& x_label) {
     const double right = left_ + width(), bottom = kTop + height();
-    const Rgb8 grey = mix(theme_.faint, theme_.text, 0.55);
+    const Rgb8 grey = tick_colour(theme_);
     for (const double tick : y_.ticks()) {
       canvas_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
       const std::string text = Axis::text(tick);
       canvas_.text(text, {left_ - 6 - Canvas::text_width(text, kChartLetters), row(tick) + 4}, grey,
                    kChartLetters);
     }
-    double free_from = 0;
-    for (const double tick : x_.ticks()) {
-      canvas_.line({column(tick), kTop}, {column(tick), bottom}, theme_.faint);
-      const std::string text = Axis::text(tick);
-      const double half = Canvas::text_width(text, kChartLetters) / 2.0;
-      if (column(tick) - half < free_from) continue;
-      canvas_.text(text, {column(tick) - half, bottom + 16}, grey, kChartLetters);
-      free_from = column(tick) + half + 6;
-    }
+    draw_x_axis(canvas_, x_, {left_, kTop}, {width(), height()}, kChartLetters, theme_);
     canvas_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
     const double middle = left_ + width() / 2 - Canvas::text_width(x_label, kChartLetters) / 2.0;
     canvas_.text(x_label, {middle, bottom + 36}, theme_.text, kChartLetters);

@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "core/image.h"
-#include "eval/picture/chart/axis.h"
 #include "eval/picture/canvas/colour.h"
+#include "eval/picture/chart/axis.h"
 
 namespace saccade {
 
-/// Several quantities over the same x, each in a panel of its own; the same lines in each of them.
+/// Several quantities over the same x, one panel each; all panels have the same lines.
 struct LineChart {
   struct Point {
     double x;
@@ -17,8 +17,8 @@ struct LineChart {
   };
   struct Panel {
     std::string title;                      ///< quantity and unit
-    std::vector<std::vector<Point>> lines;  ///< one for each name, ascending in x; may be empty
-    std::string x_label = {};               ///< where it is not the chart's
+    std::vector<std::vector<Point>> lines;  ///< one per name, ascending in x; may be empty
+    std::string x_label = {};               ///< where it differs from the chart's
   };
 
   std::string x_label;
@@ -26,7 +26,7 @@ struct LineChart {
   std::vector<Panel> panels;
 };
 
-/// Panels side by side above the names of the lines. A range is drawn as a bar through its point.
+/// Panels side by side above the legend. The range of a value is a vertical bar.
 [[nodiscard]] ImageRgb8 draw(const LineChart& chart, const Theme& theme);
 
 }  // namespace saccade

@@ -17,7 +17,7 @@ ImageRgb8 empty_picture(const PinholeCamera& camera, int upscale, const Theme& t
   return {camera.width * upscale, camera.height * upscale, theme.faint};
 }
 
-/// Single pixels would hardly be seen among the empty ones.
+/// A single pixel would hardly be visible.
 void draw_square(ImageRgb8& picture, const Eigen::Vector2d& pixel, int upscale,
                  const Rgb8& colour) {
   const int size = 2 * upscale - 1;
@@ -28,11 +28,11 @@ void draw_square(ImageRgb8& picture, const Eigen::Vector2d& pixel, int upscale,
       picture(u, v) = colour;
 }
 
-/// The dark end of the colours would vanish on a dark ground.
-Rgb8 error_colour(double share) { return ordered_colour(0.3 + 0.7 * std::min(share, 1.0)); }
+/// Without the dark end of the colours, which is invisible on a dark background.
+Rgb8 error_colour(double fraction) { return ordered_colour(0.3 + 0.7 * std::min(fraction, 1.0)); }
 
-/// Lowest and highest value without the outermost percent on either side.
-std::pair<double, double> span_of(std::vector<double> values) {
+/// The 1st and the 99th percentile.
+std::pair<double, double> percentile_range(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t cut = values.size() / 100;
   return {values[cut], values[values.size() - 1 - cut]};
@@ -79,8 +79,8 @@ ImageRgb8 draw_top_down(std::span<const Eigen::Vector3d> points, int width, int 
     x.push_back(point.x());
     z.push_back(point.z());
   }
-  const auto [left, right] = span_of(x);
-  const auto [low, high] = span_of(z);
+  const auto [left, right] = percentile_range(x);
+  const auto [low, high] = percentile_range(z);
   constexpr double kMargin = 0.06;
   const double extent_x = std::max(right - left, 1e-6);
   const double extent_z = std::max(high - low, 1e-6);

@@ -12,10 +12,10 @@
 
 namespace saccade {
 
-/// depth_range() of single depths.
+/// depth_range() of sparse depths.
 [[nodiscard]] DepthRange depth_range(std::span<const DepthPoint> points);
 
-/// Single depths of a view as squares somewhat larger than a pixel, coloured like draw_depth(),
+/// Sparse depths of a view as squares somewhat larger than a pixel, coloured like draw_depth(),
 /// with a colour bar (thesis figs. 8.9-8.11 a).
 [[nodiscard]] ImageRgb8 draw_depth_points(std::span<const DepthPoint> points,
                                           const PinholeCamera& camera, const DepthRange& range,

@@ -24,10 +24,11 @@ ImageF count_derotated_events(std::span<const Event> events, const PinholeCamera
       world_from_camera.at_clamped(reference_s).rotation_matrix().transpose();
   ImageF counts(camera.width, camera.height);
   for (const Event& event : events) {
-    const Eigen::Matrix3d turn =
+    const Eigen::Matrix3d reference_from_camera =
         reference_from_world *
         world_from_camera.at_clamped(seconds_from_ns(event.t_ns)).rotation_matrix();
-    const Eigen::Vector3d ray = turn * pinhole.ray(undistorted(event.x, event.y).cast<double>());
+    const Eigen::Vector3d ray =
+        reference_from_camera * pinhole.ray(undistorted(event.x, event.y).cast<double>());
     if (ray.z() > 0) draw(pinhole.project(ray), counts);
   }
   return counts;

@@ -9,13 +9,13 @@
 
 namespace saccade {
 
-/// How many events fell on every undistorted pixel, each shared among the four around it; those
-/// that leave the image are dropped. `camera` with its lens.
+/// The number of events per undistorted pixel, bilinearly distributed over the four nearest pixels;
+/// events outside the image are dropped. `camera` with its lens.
 [[nodiscard]] ImageF count_events(std::span<const Event> events, const PinholeCamera& camera);
 
-/// The same after every event was turned into the orientation that the camera had at
-/// `reference_s`, pi(R^-1 R_k pi^-1(u_k)) (thesis 5.15), with the pose of its own time: what is
-/// left of the motion is the translation. `world_from_camera` is not empty.
+/// The same after every event was rotated into the orientation of the camera at `reference_s`,
+/// pi(R^-1 R_k pi^-1(u_k)) (thesis 5.15), with R_k at the event's own time. The remaining motion blur
+/// is that of the translation. `world_from_camera` is not empty.
 [[nodiscard]] ImageF count_derotated_events(std::span<const Event> events,
                                             const PinholeCamera& camera,
                                             const Trajectory& world_from_camera,

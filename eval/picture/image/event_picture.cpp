@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/time_search.h"
+
 namespace saccade {
 
 ImageRgb8 draw_events(std::span<const Event> events, int width, int height, const Theme& theme) {
@@ -42,15 +44,15 @@ Events undistort_events(std::span<const Event> events, const PinholeCamera& came
 std::span<const Event> events_around(std::span<const Event> events, double t_s, std::size_t count,
                                      double max_distance_s) {
   const TimeNs t_ns = ns_from_seconds(t_s);
-  const TimeNs reach_ns = ns_from_seconds(max_distance_s);
-  const auto before = [](const Event& event, TimeNs t) { return event.t_ns < t; };
-  auto first = std::lower_bound(events.begin(), events.end(), t_ns, before);
+  const TimeNs max_distance_ns = ns_from_seconds(max_distance_s);
+  auto first = events.begin() + static_cast<std::ptrdiff_t>(count_before(events, t_ns));
   auto last = first;
   while (static_cast<std::size_t>(last - first) < count) {
-    const bool can_grow_back = first != events.begin() && t_ns - (first - 1)->t_ns <= reach_ns;
-    const bool can_grow_on = last != events.end() && last->t_ns - t_ns <= reach_ns;
-    if (!can_grow_back && !can_grow_on) break;
-    if (can_grow_back && (!can_grow_on || t_ns - (first - 1)->t_ns <= last->t_ns - t_ns))
+    const bool can_grow_back =
+        first != events.begin() && t_ns - (first - 1)->t_ns <= max_distance_ns;
+    const bool can_grow_forward = last != events.end() && last->t_ns - t_ns <= max_distance_ns;
+    if (!can_grow_back && !can_grow_forward) break;
+    if (can_grow_back && (!can_grow_forward || t_ns - (first - 1)->t_ns <= last->t_ns - t_ns))
       --first;
     else
       ++last;

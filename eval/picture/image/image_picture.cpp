@@ -10,9 +10,9 @@ namespace saccade {
 namespace {
 
 /// `values` is reordered; not empty.
-float percentile(std::vector<float>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+float percentile(std::vector<float>& values, double fraction) {
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

@@ -9,13 +9,13 @@ namespace saccade {
 [[nodiscard]] ImageRgb8 draw_log_image(const ImageF& log_image, const ImageU8& observed, float low,
                                        float high);
 
-/// The error of log intensity that pictures of it draw as bright as they can.
+/// The error of log intensity at the bright end of the colour scale of error pictures.
 inline constexpr float kMaxLogError = 0.5F;
 
 /// A quantity from 0 (dark) to `max` (bright) in the ordered colours, where `mask` is not 0.
 [[nodiscard]] ImageRgb8 draw_magnitude(const ImageF& image, const ImageU8& mask, float max);
 
-/// The value below which `share` of the values on the mask lie; 0 where the mask is empty.
-[[nodiscard]] float quantile(const ImageF& image, const ImageU8& mask, double share);
+/// The quantile of the values on the mask; 0 where the mask is empty.
+[[nodiscard]] float quantile(const ImageF& image, const ImageU8& mask, double fraction);
 
 }  // namespace saccade

@@ -10,28 +10,24 @@
 namespace saccade {
 namespace {
 
-struct Projected {
-  Eigen::Vector2d pixel;
-  double depth_m;
-};
-
-std::vector<Projected> project_inside(std::span<const Eigen::Vector3f> points_in_world,
-                                      const Rigid3& world_from_camera,
-                                      const PinholeCamera& camera) {
+/// Pixels (u, v) and depths [m] of the points inside the image.
+std::vector<Eigen::Vector3d> project_inside(std::span<const Eigen::Vector3f> points_in_world,
+                                            const Rigid3& world_from_camera,
+                                            const PinholeCamera& camera) {
   const Rigid3 camera_from_world = world_from_camera.inverse();
-  std::vector<Projected> inside;
+  std::vector<Eigen::Vector3d> inside;
   for (const Eigen::Vector3f& point : points_in_world) {
     const Eigen::Vector3d in_camera = camera_from_world * point.cast<double>();
     if (!(in_camera.z() > 0)) continue;
     const Eigen::Vector2d pixel = camera.project(in_camera);
-    if (camera.contains(pixel)) inside.push_back({pixel, in_camera.z()});
+    if (camera.contains(pixel)) inside.emplace_back(pixel.x(), pixel.y(), in_camera.z());
   }
   return inside;
 }
 
 bool is_dark(const Theme& theme) { return theme.background[0] < 128; }
 
-/// Light that adds up on dark ground, ink that takes away on light ground.
+/// Adds light on a dark background, multiplies like ink on a light one.
 void blend(Rgb8& pixel, const Rgb8& colour, bool dark) {
   for (std::size_t i = 0; i < 3; ++i) {
     const int value = dark ? std::min(255, pixel[i] + colour[i]) : pixel[i] * colour[i] / 255;
@@ -45,22 +41,23 @@ std::vector<Eigen::Vector2d> visible_points(std::span<const Eigen::Vector3f> poi
                                             const Rigid3& world_from_camera,
                                             const PinholeCamera& camera) {
   constexpr double kBehind = 1.05;
-  const std::vector<Projected> inside = project_inside(points_in_world, world_from_camera, camera);
+  const std::vector<Eigen::Vector3d> inside =
+      project_inside(points_in_world, world_from_camera, camera);
   ImageF nearest(camera.width, camera.height, std::numeric_limits<float>::infinity());
-  const auto for_each_cell = [&](const Projected& p, const auto& body) {
-    const int x = static_cast<int>(std::lround(p.pixel.x()));
-    const int y = static_cast<int>(std::lround(p.pixel.y()));
+  const auto for_each_cell = [&](const Eigen::Vector3d& p, const auto& body) {
+    const int x = static_cast<int>(std::lround(p.x()));
+    const int y = static_cast<int>(std::lround(p.y()));
     for (int row = std::max(0, y - 1); row <= std::min(camera.height - 1, y + 1); ++row)
       for (int column = std::max(0, x - 1); column <= std::min(camera.width - 1, x + 1); ++column)
         body(nearest(column, row));
   };
-  for (const Projected& p : inside)
-    for_each_cell(p, [&](float& z) { z = std::min(z, static_cast<float>(p.depth_m)); });
+  for (const Eigen::Vector3d& p : inside)
+    for_each_cell(p, [&](float& z) { z = std::min(z, static_cast<float>(p.z())); });
   std::vector<Eigen::Vector2d> visible;
-  for (const Projected& p : inside) {
-    const int x = static_cast<int>(std::lround(p.pixel.x()));
-    const int y = static_cast<int>(std::lround(p.pixel.y()));
-    if (p.depth_m <= kBehind * static_cast<double>(nearest(x, y))) visible.push_back(p.pixel);
+  for (const Eigen::Vector3d& p : inside) {
+    const int x = static_cast<int>(std::lround(p.x()));
+    const int y = static_cast<int>(std::lround(p.y()));
+    if (p.z() <= kBehind * static_cast<double>(nearest(x, y))) visible.emplace_back(p.head<2>());
   }
   return visible;
 }

@@ -12,8 +12,8 @@ namespace saccade {
 namespace {
 
 constexpr double kMarginPx = 34;
-/// A camera that stands still, or moves up and down alone, is drawn at this scale at most.
-constexpr double kLeastExtentM = 1e-3;
+/// The smallest drawn extent, for a camera that does not move horizontally.
+constexpr double kMinExtentM = 1e-3;
 
 void extend(Eigen::AlignedBox2d& box, const Trajectory& path) {
   for (const StampedPose& pose : path.poses())
@@ -30,13 +30,13 @@ TopDownPath::TopDownPath(const Trajectory& truth, const Trajectory& estimate, in
   extend(box, estimate);
   if (box.isEmpty()) return;
   centre_m_ = box.center();
-  const Eigen::Vector2d extent_m = box.sizes().cwiseMax(kLeastExtentM);
+  const Eigen::Vector2d extent_m = box.sizes().cwiseMax(kMinExtentM);
   px_per_m_ = std::min(std::max(width - 2 * kMarginPx, 1.0) / extent_m.x(),
                        std::max(height - 2 * kMarginPx, 1.0) / extent_m.y());
 }
 
-Eigen::Vector2d TopDownPath::on_screen(const Eigen::Vector3d& place) const {
-  const Eigen::Vector2d from_centre_m = place.head<2>() - centre_m_;
+Eigen::Vector2d TopDownPath::on_screen(const Eigen::Vector3d& position) const {
+  const Eigen::Vector2d from_centre_m = position.head<2>() - centre_m_;
   return {width_ / 2.0 + px_per_m_ * from_centre_m.x(),
           height_ / 2.0 - px_per_m_ * from_centre_m.y()};
 }
@@ -51,9 +51,9 @@ ImageRgb8 TopDownPath::draw(double until_s, std::span<const Eigen::Vector3d> mar
     return pixels;
   };
   if (!truth_.empty()) line(truth_, truth_.end_s(), theme_.truth, 3);
-  const auto come = line(estimate_, until_s, theme_.estimate, 1);
+  const auto drawn = line(estimate_, until_s, theme_.estimate, 1);
   for (const Eigen::Vector3d& mark : marks) canvas.disc(on_screen(mark), 3.5, theme_.map);
-  if (!come.empty()) canvas.disc(come.back(), 5, theme_.estimate);
+  if (!drawn.empty()) canvas.disc(drawn.back(), 5, theme_.estimate);
   if (!truth_.empty() || !estimate_.empty()) draw_scale_bar(canvas, px_per_m_, theme_);
   return canvas.image();
 }

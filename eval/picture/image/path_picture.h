@@ -8,20 +8,20 @@
 
 namespace saccade {
 
-/// The path of the camera seen from above (x to the right, y up, world up is +z), with a scale bar:
-/// the whole truth as a broad line, over it the estimate as far as it has come. All pictures of one
-/// path have the same scale.
+/// The camera trajectory seen from above (x to the right, y up; world up is +z), with a scale bar: the
+/// whole true trajectory as a broad line, over it the estimate up to a time. All pictures of one object
+/// have the same scale.
 class TopDownPath {
  public:
-  /// Either path may be empty. `width`, `height` [px].
+  /// Either trajectory may be empty. `width`, `height` [px].
   TopDownPath(const Trajectory& truth, const Trajectory& estimate, int width, int height,
               const Theme& theme);
 
-  /// `marks`: places in the world that get a dot each.
+  /// `marks`: positions in the world that are drawn as dots.
   [[nodiscard]] ImageRgb8 draw(double until_s, std::span<const Eigen::Vector3d> marks) const;
 
  private:
-  [[nodiscard]] Eigen::Vector2d on_screen(const Eigen::Vector3d& place) const;
+  [[nodiscard]] Eigen::Vector2d on_screen(const Eigen::Vector3d& position) const;
 
   Trajectory truth_, estimate_;
   int width_, height_;

@@ -35,10 +35,10 @@ Eigen::AlignedBox3d box_around(std::span<const Eigen::Vector3d> a,
   return box;
 }
 
-/// A straight or resting trajectory still gets a box that can be seen.
+/// Widens the box of a straight or resting trajectory so that it is visible.
 Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box) {
-  const double least = std::max(1e-3, 0.1 * box.sizes().maxCoeff());
-  const Eigen::Vector3d missing = (Eigen::Vector3d::Constant(least) - box.sizes()).cwiseMax(0);
+  const double min_size = std::max(1e-3, 0.1 * box.sizes().maxCoeff());
+  const Eigen::Vector3d missing = (Eigen::Vector3d::Constant(min_size) - box.sizes()).cwiseMax(0);
   return {box.min() - missing / 2, box.max() + missing / 2};
 }
 

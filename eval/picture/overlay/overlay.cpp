@@ -7,18 +7,20 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/time_search.h"
 #include "eval/metrics/scored_samples.h"
 #include "eval/picture/overlay/depth_occlusion.h"
+#include "eval/picture/view/sensor_view.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kShareOfView = 0.25;
-/// The picture hangs before all but a few of the depths that it covers, a little nearer still.
+constexpr double kDefaultViewFraction = 0.25;
+/// The picture is placed slightly nearer than almost all of the depths that it covers.
 constexpr double kDepthPercentile = 0.02;
-constexpr double kNearer = 0.97;
+constexpr double kDistanceRatio = 0.97;
 constexpr double kLostOpacity = 0.3;
-/// Fewer depths within the picture say nothing about the scene; those of the whole view then do.
+/// With fewer depths within the picture, those of the whole view are used.
 constexpr std::size_t kMinDepths = 20;
 
 const Trajectory& poses_of(const Dataset& dataset, const RunFolder* run) {
@@ -35,7 +37,7 @@ const Trajectory& poses_of(const Dataset& dataset, const RunFolder* run) {
   return *run->trajectory;
 }
 
-/// Depths [m] that the camera sees, and those within the middle that the picture is to cover.
+/// The depths [m] in the image, and those in its centre, which the picture will cover.
 class DepthSamples {
  public:
   explicit DepthSamples(const PinholeCamera& camera) : camera_(camera) {}
@@ -43,8 +45,9 @@ class DepthSamples {
   void add(const Eigen::Vector2d& pixel, double depth_m) {
     if (!(depth_m > 0) || !std::isfinite(depth_m) || !camera_.contains(pixel)) return;
     all_.push_back(depth_m);
-    const double reach = kShareOfView / 2 * camera_.width;
-    if (std::abs(pixel.x() - camera_.cx) <= reach && std::abs(pixel.y() - camera_.cy) <= reach)
+    const double half_side = kDefaultViewFraction / 2 * camera_.width;
+    if (std::abs(pixel.x() - camera_.cx) <= half_side &&
+        std::abs(pixel.y() - camera_.cy) <= half_side)
       covered_.push_back(depth_m);
   }
 
@@ -73,18 +76,15 @@ void add_map(std::span<const Eigen::Vector3f> map_in_world, const Rigid3& world_
 }
 
 void add_depth_map(const Dataset& dataset, double t_s, DepthSamples& samples) {
-  const std::vector<StampedFile>& maps = dataset.depth_maps();
-  const auto nearest = std::min_element(
-      maps.begin(), maps.end(),
-      [&](const auto& a, const auto& b) { return std::abs(a.t_s - t_s) < std::abs(b.t_s - t_s); });
-  if (nearest == maps.end()) return;
-  const ImageF depth = dataset.load_depth(static_cast<std::size_t>(nearest - maps.begin()));
+  const std::optional<std::size_t> nearest = nearest_file(dataset.depth_maps(), t_s);
+  if (!nearest) return;
+  const ImageF depth = dataset.load_depth(*nearest);
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x)
       samples.add(Eigen::Vector2d(x, y), static_cast<double>(depth(x, y)));
 }
 
-/// How far in front of the camera the picture shall hang.
+/// The distance of the picture from the camera [m].
 double scene_distance_m(const Dataset& dataset, std::span<const Eigen::Vector3f> map_in_world,
                         const Rigid3& world_from_camera, const PinholeCamera& camera, double t_s) {
   DepthSamples samples(camera);
@@ -93,16 +93,18 @@ double scene_distance_m(const Dataset& dataset, std::span<const Eigen::Vector3f>
   const std::optional<double> distance =
       samples.near_m() ? samples.near_m() : dataset.facts().mean_depth_m;
   if (!distance)
-    throw InputError("--overlay",
-                     fmt::format("neither a map nor a depth map tells how far the scene is at {} "
-                                 "s; say where the picture hangs: --overlay-pose \"x y z qx qy qz "
-                                 "qw\"",
-                                 t_s));
-  return kNearer * *distance;
+    throw InputError(
+        "--overlay",
+        fmt::format("neither a map nor a depth map gives the distance of the scene at "
+                    "{} s; state the pose of the picture: --overlay-pose \"x y z qx qy qz "
+                    "qw\"",
+                    t_s));
+  return kDistanceRatio * *distance;
 }
 
-PlanarPicture place(const OverlayOptions& options, const Dataset& dataset, const RunFolder* run,
-                    std::span<const Eigen::Vector3f> map_in_world, double start_s) {
+PlanarPicture place_picture(const OverlayOptions& options, const Dataset& dataset,
+                            const RunFolder* run, std::span<const Eigen::Vector3f> map_in_world,
+                            double start_s) {
   const double at_s = options.at_s.value_or(start_s);
   const PinholeCamera camera = dataset.camera().undistorted();
   const Trajectory& poses = poses_of(dataset, run);
@@ -119,13 +121,15 @@ PlanarPicture place(const OverlayOptions& options, const Dataset& dataset, const
     distance_m = (placed.world_from_picture.translation() - world_from_camera.translation()).norm();
   } else {
     distance_m = scene_distance_m(dataset, map_in_world, world_from_camera, camera, at_s);
-    // On the optical axis, which need not pass through the middle of the image.
+    // On the optical axis, which need not pass through the centre of the image.
     placed.world_from_picture =
         world_from_camera * Rigid3(Eigen::Quaterniond::Identity(), {0, 0, distance_m});
   }
-  placed.width_m = options.width_m.value_or(kShareOfView * camera.width * distance_m / camera.fx);
+  placed.width_m =
+      options.width_m.value_or(kDefaultViewFraction * camera.width * distance_m / camera.fx);
   if (!(placed.width_m > 0))
-    throw InputError("--overlay-width", "is needed where the picture hangs at the camera itself");
+    throw InputError("--overlay-width",
+                     "is needed where the picture is at the position of the camera");
   return placed;
 }
 
@@ -137,11 +141,11 @@ Overlay::Overlay(const OverlayOptions& options, const Dataset& dataset, const Ru
       run_(run),
       options_(options),
       camera_(dataset.camera().undistorted()),
-      picture_(place(options, dataset, run, map_in_world, start_s)) {
+      picture_(place_picture(options, dataset, run, map_in_world, start_s)) {
   if (!options.truth) return;
   if (run == nullptr)
     throw InputError("--overlay-truth",
-                     "is for runs; over a dataset the picture stands where the truth puts it");
+                     "applies to runs; over a dataset the picture is drawn from the true pose");
   if (dataset.groundtruth().empty())
     throw InputError("--overlay-truth", dataset.folder().string() + " has no ground truth");
 }
@@ -152,37 +156,36 @@ bool Overlay::is_lost(double t_s) const {
   const StampedPose& pose = run_->trajectory->poses()[before.value_or(0)];
   if (std::abs(pose.t_s - t_s) > kMaxPoseAgeS) return true;
   if (!run_->poses || run_->poses->empty()) return false;
-  const auto after = std::upper_bound(run_->poses->begin(), run_->poses->end(), t_s,
-                                      [](double t, const PoseRow& row) { return t < row.t_s; });
-  return (after == run_->poses->begin() ? *after : *(after - 1)).status == "lost";
+  const std::size_t until = count_until(*run_->poses, t_s, &PoseRow::t_s);
+  return (*run_->poses)[until > 0 ? until - 1 : 0].status == "lost";
 }
 
 OcclusionTest Overlay::occlusion_at(double t_s) const {
   if (options_.on_top) return {};
-  // The true motion where it is known: what hides a pixel is in the recording, not in the estimate.
+  // The true motion where it is known: occlusion is a property of the recording, not of the estimate.
   const Trajectory& truth = dataset_.groundtruth();
-  std::vector<PosedDepthMap> views =
+  std::vector<PosedDepthMap> maps =
       depth_maps_near(dataset_, truth.empty() ? poses_of(dataset_, run_) : truth, t_s);
-  if (views.empty()) return {};
+  if (maps.empty()) return {};
   return
-      [views = std::move(views)](const Eigen::Vector3d& point) { return is_occluded(views, point); };
+      [maps = std::move(maps)](const Eigen::Vector3d& point) { return is_occluded(maps, point); };
 }
 
 CaptionedPicture Overlay::over(CaptionedPicture drawn, double t_s, int upscale,
                                const Theme& theme) const {
   const bool lost = is_lost(t_s);
   const ScreenView view{camera_, held_pose(poses_of(dataset_, run_), t_s), upscale};
-  const bool seen =
+  const bool visible =
       draw_planar_picture(picture_, view, lost ? kLostOpacity : 1, occlusion_at(t_s), drawn.image);
   drawn.caption += run_ == nullptr ? ", picture: true pose" : ", picture: estimate";
-  if (!seen) drawn.caption += " (not seen)";
+  if (!visible) drawn.caption += " (not visible)";
   if (lost) {
     drawn.image = with_outline(std::move(drawn.image), picture_, view, theme.off, 2);
     drawn.caption += " LOST";
   }
   if (options_.truth) {
     const ScreenView true_view{camera_, dataset_.groundtruth().at_clamped(t_s), upscale};
-    // A light line in a dark one (or the other way round) shows over any picture.
+    // A line in the contrasting colour is visible on any background.
     drawn.image = with_outline(std::move(drawn.image), picture_, true_view, theme.background, 3);
     drawn.image = with_outline(std::move(drawn.image), picture_, true_view, theme.text, 1);
     drawn.caption += ", outline: true pose";

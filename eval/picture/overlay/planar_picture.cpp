@@ -1,5 +1,6 @@
 #include "eval/picture/overlay/planar_picture.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -12,24 +13,21 @@ namespace saccade {
 namespace {
 
 constexpr int kSamples = 3;  ///< per screen pixel and axis
-/// Where |depth of a point| / distance is less, its pixel is too far outside to be of use.
-constexpr double kNearShare = 0.01;
+/// Points with a smaller ratio of depth to distance lie far outside the image and are clipped.
+constexpr double kMinDepthRatio = 0.01;
 
-struct Box {
-  int left, top, right, bottom;  ///< the last two excluded
-};
-
-/// Screen pixels that the picture may touch: all of them when a part of it is beside or behind the
-/// camera.
-Box bounding_box(const PlanarPicture& picture, const ScreenView& view, const ImageRgb8& image) {
+/// The screen pixels that the picture may cover, max() excluded: all where a part of it is beside or
+/// behind the camera.
+Eigen::AlignedBox2i bounding_box(const PlanarPicture& picture, const ScreenView& view,
+                                 const ImageRgb8& image) {
   const Rigid3 camera_from_world = view.world_from_camera.inverse();
   Eigen::Array2d least(image.width(), image.height());
   Eigen::Array2d most(0, 0);
   for (const Eigen::Vector3d& corner : picture.corners()) {
     const Eigen::Vector3d in_camera = camera_from_world * corner;
     const double distance = in_camera.norm();
-    if (!(in_camera.z() >= kNearShare * distance && std::isfinite(distance)))
-      return {0, 0, image.width(), image.height()};
+    if (!(in_camera.z() >= kMinDepthRatio * distance && std::isfinite(distance)))
+      return {Eigen::Vector2i(0, 0), Eigen::Vector2i(image.width(), image.height())};
     const Eigen::Vector2d screen = view.screen_from_pixel(view.camera.project(in_camera));
     least = least.min(screen.array());
     most = most.max(screen.array());
@@ -37,11 +35,13 @@ Box bounding_box(const PlanarPicture& picture, const ScreenView& view, const Ima
   const auto clamped = [](double at, int size) {
     return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
   };
-  return {clamped(least.x() - 1, image.width()), clamped(least.y() - 1, image.height()),
-          clamped(most.x() + 2, image.width()), clamped(most.y() + 2, image.height())};
+  return {
+      Eigen::Vector2i(clamped(least.x() - 1, image.width()),
+                      clamped(least.y() - 1, image.height())),
+      Eigen::Vector2i(clamped(most.x() + 2, image.width()), clamped(most.y() + 2, image.height()))};
 }
 
-/// What of the picture is seen through a pixel of the camera.
+/// Samples the picture at pixels of the camera.
 class PictureSampler {
  public:
   PictureSampler(const PlanarPicture& picture, const Eigen::Matrix3d& plane_from_pixel,
@@ -51,12 +51,12 @@ class PictureSampler {
         texels_per_m_(picture.texels.width() / picture.width_m),
         step_px_(step_px) {}
 
-  /// 1 / depth of the plane; not above 0 where the pixel does not see it.
+  /// 1 / depth of the plane; not above 0 where the pixel's ray does not meet it.
   [[nodiscard]] double inverse_depth(const Eigen::Vector2d& pixel) const {
     return plane_from_pixel_.row(2).dot(pixel.homogeneous());
   }
 
-  /// Transparent where the pixel looks past the picture.
+  /// Transparent outside the picture.
   [[nodiscard]] Eigen::Array4f operator()(const Eigen::Vector2d& pixel) const {
     const Eigen::Vector3d scaled = plane_from_pixel_ * pixel.homogeneous();
     if (!(scaled.z() > 0)) return Eigen::Array4f::Zero();
@@ -88,10 +88,10 @@ void blend(Rgb8& pixel, const Eigen::Array4f& colour) {
   }
 }
 
-/// The part of a segment before the camera, projected.
+/// The projection of the part of a segment in front of the camera.
 std::optional<std::array<Eigen::Vector2d, 2>> project_segment(Eigen::Vector3d a, Eigen::Vector3d b,
                                                               const PinholeCamera& camera) {
-  const double near_m = kNearShare * std::max(a.norm(), b.norm());
+  const double near_m = kMinDepthRatio * std::max(a.norm(), b.norm());
   if (!(std::max(a.z(), b.z()) > near_m)) return std::nullopt;
   if (a.z() < near_m) a = b + (a - b) * ((b.z() - near_m) / (b.z() - a.z()));
   if (b.z() < near_m) b = a + (b - a) * ((a.z() - near_m) / (a.z() - b.z()));
@@ -116,20 +116,20 @@ std::array<Eigen::Vector3d, 4> PlanarPicture::corners() const {
 }
 
 bool draw_planar_picture(const PlanarPicture& picture, const ScreenView& view, double opacity,
-                         const OcclusionTest& hides, ImageRgb8& image) {
+                         const OcclusionTest& is_occluded, ImageRgb8& image) {
   const Rigid3 camera_from_picture = view.world_from_camera.inverse() * picture.world_from_picture;
   const Eigen::Matrix3d from_plane = pixel_from_plane(view.camera, camera_from_picture);
-  // The normal's share of the line of sight: 0 where the camera lies in the picture's plane.
+  // The distance of the camera from the picture's plane [m].
   const Eigen::Vector3d& centre = camera_from_picture.translation();
   const double facing = camera_from_picture.rotation_matrix().col(2).dot(centre);
   if (!(std::abs(facing) > 1e-9 * (centre.norm() + picture.width_m))) return false;
 
   const double step_px = 1.0 / (kSamples * view.upscale);
   const PictureSampler sampler(picture, from_plane.inverse(), step_px);
-  const Box box = bounding_box(picture, view, image);
+  const Eigen::AlignedBox2i box = bounding_box(picture, view, image);
   bool drawn = false;
-  for (int y = box.top; y < box.bottom; ++y)
-    for (int x = box.left; x < box.right; ++x) {
+  for (int y = box.min().y(); y < box.max().y(); ++y)
+    for (int x = box.min().x(); x < box.max().x(); ++x) {
       const Eigen::Vector2d corner = Eigen::Vector2d(x, y) / view.upscale - Eigen::Vector2d(.5, .5);
       Eigen::Array4f sum = Eigen::Array4f::Zero();
       for (int i = 0; i < kSamples * kSamples; ++i) {
@@ -139,7 +139,8 @@ bool draw_planar_picture(const PlanarPicture& picture, const ScreenView& view, d
       if (!(sum[3] > 0)) continue;
       const Eigen::Vector2d middle = corner + Eigen::Vector2d::Constant(0.5 / view.upscale);
       const double inverse_depth = sampler.inverse_depth(middle);
-      if (hides && inverse_depth > 0 && hides(view.camera.ray(middle) / inverse_depth)) continue;
+      if (is_occluded && inverse_depth > 0 && is_occluded(view.camera.ray(middle) / inverse_depth))
+        continue;
       blend(image(x, y), sum * static_cast<float>(opacity / (kSamples * kSamples)));
       drawn = true;
     }

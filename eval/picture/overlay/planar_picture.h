@@ -18,8 +18,8 @@ namespace saccade {
 [[nodiscard]] Eigen::Matrix3d pixel_from_plane(const PinholeCamera& camera,
                                                const Rigid3& camera_from_plane);
 
-/// A picture that hangs at a fixed place in the world: in the plane z = 0 of its frame, x to its
-/// right, y down, its centre at the origin. From behind it is seen mirrored.
+/// A picture at a fixed pose in the world: in the plane z = 0 of its frame, x to the right, y down, its
+/// centre at the origin. From behind it appears mirrored.
 struct PlanarPicture {
   PicturePyramid texels;
   Rigid3 world_from_picture;
@@ -30,8 +30,7 @@ struct PlanarPicture {
   [[nodiscard]] std::array<Eigen::Vector3d, 4> corners() const;
 };
 
-/// Through what a picture is seen: a camera without distortion, on a screen with `upscale` x
-/// `upscale` pixels per sensor pixel.
+/// A camera without distortion, drawn with `upscale` x `upscale` screen pixels per sensor pixel.
 struct ScreenView {
   PinholeCamera camera;
   Rigid3 world_from_camera;
@@ -43,17 +42,17 @@ struct ScreenView {
   }
 };
 
-/// True where something stands before a point, which is given in the camera's frame [m].
+/// True where another surface occludes a point, which is given in the camera frame [m].
 using OcclusionTest = std::function<bool(const Eigen::Vector3d& point_in_camera)>;
 
 /// Draws the picture over `image` (camera width x upscale by height x upscale): 3 x 3 samples per
-/// screen pixel, blended in linear light. Nothing is drawn of what lies behind the camera, of a
-/// picture seen exactly edge-on, and where `hides` (asked once per screen pixel; may be empty) is
-/// true. `opacity` 0..1 comes on top of the picture's own. False where not a pixel was drawn.
+/// screen pixel, blended in linear light. Parts behind the camera, pictures seen exactly edge-on, and
+/// pixels where `is_occluded` holds (called once per screen pixel; may be empty) are not drawn.
+/// `opacity` in [0, 1] multiplies the picture's own. Returns false where no pixel was drawn.
 bool draw_planar_picture(const PlanarPicture& picture, const ScreenView& view, double opacity,
-                         const OcclusionTest& hides, ImageRgb8& image);
+                         const OcclusionTest& is_occluded, ImageRgb8& image);
 
-/// The four edges of the picture, as far as they lie before the camera.
+/// Draws the four edges of the picture, as far as they lie in front of the camera.
 [[nodiscard]] ImageRgb8 with_outline(ImageRgb8 image, const PlanarPicture& picture,
                                      const ScreenView& view, const Rgb8& colour, int thickness);
 

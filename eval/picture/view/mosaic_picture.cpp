@@ -11,7 +11,6 @@
 #include "eval/picture/view/view_render.h"
 
 namespace saccade {
-namespace {}  // namespace
 
 std::vector<CaptionedPicture> mosaic_pictures(const MosaicView& view, const RunFolder& run,
                                               const Dataset& dataset) {
@@ -42,7 +41,7 @@ void render_mosaic(const RunFolder& run, const Dataset& dataset, const MosaicVie
     const std::vector<GrowthStep> steps = growth_steps(run.folder);
     if (steps.empty())
       throw InputError(run.folder.string(),
-                       "keeps no growth pictures to make a film of; run with --set growth=[...]");
+                       "keeps no growth pictures to make a video of; run with --set growth=[...]");
     return write_growth_video(steps, std::nullopt, output, options);
   }
   ContactSheet sheet(title, options.dark ? kDarkTheme : kLightTheme);

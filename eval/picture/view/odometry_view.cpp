@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <utility>
 
 #include "core/io/image_file.h"
+#include "core/time_search.h"
+#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/depth_picture.h"
 #include "eval/picture/video.h"
-#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/view/view_pictures.h"
 
 namespace saccade {
@@ -27,16 +29,15 @@ DepthRange range_of(const KeyframeHistory& history) {
 /// "0.21 (mean 0.18) %": the value at `t_s` and the mean until then.
 std::string now_and_mean(const std::vector<double>& times_s, const std::vector<double>& values,
                          double t_s, double scale, const char* unit) {
-  const auto after = std::upper_bound(times_s.begin(), times_s.end(), t_s);
-  const auto count = std::max<std::ptrdiff_t>(after - times_s.begin(), 1);
+  const std::size_t count = std::max<std::size_t>(count_until(times_s, t_s, std::identity{}), 1);
   double sum = 0;
-  for (std::ptrdiff_t i = 0; i < count; ++i) sum += values[static_cast<std::size_t>(i)];
-  return fmt::format("{:.2f} (mean {:.2f}) {}", scale * values[static_cast<std::size_t>(count - 1)],
+  for (std::size_t i = 0; i < count; ++i) sum += values[i];
+  return fmt::format("{:.2f} (mean {:.2f}) {}", scale * values[count - 1],
                      scale * sum / static_cast<double>(count), unit);
 }
 
 std::string error_caption(const ErrorSeries& errors, double t_s) {
-  if (errors.t_s.empty()) return "path from above";
+  if (errors.t_s.empty()) return "trajectory from above";
   const std::string position = errors.dt_rel_percent.empty()
                                    ? now_and_mean(errors.t_s, errors.dt_m, t_s, 1e3, "mm")
                                    : now_and_mean(errors.t_s, errors.dt_rel_percent, t_s, 1, "%");
@@ -44,16 +45,16 @@ std::string error_caption(const ErrorSeries& errors, double t_s) {
                      now_and_mean(errors.t_s, errors.dtheta_deg, t_s, 1, "deg"));
 }
 
-/// Two by two, as fits a screen.
-ImageRgb8 square(const OdometryView& view, const std::string& title, const Theme& theme,
-                 double t_s) {
-  std::vector<CaptionedPicture> above = view.pictures(t_s);
-  std::vector<CaptionedPicture> below(std::make_move_iterator(above.begin() + 2),
-                                      std::make_move_iterator(above.end()));
-  above.resize(2);
+/// Four pictures, two by two.
+ImageRgb8 two_by_two(const OdometryView& view, const std::string& title, const Theme& theme,
+                     double t_s) {
+  std::vector<CaptionedPicture> upper = view.pictures(t_s);
+  std::vector<CaptionedPicture> lower(std::make_move_iterator(upper.begin() + 2),
+                                      std::make_move_iterator(upper.end()));
+  upper.resize(2);
   ContactSheet sheet(title, theme);
-  sheet.add_row(fmt::format("{:.3f} s", t_s), std::move(above));
-  sheet.add_row("", std::move(below));
+  sheet.add_row(fmt::format("{:.3f} s", t_s), std::move(upper));
+  sheet.add_row("", std::move(lower));
   return sheet.draw();
 }
 
@@ -72,10 +73,10 @@ OdometryView::OdometryView(const RunFolder& run, const Dataset& dataset,
             style.theme) {}
 
 CaptionedPicture OdometryView::path(double t_s) const {
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::Vector3d> keyframes;
   for (std::size_t i = 0; i <= history_.in_force(t_s); ++i)
-    places.push_back(history_.keyframes()[i].world_from_camera.translation());
-  return {error_caption(errors_, t_s), path_.draw(t_s, places)};
+    keyframes.push_back(history_.keyframes()[i].world_from_camera.translation());
+  return {error_caption(errors_, t_s), path_.draw(t_s, keyframes)};
 }
 
 std::vector<CaptionedPicture> OdometryView::pictures(double t_s) const {
@@ -96,19 +97,19 @@ std::vector<CaptionedPicture> OdometryView::pictures(double t_s) const {
 void render_odometry(const RunFolder& run, const Dataset& dataset, const KeyframeHistory& history,
                      const std::string& title, const TimeSpan& span,
                      const std::filesystem::path& output, const RenderOptions& options) {
-  const bool film = output.extension() == ".mp4";
+  const bool is_video = output.extension() == ".mp4";
   const TimeSpan loaded =
-      options.time_s && !film ? TimeSpan{*options.time_s, *options.time_s} : span;
+      options.time_s && !is_video ? TimeSpan{*options.time_s, *options.time_s} : span;
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
   const OdometryView view(run, dataset, history, loaded,
                           {options.upscale, options.events.value_or(0), theme});
-  if (film)
+  if (is_video)
     return write_slow_motion_video(output, span, options,
-                           [&](double t_s) { return square(view, title, theme, t_s); });
-  if (options.time_s) return write_png(output, square(view, title, theme, *options.time_s));
+                                   [&](double t_s) { return two_by_two(view, title, theme, t_s); });
+  if (options.time_s) return write_png(output, two_by_two(view, title, theme, *options.time_s));
   ContactSheet sheet(title, theme);
-  for (const double share : kSheetTimes) {
-    const double t_s = span.start_s + share * (span.end_s - span.start_s);
+  for (const double fraction : kSheetTimes) {
+    const double t_s = span.start_s + fraction * (span.end_s - span.start_s);
     sheet.add_row(fmt::format("{:.3f} s", t_s), view.pictures(t_s));
   }
   write_png(output, sheet.draw());

@@ -6,25 +6,25 @@
 
 #include "core/io/dataset.h"
 #include "eval/keyframe_history.h"
+#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/path_picture.h"
 #include "eval/picture/render.h"
 #include "eval/picture/view/sensor_view.h"
-#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
 
-/// What an odometry run knew at a moment, in four pictures of the same size. Holds the events of a
-/// stretch of time in memory.
+/// The state of an odometry run at a time, in four pictures of the same size. Holds the events of a time
+/// span in memory.
 class OdometryView {
  public:
-  /// `loaded`: the moments that are drawn. `run` has poses. All must outlive this.
+  /// `loaded`: the time span that is drawn. `run` has poses. All must outlive this.
   OdometryView(const RunFolder& run, const Dataset& dataset, const KeyframeHistory& history,
                const TimeSpan& loaded, const SensorViewStyle& style);
 
-  /// The map in force over the events around `t_s`, seen from the estimated pose; depth of the
-  /// newest keyframe in force; its image, where the run made one; the path so far from above, with
-  /// the keyframes (dots) and the errors at `t_s` and on average until then.
+  /// The current map over the events around `t_s`, seen from the estimated pose; the depth of the
+  /// current keyframe; its image, where the run made one; the trajectory until `t_s` from above, with
+  /// the keyframes (dots), the errors at `t_s` and their means until then.
   [[nodiscard]] std::vector<CaptionedPicture> pictures(double t_s) const;
 
  private:
@@ -34,7 +34,7 @@ class OdometryView {
   const KeyframeHistory& history_;
   SensorView sensor_;
   int upscale_;
-  DepthRange range_;  ///< of all keyframes, so that colours stay
+  DepthRange range_;  ///< of all keyframes, so that colours are comparable
   ErrorSeries errors_;
   TopDownPath path_;
 };

@@ -18,13 +18,13 @@
 namespace saccade {
 namespace {
 
-constexpr float kLargestResidual = 0.5F;  ///< [log units]
-constexpr float kWrong = 0.1F;            ///< relative error of another surface's depth
+constexpr float kMaxResidual = 0.5F;   ///< [log units]
+constexpr float kOutlierError = 0.1F;  ///< relative; larger errors are depths of another surface
 
 /// The named channels of one file.
-class Channels {
+class ExrChannels {
  public:
-  explicit Channels(const std::filesystem::path& file)
+  explicit ExrChannels(const std::filesystem::path& file)
       : file_(file), channels_(read_exr_channels(file)) {}
 
   [[nodiscard]] const std::vector<ExrChannel>& all() const { return channels_; }
@@ -48,14 +48,14 @@ ImageF absolute_difference(const ImageF& a, const ImageF& b) {
   return result;
 }
 
-/// Grey is 0.
+/// Zero is grey.
 ImageRgb8 draw_signed(const ImageF& image) {
   const float low = quantile(image, {}, 0.01);
-  const float reach = std::max({-low, quantile(image, {}, 0.99), 1e-6F});
-  return draw_log_image(image, {}, -reach, reach);
+  const float limit = std::max({-low, quantile(image, {}, 0.99), 1e-6F});
+  return draw_log_image(image, {}, -limit, limit);
 }
 
-/// How much of a view is known and how much of that is right.
+/// The completeness of a depth map and its fraction of outliers.
 std::string agreement(const ImageF& depth, const ImageF& truth) {
   double with_truth = 0, known = 0, wrong = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
@@ -65,11 +65,11 @@ std::string agreement(const ImageF& depth, const ImageF& truth) {
     ++with_truth;
     if (!(z > 0)) continue;
     ++known;
-    if (std::abs(z - expected) > kWrong * expected) ++wrong;
+    if (std::abs(z - expected) > kOutlierError * expected) ++wrong;
   }
-  return fmt::format("{:.1f} % known, {:.1f} % of that off by more than {:g} %",
+  return fmt::format("{:.1f} % known, {:.1f} % of that with errors above {:g} %",
                      100 * known / std::max(with_truth, 1.0), 100 * wrong / std::max(known, 1.0),
-                     100 * kWrong);
+                     100 * kOutlierError);
 }
 
 }  // namespace
@@ -77,24 +77,24 @@ std::string agreement(const ImageF& depth, const ImageF& truth) {
 std::vector<CaptionedPicture> poisson_pictures(const std::filesystem::path& run, int factor) {
   const std::filesystem::path file = run / "figures" / "poisson.exr";
   if (!std::filesystem::exists(file)) return {};
-  const Channels steps(file);
-  const ImageF& truth = steps.at("L");
+  const ExrChannels stages(file);
+  const ImageF& truth = stages.at("L");
   const float low = quantile(truth, {}, 0.005);
   const float high = quantile(truth, {}, 0.995);
   std::vector<CaptionedPicture> pictures = {
       {"log intensity of a frame", upscale(draw_log_image(truth, {}, low, high), factor)},
-      {"its gradient, x", upscale(draw_signed(steps.at("gx")), factor)},
-      {"its gradient, y", upscale(draw_signed(steps.at("gy")), factor)},
-      {"divergence of the gradient", upscale(draw_signed(steps.at("div")), factor)}};
+      {"its gradient, x", upscale(draw_signed(stages.at("gx")), factor)},
+      {"its gradient, y", upscale(draw_signed(stages.at("gy")), factor)},
+      {"divergence of the gradient", upscale(draw_signed(stages.at("div")), factor)}};
   for (const char* boundary : {"neumann", "dirichlet"}) {
-    const ImageF& solved = steps.at(boundary);
+    const ImageF& solved = stages.at(boundary);
     const ImageF residual = absolute_difference(solved, truth);
     pictures.push_back({fmt::format("recovered, {}", boundary),
                         upscale(draw_log_image(solved, {}, low, high), factor)});
     pictures.push_back(
-        {fmt::format("residual, {}, 0 to {:g} (median {:.2g}, most {:.2g})", boundary,
-                     kLargestResidual, quantile(residual, {}, 0.5), quantile(residual, {}, 1)),
-         upscale(draw_magnitude(residual, {}, kLargestResidual), factor)});
+        {fmt::format("residual, {}, 0 to {:g} (median {:.2g}, max {:.2g})", boundary, kMaxResidual,
+                     quantile(residual, {}, 0.5), quantile(residual, {}, 1)),
+         upscale(draw_magnitude(residual, {}, kMaxResidual), factor)});
   }
   return pictures;
 }
@@ -106,7 +106,7 @@ std::vector<CaptionedPicture> propagation_pictures(const std::filesystem::path& 
   if (!std::filesystem::exists(list)) return {};
   std::vector<CaptionedPicture> pictures;
   for (const RunView& view : read_view_list(list)) {
-    const Channels maps(view.depth);
+    const ExrChannels maps(view.depth);
     const auto truth = depth_truth_at(dataset, view.t_s);
     const DepthRange range = depth_range(truth ? truth->depth : maps.at("Z"));
     const auto add = [&](const std::string& what, const ImageF& depth) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/io/event_file.h"
+#include "core/time_search.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/canvas/colour_bar.h"
 #include "eval/picture/image/event_picture.h"
@@ -13,29 +15,36 @@
 namespace saccade {
 namespace {
 
-/// An event further from the moment than this is not part of its picture.
-constexpr double kReachS = 0.05;
-constexpr double kDefaultShare = 0.15;
-
-/// The last file not after `t_s`, or the first one; `files` is not empty.
-std::size_t current_file(const std::vector<StampedFile>& files, double t_s) {
-  std::size_t index = 0;
-  while (index + 1 < files.size() && files[index + 1].t_s <= t_s) ++index;
-  return index;
-}
+/// Events further from the time of a picture are not drawn.
+constexpr double kMaxEventDistanceS = 0.05;
+/// Events per pixel of a picture.
+constexpr double kDefaultDensity = 0.15;
 
 }  // namespace
+
+std::size_t current_file(const std::vector<StampedFile>& files, double t_s) {
+  const std::size_t until = count_until(files, t_s, &StampedFile::t_s);
+  return until > 0 ? until - 1 : 0;
+}
+
+std::optional<std::size_t> nearest_file(const std::vector<StampedFile>& files, double t_s) {
+  const auto nearest = std::min_element(
+      files.begin(), files.end(),
+      [&](const auto& a, const auto& b) { return std::abs(a.t_s - t_s) < std::abs(b.t_s - t_s); });
+  if (nearest == files.end()) return std::nullopt;
+  return static_cast<std::size_t>(nearest - files.begin());
+}
 
 SensorView::SensorView(const Dataset& dataset, double start_s, double end_s,
                        const SensorViewStyle& style)
     : dataset_(dataset), camera_(dataset.camera().undistorted()), style_(style) {
-  events_ = dataset.load_events(start_s - kReachS, end_s + kReachS);
+  events_ = dataset.load_events(start_s - kMaxEventDistanceS, end_s + kMaxEventDistanceS);
   if (style_.events == 0)
-    style_.events = static_cast<std::size_t>(kDefaultShare * camera_.width * camera_.height);
+    style_.events = static_cast<std::size_t>(kDefaultDensity * camera_.width * camera_.height);
 }
 
 std::span<const Event> SensorView::around(double t_s) const {
-  return events_around(events_, t_s, style_.events, kReachS);
+  return events_around(events_, t_s, style_.events, kMaxEventDistanceS);
 }
 
 ImageRgb8 SensorView::events(double t_s) const {
@@ -56,11 +65,11 @@ ImageRgb8 SensorView::undistorted_events(double t_s) const {
                  style_.upscale);
 }
 
-std::optional<FramePicture> SensorView::undistorted_frame(double t_s) const {
+std::optional<std::pair<double, ImageRgb8>> SensorView::undistorted_frame(double t_s) const {
   if (dataset_.frames().empty()) return std::nullopt;
   const std::size_t index = current_file(dataset_.frames(), t_s);
   const ImageF frame = undistort_image(dataset_.load_frame(index), dataset_.camera());
-  return FramePicture{dataset_.frames()[index].t_s, upscale(draw_radiance(frame), style_.upscale)};
+  return std::pair(dataset_.frames()[index].t_s, upscale(draw_radiance(frame), style_.upscale));
 }
 
 std::optional<ImageRgb8> SensorView::frame(double t_s) const {

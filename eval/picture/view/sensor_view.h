@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/io/dataset.h"
@@ -11,16 +12,11 @@
 
 namespace saccade {
 
-/// How pictures of a dataset are drawn.
+/// The style of pictures of a dataset.
 struct SensorViewStyle {
   int upscale = 3;         ///< screen pixels per sensor pixel
   std::size_t events = 0;  ///< per picture; 0: 15 % of the number of pixels
   Theme theme = kDarkTheme;
-};
-
-struct FramePicture {
-  double t_s = 0;
-  ImageRgb8 image;
 };
 
 struct DepthPicture {
@@ -28,8 +24,8 @@ struct DepthPicture {
   DepthRange range;
 };
 
-/// Draws what a dataset's sensor saw at a moment; all pictures have the same size, width x upscale
-/// by height x upscale. Holds the events of a stretch of time in memory.
+/// Draws the data of a dataset at a time; all pictures have the same size, width x upscale by height x
+/// upscale. Holds the events of a time span in memory.
 class SensorView {
  public:
   /// Loads the events between the two times, with a margin for the pictures at the ends.
@@ -40,7 +36,7 @@ class SensorView {
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }  ///< undistorted
   [[nodiscard]] const Theme& theme() const { return style_.theme; }
 
-  /// As the sensor gave them.
+  /// Distorted, as recorded.
   [[nodiscard]] ImageRgb8 events(double t_s) const;
   /// The map projected from a pose over the undistorted events.
   [[nodiscard]] ImageRgb8 map_over_events(double t_s,
@@ -48,9 +44,9 @@ class SensorView {
                                           const Rigid3& world_from_camera) const;
   /// The undistorted events alone.
   [[nodiscard]] ImageRgb8 undistorted_events(double t_s) const;
-  /// The latest grey frame at `t_s` as a camera without distortion would have seen it, with its own
-  /// time; nullopt when the dataset has none.
-  [[nodiscard]] std::optional<FramePicture> undistorted_frame(double t_s) const;
+  /// Time [s] and picture of the latest grey frame at `t_s`, undistorted; nullopt when the dataset has
+  /// no frames.
+  [[nodiscard]] std::optional<std::pair<double, ImageRgb8>> undistorted_frame(double t_s) const;
   /// The latest grey frame and depth map at `t_s` (the first one before it); nullopt when the
   /// dataset has none.
   [[nodiscard]] std::optional<ImageRgb8> frame(double t_s) const;
@@ -66,6 +62,13 @@ class SensorView {
   SensorViewStyle style_;
   Events events_;
 };
+
+/// Index of the last file at or before `t_s`, or 0; `files` is not empty.
+[[nodiscard]] std::size_t current_file(const std::vector<StampedFile>& files, double t_s);
+
+/// Index of the file nearest in time; nullopt where `files` is empty.
+[[nodiscard]] std::optional<std::size_t> nearest_file(const std::vector<StampedFile>& files,
+                                                      double t_s);
 
 /// First and last event time [s], or the span of the ground truth where there are no events.
 struct TimeSpan {

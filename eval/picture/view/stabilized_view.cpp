@@ -9,26 +9,26 @@
 #include "core/srgb.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/event_picture.h"
-#include "eval/picture/video.h"
 #include "eval/picture/image/log_picture.h"
+#include "eval/picture/video.h"
 
 namespace saccade {
 namespace {
 
-constexpr float kBrightest = 0.99F;  // quantile of the counts
+constexpr float kBrightQuantile = 0.99F;  // of the counts
 
 std::filesystem::path folder_of(const RunFolder& run) { return run.folder / "stabilized"; }
 
-void draw(ImageF& counts, const Eigen::Vector2f& place) {
-  if (is_inside(counts, place.x(), place.y())) splat(counts, place.x(), place.y(), 1.0F);
+void add_event(ImageF& counts, const Eigen::Vector2f& pixel) {
+  if (is_inside(counts, pixel.x(), pixel.y())) splat(counts, pixel.x(), pixel.y(), 1.0F);
 }
 
 }  // namespace
 
-ImageRgb8 draw_counts(const ImageF& counts, float most) {
+ImageRgb8 draw_counts(const ImageF& counts, float max) {
   ImageF shown = counts;
   for (float& value : shown.pixels()) value = std::log1p(value);
-  return draw_magnitude(shown, {}, std::log1p(most));
+  return draw_magnitude(shown, {}, std::log1p(max));
 }
 
 ImageRgb8 draw_frame(const ImageF& radiance) {
@@ -63,33 +63,26 @@ std::vector<CaptionedPicture> StabilizedView::events(double t_s) const {
   ImageF before(dataset_.camera().width, dataset_.camera().height);
   ImageF after = before;
   for (std::size_t i = first; i < first + around.size(); ++i) {
-    draw(before, undistortion_(run_.places.source_x[i], run_.places.source_y[i]));
-    draw(after, {run_.places.x[i], run_.places.y[i]});
+    add_event(before, undistortion_(run_.places.source_x[i], run_.places.source_y[i]));
+    add_event(after, {run_.places.x[i], run_.places.y[i]});
   }
-  const float most = std::max(quantile(after, {}, kBrightest), 1.0F);
+  const float max = std::max(quantile(after, {}, kBrightQuantile), 1.0F);
   const double length_ms =
       around.empty() ? 0 : 1e3 * seconds_from_ns(around.back().t_ns - around.front().t_ns);
   return {{fmt::format("events of {:.1f} ms", length_ms),
-           saccade::upscale(draw_counts(before, most), upscale_)},
-          {"stabilized", saccade::upscale(draw_counts(after, most), upscale_)}};
+           saccade::upscale(draw_counts(before, max), upscale_)},
+          {"stabilized", saccade::upscale(draw_counts(after, max), upscale_)}};
 }
 
 std::vector<CaptionedPicture> StabilizedView::frames(double t_s) const {
   if (files_.empty()) return {};
-  // The latest one, or the first; times are written with fewer digits than they may have.
-  const auto after = std::partition_point(files_.begin(), files_.end(),
-                                          [&](const StampedFile& f) { return f.t_s <= t_s; });
-  const StampedFile& file = after == files_.begin() ? *after : *(after - 1);
-  const std::vector<StampedFile>& all = dataset_.frames();
-  const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.t_s - file.t_s) < std::abs(b.t_s - file.t_s);
-  });
+  const StampedFile& file = files_[current_file(files_, t_s)];
+  // Times in the two lists may differ by rounding.
+  const std::optional<std::size_t> original = nearest_file(dataset_.frames(), file.t_s);
   std::vector<CaptionedPicture> pictures;
-  if (nearest != all.end()) {
-    const ImageF frame = dataset_.load_frame(static_cast<std::size_t>(nearest - all.begin()));
+  if (original)
     pictures.push_back({fmt::format("frame of {:.3f} s", file.t_s),
-                        saccade::upscale(draw_frame(frame), upscale_)});
-  }
+                        saccade::upscale(draw_frame(dataset_.load_frame(*original)), upscale_)});
   pictures.push_back({"stabilized", saccade::upscale(read_image_rgb(file.file), upscale_)});
   return pictures;
 }
@@ -97,10 +90,10 @@ std::vector<CaptionedPicture> StabilizedView::frames(double t_s) const {
 void render_stabilized(const RunFolder& run, const Dataset& dataset, const std::string& title,
                        const TimeSpan& span, const std::filesystem::path& output,
                        const RenderOptions& options) {
-  constexpr double kMoments[] = {0.15, 0.5, 0.85};
+  constexpr double kTimes[] = {0.15, 0.5, 0.85};
   const StabilizedView view(run, dataset, options.events.value_or(0), options.upscale);
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
-  const auto add_moment = [&](ContactSheet& sheet, double t_s) {
+  const auto add_time = [&](ContactSheet& sheet, double t_s) {
     if (auto frames = view.frames(t_s); !frames.empty())
       sheet.add_row(fmt::format("{:.3f} s", t_s), std::move(frames));
     if (auto events = view.events(t_s); !events.empty())
@@ -109,16 +102,16 @@ void render_stabilized(const RunFolder& run, const Dataset& dataset, const std::
   if (output.extension() == ".mp4") {
     return write_slow_motion_video(output, span, options, [&](double t_s) {
       ContactSheet sheet(title, theme);
-      add_moment(sheet, t_s);
+      add_time(sheet, t_s);
       return sheet.draw();
     });
   }
   ContactSheet sheet(title, theme);
   if (options.time_s) {
-    add_moment(sheet, *options.time_s);
+    add_time(sheet, *options.time_s);
   } else {
-    for (const double share : kMoments)
-      add_moment(sheet, span.start_s + share * (span.end_s - span.start_s));
+    for (const double fraction : kTimes)
+      add_time(sheet, span.start_s + fraction * (span.end_s - span.start_s));
   }
   write_png(output, sheet.draw());
 }

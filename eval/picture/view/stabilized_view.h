@@ -6,21 +6,21 @@
 
 #include "core/io/dataset.h"
 #include "eval/metrics/sharpness.h"
+#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/render.h"
 #include "eval/picture/view/sensor_view.h"
-#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
 
-/// Counts of events on a scale that shows edges as well as single events: `most` is brightest.
-[[nodiscard]] ImageRgb8 draw_counts(const ImageF& counts, float most);
+/// Event counts on a logarithmic scale up to `max`, which shows edges as well as single events.
+[[nodiscard]] ImageRgb8 draw_counts(const ImageF& counts, float max);
 
-/// A frame as the stabilized ones are written: sRGB codes of the radiance.
+/// The radiance of a frame as sRGB, as stabilized frames are written.
 [[nodiscard]] ImageRgb8 draw_frame(const ImageF& radiance);
 
-/// Frames and events of a run of `saccade run stabilize` at a moment, before and after; undistorted
-/// but for the frame before. Holds the events in memory.
+/// Frames and events of a run of `saccade run stabilize` at a time, before and after stabilization;
+/// undistorted except the original frame. Holds the events in memory.
 class StabilizedView {
  public:
   /// True where the run holds stabilized events or frames.
@@ -30,9 +30,9 @@ class StabilizedView {
   /// where a file is malformed.
   StabilizedView(const RunFolder& run, const Dataset& dataset, std::size_t events, int upscale);
 
-  /// As fired and stabilized; none where the run has no events.
+  /// Original and stabilized events; empty where the run has none.
   [[nodiscard]] std::vector<CaptionedPicture> events(double t_s) const;
-  /// The latest frame at `t_s` before and after; none where the run has none.
+  /// The latest frame at `t_s`, original and stabilized; empty where the run has none.
   [[nodiscard]] std::vector<CaptionedPicture> frames(double t_s) const;
 
  private:

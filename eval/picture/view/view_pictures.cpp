@@ -16,8 +16,8 @@
 namespace saccade {
 namespace {
 
-/// The scale of thesis figs. 8.9 and 8.10.
-double largest_depth_error(const Dataset& dataset) {
+/// The largest relative error of the colour scale, as in thesis figs. 8.9 and 8.10.
+double max_depth_error(const Dataset& dataset) {
   return dataset.facts().name == "dunes" ? 0.045 : 0.07;
 }
 
@@ -47,7 +47,7 @@ std::vector<CaptionedPicture> depth_pictures(const EstimatedView& view, const Da
   pictures.push_back({"true depth", draw_depth_map(truth->depth, range, upscale, theme)});
   pictures.push_back({"relative error of the depth",
                       draw_depth_errors(compare_depth(view.points, *truth, view.t_s), camera,
-                                        largest_depth_error(dataset), upscale, theme)});
+                                        max_depth_error(dataset), upscale, theme)});
   return pictures;
 }
 
@@ -104,9 +104,9 @@ std::vector<CaptionedPicture> ViewPictures::pictures(std::size_t view, std::size
   return row;
 }
 
-std::vector<std::size_t> evenly_spaced_indices(std::size_t count, std::size_t most) {
+std::vector<std::size_t> evenly_spaced_indices(std::size_t count, std::size_t max) {
   std::vector<std::size_t> chosen;
-  const std::size_t kept = std::min(count, most);
+  const std::size_t kept = std::min(count, max);
   for (std::size_t i = 0; i < kept; ++i)
     chosen.push_back(kept == 1 ? 0 : i * (count - 1) / (kept - 1));
   return chosen;

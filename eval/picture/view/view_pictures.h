@@ -12,21 +12,21 @@
 
 namespace saccade {
 
-/// Estimated depth of a view, the truth and the relative error; the first alone where the truth is
-/// unknown. `upscale` screen pixels per sensor pixel.
+/// The estimated depth of a view, the truth and the relative error; the estimate alone where the truth
+/// is unknown. `upscale` screen pixels per sensor pixel.
 [[nodiscard]] std::vector<CaptionedPicture> depth_pictures(const EstimatedView& view,
                                                            const Dataset& dataset, int upscale,
                                                            const Theme& theme);
 
-/// Log intensity of a view, fitted to the truth, what is unobserved tinted; the truth; the error.
-/// The first alone, in its own range, where the truth is unknown.
+/// The log intensity of a view, fitted to the truth and tinted where unobserved; the truth; the error.
+/// The estimate alone, in its own range, where the truth is unknown.
 [[nodiscard]] std::vector<CaptionedPicture> image_pictures(const ImageView& view,
                                                            const Dataset& dataset, int upscale);
 
-/// The same without the truth, in its own range.
+/// The estimate alone, in its own range.
 [[nodiscard]] ImageRgb8 draw_image_alone(const ImageView& view, int upscale);
 
-/// A reconstruction after its first events.
+/// A picture of a reconstruction from its first events.
 struct GrowthStep {
   std::filesystem::path file;
   double events = 0;
@@ -36,7 +36,7 @@ struct GrowthStep {
 /// another name.
 [[nodiscard]] std::vector<GrowthStep> growth_steps(const std::filesystem::path& folder);
 
-/// What a run of `depth` or `reconstruct` found, view by view.
+/// Draws the views of a run of `depth` or `reconstruct`.
 class ViewPictures {
  public:
   /// Reads the views of the run folder; `dataset` must outlive this.
@@ -57,7 +57,7 @@ class ViewPictures {
   std::vector<double> times_;
 };
 
-/// Indices of at most `most` of `count` things, evenly chosen, the first and the last among them.
-[[nodiscard]] std::vector<std::size_t> evenly_spaced_indices(std::size_t count, std::size_t most);
+/// At most `max` evenly spaced indices below `count`, the first and the last included.
+[[nodiscard]] std::vector<std::size_t> evenly_spaced_indices(std::size_t count, std::size_t max);
 
 }  // namespace saccade

@@ -3,40 +3,38 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <thread>
 
 #include "core/check.h"
 #include "core/child_process.h"
 #include "core/io/atomic_file.h"
+#include "core/stopwatch.h"
 
 namespace saccade {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int kWaitMs = 200;
-/// How long a child may take to end after it was asked to.
-constexpr std::chrono::seconds kPatience{5};
+/// Children that do not end this long after they were asked to are killed [s].
+constexpr double kStopTimeoutS = 5;
 
 /// A job whose command number `command` is running.
 struct Running {
   std::size_t index;
   std::size_t command;
-  Clock::time_point start;
+  Stopwatch stopwatch;
   ChildProcess process;
 };
 
-/// Begins a command of a job.
-ChildProcess begin(const std::filesystem::path& program, const LaunchJob& job,
-                   std::size_t command) {
+/// Starts a command of a job.
+ChildProcess start_command(const std::filesystem::path& program, const LaunchJob& job,
+                           std::size_t command) {
   std::vector<std::string> words{"saccade"};
   words.insert(words.end(), job.commands[command].begin(), job.commands[command].end());
   return ChildProcess(program, words, job.log);
 }
 
-/// Sleeps until a child ends, a signal comes or kWaitMs are over.
+/// Sleeps until a child ends, a signal arrives or kWaitMs have passed.
 void wait_for_any(const std::vector<Running>& running) {
   std::vector<pollfd> ends;
   ends.reserve(running.size());
@@ -46,22 +44,22 @@ void wait_for_any(const std::vector<Running>& running) {
 
 void stop_all(std::vector<Running>& running) {
   for (Running& one : running) one.process.stop();
-  const Clock::time_point limit = Clock::now() + kPatience;
+  const Stopwatch stopwatch;
   while (!running.empty()) {
     wait_for_any(running);
     for (auto one = running.begin(); one != running.end();)
       one = one->process.poll_end() ? running.erase(one) : one + 1;
-    if (Clock::now() > limit) running.clear();  // the destructor kills
+    if (stopwatch.seconds() > kStopTimeoutS) running.clear();  // the destructor kills
   }
 }
 
-/// Goes on with a job whose call has ended. Nothing more to do: the result of the job.
+/// Starts the next command of a job after one has ended. Returns the result where the job has ended.
 std::optional<LaunchResult> advance(Running& one, const ChildEnd& end, const LaunchJob& job,
                                     const std::filesystem::path& program) {
-  const double wall_s = std::chrono::duration<double>(Clock::now() - one.start).count();
+  const double wall_s = one.stopwatch.seconds();
   if (end.exit_code != 0) return LaunchResult{false, end.text(), job.commands[one.command], wall_s};
   if (++one.command == job.commands.size()) return LaunchResult{true, {}, {}, wall_s};
-  one.process = begin(program, job, one.command);
+  one.process = start_command(program, job, one.command);
   return std::nullopt;
 }
 
@@ -74,7 +72,7 @@ int LocalLauncher::default_parallel_jobs(int threads) const {
 }
 
 bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
-                        const LaunchCallbacks& events) {
+                        const LaunchCallbacks& callbacks) {
   SACCADE_CHECK(limits.parallel_jobs >= 1);
   const InterruptGuard interrupt;
   std::vector<Running> running;
@@ -83,10 +81,10 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
     for (; next < jobs.size() && running.size() < static_cast<std::size_t>(limits.parallel_jobs);
          ++next) {
       write_atomically(jobs[next].log, "");
-      running.push_back({next, 0, Clock::now(), begin(program_, jobs[next], 0)});
+      running.push_back({next, 0, {}, start_command(program_, jobs[next], 0)});
     }
     wait_for_any(running);
-    events.on_wait();
+    callbacks.on_wait();
     if (interrupt.requested()) {
       stop_all(running);
       return false;
@@ -95,7 +93,7 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
       std::optional<LaunchResult> result;
       if (const std::optional<ChildEnd> end = one->process.poll_end())
         result = advance(*one, *end, jobs[one->index], program_);
-      if (result) events.on_end(one->index, *result);
+      if (result) callbacks.on_end(one->index, *result);
       one = result ? running.erase(one) : one + 1;
     }
   }

@@ -10,8 +10,8 @@ class LocalLauncher : public Launcher {
   explicit LocalLauncher(std::filesystem::path program) : program_(std::move(program)) {}
 
   [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
-                         const LaunchCallbacks& events) override;
-  /// The jobs and their threads together never exceed the cores.
+                         const LaunchCallbacks& callbacks) override;
+  /// As many as their threads fit the cores.
   [[nodiscard]] int default_parallel_jobs(int threads) const override;
 
  private:

@@ -25,20 +25,21 @@ constexpr const char* kRecordFile = "batch.yaml";
 }  // namespace
 
 void describe(config::Fields& fields, SlurmArrayJob& job) {
-  fields.value("name", job.name, "of the job").required();
-  fields.value("identity", job.identity, "of all that its result depends on");
-  fields.value("attempt", job.attempt, "so many times it was submitted");
+  fields.value("name", job.name, "Name of the job.").required();
+  fields.value("identity", job.identity, "Hash of everything that the result depends on.");
+  fields.value("attempt", job.attempt, "Number of the attempt, from 1.");
 }
 
 void describe(config::Fields& fields, SlurmArrayRecord& record) {
-  fields.value("array", record.array, "name in Slurm").required();
-  fields.value("jobs_per_task", record.jobs_per_task, "run one after another").range(1, 1e6);
-  fields.list("jobs", record.jobs, "in the order of the tasks").required();
+  fields.value("array", record.array, "Name of the array in Slurm.").required();
+  fields.value("jobs_per_task", record.jobs_per_task, "Jobs that one task runs one after another.")
+      .range(1, 1e6);
+  fields.list("jobs", record.jobs, "Jobs in the order of the tasks.").required();
 }
 
 SlurmArray::SlurmArray(const fs::path& parent, SlurmArrayRecord record,
                        std::span<const LaunchJob* const> jobs, const fs::path& program)
-    : folder_(parent / record.array), record_(std::move(record)), settled_(jobs.size(), false) {
+    : folder_(parent / record.array), record_(std::move(record)), reported_(jobs.size(), false) {
   SACCADE_CHECK(jobs.size() == record_.jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i)
     write_atomically(file(i, "sh"), job_script(*jobs[i]));
@@ -49,11 +50,11 @@ SlurmArray::SlurmArray(const fs::path& parent, SlurmArrayRecord record,
 SlurmArray::SlurmArray(fs::path folder, SlurmArrayRecord record)
     : folder_(std::move(folder)), record_(std::move(record)) {
   for (std::size_t i = 0; i < record_.jobs.size(); ++i)
-    settled_.push_back(fs::exists(file(i, "settled")));
+    reported_.push_back(fs::exists(file(i, "settled")));
 }
 
 std::vector<SlurmArray> SlurmArray::find(const fs::path& parent) {
-  std::vector<SlurmArray> batches;
+  std::vector<SlurmArray> arrays;
   std::error_code error;
   std::vector<fs::path> folders;
   for (const fs::directory_entry& entry : fs::directory_iterator(parent, error))
@@ -61,11 +62,11 @@ std::vector<SlurmArray> SlurmArray::find(const fs::path& parent) {
   std::sort(folders.begin(), folders.end());
   for (const fs::path& folder : folders) try {
       const fs::path file = folder / kRecordFile;
-      batches.push_back(SlurmArray(folder, config::read<SlurmArrayRecord>(config::load(file))));
+      arrays.push_back(SlurmArray(folder, config::read<SlurmArrayRecord>(config::load(file))));
     } catch (const InputError&) {
-      fs::remove_all(folder, error);  // it was killed before it could submit anything
+      fs::remove_all(folder, error);  // the program was killed before it submitted the array
     }
-  return batches;
+  return arrays;
 }
 
 int SlurmArray::tasks() const { return task_of(record_.jobs.size() - 1) + 1; }
@@ -101,13 +102,13 @@ std::string SlurmArray::output_of(std::size_t job) const {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void SlurmArray::settle(std::size_t job) {
+void SlurmArray::mark_reported(std::size_t job) {
   std::ofstream stream(file(job, "settled"));
-  settled_[job] = true;
+  reported_[job] = true;
 }
 
-bool SlurmArray::all_settled() const {
-  return std::find(settled_.begin(), settled_.end(), false) == settled_.end();
+bool SlurmArray::all_reported() const {
+  return std::find(reported_.begin(), reported_.end(), false) == reported_.end();
 }
 
 void SlurmArray::remove() const {

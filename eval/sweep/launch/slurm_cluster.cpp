@@ -17,9 +17,9 @@ namespace {
 using SlurmWords = std::vector<std::string>;
 
 /// Slurm's default of MaxArraySize.
-constexpr int kUsualLargestArray = 1001;
+constexpr int kDefaultMaxArraySize = 1001;
 
-/// What a command of Slurm said.
+/// The result of a Slurm command.
 struct SlurmAnswer {
   int exit_code = -1;
   std::string text;  ///< stdout and stderr
@@ -55,14 +55,14 @@ void SlurmCommands::check() {
     throw InputError("--launcher slurm", "the cluster does not answer: " + ping.text);
 }
 
-int SlurmCommands::largest_array() {
+int SlurmCommands::max_array_size() {
   const SlurmAnswer answer = ask({"scontrol", "show", "config"});
-  // "MaxArraySize            = 1001", one above the highest number of a task.
+  // "MaxArraySize            = 1001", one above the highest index of a task.
   const std::size_t key = answer.text.find("MaxArraySize");
   const std::size_t value =
       key == std::string::npos ? key : answer.text.find_first_of("0123456789\n", key);
   const int told = value == std::string::npos ? 0 : std::atoi(answer.text.c_str() + value);
-  return told > 0 ? told : kUsualLargestArray;
+  return told > 0 ? told : kDefaultMaxArraySize;
 }
 
 std::string SlurmCommands::submit(const std::filesystem::path& script, const SlurmWords& options) {

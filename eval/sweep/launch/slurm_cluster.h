@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// A cluster that runs arrays of jobs, known by their names.
+/// A cluster that runs job arrays, which are identified by their names.
 class SlurmCluster {
  public:
   SlurmCluster() = default;
@@ -17,14 +17,14 @@ class SlurmCluster {
   SlurmCluster(const SlurmCluster&) = delete;
   SlurmCluster& operator=(const SlurmCluster&) = delete;
 
-  /// InputError when there is none to be reached from here.
+  /// Throws InputError when the cluster cannot be reached.
   virtual void check() = 0;
-  /// Tasks that one array may have.
-  [[nodiscard]] virtual int largest_array() = 0;
-  /// Queues a script with the options of sbatch. Why it was refused; empty when it was not.
+  /// The largest number of tasks of an array.
+  [[nodiscard]] virtual int max_array_size() = 0;
+  /// Submits a script with options of sbatch. Returns why it was rejected; empty when it was accepted.
   [[nodiscard]] virtual std::string submit(const std::filesystem::path& script,
                                            const std::vector<std::string>& options) = 0;
-  /// What is known of these arrays; nullopt when Slurm does not answer.
+  /// The states of the tasks of these arrays; nullopt when Slurm does not answer.
   [[nodiscard]] virtual std::optional<SlurmQueue> queue(const std::vector<std::string>& arrays) = 0;
   virtual void cancel(const std::vector<std::string>& arrays) = 0;
 };
@@ -33,7 +33,7 @@ class SlurmCluster {
 class SlurmCommands : public SlurmCluster {
  public:
   void check() override;
-  [[nodiscard]] int largest_array() override;
+  [[nodiscard]] int max_array_size() override;
   [[nodiscard]] std::string submit(const std::filesystem::path& script,
                                    const std::vector<std::string>& options) override;
   [[nodiscard]] std::optional<SlurmQueue> queue(const std::vector<std::string>& arrays) override;

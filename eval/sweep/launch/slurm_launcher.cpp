@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Does something now and then: so seldom that it takes a small share of the time, however slow the
-/// file system or the controller of the cluster are.
-class Repeated {
+/// Does its work periodically, and so rarely that it takes at most 1 / kMaxLoad of the time, however
+/// slow the file system or the controller of the cluster is.
+class PeriodicWork {
  public:
-  Repeated(std::chrono::milliseconds period, std::function<void()> work)
+  PeriodicWork(std::chrono::milliseconds period, std::function<void()> work)
       : period_(period), work_(std::move(work)) {}
 
   void do_if_due() {
@@ -32,11 +32,11 @@ class Repeated {
     if (start < next_) return;
     work_();
     const Clock::time_point end = Clock::now();
-    next_ = end + std::max<Clock::duration>(period_, kShare * (end - start));
+    next_ = end + std::max<Clock::duration>(period_, kMaxLoad * (end - start));
   }
 
  private:
-  static constexpr int kShare = 20;
+  static constexpr int kMaxLoad = 20;
   Clock::duration period_;
   std::function<void()> work_;
   Clock::time_point next_;
@@ -44,37 +44,37 @@ class Repeated {
 
 }  // namespace
 
-int SlurmLauncher::default_parallel_jobs(int /*threads*/) const { return LaunchLimits::kAllAtOnce; }
+int SlurmLauncher::default_parallel_jobs(int /*threads*/) const { return LaunchLimits::kUnlimited; }
 
 bool SlurmLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
-                        const LaunchCallbacks& events) {
+                        const LaunchCallbacks& callbacks) {
   SACCADE_CHECK(limits.parallel_jobs >= 1);
   cluster_->check();
   LauncherOptions options = options_;
-  // Nodes know neither this process's link to its program nor its working directory.
+  // Nodes know neither /proc of this process nor its working directory.
   options.program = fs::canonical(options.program);
   options.folder = fs::absolute(options.folder) / "slurm";
   const InterruptGuard interrupt;
-  SlurmJobs work(jobs, limits, options, *cluster_, events);
-  if (const std::size_t taken = work.take_over(); taken > 0)
-    show_notice(fmt::format("{} jobs that an earlier call submitted are taken over", taken));
-  Repeated collect(pace_, [&] { work.collect(); });
-  Repeated look(5 * pace_, [&] { work.look(); });
-  Repeated submit(pace_, [&] { work.submit(); });
-  while (!work.all_ended()) {
-    collect.do_if_due();
-    look.do_if_due();
+  SlurmJobs work(jobs, limits, options, *cluster_, callbacks);
+  if (const std::size_t adopted = work.adopt_submitted(); adopted > 0)
+    show_notice(fmt::format("{} jobs that an earlier call submitted are adopted", adopted));
+  PeriodicWork collect_exits(period_, [&] { work.collect_exits(); });
+  PeriodicWork poll_queue(5 * period_, [&] { work.poll_queue(); });
+  PeriodicWork submit(period_, [&] { work.submit(); });
+  while (!work.all_finished()) {
+    collect_exits.do_if_due();
+    poll_queue.do_if_due();
     submit.do_if_due();
-    events.on_wait();
+    callbacks.on_wait();
     if (interrupt.signal() == SIGHUP) return false;
     if (interrupt.requested()) {
       work.cancel();
       return false;
     }
-    ::poll(nullptr, 0, static_cast<int>(pace_.count() / 2));
+    ::poll(nullptr, 0, static_cast<int>(period_.count() / 2));
   }
   std::error_code ignored;
-  fs::remove(options.folder, ignored);  // unless something is left in it
+  fs::remove(options.folder, ignored);  // unless it is not empty
   return true;
 }
 

@@ -8,26 +8,26 @@
 
 namespace saccade {
 
-/// Arrays of Slurm, whose nodes see the same files under the same paths. What is queued or running
-/// outlives this program: SIGKILL and SIGHUP leave it there, and the next call takes it over;
-/// SIGINT and SIGTERM cancel it. A job whose node or script was lost is submitted again, `attempts`
-/// times in all.
+/// Job arrays of Slurm, on nodes that see the same files under the same paths. Submitted jobs outlive
+/// this program: after SIGKILL and SIGHUP they continue, and the next call adopts them; SIGINT and
+/// SIGTERM cancel them. A job whose node failed or whose script was killed is submitted again, up to
+/// `attempts` times in all.
 class SlurmLauncher : public Launcher {
  public:
-  /// `pace`: between two looks for results; the queue is asked at a fifth of it.
+  /// `period`: between two checks for results; the queue is polled every five periods.
   SlurmLauncher(LauncherOptions options, std::unique_ptr<SlurmCluster> cluster,
-                std::chrono::milliseconds pace = std::chrono::milliseconds(200))
-      : options_(std::move(options)), cluster_(std::move(cluster)), pace_(pace) {}
+                std::chrono::milliseconds period = std::chrono::milliseconds(200))
+      : options_(std::move(options)), cluster_(std::move(cluster)), period_(period) {}
 
   [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
-                         const LaunchCallbacks& events) override;
-  /// As many as the cluster has room for.
+                         const LaunchCallbacks& callbacks) override;
+  /// Unlimited: Slurm decides.
   [[nodiscard]] int default_parallel_jobs(int threads) const override;
 
  private:
   LauncherOptions options_;
   std::unique_ptr<SlurmCluster> cluster_;
-  std::chrono::milliseconds pace_;
+  std::chrono::milliseconds period_;
 };
 
 }  // namespace saccade

@@ -8,22 +8,34 @@
 namespace saccade {
 
 void describe(config::Fields& fields, SlurmOptions& options) {
-  fields.value("partition", options.partition, "of the cluster; empty: its default");
-  fields.value("time_limit_s", options.time_limit_s, "of one job; default: the partition's")
+  fields.value("partition", options.partition,
+               "Partition of the cluster. Empty: the cluster's default.");
+  fields
+      .value("time_limit_s", options.time_limit_s,
+             "Time limit of one job, in seconds (Slurm rounds up to minutes). Default: that of the "
+             "partition.")
       .above(0);
-  fields.value("memory_mb", options.memory_mb, "of one job; default: the partition's")
+  fields
+      .value("memory_mb", options.memory_mb,
+             "Memory of one job, in megabytes. Default: that of the partition.")
       .range(1, 1e9);
-  fields.value("options", options.options, "further options of sbatch, one text each");
-  fields.value("jobs_per_task", options.jobs_per_task, "jobs that a task runs one after another")
+  fields.value("options", options.options,
+               "Further options of sbatch, one text each, such as --account=NAME.");
+  fields
+      .value("jobs_per_task", options.jobs_per_task,
+             "Jobs that one task of an array runs one after another. More reduce the overhead of "
+             "Slurm for jobs of less than a second, and the parallelism.")
       .range(1, 10000);
-  fields.value("attempts", options.attempts, "for a job whose node or script was lost")
+  fields
+      .value("attempts", options.attempts,
+             "How often a job is submitted at most whose node failed or whose script was killed.")
       .range(1, 100);
   fields
-      .value("file_lag_s", options.file_lag_s,
-             "until a file that a node wrote is surely seen by others")
+      .value(
+          "file_lag_s", options.file_lag_s,
+          "Delay, in seconds, until files written by a node are visible here. A job that left the "
+          "queue counts as lost after this time without a result.")
       .range(0, 3600);
-  fields.value("arrays_of", options.arrays_of, "tasks at most in an array; 0: what Slurm takes")
-      .range(0, 1e6);
   const bool all_options =
       std::all_of(options.options.begin(), options.options.end(),
                   [](const std::string& option) { return option.starts_with('-'); });

@@ -7,37 +7,31 @@
 
 namespace saccade {
 
-/// What squeue says of a task of an array.
-struct SlurmTask {
-  std::string state;   ///< "RUNNING"
-  std::string reason;  ///< why it waits: "Resources"
+/// The format for squeue, with --array and --noheader: name of the array, index of the task, state.
+inline constexpr const char* kSqueueFormat = "%j|%K|%T";
 
-  /// It waits, runs or is being cleared away.
-  [[nodiscard]] bool is_alive() const;
-  [[nodiscard]] bool is_running() const;
-};
+/// Whether a task in this state is pending, running or being cleaned up.
+[[nodiscard]] bool is_active(std::string_view state);
 
-/// The format to ask squeue for, with --array and --noheader.
-inline constexpr const char* kSqueueFormat = "%j|%K|%T|%r";
-
-/// What squeue told at one moment.
+/// The states of tasks at one moment, as squeue printed them.
 class SlurmQueue {
  public:
   SlurmQueue() = default;
-  /// Lines in that format; others are left out.
+  /// Lines of kSqueueFormat; other lines are skipped.
   explicit SlurmQueue(std::string_view text);
 
-  /// The task of this number; nullptr where squeue does not tell of it.
-  [[nodiscard]] const SlurmTask* find(const std::string& array, int index) const;
-  [[nodiscard]] bool is_alive(const std::string& array) const;
+  /// The state of a task ("RUNNING"); empty where squeue does not list it.
+  [[nodiscard]] std::string state_of(const std::string& array, int index) const;
+  /// Whether any task of the array is active.
+  [[nodiscard]] bool is_active(const std::string& array) const;
 
  private:
-  std::map<std::string, std::map<std::optional<int>, SlurmTask>> arrays_;
+  std::map<std::string, std::map<std::optional<int>, std::string>> arrays_;
 };
 
-/// Why another attempt would end alike: its time limit, its memory, or somebody's will
-/// ("TIMEOUT" -> "Slurm's time limit"). Empty for a state in which the job was lost
-/// (a dead node, a killed script).
+/// Why another attempt would end the same way: a time limit, the memory, or a cancellation
+/// ("TIMEOUT" -> "Slurm's time limit"). Empty for a state in which the job was lost (a node that
+/// failed, a script that was killed).
 [[nodiscard]] std::string final_problem(std::string_view state);
 
 }  // namespace saccade

@@ -12,32 +12,32 @@ namespace {
 
 using config::Node;
 
-/// Seeds that people can read and other programs hold in 32 bits.
+/// Simulation seeds fit 31 bits, which every program can read.
 constexpr std::uint64_t kSeeds = 1ULL << 31;
 
-const GenerateScene& draw_scene(const GenerateConfig& generate, const DrawIdentity& identity) {
+const GenerateScene& sample_scene(const GenerateConfig& generate, std::uint64_t index) {
   std::uint64_t all = 0;
   for (const GenerateScene& scene : generate.scenes)
     all += static_cast<std::uint64_t>(scene.weight);
-  std::uint64_t drawn = sample_below(all, "generate.scenes", identity);
+  std::uint64_t left = sample_below(all, "generate.scenes", generate.seed, index);
   for (const GenerateScene& scene : generate.scenes) {
     const auto weight = static_cast<std::uint64_t>(scene.weight);
-    if (drawn < weight) return scene;
-    drawn -= weight;
+    if (left < weight) return scene;
+    left -= weight;
   }
   return generate.scenes.back();
 }
 
-/// Those of all scenes, with the scene's own in the place of those of the same key.
-SampledParameters draws_of(const GenerateConfig& generate, const GenerateScene& scene) {
-  SampledParameters draws = generate.draw;
+/// The parameters of all scenes, replaced by the scene's own where the key is the same.
+SampledParameters parameters_of(const GenerateConfig& generate, const GenerateScene& scene) {
+  SampledParameters parameters = generate.draw;
   for (const config::Entry& entry : scene.draw.keys.entries) {
-    if (config::Entry* general = draws.keys.find(entry.key))
+    if (config::Entry* general = parameters.keys.find(entry.key))
       general->value = entry.value;
     else
-      draws.keys.entries.push_back(entry);
+      parameters.keys.entries.push_back(entry);
   }
-  return draws;
+  return parameters;
 }
 
 void flatten(const Node& node, const std::string& path,
@@ -49,7 +49,9 @@ void flatten(const Node& node, const std::string& path,
   if (node.kind == Node::Kind::kScalar) values.emplace_back(path, node.text);
 }
 
-bool holds_seed(const SampledParameters& draws) { return draws.keys.find("seed") != nullptr; }
+bool holds_seed(const SampledParameters& parameters) {
+  return parameters.keys.find("seed") != nullptr;
+}
 
 bool holds_seed(const Settings& settings) {
   return std::any_of(settings.begin(), settings.end(),
@@ -57,10 +59,16 @@ bool holds_seed(const Settings& settings) {
 }
 
 template <class Described>
-void describe_settings(config::Fields& fields, Described& described, const char* of) {
-  fields.value("set", described.set, fmt::format("overrides {}, key.path: value", of));
-  fields.value("draw", described.draw, "key.path: value with distributions; after 'set'");
-  const char* kSeedProblem = "must not hold 'seed'; every dataset gets one of its own";
+void describe_overrides(config::Fields& fields, Described& described, const char* of) {
+  fields.value(
+      "set", described.set,
+      fmt::format("Overrides of the simulation configuration {}, as `key.path: value`.", of));
+  fields.value(
+      "draw", described.draw,
+      fmt::format("Sampled parameters {}, as `key.path: value` where a value or a part of it "
+                  "is a distribution. They are applied after all of 'set'.",
+                  of));
+  const char* kSeedProblem = "must not hold 'seed'; every dataset gets its own";
   fields.expect(!holds_seed(described.set), "set", kSeedProblem);
   fields.expect(!holds_seed(described.draw), "draw", kSeedProblem);
 }
@@ -68,23 +76,29 @@ void describe_settings(config::Fields& fields, Described& described, const char*
 }  // namespace
 
 void describe(config::Fields& fields, GenerateScene& scene) {
-  fields.value("name", scene.name, "default: the file's");
-  fields.path("simulate", scene.simulate, "a simulation configuration").required().must_exist();
-  fields.value("weight", scene.weight, "how often it is drawn, compared with the others")
+  fields.value("name", scene.name, "Name of the scene in the manifest. Default: that of the file.");
+  fields.path("simulate", scene.simulate, "Simulation configuration that datasets are made from.")
+      .required()
+      .must_exist();
+  fields
+      .value("weight", scene.weight,
+             "Relative probability of this scene; 2 is chosen twice as often as 1.")
       .range(1, 1e6);
-  describe_settings(fields, scene, "of this scene");
+  describe_overrides(fields, scene, "of this scene");
   if (fields.reading() && scene.name.empty()) scene.name = scene.simulate.stem();
 }
 
 void describe(config::Fields& fields, GenerateConfig& generate) {
-  fields.value("name", generate.name, "of the datasets, before their index");
-  fields.value("first", generate.first, "index of the first dataset").range(0, 999999);
-  fields.value("count", generate.count, "datasets").required().range(1, 1000000);
-  fields.value("seed", generate.seed, "of all draws");
-  fields.list("scenes", generate.scenes, "each {simulate, name, weight, set, draw}")
+  fields.value("name", generate.name, "Name of the datasets: NAME-000417 is dataset 417.");
+  fields.value("first", generate.first, "Index of the first dataset.").range(0, 999999);
+  fields.value("count", generate.count, "Number of datasets.").required().range(1, 1000000);
+  fields.value("seed", generate.seed, "Seed of all sampled parameters.");
+  fields
+      .list("scenes", generate.scenes,
+            "Scenes, each {simulate, name, weight, set, draw}. Every dataset samples one of them.")
       .required()
       .length(1, config::Rule::kAnyLength);
-  describe_settings(fields, generate, "of all scenes");
+  describe_overrides(fields, generate, "of all scenes");
   fields.expect(!generate.name.empty(), "name", "must not be empty");
   std::set<std::string> names;
   for (const GenerateScene& scene : generate.scenes) names.insert(scene.name);
@@ -92,18 +106,17 @@ void describe(config::Fields& fields, GenerateConfig& generate) {
 }
 
 GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t index) {
-  const DrawIdentity identity{generate.seed, index};
   GeneratedDataset dataset;
   dataset.index = index;
   dataset.name = fmt::format("{}-{:06}", generate.name, index);
-  dataset.scene = &draw_scene(generate, identity);
-  dataset.seed = sample_below(kSeeds, "seed", identity);
+  dataset.scene = &sample_scene(generate, index);
+  dataset.seed = sample_below(kSeeds, "seed", generate.seed, index);
   for (const Settings* settings : {&generate.set, &dataset.scene->set})
     dataset.settings.insert(dataset.settings.end(), settings->begin(), settings->end());
-  const Node drawn = sample_values(draws_of(generate, *dataset.scene), identity);
-  for (const config::Entry& entry : drawn.entries) {
+  const Node sampled = sample_values(parameters_of(generate, *dataset.scene), generate.seed, index);
+  for (const config::Entry& entry : sampled.entries) {
     dataset.settings.push_back({entry.key, config::to_flow_yaml(entry.value)});
-    flatten(entry.value, entry.key, dataset.drawn);
+    flatten(entry.value, entry.key, dataset.sampled);
   }
   return dataset;
 }

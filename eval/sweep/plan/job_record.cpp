@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using config::Node;
 
-/// Enough to see a change without reading gigabytes.
+/// Detects a change without reading gigabytes.
 std::string size_and_time(const fs::path& file) {
   std::error_code ignored;
   return fmt::format("{} bytes of {}", fs::file_size(file, ignored),
@@ -37,8 +37,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-/// The file that a text of a configuration names, if there is one; of "archive!/member" the
-/// archive.
+/// The file that a text of a configuration names, if it exists; of "archive!/member" the archive.
 fs::path file_named_by(const Node& node) {
   if (node.text.empty() || node.text.size() > 4000 || !node.place.source) return {};
   std::error_code error;
@@ -60,7 +59,7 @@ void add_named_files(const Node& node, bool with_neighbours, Fingerprint& inputs
     add_named_files(entry.value, with_neighbours || entry.key == "scene", inputs);
 }
 
-/// A recording without a dataset.yaml is known by its files.
+/// A recording without a dataset.yaml is identified by its files.
 std::string dataset_identity(const fs::path& folder) {
   if (fs::exists(folder / "dataset.yaml")) return sha256_of_file(folder / "dataset.yaml");
   std::string identity;
@@ -77,10 +76,11 @@ bool is_complete(const SweepJob& job) {
 }  // namespace
 
 void describe(config::Fields& fields, JobRecord& record) {
-  fields.value("commands", record.commands, "that made it");
-  fields.value("inputs", record.inputs, "what it depends on").required();
-  fields.value("result_sha256", record.result_sha256, "of dataset.yaml or run.yaml").required();
-  fields.value("wall_s", record.wall_s, "all commands together");
+  fields.value("commands", record.commands, "Commands that made the output.");
+  fields.value("inputs", record.inputs, "Inputs with their hashes.").required();
+  fields.value("result_sha256", record.result_sha256, "SHA-256 of dataset.yaml or run.yaml.")
+      .required();
+  fields.value("wall_s", record.wall_s, "Wall time of all commands, in seconds.");
 }
 
 Fingerprint JobInputs::of(const SweepJob& job) {

@@ -11,23 +11,24 @@
 
 namespace saccade {
 
-/// The contents of job.yaml: what a finished job was made of. It is written last.
+/// The contents of job.yaml: the inputs of a finished job. It is written last.
 struct JobRecord {
-  std::vector<std::string> commands;  ///< as a shell takes them
+  std::vector<std::string> commands;  ///< as shell commands
   Fingerprint inputs;
-  std::string result_sha256;  ///< of the output's marker (dataset.yaml, run.yaml)
+  std::string result_sha256;  ///< of SweepJob::marker()
   double wall_s = 0;
 };
 
 void describe(config::Fields& fields, JobRecord& record);
 
-/// Says what jobs depend on. Files are read once, however many jobs read them, so the object must
-/// not outlive a phase in which they stay as they are.
+/// Computes the inputs of jobs. Every file is read once, so the object must not be used after a file
+/// has changed.
 class JobInputs {
  public:
-  /// The program, the settings, the configuration with its includes and the files that it names (of
-  /// a scene also those beside them: materials and textures), and the dataset. InputError where a
-  /// configuration cannot be read; a dataset that is not there yet is an input of its own.
+  /// Hashes of the program, the settings, the dataset, and the configuration with its includes and
+  /// the files that it names (of a scene also the files beside them: materials and textures). Throws
+  /// InputError where a configuration cannot be read. A dataset that does not exist yet has a value
+  /// of its own.
   [[nodiscard]] Fingerprint of(const SweepJob& job);
 
  private:
@@ -38,14 +39,14 @@ class JobInputs {
   std::map<std::filesystem::path, std::string> datasets_;
 };
 
-/// A hash of all of it.
+/// One hash of all inputs.
 [[nodiscard]] std::string identity_of(const Fingerprint& inputs);
 
-/// Why a job must run; empty when its output is there, complete and made of `inputs`.
+/// Why a job must run; empty when its output exists, is complete and was made from `inputs`.
 [[nodiscard]] std::string why_to_run(const SweepJob& job, const std::filesystem::path& record_file,
                                      const Fingerprint& inputs);
 
-/// Records that a job is done. InputError when its output is not there.
+/// Writes the record of a finished job. Throws InputError when its output does not exist.
 void write_job_record(const std::filesystem::path& file, const SweepJob& job,
                       const Fingerprint& inputs, double wall_s);
 

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// What of a text may stand in a file name; other letters become single dashes.
+/// A text as part of a file name: other characters become single dashes.
 std::string file_name_part(std::string_view text) {
   std::string part = text.starts_with('-') ? "-" : "";  // the sign of a number
   for (const char c : text) {
@@ -34,16 +34,16 @@ std::string file_name_part(std::string_view text) {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// "samples" of "align.samples", the whole key where two axes end alike.
+/// "samples" of "align.samples"; the whole key where two axes end in the same word.
 std::string short_key(const std::string& key, const Grid& grid) {
-  const auto ends_alike = [&](const GridAxis& axis) {
+  const auto has_same_end = [&](const GridAxis& axis) {
     return last_part(axis.key) == last_part(key);
   };
-  return std::count_if(grid.begin(), grid.end(), ends_alike) > 1 ? key : last_part(key);
+  return std::count_if(grid.begin(), grid.end(), has_same_end) > 1 ? key : last_part(key);
 }
 
-/// Gives out names that differ, upper and lower case taken for the same.
-class Names {
+/// Makes names unique, ignoring upper and lower case.
+class UniqueNames {
  public:
   std::string unique(const std::string& wanted) {
     std::string name = wanted;
@@ -74,17 +74,18 @@ void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
 }
 
-/// The same from every working directory, so that a job is found again.
+/// Independent of the working directory, so that a job is recognised in later calls.
 fs::path fixed_path(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
-/// The seeds, or one "as the file states it".
+/// The seeds, or one nullopt: the seed that the file states.
 std::vector<std::optional<std::uint64_t>> seeds_or_default(
     const std::vector<std::uint64_t>& seeds) {
   if (seeds.empty()) return {std::nullopt};
   return {seeds.begin(), seeds.end()};
 }
 
-/// Every combination of the values, the last axis changing fastest; one empty one without axes.
+/// Every combination of the values; the last axis changes fastest. One empty combination without
+/// axes.
 std::vector<std::vector<std::string>> combinations(const Grid& grid) {
   std::vector<std::vector<std::string>> all{{}};
   for (const GridAxis& axis : grid) {
@@ -116,7 +117,7 @@ class Planner {
   }
 
  private:
-  /// Adds the simulation, if it is one. What all runs over the dataset begin with.
+  /// Adds the simulation, if the dataset is one. Returns the common part of the runs over it.
   SweepJob dataset_job(const SweepDataset& dataset, const std::optional<std::uint64_t>& seed) {
     SweepJob base;
     base.point.dataset = dataset.name;
@@ -145,8 +146,8 @@ class Planner {
     return base;
   }
 
-  /// Into the folder of the sweep: a thousand datasets that differ in everything are of no use to
-  /// other sweeps.
+  /// Generated datasets go to the folder of the sweep and not into the cache: other sweeps do not
+  /// reuse them.
   void add_generated(const GenerateConfig& generate) {
     for (int i = 0; i < generate.count; ++i) {
       const GeneratedDataset dataset =
@@ -193,8 +194,9 @@ class Planner {
     return configuration.module.empty() ? sweep_.module : configuration.module;
   }
 
-  /// Hands the job the run of another configuration at the same point.
-  void take_from(const std::string& configuration, const char* option, SweepJob& job, Words& call) {
+  /// Passes the run of another configuration at the same point to the job.
+  void add_source(const std::string& configuration, const char* option, SweepJob& job,
+                  Words& call) {
     if (configuration.empty()) return;
     const auto is_source = [&](const SweepJob& run) {
       return run.point.configuration == configuration && run.point.dataset == job.point.dataset &&
@@ -229,9 +231,9 @@ class Planner {
     const std::string called = configuration.adapter ? "external" : job.point.module;
     Words call{"run", called, "--data", job.dataset.string(), "-o", job.output.string()};
     if (!job.config.empty()) append(call, "-c", job.config.string());
-    take_from(configuration.from, "--from", job, call);
-    take_from(configuration.poses_from, "--poses-from", job, call);
-    take_from(configuration.depth_from, "--depth-from", job, call);
+    add_source(configuration.from, "--from", job, call);
+    add_source(configuration.poses_from, "--poses-from", job, call);
+    add_source(configuration.depth_from, "--depth-from", job, call);
     append(call, settings);
     job.commands = {call,
                     {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
@@ -245,14 +247,14 @@ class Planner {
       name += fmt::format("_{}-{}", file_name_part(short_key(sweep_.grid[i].key, sweep_.grid)),
                           file_name_part(job.point.grid[i]));
     if (job.point.seed) name += fmt::format("_seed-{}", *job.point.seed);
-    constexpr std::size_t kLongest = 200;  // file systems take 255 bytes
-    return name.substr(0, kLongest);
+    constexpr std::size_t kMaxLength = 200;  // file systems permit 255 bytes
+    return name.substr(0, kMaxLength);
   }
 
   const SweepConfig& sweep_;
   fs::path folder_;
   SweepPlan plan_;
-  Names names_;
+  UniqueNames names_;
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace saccade {
 
-/// Where a job stands in the sweep; what its row of the table begins with.
+/// The coordinates of a job in the sweep: the leading cells of its table row.
 struct SweepPoint {
   std::string dataset;
   std::optional<std::uint64_t> dataset_seed;
@@ -21,33 +21,36 @@ struct SweepPoint {
   std::vector<std::string> grid;  ///< a value for each axis; empty: a simulation
   std::optional<std::uint64_t> seed;
 
-  /// The same but for the seeds: what is averaged over.
+  /// Whether both differ at most in their seeds, over which results are averaged.
   [[nodiscard]] bool differs_in_seed_only(const SweepPoint& other) const;
 };
 
-/// One dataset or run to be made, by one or more calls of `saccade`.
+/// What became of a job in this call.
+enum class JobState { kPending, kDone, kSkipped, kFailed };
+
+/// One dataset or run, made by one or more commands of `saccade`.
 struct SweepJob {
-  std::string name;  ///< of its folders: readable and unique in the sweep
+  std::string name;  ///< of its folders; readable, and unique in the sweep
   SweepPoint point;
   std::filesystem::path output;                    ///< dataset or run folder
-  std::filesystem::path config;                    ///< the file it reads; empty: none
-  std::filesystem::path dataset;                   ///< that it reads; empty: it is a simulation
-  std::optional<std::size_t> made_by;              ///< the simulation that makes this dataset
-  std::vector<std::size_t> sources;                ///< runs before it whose results it reads
-  std::vector<std::filesystem::path> source_runs;  ///< their folders
-  int stage = 0;  ///< 0: reads no other run; else one after the last of its sources
-  std::vector<std::vector<std::string>> commands;  ///< arguments of `saccade`, in turn
-  /// The arguments without the paths: with the contents of the files, all that the result depends
-  /// on.
+  std::filesystem::path config;                    ///< configuration file; empty: none
+  std::filesystem::path dataset;                   ///< input; empty: the job is a simulation
+  std::optional<std::size_t> made_by;              ///< index of the simulation that makes `dataset`
+  std::vector<std::size_t> sources;                ///< indices of the runs whose results it reads
+  std::vector<std::filesystem::path> source_runs;  ///< folders of `sources`
+  int stage = 0;  ///< 0: reads no other run; else 1 + the largest stage of its sources
+  std::vector<std::vector<std::string>> commands;  ///< arguments of `saccade`, run in order
+  /// The arguments without the paths. The result depends on these and the contents of the files.
   std::string settings;
+  JobState state = JobState::kPending;
 
   [[nodiscard]] bool is_simulation() const { return dataset.empty(); }
-  /// The file that a complete output holds.
+  /// The file that marks a complete output folder.
   [[nodiscard]] const char* marker() const { return is_simulation() ? "dataset.yaml" : "run.yaml"; }
 };
 
-/// A sweep taken apart into jobs. Runs come in the order of datasets, configurations, variants,
-/// grid (the last key changes fastest) and seeds.
+/// The jobs of a sweep. Runs are ordered by dataset, configuration, variant, grid point (the last key
+/// changes fastest) and seed.
 struct SweepPlan {
   std::vector<std::string> axes;  ///< keys of the grid
   std::vector<SweepJob> simulations;
@@ -55,13 +58,13 @@ struct SweepPlan {
 
   [[nodiscard]] int stages() const;
 
-  /// What the table is about: the runs, or the datasets where nothing runs.
+  /// The jobs that have table rows: the runs, or the datasets where nothing runs.
   [[nodiscard]] const std::vector<SweepJob>& rows() const {
     return runs.empty() ? simulations : runs;
   }
 };
 
-/// `folder`: of the whole sweep; datasets go to folder/data/NAME, runs to folder/runs/NAME.
+/// `folder`: that of the sweep; datasets go to folder/data/NAME, runs to folder/runs/NAME.
 [[nodiscard]] SweepPlan plan_sweep(const SweepConfig& sweep, const std::filesystem::path& folder);
 
 }  // namespace saccade

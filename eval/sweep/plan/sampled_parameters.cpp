@@ -19,15 +19,15 @@ using config::Node;
 
 const std::vector<std::string> kDistributions{"uniform", "log_uniform", "integer",
                                               "normal",  "choose",      "same_as"};
-/// A normal distribution that lies outside its bounds nearly always is an error of the file.
+/// A normal distribution whose bounds lie far from its mean is taken for an error in the file.
 constexpr std::uint64_t kNormalAttempts = 1000;
-constexpr double kNearestBound = 3;  // [sigma]
+constexpr double kMaxBoundDistance = 3;  // [sigma]
 
 [[noreturn]] void reject(const Node& node, const std::string& name, const std::string& problem) {
   throw config::error_at(node.place, name, " ", problem);
 }
 
-/// The distribution that a node is; nullptr: a value, or a container of values.
+/// The distribution that a node states; nullptr for a value or a container of values.
 const config::Entry* distribution_of(const Node& node) {
   if (node.kind != Node::Kind::kMap || node.entries.size() != 1) return nullptr;
   const config::Entry& only = node.entries.front();
@@ -64,7 +64,7 @@ void check_normal(const Node& node, const std::string& name) {
   if (values[1] < 0) reject(node, name, "must not have a sigma below 0");
   if (values.size() == 2) return;
   if (values[2] > values[3]) reject(node, name, "has its low bound above its high one");
-  const double reach = kNearestBound * values[1];
+  const double reach = kMaxBoundDistance * values[1];
   if (values[2] > values[0] + reach || values[3] < values[0] - reach)
     reject(node, name, "lies outside its bounds: they are more than 3 sigma from the mean");
 }
@@ -81,7 +81,8 @@ bool holds_same_as(const Node& node) {
 
 void check_same_as(const Node& root, const Node& node, const std::string& name) {
   const config::Entry* other = root.find(node.text);
-  if (other == nullptr) reject(node, name, "names '" + node.text + "', which is not drawn here");
+  if (other == nullptr)
+    reject(node, name, "names '" + node.text + "', which has no distribution here");
   if (holds_same_as(other->value))
     reject(node, name, "names '" + node.text + "', which is the same as another key itself");
 }
@@ -114,7 +115,7 @@ void check_value(const Node& root, const Node& node, const std::string& name) {
     check_value(root, entry.value, name + "." + entry.key);
 }
 
-/// FNV-1a: which stream of random numbers a path has.
+/// The random stream of a path: its FNV-1a hash.
 std::uint64_t stream_of(const std::string& path) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : path) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
@@ -123,26 +124,26 @@ std::uint64_t stream_of(const std::string& path) {
 
 Node number_node(double value) { return Node::scalar(fmt::format("{:.6g}", value), false); }
 
-/// Takes the distributions out of values.
-class Drawer {
+/// Replaces distributions by samples.
+class ParameterSampler {
  public:
-  Drawer(const Node& root, const DrawIdentity& identity)
-      : root_(root), random_(identity.seed), index_(identity.index) {}
+  ParameterSampler(const Node& root, std::uint64_t seed, std::uint64_t index)
+      : root_(root), random_(seed), index_(index) {}
 
   [[nodiscard]] Node value(const Node& node, const std::string& path) const {
     if (const config::Entry* distribution = distribution_of(node))
-      return draw(distribution->key, distribution->value, path);
-    Node drawn = node;
+      return sample(distribution->key, distribution->value, path);
+    Node sampled = node;
     for (std::size_t i = 0; i < node.items.size(); ++i)
-      drawn.items[i] = value(node.items[i], path + "." + std::to_string(i));
+      sampled.items[i] = value(node.items[i], path + "." + std::to_string(i));
     for (std::size_t i = 0; i < node.entries.size(); ++i)
-      drawn.entries[i].value = value(node.entries[i].value, path + "." + node.entries[i].key);
-    return drawn;
+      sampled.entries[i].value = value(node.entries[i].value, path + "." + node.entries[i].key);
+    return sampled;
   }
 
  private:
-  [[nodiscard]] Node draw(const std::string& kind, const Node& node,
-                          const std::string& path) const {
+  [[nodiscard]] Node sample(const std::string& kind, const Node& node,
+                            const std::string& path) const {
     if (kind == "choose") {
       const std::uint64_t chosen = random_.below(node.items.size(), stream_of(path), index_);
       return value(node.items[chosen], path + ".choice");
@@ -153,8 +154,8 @@ class Drawer {
     const double low = numbers[0], high = numbers[1];
     if (kind == "integer") {
       const auto count = static_cast<std::uint64_t>(high - low) + 1;
-      const double drawn = low + static_cast<double>(random_.below(count, stream_of(path), index_));
-      return Node::scalar(fmt::format("{:.0f}", drawn), false);
+      const auto offset = static_cast<double>(random_.below(count, stream_of(path), index_));
+      return Node::scalar(fmt::format("{:.0f}", low + offset), false);
     }
     const double u = random_.uniform(stream_of(path), index_);
     if (kind == "uniform") return number_node(low + (high - low) * u);
@@ -165,8 +166,8 @@ class Drawer {
     for (std::uint64_t attempt = 0; attempt < kNormalAttempts; ++attempt) {
       const std::uint64_t stream =
           stream_of(attempt == 0 ? path : fmt::format("{}#{}", path, attempt));
-      const double drawn = numbers[0] + numbers[1] * random_.normal(stream, index_);
-      if (numbers.size() == 2 || (drawn >= numbers[2] && drawn <= numbers[3])) return drawn;
+      const double sample = numbers[0] + numbers[1] * random_.normal(stream, index_);
+      if (numbers.size() == 2 || (sample >= numbers[2] && sample <= numbers[3])) return sample;
     }
     return std::clamp(numbers[0], numbers[2], numbers[3]);
   }
@@ -178,28 +179,28 @@ class Drawer {
 
 }  // namespace
 
-void from_node(const Node& node, const std::string& name, SampledParameters& draws) {
-  draws.keys = Node::map();
+void from_node(const Node& node, const std::string& name, SampledParameters& parameters) {
+  parameters.keys = Node::map();
   for (const config::Entry& entry : config::entries_of(node, name)) {
     check_value(node, entry.value, name + "." + entry.key);
-    draws.keys.entries.push_back(entry);
-    make_paths_absolute(draws.keys.entries.back().value);
+    parameters.keys.entries.push_back(entry);
+    make_paths_absolute(parameters.keys.entries.back().value);
   }
 }
 
-Node to_node(const SampledParameters& draws) { return draws.keys; }
+Node to_node(const SampledParameters& parameters) { return parameters.keys; }
 
-Node sample_values(const SampledParameters& draws, const DrawIdentity& identity) {
-  const Drawer drawer(draws.keys, identity);
+Node sample_values(const SampledParameters& parameters, std::uint64_t seed, std::uint64_t index) {
+  const ParameterSampler sampler(parameters.keys, seed, index);
   Node values = Node::map();
-  for (const config::Entry& entry : draws.keys.entries)
-    values.entries.push_back({entry.key, {}, drawer.value(entry.value, entry.key), {}});
+  for (const config::Entry& entry : parameters.keys.entries)
+    values.entries.push_back({entry.key, {}, sampler.value(entry.value, entry.key), {}});
   return values;
 }
 
-std::uint64_t sample_below(std::uint64_t bound, const std::string& path,
-                         const DrawIdentity& identity) {
-  return Random(identity.seed).below(bound, stream_of(path), identity.index);
+std::uint64_t sample_below(std::uint64_t bound, const std::string& path, std::uint64_t seed,
+                           std::uint64_t index) {
+  return Random(seed).below(bound, stream_of(path), index);
 }
 
 }  // namespace saccade

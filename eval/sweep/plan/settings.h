@@ -7,8 +7,8 @@
 
 namespace saccade {
 
-/// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line; a text that begins with ./
-/// or ../ was relative to the sweep file and is an absolute path here.
+/// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line. Texts that begin with ./ or ../
+/// are relative to the sweep file; here they are absolute paths.
 struct Setting {
   std::string key;
   std::string value;
@@ -17,7 +17,7 @@ struct Setting {
 /// Overrides in the order of the file: `{align.samples: 50, motion.prediction: none}`.
 using Settings = std::vector<Setting>;
 
-/// One parameter of the grid with its values, in the order of the file.
+/// One key of the grid with its values, in the order of the file.
 struct GridAxis {
   std::string key;
   std::vector<std::string> values;
@@ -25,9 +25,8 @@ struct GridAxis {
 
 using Grid = std::vector<GridAxis>;
 
-/// Makes every text in a value that begins with ./ or ../ an absolute path, from the folder of the
-/// file that it stands in. A value cannot tell whether it is a path: only a text that says so is
-/// one.
+/// Makes every text in a value that begins with ./ or ../ an absolute path, relative to the folder of
+/// its file. Other texts are not taken for paths.
 void make_paths_absolute(config::Node& value);
 
 // In the namespace of the types, where the templates of Fields find them. InputError at the node's

@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// The first name that stands twice; empty when none does.
+/// The first name that occurs twice; empty where all differ.
 template <class Named>
 std::string repeated_name(const std::vector<Named>& items) {
   std::set<std::string> seen;
@@ -32,7 +32,7 @@ void expect_seeds_differ(config::Fields& fields, const std::vector<std::uint64_t
   fields.expect(different.size() == seeds.size(), "seeds", "holds a seed twice");
 }
 
-/// The seed of a job stands in its own key, so that rows can be averaged over it.
+/// Seeds belong to the key `seeds`, so that results can be averaged over them.
 template <class Keyed>
 void expect_no_seed(config::Fields& fields, const char* key, const std::vector<Keyed>& items) {
   const bool stated =
@@ -47,27 +47,27 @@ const SweepConfiguration* find_named(std::span<const SweepConfiguration> configu
   return nullptr;
 }
 
-/// Whatever it runs over, the configuration named by `from` before it has run over, too.
+/// The configuration named by `from` must precede and run over the same datasets and seeds.
 void expect_source(config::Fields& fields, const SweepConfig& sweep, std::size_t index,
                    const char* key, const std::string& from) {
   if (from.empty()) return;
-  const SweepConfiguration& taker = sweep.configurations[index];
+  const SweepConfiguration& user = sweep.configurations[index];
   const auto before = std::span(sweep.configurations).first(index);
   const SweepConfiguration* source = find_named(before, from);
   fields.expect(
       source != nullptr, "configurations",
-      fmt::format("{}: '{}' of '{}' is no configuration before it", key, from, taker.name));
+      fmt::format("{}: '{}' of '{}' is not a configuration before it", key, from, user.name));
   if (source == nullptr) return;
   const std::vector<std::uint64_t>& given = sweep.seeds_of(*source);
-  for (const std::uint64_t seed : sweep.seeds_of(taker))
+  for (const std::uint64_t seed : sweep.seeds_of(user))
     fields.expect(std::find(given.begin(), given.end(), seed) != given.end(), "configurations",
                   fmt::format("'{}' has the seed {}, but '{}', which it starts from, does not",
-                              taker.name, seed, from));
+                              user.name, seed, from));
   for (const SweepDataset& dataset : sweep.datasets)
-    fields.expect(!taker.runs_over(dataset.name) || source->runs_over(dataset.name),
+    fields.expect(!user.runs_over(dataset.name) || source->runs_over(dataset.name),
                   "configurations",
                   fmt::format("'{}' runs over {}, but '{}', which it starts from, does not",
-                              taker.name, dataset.name, from));
+                              user.name, dataset.name, from));
 }
 
 void expect_datasets(config::Fields& fields, const char* key, const SweepConfig& sweep,
@@ -76,7 +76,7 @@ void expect_datasets(config::Fields& fields, const char* key, const SweepConfig&
   for (const SweepDataset& dataset : sweep.datasets) known.push_back(dataset.name);
   for (const std::string& name : names)
     fields.expect(std::find(known.begin(), known.end(), name) != known.end(), key,
-                  fmt::format("'{}' is no dataset of the sweep; {}", name,
+                  fmt::format("'{}' is not a dataset of the sweep; {}", name,
                               config::suggestion(name, known, "datasets")));
 }
 
@@ -95,12 +95,13 @@ void check_expected(config::Fields& fields, const SweepConfig& sweep) {
   std::vector<std::string> names;
   for (const SweepConfiguration& configuration : sweep.configurations)
     names.push_back(configuration.name);
-  for (const ExpectedMetric& figure : sweep.expected) {
-    const bool is_known = find_named(sweep.configurations, figure.configuration) != nullptr;
-    fields.expect(is_known, "expected",
-                  fmt::format("'{}' is no configuration of the sweep; {}", figure.configuration,
-                              config::suggestion(figure.configuration, names, "configurations")));
-    expect_datasets(fields, "expected", sweep, figure.datasets);
+  for (const ExpectedMetric& expected : sweep.expected) {
+    const bool is_known = find_named(sweep.configurations, expected.configuration) != nullptr;
+    fields.expect(
+        is_known, "expected",
+        fmt::format("'{}' is not a configuration of the sweep; {}", expected.configuration,
+                    config::suggestion(expected.configuration, names, "configurations")));
+    expect_datasets(fields, "expected", sweep, expected.datasets);
   }
 }
 
@@ -111,11 +112,16 @@ bool SweepConfiguration::runs_over(const std::string& dataset) const {
 }
 
 void describe(config::Fields& fields, SweepDataset& dataset) {
-  fields.value("name", dataset.name, "in tables; default: the folder's or the file's");
-  fields.path("path", dataset.path, "a dataset folder").must_exist();
-  fields.path("simulate", dataset.simulate, "or a simulation configuration").must_exist();
-  fields.value("set", dataset.set, "overrides of it, key.path: value");
-  fields.value("seeds", dataset.seeds, "of the simulation, one dataset each");
+  fields.value("name", dataset.name,
+               "Name of the dataset in tables and folders. Default: that of the folder or file.");
+  fields.path("path", dataset.path, "A dataset folder that exists. Excludes 'simulate'.")
+      .must_exist();
+  fields.path("simulate", dataset.simulate, "A simulation configuration that makes the dataset.")
+      .must_exist();
+  fields.value("set", dataset.set,
+               "Overrides of the simulation configuration, as `key.path: value`.");
+  fields.value("seeds", dataset.seeds,
+               "Seeds of the simulation; each makes a dataset. Default: the seed it states.");
   fields.expect(dataset.path.has_value() != dataset.simulate.has_value(), "path",
                 "must be stated, or 'simulate', and not both");
   fields.expect(dataset.simulate || (dataset.set.empty() && dataset.seeds.empty()), "path",
@@ -128,21 +134,35 @@ void describe(config::Fields& fields, SweepDataset& dataset) {
 }
 
 void describe(config::Fields& fields, SweepConfiguration& configuration) {
-  fields.value("name", configuration.name, "in tables; default: the file's, after the module");
-  fields.value("module", configuration.module, "what `saccade run` runs; default: the sweep's");
-  fields.path("file", configuration.file, "of the module; ~ is its defaults").must_exist();
-  fields.path("adapter", configuration.adapter, "or of an external program").must_exist();
-  fields.value("set", configuration.set, "overrides of it, key.path: value");
+  fields.value("name", configuration.name,
+               "Name in tables. Default: that of the file, after the module where it is stated.");
+  fields.value("module", configuration.module,
+               "Module of `saccade run`. Default: that of the sweep.");
+  fields
+      .path("file", configuration.file,
+            "Configuration file of the module. Default: the module's default values.")
+      .must_exist();
+  fields
+      .path("adapter", configuration.adapter,
+            "Adapter file of an external program, which runs in place of the module.")
+      .must_exist();
+  fields.value("set", configuration.set, "Overrides of the file, as `key.path: value`.");
   fields.expect(!configuration.file || !configuration.adapter, "file",
                 "must not be stated beside 'adapter'");
   expect_no_seed(fields, "set", configuration.set);
-  fields.value("datasets", configuration.datasets, "names of those it runs over; default: all");
-  fields.value("seeds", configuration.seeds, "default: the sweep's");
-  fields.value("repeat", configuration.repeat, "repetitions; default: the sweep's")
+  fields.value("datasets", configuration.datasets,
+               "Names of the datasets that it runs over. Default: all.");
+  fields.value("seeds", configuration.seeds, "Seeds of the runs. Default: those of the sweep.");
+  fields
+      .value("repeat", configuration.repeat,
+             "Repetitions of each run for its timing. Default: that of the sweep.")
       .range(1, 100000);
-  fields.value("from", configuration.from, "configuration before it whose run it starts from");
-  fields.value("poses_from", configuration.poses_from, "or takes the poses of");
-  fields.value("depth_from", configuration.depth_from, "or the depth");
+  fields.value("from", configuration.from,
+               "Name of an earlier configuration whose run is the input of `refine` (--from).");
+  fields.value("poses_from", configuration.poses_from,
+               "Name of an earlier configuration whose poses replace the true ones.");
+  fields.value("depth_from", configuration.depth_from,
+               "Name of an earlier configuration whose depth replaces the true one.");
   if (!fields.reading() || !configuration.name.empty()) return;
   configuration.name = "defaults";
   if (configuration.file) configuration.name = configuration.file->stem();
@@ -151,44 +171,82 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
     configuration.name = configuration.module + " " + configuration.name;
 }
 
-void describe(config::Fields& fields, ExpectedMetric& figure) {
-  fields.value("configuration", figure.configuration, "its name").required();
-  fields.value("datasets", figure.datasets, "default: all that it runs over");
-  fields.value("metric", figure.metric, "key of metrics.json").required();
-  fields.value("at_most", figure.at_most, "of the mean over the seeds, of a speed the median");
-  fields.value("at_least", figure.at_least, "the same");
-  fields.expect(figure.at_most || figure.at_least, "metric", "needs 'at_most' or 'at_least'");
+void describe(config::Fields& fields, ExpectedMetric& expected) {
+  fields.value("configuration", expected.configuration, "Name of the configuration.").required();
+  fields.value("datasets", expected.datasets,
+               "Names of the datasets. Default: all that the configuration runs over.");
+  fields.value("metric", expected.metric, "Key of metrics.json.").required();
+  fields.value("at_most", expected.at_most,
+               "Upper bound of the mean over the seeds; of a speed, of the median.");
+  fields.value("at_least", expected.at_least,
+               "Lower bound of the mean over the seeds; of a speed, of the median.");
+  fields.expect(expected.at_most || expected.at_least, "metric", "needs 'at_most' or 'at_least'");
 }
 
 void describe(config::Fields& fields, SweepVariant& variant) {
-  fields.value("name", variant.name, "in tables").required();
-  fields.value("set", variant.set, "overrides of the configuration, key.path: value");
+  fields.value("name", variant.name, "Name of the variant in tables.").required();
+  fields.value("set", variant.set, "Overrides of the configuration, as `key.path: value`.");
   fields.expect(!variant.name.empty(), "name", "must not be empty");
   expect_no_seed(fields, "set", variant.set);
 }
 
-void describe(config::Fields& fields, SweepConfig& sweep) {
-  fields.value("title", sweep.title, "of sweep.md");
-  fields.value("module", sweep.module, "what `saccade run` runs");
-  fields.section("generate", sweep.generate, "many datasets from ranges, in place of 'datasets'");
-  config::Rule datasets =
-      fields.list("datasets", sweep.datasets, "each {path} or {simulate, set, seeds}");
+namespace {
+
+/// What runs: the axes of the sweep.
+void describe_axes(config::Fields& fields, SweepConfig& sweep) {
+  fields.value("module", sweep.module, "Module of `saccade run`.");
+  fields.section("generate", sweep.generate,
+                 "Simulates many datasets with sampled parameters, in place of 'datasets'.");
+  config::Rule datasets = fields.list(
+      "datasets", sweep.datasets, "Datasets, each {name, path} or {name, simulate, set, seeds}.");
   if (!sweep.generate) datasets.required().length(1, config::Rule::kAnyLength);
-  fields.list("configurations", sweep.configurations,
-              "each {name, module, file or adapter, set, datasets, from}");
-  fields.list("variants", sweep.variants, "each {name, set}");
-  fields.value("grid", sweep.grid, "key.path: list of values; every combination is run");
-  fields.value("seeds", sweep.seeds, "of the runs");
-  fields.value("repeat", sweep.repeat, "repetitions of each run, for its speed").range(1, 100000);
-  fields.value("timing", sweep.timing, "one run at a time on one thread, for a speed to quote");
-  fields.value("threads", sweep.threads, "of one run or generated dataset").range(1, 4096);
-  fields.value("cache", sweep.cache, "simulate into the cache that all sweeps share");
-  fields.value("start_s", sweep.start_s, "begin of the window; default: first event");
-  fields.value("duration_s", sweep.duration_s, "length of the window").above(0);
-  fields.value("metrics", sweep.metrics, "of metrics.json in sweep.md; default: the usual ones");
-  fields.section("slurm", sweep.slurm, "what --launcher slurm asks for each job");
-  fields.list("expected", sweep.expected,
-              "each {configuration, datasets, metric, at_most, at_least}");
+  fields.list(
+      "configurations", sweep.configurations,
+      "Configurations that run over the datasets, each {name, module, file or adapter, set, "
+      "datasets, seeds, repeat, from, poses_from, depth_from}. None: simulate only.");
+  fields.list("variants", sweep.variants,
+              "Named overrides, each {name, set}. Every configuration runs with each of them.");
+  fields.value("grid", sweep.grid,
+               "Lists of values, as `key.path: [value, ...]`. Every combination runs.");
+  fields.value("seeds", sweep.seeds,
+               "Seeds of the runs. Results are averaged over them. Default: the configuration's.");
+}
+
+/// How it runs and what of it is shown.
+void describe_execution(config::Fields& fields, SweepConfig& sweep) {
+  fields
+      .value("repeat", sweep.repeat,
+             "Repetitions of each run for its timing. More give a more reliable median and take "
+             "longer.")
+      .range(1, 100000);
+  fields.value("timing", sweep.timing,
+               "Run one job at a time on one thread, so that speeds can be compared.");
+  fields
+      .value("threads", sweep.threads,
+             "Threads of one run or of one generated dataset. More threads leave room for fewer "
+             "parallel jobs.")
+      .range(1, 4096);
+  fields.value("cache", sweep.cache,
+               "Simulate into the cache that all sweeps share, so that datasets are reused.");
+  fields.value("start_s", sweep.start_s,
+               "Start of the window that is run, in seconds. Default: the first event.");
+  fields.value("duration_s", sweep.duration_s, "Length of the window that is run, in seconds.")
+      .above(0);
+  fields.value("metrics", sweep.metrics,
+               "Keys of metrics.json that sweep.md and its charts show. Default: the usual ones.");
+  fields.section("slurm", sweep.slurm, "Resources of each job with --launcher slurm.");
+  fields.list(
+      "expected", sweep.expected,
+      "Metrics that a benchmark must reach, each {configuration, datasets, metric, at_most, "
+      "at_least}. One that is missed ends the sweep with exit code 1.");
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, SweepConfig& sweep) {
+  fields.value("title", sweep.title, "Title of sweep.md.");
+  describe_axes(fields, sweep);
+  describe_execution(fields, sweep);
   expect_names_differ(fields, "datasets", sweep.datasets);
   expect_names_differ(fields, "configurations", sweep.configurations);
   expect_names_differ(fields, "variants", sweep.variants);

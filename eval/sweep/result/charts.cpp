@@ -12,9 +12,9 @@
 namespace saccade {
 namespace {
 
-/// More lines than this nobody can tell apart; all of them are in sweep.csv.
-constexpr std::size_t kMostLines = 10;
-constexpr std::size_t kMostPanels = 4;
+/// More lines cannot be told apart; sweep.csv holds all of them.
+constexpr std::size_t kMaxLines = 10;
+constexpr std::size_t kMaxPanels = 4;
 
 std::optional<double> number(const std::string& text) {
   return config::number_of(config::Node::scalar(text, false));
@@ -26,19 +26,19 @@ bool is_numeric(const GridAxis& axis) {
                      [](const std::string& value) { return number(value).has_value(); });
 }
 
-std::vector<std::string> drawn_metrics(const SweepResults& results) {
-  std::vector<std::string> drawn;
+std::vector<std::string> charted_metrics(const SweepResults& results) {
+  std::vector<std::string> charted;
   for (const std::string& metric : results.metrics) {
     const bool wanted = !results.sweep.metrics.empty() || metric_info(metric).in_figures;
-    const bool there =
+    const bool measured =
         std::any_of(results.groups.begin(), results.groups.end(),
                     [&](const SweepGroup& group) { return summarise(group, metric).has_value(); });
-    if (wanted && there && drawn.size() < kMostPanels) drawn.push_back(metric);
+    if (wanted && measured && charted.size() < kMaxPanels) charted.push_back(metric);
   }
-  return drawn;
+  return charted;
 }
 
-/// What tells a group from others of its dataset, the axis `without` left out.
+/// What distinguishes a group from the others of its dataset, without the axis `without`.
 std::string label_of(const SweepResults& results, const SweepPoint& point,
                      std::optional<std::size_t> without) {
   std::string label;
@@ -57,7 +57,7 @@ std::string joined_label(const std::string& dataset, const std::string& rest) {
   return rest.empty() ? dataset : dataset + ", " + rest;
 }
 
-/// Index of `name` in `names`, at the end of which it is put when it is new.
+/// Index of `name` in `names`; a new name is appended.
 std::size_t index_in(std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
@@ -72,11 +72,11 @@ ChartValue chart_value(const MetricSummary& summary) {
 LineChart line_chart(const SweepResults& results, std::size_t axis) {
   LineChart chart;
   chart.x_label = results.plan.axes[axis];
-  const std::vector<std::string> metrics = drawn_metrics(results);
+  const std::vector<std::string> metrics = charted_metrics(results);
   std::vector<std::string> names;
   for (const SweepGroup& group : results.groups)
     index_in(names, joined_label(group.point.dataset, label_of(results, group.point, axis)));
-  if (names.size() > kMostLines) names.resize(kMostLines);
+  if (names.size() > kMaxLines) names.resize(kMaxLines);
   chart.names = names;
   for (const std::string& metric : metrics) {
     LineChart::Panel panel{metric_info(metric).label, {}};
@@ -98,8 +98,8 @@ LineChart line_chart(const SweepResults& results, std::size_t axis) {
   return chart;
 }
 
-/// Rows are labels or datasets, whichever there are more of; the others are the bars of a row,
-/// which are told apart by colour.
+/// The rows are the labels or the datasets, whichever are more; the others are the bars of a row, which
+/// differ in colour.
 BarChart bar_chart(const SweepResults& results) {
   BarChart chart;
   std::vector<std::string> labels, datasets;
@@ -110,7 +110,7 @@ BarChart bar_chart(const SweepResults& results) {
   const bool by_dataset = datasets.size() > labels.size();
   chart.categories = by_dataset ? datasets : labels;
   chart.names = by_dataset ? labels : datasets;
-  for (const std::string& metric : drawn_metrics(results)) {
+  for (const std::string& metric : charted_metrics(results)) {
     BarChart::Panel panel{metric_info(metric).label, {}};
     panel.bars.assign(chart.categories.size(),
                       std::vector<std::optional<ChartValue>>(chart.names.size(), std::nullopt));
@@ -142,11 +142,7 @@ bool varies(const SweepResults& results) {
   return false;
 }
 
-}  // namespace
-
-namespace {
-
-/// They measure different things, which no bars compare.
+/// Modules have different metrics, which one bar chart cannot compare.
 bool has_several_modules(const SweepResults& results) {
   return std::any_of(results.groups.begin(), results.groups.end(), [&](const SweepGroup& group) {
     return group.point.module != results.groups.front().point.module;
@@ -155,20 +151,23 @@ bool has_several_modules(const SweepResults& results) {
 
 }  // namespace
 
-std::vector<SweepChart> write_charts(const SweepResults& results,
-                                       const std::filesystem::path& folder) {
-  std::vector<SweepChart> figures;
-  if (!varies(results) || drawn_metrics(results).empty()) return figures;
+std::vector<std::string> write_charts(const SweepResults& results,
+                                      const std::filesystem::path& folder) {
+  std::vector<std::string> images;
+  if (!varies(results) || charted_metrics(results).empty()) return images;
+  const auto write = [&](const ImageRgb8& chart, const std::string& file,
+                         const std::string& caption) {
+    write_png(folder / file, chart);
+    images.push_back("![" + caption + "](" + file + ")");
+  };
   for (std::size_t axis = 0; axis < results.sweep.grid.size(); ++axis)
     if (is_numeric(results.sweep.grid[axis])) {
       const std::string& key = results.plan.axes[axis];
-      figures.push_back({file_of(key), "Over " + key});
-      write_png(folder / figures.back().file, draw(line_chart(results, axis), kLightTheme));
+      write(draw(line_chart(results, axis), kLightTheme), file_of(key), "Over " + key);
     }
-  if (!figures.empty() || has_several_modules(results)) return figures;
-  figures.push_back({"compared.png", "All rows compared"});
-  write_png(folder / figures.back().file, draw(bar_chart(results), kLightTheme));
-  return figures;
+  if (images.empty() && !has_several_modules(results))
+    write(draw(bar_chart(results), kLightTheme), "compared.png", "All rows compared");
+  return images;
 }
 
 }  // namespace saccade

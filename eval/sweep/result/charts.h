@@ -8,15 +8,11 @@
 
 namespace saccade {
 
-struct SweepChart {
-  std::string file;  ///< in the folder of the sweep
-  std::string caption;
-};
-
-/// Draws what a sweep varies: for each axis of numbers a picture of its metrics over it, a line for
-/// each dataset (and for each value of what else is varied); where there is no such axis, bars for
-/// each configuration, variant and value. Nothing where a dataset has one row only.
-[[nodiscard]] std::vector<SweepChart> write_charts(const SweepResults& results,
-                                                     const std::filesystem::path& folder);
+/// Draws the metrics over what the sweep varies: for each numeric axis of the grid a line chart with a
+/// line per dataset (and per value of the other varied keys); without such an axis a bar chart of all
+/// configurations, variants and values. Nothing where every dataset has a single row.
+/// Returns the Markdown image of each chart.
+[[nodiscard]] std::vector<std::string> write_charts(const SweepResults& results,
+                                                    const std::filesystem::path& folder);
 
 }  // namespace saccade

@@ -8,15 +8,15 @@
 
 namespace saccade {
 
-/// What became of an expected figure on one dataset.
+/// An expected metric and its value on one dataset.
 struct ExpectationResult {
-  const ExpectedMetric* figure;
+  const ExpectedMetric* expected;
   std::string dataset;
-  std::optional<double> value;  ///< of all seeds; none where nothing was measured
-  bool met = false;             ///< never without a value, nor where a run of a seed failed
+  std::optional<double> value;  ///< over all seeds; nullopt where nothing was measured
+  bool met = false;             ///< false without a value, and where the run of a seed failed
 };
 
-/// One verdict for each expected figure, dataset and, where the sweep varies more, each row of it.
+/// One result per expected metric and group of its configuration.
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
 
 }  // namespace saccade

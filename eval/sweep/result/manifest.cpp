@@ -21,14 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kDrawn = "drawn";
+constexpr const char* kSampledKey = "drawn";
 
 const char* status_text(JobState state) {
   if (state == JobState::kFailed) return "failed";
-  return state == JobState::kUnknown ? "waiting" : "ok";
+  return state == JobState::kPending ? "waiting" : "ok";
 }
 
-/// A number where the text is one, whole where it is written so.
+/// A number where the text is one, an integer where it is written as one.
 Json json_value(const std::string& text) {
   const auto number = config::number_of(config::Node::scalar(text, false));
   if (!number) return text;
@@ -65,18 +65,17 @@ void add_facts(const fs::path& folder, Json& row) {
   row["config_sha256"] = sha256(std::as_bytes(std::span(record.config_yaml)));
 }
 
-Json manifest_row(const GeneratedDataset& dataset, const SweepJob& job, JobState state,
-                  const fs::path& folder) {
+Json manifest_row(const GeneratedDataset& dataset, const SweepJob& job, const fs::path& folder) {
   Json row;
   row["index"] = dataset.index;
   row["name"] = job.name;
   row["path"] = job.output.lexically_relative(fs::absolute(folder).lexically_normal()).string();
-  row["status"] = status_text(state);
+  row["status"] = status_text(job.state);
   row["scene"] = dataset.scene->name;
   row["seed"] = dataset.seed;
-  row[kDrawn] = Json::object();
-  for (const auto& [key, value] : dataset.drawn) row[kDrawn][key] = json_value(value);
-  if (state == JobState::kDone || state == JobState::kSkipped) add_facts(job.output, row);
+  row[kSampledKey] = Json::object();
+  for (const auto& [key, value] : dataset.sampled) row[kSampledKey][key] = json_value(value);
+  if (job.state == JobState::kDone || job.state == JobState::kSkipped) add_facts(job.output, row);
   return row;
 }
 
@@ -88,7 +87,7 @@ CsvTable::Cell cell_of(const Json& row, const std::string& key) {
   return value->get<std::string>();
 }
 
-/// The keys of all rows, each list in the order in which they first come.
+/// The keys of all rows, in the order of their first occurrence.
 std::vector<std::string> keys_of(const std::vector<Json>& rows) {
   std::vector<std::string> keys;
   std::set<std::string> known;
@@ -98,22 +97,22 @@ std::vector<std::string> keys_of(const std::vector<Json>& rows) {
   return keys;
 }
 
-/// One table: what was drawn stands in columns of its own, behind the others.
+/// One table; the sampled parameters are the last columns.
 CsvTable manifest_csv(const Json& datasets) {
-  std::vector<Json> rows, drawn;
+  std::vector<Json> rows, sampled;
   for (Json row : datasets) {
-    drawn.push_back(row[kDrawn]);
-    row.erase(kDrawn);
+    sampled.push_back(row[kSampledKey]);
+    row.erase(kSampledKey);
     rows.push_back(std::move(row));
   }
-  const std::vector<std::string> row_keys = keys_of(rows), drawn_keys = keys_of(drawn);
+  const std::vector<std::string> row_keys = keys_of(rows), sampled_keys = keys_of(sampled);
   std::vector<std::string> columns = row_keys;
-  columns.insert(columns.end(), drawn_keys.begin(), drawn_keys.end());
+  columns.insert(columns.end(), sampled_keys.begin(), sampled_keys.end());
   CsvTable table(columns);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::vector<CsvTable::Cell> cells;
     for (const std::string& key : row_keys) cells.push_back(cell_of(rows[i], key));
-    for (const std::string& key : drawn_keys) cells.push_back(cell_of(drawn[i], key));
+    for (const std::string& key : sampled_keys) cells.push_back(cell_of(sampled[i], key));
     table.add(cells);
   }
   return table;
@@ -121,8 +120,7 @@ CsvTable manifest_csv(const Json& datasets) {
 
 }  // namespace
 
-void write_manifest(const SweepConfig& sweep, const SweepPlan& plan,
-                    const std::vector<JobState>& states, const fs::path& folder) {
+void write_manifest(const SweepConfig& sweep, const SweepPlan& plan, const fs::path& folder) {
   Json manifest;
   manifest["format_version"] = 1;
   manifest["title"] = sweep.title;
@@ -132,7 +130,7 @@ void write_manifest(const SweepConfig& sweep, const SweepPlan& plan,
   for (std::size_t i = 0; i < plan.simulations.size(); ++i)
     manifest["datasets"].push_back(
         manifest_row(generated_dataset(*sweep.generate, sweep.generate->first + i),
-                     plan.simulations[i], states[i], folder));
+                     plan.simulations[i], folder));
   write_atomically(folder / "manifest.json", manifest.dump(1) + "\n");
   manifest_csv(manifest["datasets"]).save(folder / "manifest.csv");
 }

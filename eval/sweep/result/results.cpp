@@ -10,15 +10,15 @@
 #include "core/progress.h"
 #include "eval/evaluate.h"
 #include "eval/run_folder.h"
-#include "eval/sweep/result/expectations.h"
-#include "eval/sweep/result/charts.h"
 #include "eval/sweep/metric_info.h"
+#include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/expectations.h"
 #include "eval/sweep/result/tables.h"
 
 namespace saccade {
 namespace {
 
-Metrics dataset_facts(const std::filesystem::path& folder) {
+Metrics dataset_metrics(const std::filesystem::path& folder) {
   const DatasetRecord record = read_dataset_record(folder / "dataset.yaml");
   Metrics facts;
   if (record.counts)
@@ -35,7 +35,7 @@ Metrics dataset_facts(const std::filesystem::path& folder) {
 SweepRow read_row(const SweepJob& job) {
   SweepRow row{&job, false, {}, {}, {}};
   if (job.is_simulation()) {
-    row.metrics = dataset_facts(job.output);
+    row.metrics = dataset_metrics(job.output);
     return row;
   }
   const RunRecord record = read_run_record(job.output / "run.yaml");
@@ -59,7 +59,7 @@ std::vector<std::string> known_keys(const std::vector<SweepRow>& rows) {
   return {keys.begin(), keys.end()};
 }
 
-/// A metric that nobody has is no reason to lose the table.
+/// A metric that no job has is reported, and the table is written all the same.
 void warn_of_unknown(const SweepResults& results) {
   const std::vector<std::string> keys = known_keys(results.rows);
   for (const std::string& metric : results.metrics)
@@ -70,13 +70,11 @@ void warn_of_unknown(const SweepResults& results) {
 
 }  // namespace
 
-std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs,
-                                const std::vector<JobState>& states) {
+std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs) {
   std::vector<SweepRow> rows;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const bool failed = states[i] == JobState::kFailed;
-    rows.push_back(failed ? SweepRow{&jobs[i], true, {}, {}, {}} : read_row(jobs[i]));
-  }
+  for (const SweepJob& job : jobs)
+    rows.push_back(job.state == JobState::kFailed ? SweepRow{&job, true, {}, {}, {}}
+                                                  : read_row(job));
   return rows;
 }
 
@@ -97,7 +95,7 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
   std::vector<double> values;
   for (const SweepRow* row : group.rows) {
-    if (!row->problem.empty()) continue;  // to crash fast is no speed
+    if (!row->problem.empty()) continue;  // the time until a crash is not a speed
     if (const std::optional<double> value = speed_value(row->metrics, key))
       values.push_back(*value);
   }
@@ -109,10 +107,9 @@ std::optional<MetricSummary> summarise(const SweepGroup& group, const std::strin
   return MetricSummary{metric_info(key).is_speed ? median : mean, values.front(), values.back(), n};
 }
 
-SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
-                             const SweepStates& states) {
+SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
   SweepResults results{sweep, plan, {}, {}, sweep.metrics};
-  results.rows = read_rows(plan.rows(), plan.runs.empty() ? states.simulations : states.runs);
+  results.rows = read_rows(plan.rows());
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
     for (const MetricInfo& metric : usual_metrics())
@@ -121,15 +118,16 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
 }
 
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
-                                const SweepStates& states, const std::filesystem::path& folder) {
-  const SweepResults results = collect_results(sweep, plan, states);
+                                const std::filesystem::path& folder) {
+  const SweepResults results = collect_results(sweep, plan);
   warn_of_unknown(results);
   sweep_csv(results).save(folder / "sweep.csv");
-  const std::vector<SweepChart> figures = write_charts(results, folder);
-  const std::vector<ExpectationResult> verdicts = check_expectations(results);
-  write_atomically(folder / "sweep.md", sweep_markdown(results, figures, verdicts));
-  return static_cast<std::size_t>(std::count_if(
-      verdicts.begin(), verdicts.end(), [](const ExpectationResult& verdict) { return !verdict.met; }));
+  const std::vector<std::string> charts = write_charts(results, folder);
+  const std::vector<ExpectationResult> expectations = check_expectations(results);
+  write_atomically(folder / "sweep.md", sweep_markdown(results, charts, expectations));
+  return static_cast<std::size_t>(
+      std::count_if(expectations.begin(), expectations.end(),
+                    [](const ExpectationResult& expectation) { return !expectation.met; }));
 }
 
 }  // namespace saccade

@@ -11,63 +11,52 @@
 
 namespace saccade {
 
-/// What became of a job.
-enum class JobState { kUnknown, kDone, kSkipped, kFailed };
-
-/// By the job's index in the plan.
-struct SweepStates {
-  std::vector<JobState> simulations;
-  std::vector<JobState> runs;
-};
-
-/// A job with what it gave.
+/// A job with its result.
 struct SweepRow {
   const SweepJob* job;
   bool failed = false;
-  Metrics metrics;      ///< of metrics.json, or facts of the dataset ("dataset.events")
-  std::string machine;  ///< it ran on; empty where unknown
+  Metrics metrics;      ///< of metrics.json, or properties of the dataset ("dataset.events")
+  std::string machine;  ///< empty where unknown
   std::string tool_version;
-  /// Why an external program has no poses; the job itself did what it should.
+  /// Why an external program returned no poses, although the job itself succeeded.
   std::string problem = {};
 };
 
-/// Reads what the jobs that did not fail left behind.
-[[nodiscard]] std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs,
-                                              const std::vector<JobState>& states);
+/// Reads the results of the jobs that did not fail.
+[[nodiscard]] std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs);
 
-/// The rows that differ in nothing but seeds, in the order of the plan.
+/// Rows that differ in their seeds alone, in the order of the plan.
 struct SweepGroup {
   SweepPoint point;  ///< of the first
   std::vector<const SweepRow*> rows;
 };
 [[nodiscard]] std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows);
 
-/// Over the rows of a group that have the metric and no problem.
+/// A metric over the rows of a group that have it and no problem.
 struct MetricSummary {
-  double value = 0;  ///< mean, or median of a speed
+  double value = 0;  ///< mean; of a speed the median
   double low = 0;
   double high = 0;
   std::size_t count = 0;
 };
-/// nullopt where no row has it. A `key` without a value stands for key.median.
+/// nullopt where no row has the metric. A `key` without a value stands for key.median.
 [[nodiscard]] std::optional<MetricSummary> summarise(const SweepGroup& group,
                                                      const std::string& key);
 
-/// What the table and the pictures show of a sweep.
+/// The input of the tables and charts of a sweep.
 struct SweepResults {
   const SweepConfig& sweep;
   const SweepPlan& plan;
   std::vector<SweepRow> rows;
   std::vector<SweepGroup> groups;
-  std::vector<std::string> metrics;  ///< keys: the sweep's own, or those of the usual ones it has
+  std::vector<std::string> metrics;  ///< keys that the sweep states, or the usual ones that it has
 };
-[[nodiscard]] SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan,
-                                           const SweepStates& states);
+[[nodiscard]] SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan);
 
-/// Writes FOLDER/sweep.csv (a row for each job, all its metrics), FOLDER/sweep.md (a row for each
-/// group, `metrics`, and what became of the expected figures) and FOLDER/*.png. How many expected
-/// figures were missed.
+/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (one row per group
+/// with `metrics`, and the expected metrics) and FOLDER/*.png. Returns the number of expected metrics
+/// that were missed.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
-                                const SweepStates& states, const std::filesystem::path& folder);
+                                const std::filesystem::path& folder);
 
 }  // namespace saccade

@@ -20,27 +20,17 @@ CsvTable::Cell seed_cell(const std::optional<std::uint64_t>& seed) {
   return std::to_string(*seed);
 }
 
-/// '|' would end a cell.
+/// Escapes '|', which would end a cell.
 std::string cell_text(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
     text.insert(at, 1, '\\');
   return text;
 }
 
-/// Which columns tell the rows of a table apart.
-struct Columns {
-  bool configuration = false;
-  bool variant = false;
-  bool seeds = false;
-};
-
-Columns columns_of(const SweepResults& results) {
-  Columns columns;
-  columns.configuration = results.sweep.configurations.size() > 1;
-  columns.variant = !results.sweep.variants.empty();
-  columns.seeds = std::any_of(results.groups.begin(), results.groups.end(),
-                              [](const SweepGroup& group) { return group.rows.size() > 1; });
-  return columns;
+/// Whether any row of the tables averages over seeds.
+bool has_seeds(const SweepResults& results) {
+  return std::any_of(results.groups.begin(), results.groups.end(),
+                     [](const SweepGroup& group) { return group.rows.size() > 1; });
 }
 
 using Row = std::vector<std::string>;
@@ -51,14 +41,14 @@ std::string table_line(const Row& cells) {
   return line + "\n";
 }
 
-Row header(const SweepResults& results, const Columns& columns, bool with_dataset,
+Row header(const SweepResults& results, bool with_dataset,
            const std::vector<std::string>& metrics) {
   Row cells;
   if (with_dataset) cells.emplace_back("dataset");
-  if (columns.configuration) cells.emplace_back("configuration");
-  if (columns.variant) cells.emplace_back("variant");
+  if (results.sweep.configurations.size() > 1) cells.emplace_back("configuration");
+  if (!results.sweep.variants.empty()) cells.emplace_back("variant");
   for (const std::string& axis : results.plan.axes) cells.push_back("`" + axis + "`");
-  if (columns.seeds) cells.emplace_back("seeds");
+  if (has_seeds(results)) cells.emplace_back("seeds");
   for (const std::string& metric : metrics) cells.push_back(cell_text(metric_info(metric).label));
   return cells;
 }
@@ -68,8 +58,8 @@ bool was_lost(const SweepGroup& group) {
   return lost_s && lost_s->high > 0;
 }
 
-/// The best value of a metric among the rows of a table; nullopt where it makes no difference. The
-/// speed of an estimator that got lost is no merit.
+/// The best value of a metric among the rows of a table; nullopt where all are equal. The speed of an
+/// estimator that lost track does not count.
 std::optional<double> best_of(const std::vector<const SweepGroup*>& groups,
                               const std::string& metric) {
   const MetricInfo info = metric_info(metric);
@@ -97,16 +87,17 @@ std::string value_cell(const SweepGroup& group, const std::string& metric,
 }
 
 /// `best`: by the metric's key.
-Row body(const Columns& columns, bool with_dataset, const SweepGroup& group,
+Row body(const SweepResults& results, bool with_dataset, const SweepGroup& group,
          const std::vector<std::pair<std::string, std::optional<double>>>& best) {
   Row cells;
   if (with_dataset) cells.push_back(cell_text(group.point.dataset));
-  if (columns.configuration) cells.push_back(cell_text(group.point.configuration));
-  if (columns.variant) cells.push_back(cell_text(group.point.variant));
+  if (results.sweep.configurations.size() > 1)
+    cells.push_back(cell_text(group.point.configuration));
+  if (!results.sweep.variants.empty()) cells.push_back(cell_text(group.point.variant));
   for (const std::string& value : group.point.grid) cells.push_back(cell_text(value));
   const auto failed = std::count_if(group.rows.begin(), group.rows.end(),
                                     [](const SweepRow* row) { return has_failed(*row); });
-  if (columns.seeds)
+  if (has_seeds(results))
     cells.push_back(failed == 0 ? std::to_string(group.rows.size())
                                 : fmt::format("{} ({} failed)", group.rows.size(), failed));
   for (const auto& [metric, value] : best) cells.push_back(value_cell(group, metric, value));
@@ -115,7 +106,7 @@ Row body(const Columns& columns, bool with_dataset, const SweepGroup& group,
 
 using Groups = std::vector<const SweepGroup*>;
 
-/// Of the metrics those that a row of the table has: modules measure different things.
+/// The metrics that a row of the table has: modules have different metrics.
 std::vector<std::string> measured_of(const SweepResults& results, const Groups& groups) {
   std::vector<std::string> metrics;
   for (const std::string& metric : results.metrics)
@@ -126,11 +117,10 @@ std::vector<std::string> measured_of(const SweepResults& results, const Groups& 
 }
 
 std::string table(const SweepResults& results, const Groups& groups, bool with_dataset) {
-  const Columns columns = columns_of(results);
   const std::vector<std::string> metrics = measured_of(results, groups);
-  const Row head = header(results, columns, with_dataset, metrics);
+  const Row head = header(results, with_dataset, metrics);
   std::vector<std::pair<std::string, std::optional<double>>> best;
-  // Datasets are not compared with each other.
+  // Values of different datasets are not compared.
   for (const std::string& metric : metrics)
     best.emplace_back(metric, with_dataset ? std::nullopt : best_of(groups, metric));
   std::string text = table_line(head) + "|";
@@ -138,7 +128,7 @@ std::string table(const SweepResults& results, const Groups& groups, bool with_d
     text += i + metrics.size() < head.size() ? "---|" : "---:|";
   text += "\n";
   for (const SweepGroup* group : groups)
-    text += table_line(body(columns, with_dataset, *group, best));
+    text += table_line(body(results, with_dataset, *group, best));
   return text + "\n";
 }
 
@@ -153,7 +143,7 @@ std::vector<Groups> by_dataset(const SweepResults& results) {
   return parts;
 }
 
-/// The groups of each module, as they come first.
+/// The groups of each module, in the order of their first occurrence.
 std::vector<Groups> by_module(const Groups& groups) {
   std::vector<Groups> parts;
   for (const SweepGroup* group : groups) {
@@ -175,40 +165,40 @@ std::string tables_of(const SweepResults& results, const Groups& groups) {
   return text;
 }
 
-std::string bound_of(const ExpectedMetric& figure) {
-  if (figure.at_most && figure.at_least)
-    return fmt::format("{} to {}", *figure.at_least, *figure.at_most);
-  return figure.at_most ? fmt::format("≤ {}", *figure.at_most)
-                        : fmt::format("≥ {}", *figure.at_least);
+std::string bound_of(const ExpectedMetric& expected) {
+  if (expected.at_most && expected.at_least)
+    return fmt::format("{} to {}", *expected.at_least, *expected.at_most);
+  return expected.at_most ? fmt::format("≤ {}", *expected.at_most)
+                          : fmt::format("≥ {}", *expected.at_least);
 }
 
-std::string expected_table(std::span<const ExpectationResult> verdicts) {
-  if (verdicts.empty()) return "";
-  const auto met = std::count_if(verdicts.begin(), verdicts.end(),
-                                 [](const ExpectationResult& verdict) { return verdict.met; });
+std::string expected_table(std::span<const ExpectationResult> expectations) {
+  if (expectations.empty()) return "";
+  const auto met = std::count_if(expectations.begin(), expectations.end(),
+                                 [](const ExpectationResult& result) { return result.met; });
   std::string text =
-      fmt::format("## Expected figures\n{} of {} are met.\n\n", met, verdicts.size());
+      fmt::format("## Expected metrics\n{} of {} met.\n\n", met, expectations.size());
   text +=
-      "| configuration | dataset | figure | expected | measured | |\n|---|---|---|---:|---:|---|\n";
-  for (const ExpectationResult& verdict : verdicts)
-    text +=
-        table_line({cell_text(verdict.figure->configuration), cell_text(verdict.dataset),
-                    cell_text(metric_info(verdict.figure->metric).label), bound_of(*verdict.figure),
-                    rounded(verdict.value), verdict.met ? "met" : "**missed**"});
+      "| configuration | dataset | metric | expected | measured | |\n|---|---|---|---:|---:|---|\n";
+  for (const ExpectationResult& result : expectations)
+    text += table_line({cell_text(result.expected->configuration), cell_text(result.dataset),
+                        cell_text(metric_info(result.expected->metric).label),
+                        bound_of(*result.expected), rounded(result.value),
+                        result.met ? "met" : "**missed**"});
   return text + "\n";
 }
 
-std::string how_it_was_made(const SweepResults& results) {
+std::string method_text(const SweepResults& results) {
   std::string text;
-  if (columns_of(results).seeds)
-    text += "Errors are means over the seeds, with minimum and maximum in brackets. ";
+  if (has_seeds(results))
+    text += "Errors are means over the seeds, with the minimum and maximum in brackets. ";
   if (results.plan.runs.empty()) return text + "\n\n";
   text += results.sweep.repeat > 1
               ? fmt::format("Speeds are medians of {} repetitions", results.sweep.repeat)
-              : "Speeds are of a single repetition";
+              : "Speeds are those of a single repetition";
   text += results.sweep.timing ? ", one run at a time on one thread. "
-                               : ", while other runs may have shared the machine. ";
-  text += "The best value of a dataset is bold.\n";
+                               : "; other runs may have used the machine at the same time. ";
+  text += "The best value of each column is bold within a dataset.\n";
   std::set<std::string> machines, versions;
   for (const SweepRow& row : results.rows) {
     if (!row.machine.empty()) machines.insert(row.machine);
@@ -228,7 +218,7 @@ std::string failures(const SweepResults& results) {
   return text.empty() ? "" : "## Failed jobs\n" + text;
 }
 
-/// "ok", "failed", or "timed out" and the like of an external program.
+/// "ok", "failed", or the problem of an external program, such as "timed out".
 std::string status_of(const SweepRow& row) {
   if (row.failed) return "failed";
   return row.problem.empty() ? "ok" : row.problem.substr(0, row.problem.find(':'));
@@ -262,22 +252,21 @@ CsvTable sweep_csv(const SweepResults& results) {
   return csv;
 }
 
-std::string sweep_markdown(const SweepResults& results, std::span<const SweepChart> figures,
-                           std::span<const ExpectationResult> verdicts) {
+std::string sweep_markdown(const SweepResults& results, std::span<const std::string> charts,
+                           std::span<const ExpectationResult> expectations) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
-  std::string text = "# " + title + "\n\n" + how_it_was_made(results);
+  std::string text = "# " + title + "\n\n" + method_text(results);
   const auto parts = by_dataset(results);
   if (results.plan.runs.empty() || parts.size() == results.groups.size()) {
-    // One row each: a table of datasets.
+    // One row per dataset: a single table.
     std::vector<const SweepGroup*> all;
     for (const SweepGroup& group : results.groups) all.push_back(&group);
     text += table(results, all, true);
   } else {
     for (const Groups& groups : parts) text += tables_of(results, groups);
   }
-  text += expected_table(verdicts);
-  for (const SweepChart& figure : figures)
-    text += fmt::format("![{}]({})\n\n", figure.caption, figure.file);
+  text += expected_table(expectations);
+  for (const std::string& chart : charts) text += chart + "\n\n";
   return text + failures(results);
 }
 

@@ -4,21 +4,21 @@
 #include <string>
 
 #include "core/io/csv_file.h"
-#include "eval/sweep/result/expectations.h"
 #include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/expectations.h"
 #include "eval/sweep/result/results.h"
 
 namespace saccade {
 
-/// One row for each job: where it stands in the sweep, whether it is ok or failed, and every metric
-/// that any job has. Cells without a value are empty.
+/// One row per job: its coordinates in the sweep, its status, and every metric that any job has. Cells
+/// without a value are empty.
 [[nodiscard]] CsvTable sweep_csv(const SweepResults& results);
 
-/// The page of a sweep: for each dataset a table with a row for each group, the best value of a
-/// column in bold, one table for each module where there are several; then the expected figures,
-/// the pictures and the jobs that failed.
+/// The page of a sweep: for each dataset (and module, where there are several) a table with a row per
+/// group, the best value of a column in bold; then the expected metrics, the charts and the jobs that
+/// failed.
 [[nodiscard]] std::string sweep_markdown(const SweepResults& results,
-                                         std::span<const SweepChart> figures,
-                                         std::span<const ExpectationResult> verdicts);
+                                         std::span<const std::string> charts,
+                                         std::span<const ExpectationResult> expectations);
 
 }  // namespace saccade

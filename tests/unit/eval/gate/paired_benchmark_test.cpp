@@ -19,37 +19,38 @@ std::filesystem::path write_program(const TemporaryFolder& folder, const std::st
   return file;
 }
 
-TEST(RaceOrder, LeadsByTurnsAfterAnUntimedRunOfEach) {
+TEST(RepetitionOrder, LeadsAlternatelyAfterAWarmUpOfEach) {
   std::string order;
-  for (const Repetition& turn : repetition_order(4))
-    order += turn.timed ? (turn.second ? 'B' : 'A') : (turn.second ? 'b' : 'a');
+  for (const Repetition& repetition : repetition_order(4))
+    order += repetition.timed ? (repetition.second ? 'B' : 'A') : (repetition.second ? 'b' : 'a');
   EXPECT_EQ(order, "abABBAABBA");
 }
 
-TEST(RunRace, TakesTheTimeOfARunFromItsOwnClock) {
+TEST(PairedBenchmark, ReadsTheTimeOfARunFromItsTimingFile) {
   const TemporaryFolder folder;
   const auto writes = [&](const std::string& name, const std::string& wall_s) {
     return write_program(
         folder, name, "echo '{\"wall_s\": {\"median\": " + wall_s + "}}' > \"$3/timing.json\"\n");
   };
-  PairedBenchmark race{writes("a", "2.5"), writes("b", "3"), {"run", "-o", folder.path().string()}, 2};
-  const PairedTimes times = run_paired_benchmark(race, [](const Repetition&) {});
+  const PairedBenchmark benchmark{
+      writes("a", "2.5"), writes("b", "3"), {"run", "-o", folder.path().string()}, 2};
+  const PairedTimes times = run_paired_benchmark(benchmark, [](const Repetition&) {});
   EXPECT_THAT(times.first_s, ::testing::ElementsAre(2.5, 2.5));
   EXPECT_THAT(times.second_s, ::testing::ElementsAre(3, 3));
 }
 
-TEST(RunRace, TimesAnyProgram) {
+TEST(PairedBenchmark, TimesAnyProgram) {
   const TemporaryFolder folder;
   const auto program = write_program(folder, "a", "exit 0\n");
-  int turns = 0;
-  const PairedTimes times =
-      run_paired_benchmark({program, program, {"info"}, 3}, [&](const Repetition&) { ++turns; });
-  EXPECT_EQ(turns, 8);
+  int repetitions = 0;
+  const PairedTimes times = run_paired_benchmark({program, program, {"info"}, 3},
+                                                 [&](const Repetition&) { ++repetitions; });
+  EXPECT_EQ(repetitions, 8);
   ASSERT_EQ(times.first_s.size(), 3U);
   for (const double wall_s : times.second_s) EXPECT_GT(wall_s, 0);
 }
 
-TEST(RunRace, AProgramThatFailsEndsIt) {
+TEST(PairedBenchmark, AProgramThatFailsEndsIt) {
   const TemporaryFolder folder;
   const auto good = write_program(folder, "good", "exit 0\n");
   const auto bad = write_program(folder, "bad", "echo no such scene\nexit 2\n");

@@ -5,10 +5,10 @@
 
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/canvas/colour.h"
+#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/event_picture.h"
 #include "eval/picture/image/image_picture.h"
 #include "eval/picture/image/map_picture.h"
-#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/trajectory_picture.h"
 
 namespace saccade {

@@ -14,15 +14,15 @@ TEST(Axis, IsLinearBelowADecade) {
   const Axis axis({2, 9}, true);
   EXPECT_FALSE(axis.is_logarithmic());
   EXPECT_THAT(axis.ticks(), ElementsAre(0, 2, 4, 6, 8, 10));
-  EXPECT_DOUBLE_EQ(axis.share(0), 0);
-  EXPECT_DOUBLE_EQ(axis.share(5), 0.5);
+  EXPECT_DOUBLE_EQ(axis.position(0), 0);
+  EXPECT_DOUBLE_EQ(axis.position(5), 0.5);
 }
 
 TEST(Axis, IsLogarithmicAboveADecade) {
   const Axis axis({25, 300, 2000}, true);
   EXPECT_TRUE(axis.is_logarithmic());
   EXPECT_THAT(axis.ticks(), ElementsAre(20, 50, 100, 200, 500, 1000, 2000));
-  EXPECT_DOUBLE_EQ(axis.share(200), 0.5);
+  EXPECT_DOUBLE_EQ(axis.position(200), 0.5);
   EXPECT_FALSE(Axis({0, 2000}, true).is_logarithmic()) << "0 has no place on it";
   EXPECT_FALSE(Axis({-1, 2000}, true).is_logarithmic());
 }
@@ -42,8 +42,8 @@ TEST(Axis, HoldsEveryValue) {
     ASSERT_GE(axis.ticks().size(), 2U);
     EXPECT_LE(axis.ticks().size(), 30U);
     for (const double value : values) {
-      EXPECT_GE(axis.share(value), -1e-9);
-      EXPECT_LE(axis.share(value), 1 + 1e-9);
+      EXPECT_GE(axis.position(value), -1e-9);
+      EXPECT_LE(axis.position(value), 1 + 1e-9);
     }
   }
 }

@@ -9,8 +9,8 @@ namespace {
 
 const PinholeCamera kCamera{81, 61, 100, 100, 40, 30};
 
-PosedDepthMap view_of(const ImageF& depth, const Rigid3& view_from_camera = {}) {
-  return {depth, kCamera, view_from_camera};
+PosedDepthMap view_of(const ImageF& depth, const Rigid3& map_from_camera = {}) {
+  return {depth, kCamera, map_from_camera};
 }
 
 /// A surface 1 m away on the left, nothing on the right.
@@ -81,7 +81,7 @@ TEST_F(DepthViewsNear, AreTheNeighboursInTime) {
   EXPECT_EQ(between[1].depth, data.load_depth(2));
   const Rigid3 expected = data.groundtruth().at_clamped(data.depth_maps()[1].t_s).inverse() *
                           data.groundtruth().at_clamped(1.2 / 24);
-  EXPECT_LT((between[0].view_from_camera.inverse() * expected).log().norm(), 1e-12);
+  EXPECT_LT((between[0].map_from_camera.inverse() * expected).log().norm(), 1e-12);
   EXPECT_EQ(views_at(1.9 / 24)[0].depth, data.load_depth(2));
   const double last_s = data.depth_maps().back().t_s;
   EXPECT_EQ(views_at(last_s + 0.03).size(), 1U);

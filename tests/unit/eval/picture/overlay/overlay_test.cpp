@@ -84,7 +84,7 @@ TEST_F(OverlayTest, WhatTheDepthMapsSeeNearerHidesIt) {
   options.world_from_picture = data.groundtruth().at_clamped(0) * behind;
   const CaptionedPicture hidden = drawn(over_data(), 0);
   EXPECT_EQ(count_of(hidden.image, kYellow), 0);
-  EXPECT_THAT(hidden.caption, HasSubstr("(not seen)"));
+  EXPECT_THAT(hidden.caption, HasSubstr("(not visible)"));
   options.on_top = true;
   EXPECT_NEAR(count_of(drawn(over_data(), 0).image, kYellow), 200, 35);
 }

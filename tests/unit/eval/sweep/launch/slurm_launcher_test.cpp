@@ -27,7 +27,7 @@ using testing::TemporaryFolder;
 class FakeCluster : public SlurmCluster {
  public:
   void check() override {}
-  [[nodiscard]] int largest_array() override { return 1001; }
+  [[nodiscard]] int max_array_size() override { return 1001; }
 
   [[nodiscard]] std::string submit(const std::filesystem::path& script,
                                    const std::vector<std::string>& options) override {
@@ -50,7 +50,7 @@ class FakeCluster : public SlurmCluster {
 
   [[nodiscard]] std::optional<SlurmQueue> queue(const std::vector<std::string>&) override {
     std::string text;
-    for (const auto& [task, state] : states) text += task + "|" + state + "|None\n";
+    for (const auto& [task, state] : states) text += task + "|" + state + "\n";
     return SlurmQueue(text);
   }
 
@@ -58,7 +58,7 @@ class FakeCluster : public SlurmCluster {
     for (const std::string& name : names) {
       cancelled.push_back(name);
       for (auto& [task, state] : states)
-        if (task.starts_with(name) && SlurmTask{state, ""}.is_alive()) state = "CANCELLED";
+        if (task.starts_with(name) && is_active(state)) state = "CANCELLED";
     }
   }
 
@@ -96,14 +96,14 @@ class SlurmLaunching : public ::testing::Test {
 
   /// With a cluster that is seen as `cluster_` while it runs.
   bool run(
-      const LaunchLimits& limits = {LaunchLimits::kAllAtOnce, 1},
+      const LaunchLimits& limits = {LaunchLimits::kUnlimited, 1},
       const std::function<void()>& on_wait = [] {}) {
     /// The launcher owns what forwards to the test's cluster.
     class Forward : public SlurmCluster {
      public:
       explicit Forward(FakeCluster& to) : to_(to) {}
       void check() override {}
-      [[nodiscard]] int largest_array() override { return to_.largest_array(); }
+      [[nodiscard]] int max_array_size() override { return to_.max_array_size(); }
       [[nodiscard]] std::string submit(const std::filesystem::path& script,
                                        const std::vector<std::string>& options) override {
         return to_.submit(script, options);
@@ -171,7 +171,7 @@ TEST_F(SlurmLaunching, TellsSlurmWhatWasAskedFor) {
 }
 
 TEST_F(SlurmLaunching, SplitsWhatIsMoreThanAnArrayTakes) {
-  options_.arrays_of = 2;
+  options_.max_array_size = 2;
   for (const char* name : {"a", "b", "c", "d", "e"}) add(name, {count("all")});
   EXPECT_TRUE(run({1, 1}));
   EXPECT_EQ(cluster_.arrays.size(), 3U);
@@ -226,14 +226,14 @@ TEST_F(SlurmLaunching, TakesOverWhatAnEarlierCallSubmitted) {
   EXPECT_FALSE(run({2, 1}, [] { std::raise(SIGHUP); }));
   EXPECT_TRUE(results_.empty());
   EXPECT_TRUE(cluster_.cancelled.empty()) << "a lost terminal leaves the queue alone";
-  // While nobody looks one job ends and one is lost.
+  // Between two polls one job ends and one is lost.
   const std::string array = cluster_.arrays.at(0);
   cluster_.run_task(folder_.path() / "slurm" / array / "array.sh", 0);
   cluster_.states[array + "|0"] = "COMPLETED";
   cluster_.states[array + "|2"] = "NODE_FAIL";
-  int looks = 0;
+  int polls = 0;
   EXPECT_TRUE(run({2, 1}, [&] {
-    if (++looks != 3) return;
+    if (++polls != 3) return;
     cluster_.run_task(folder_.path() / "slurm" / array / "array.sh", 1);
     cluster_.states[array + "|1"] = "COMPLETED";
   }));

@@ -44,7 +44,7 @@ TEST(Generate, PlansADatasetForEachIndex) {
                                       "duration_s=0.1", "--set", "b=1", "--set", "b=2", "--set",
                                       "a=8", "--set", "c=[5]", "--set", "d=e", "--seed", seed)));
   const GeneratedDataset dataset = generated_dataset(*sweep.generate, 417);
-  EXPECT_THAT(dataset.drawn,
+  EXPECT_THAT(dataset.sampled,
               ElementsAre(std::pair("a", "8"), std::pair("c.0", "5"), std::pair("d", "e")));
 }
 
@@ -89,7 +89,7 @@ TEST(Generate, SaysWhatIsWrongAndWhere) {
               HasSubstr("sweep.yaml:2: generate.draw.a.uniform is empty"));
 }
 
-TEST(Pilot, ScalesAMeanWithItsInterval) {
+TEST(CalibrationRun, ScalesAMeanWithItsInterval) {
   const Estimate estimate = scaled_estimate({1, 2, 3}, 100);
   EXPECT_DOUBLE_EQ(estimate.value, 200);
   EXPECT_NEAR(estimate.spread, 100 * 4.303 / std::sqrt(3), 1e-9);

@@ -74,7 +74,7 @@ TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
   EXPECT_THAT(error("{name: a, seeds: [1]}, {name: b, from: a, seeds: [2]}"),
               HasSubstr("'b' has the seed 2, but 'a', which it starts from, does not"));
   EXPECT_THAT(error(a, "expected: [{configuration: c, metric: m, at_most: 1}]\n"),
-              HasSubstr("'c' is no configuration"));
+              HasSubstr("'c' is not a configuration"));
   EXPECT_THAT(error(a, "expected: [{configuration: a, metric: m}]\n"),
               HasSubstr("needs 'at_most' or 'at_least'"));
 }

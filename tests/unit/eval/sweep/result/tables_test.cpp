@@ -84,20 +84,20 @@ TEST_F(SweepTables, TheSpeedOfALostRunIsNotTheBest) {
               AllOf(HasSubstr("| 25,000 |"), HasSubstr("| **12,300** |")));
 }
 
-TEST_F(SweepTables, ExpectedFiguresAreMetOrMissed) {
+TEST_F(SweepTables, ExpectedMetricsAreMetOrMissed) {
   fill("a.b: [1]",
        "expected:\n"
        "  - {configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 0.61}\n"
        "  - {configuration: fast, metric: speed.poses_per_s, at_least: 26000}\n"
        "  - {configuration: fast, metric: trajectory.drift_percent, at_most: 1}\n");
-  const std::vector<ExpectationResult> verdicts = check_expectations(results_);
-  ASSERT_EQ(verdicts.size(), 3U);
-  EXPECT_TRUE(verdicts[0].met) << "the mean of both seeds counts";
-  EXPECT_FALSE(verdicts[1].met);
-  EXPECT_FALSE(verdicts[2].met) << "nothing measured is nothing met";
-  EXPECT_EQ(verdicts[2].value, std::nullopt);
-  EXPECT_THAT(sweep_markdown(results_, {}, verdicts),
-              AllOf(HasSubstr("1 of 3 are met."),
+  const std::vector<ExpectationResult> expectations = check_expectations(results_);
+  ASSERT_EQ(expectations.size(), 3U);
+  EXPECT_TRUE(expectations[0].met) << "the mean of both seeds counts";
+  EXPECT_FALSE(expectations[1].met);
+  EXPECT_FALSE(expectations[2].met) << "nothing measured is nothing met";
+  EXPECT_EQ(expectations[2].value, std::nullopt);
+  EXPECT_THAT(sweep_markdown(results_, {}, expectations),
+              AllOf(HasSubstr("1 of 3 met."),
                     HasSubstr("| fast | recorded | dt_rel [%] | ≤ 0.61 | 0.600 | met |\n"
                               "| fast | recorded | poses/s | ≥ 26000 | 25,000 | **missed** |\n")));
 }
@@ -105,10 +105,10 @@ TEST_F(SweepTables, ExpectedFiguresAreMetOrMissed) {
 TEST_F(SweepTables, ARunThatFailedMeetsNothing) {
   fill("a.b: [1, 2]",
        "expected: [{configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 9}]\n");
-  const std::vector<ExpectationResult> verdicts = check_expectations(results_);
-  ASSERT_EQ(verdicts.size(), 2U) << "one for each row";
-  EXPECT_TRUE(verdicts[0].met);
-  EXPECT_FALSE(verdicts[1].met);
+  const std::vector<ExpectationResult> expectations = check_expectations(results_);
+  ASSERT_EQ(expectations.size(), 2U) << "one for each row";
+  EXPECT_TRUE(expectations[0].met);
+  EXPECT_FALSE(expectations[1].met);
 }
 
 TEST_F(SweepTables, ModulesHaveTablesOfTheirOwn) {
@@ -123,22 +123,22 @@ TEST_F(SweepTables, ModulesHaveTablesOfTheirOwn) {
                     HasSubstr("### depth\n| `a.b` | seeds | median depth error |\n")));
 }
 
-TEST_F(SweepTables, NumbersAreDrawnAsLines) {
+TEST_F(SweepTables, NumbersBecomeALineChart) {
   fill("a.b: [1, 2]");
-  const auto figures = write_charts(results_, folder_.path());
-  ASSERT_EQ(figures.size(), 1U);
-  EXPECT_EQ(figures[0].file, "over_a_b.png");
-  EXPECT_GT(std::filesystem::file_size(folder_.path() / figures[0].file), 1000U);
+  const auto charts = write_charts(results_, folder_.path());
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0], "![Over a.b](over_a_b.png)");
+  EXPECT_GT(std::filesystem::file_size(folder_.path() / "over_a_b.png"), 1000U);
 }
 
-TEST_F(SweepTables, WordsAreDrawnAsBars) {
+TEST_F(SweepTables, WordsBecomeABarChart) {
   fill("a.b: [dense, sparse]");
-  const auto figures = write_charts(results_, folder_.path());
-  ASSERT_EQ(figures.size(), 1U);
-  EXPECT_EQ(figures[0].file, "compared.png");
+  const auto charts = write_charts(results_, folder_.path());
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0], "![All rows compared](compared.png)");
 }
 
-TEST_F(SweepTables, ManyDatasetsAreDrawnAsRows) {
+TEST_F(SweepTables, ManyDatasetsBecomeRows) {
   fill("a.b: [dense, sparse]");
   (void)write_charts(results_, folder_.path());
   const int of_one_dataset = read_image_rgb(folder_.path() / "compared.png").height();
@@ -151,7 +151,7 @@ TEST_F(SweepTables, ManyDatasetsAreDrawnAsRows) {
   EXPECT_EQ(of_three - of_one_dataset, 3 * 38 - 2 * 25);
 }
 
-TEST_F(SweepTables, ASingleRowIsNotDrawn) {
+TEST_F(SweepTables, ASingleRowHasNoChart) {
   fill("a.b: [1]");
   EXPECT_TRUE(write_charts(results_, folder_.path()).empty());
   EXPECT_THAT(sweep_markdown(results_, {}, {}), Not(HasSubstr("**")));
