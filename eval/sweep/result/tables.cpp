@@ -9,6 +9,7 @@
 
 #include "eval/number_text.h"
 #include "eval/sweep/metric_info.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
@@ -20,37 +21,22 @@ CsvTable::Cell seed_cell(const std::optional<std::uint64_t>& seed) {
   return std::to_string(*seed);
 }
 
-/// Escapes '|', which would end a cell.
-std::string cell_text(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
-    text.insert(at, 1, '\\');
-  return text;
-}
-
 /// Whether any row of the tables averages over seeds.
 bool has_seeds(const SweepResults& results) {
   return std::any_of(results.groups.begin(), results.groups.end(),
                      [](const SweepGroup& group) { return group.rows.size() > 1; });
 }
 
-using Row = std::vector<std::string>;
-
-std::string table_line(const Row& cells) {
-  std::string line = "|";
-  for (const std::string& cell : cells) line += " " + cell + " |";
-  return line + "\n";
-}
-
-Row header(const SweepResults& results, bool with_dataset,
-           const std::vector<std::string>& metrics) {
-  Row cells;
-  if (with_dataset) cells.emplace_back("dataset");
-  if (results.sweep.configurations.size() > 1) cells.emplace_back("configuration");
-  if (!results.sweep.variants.empty()) cells.emplace_back("variant");
-  for (const std::string& axis : results.plan.axes) cells.push_back("`" + axis + "`");
-  if (has_seeds(results)) cells.emplace_back("seeds");
-  for (const std::string& metric : metrics) cells.push_back(cell_text(metric_info(metric).label));
-  return cells;
+std::vector<Table::Column> header(const SweepResults& results, bool with_dataset,
+                                  const std::vector<std::string>& metrics) {
+  std::vector<Table::Column> columns;
+  if (with_dataset) columns.push_back({"dataset"});
+  if (results.sweep.configurations.size() > 1) columns.push_back({"configuration"});
+  if (!results.sweep.variants.empty()) columns.push_back({"variant"});
+  for (const std::string& axis : results.plan.axes) columns.push_back({"`" + axis + "`"});
+  if (has_seeds(results)) columns.push_back({"seeds"});
+  for (const std::string& metric : metrics) columns.push_back({metric_info(metric).label, true});
+  return columns;
 }
 
 bool was_lost(const SweepGroup& group) {
@@ -87,14 +73,14 @@ std::string value_cell(const SweepGroup& group, const std::string& metric,
 }
 
 /// `best`: by the metric's key.
-Row body(const SweepResults& results, bool with_dataset, const SweepGroup& group,
-         const std::vector<std::pair<std::string, std::optional<double>>>& best) {
-  Row cells;
-  if (with_dataset) cells.push_back(cell_text(group.point.dataset));
-  if (results.sweep.configurations.size() > 1)
-    cells.push_back(cell_text(group.point.configuration));
-  if (!results.sweep.variants.empty()) cells.push_back(cell_text(group.point.variant));
-  for (const std::string& value : group.point.grid) cells.push_back(cell_text(value));
+std::vector<std::string> body(
+    const SweepResults& results, bool with_dataset, const SweepGroup& group,
+    const std::vector<std::pair<std::string, std::optional<double>>>& best) {
+  std::vector<std::string> cells;
+  if (with_dataset) cells.push_back(group.point.dataset);
+  if (results.sweep.configurations.size() > 1) cells.push_back(group.point.configuration);
+  if (!results.sweep.variants.empty()) cells.push_back(group.point.variant);
+  cells.insert(cells.end(), group.point.grid.begin(), group.point.grid.end());
   const auto failed = std::count_if(group.rows.begin(), group.rows.end(),
                                     [](const SweepRow* row) { return has_failed(*row); });
   if (has_seeds(results))
@@ -116,20 +102,15 @@ std::vector<std::string> measured_of(const SweepResults& results, const Groups& 
   return metrics.empty() ? results.metrics : metrics;
 }
 
-std::string table(const SweepResults& results, const Groups& groups, bool with_dataset) {
+std::string table_of(const SweepResults& results, const Groups& groups, bool with_dataset) {
   const std::vector<std::string> metrics = measured_of(results, groups);
-  const Row head = header(results, with_dataset, metrics);
   std::vector<std::pair<std::string, std::optional<double>>> best;
   // Values of different datasets are not compared.
   for (const std::string& metric : metrics)
     best.emplace_back(metric, with_dataset ? std::nullopt : best_of(groups, metric));
-  std::string text = table_line(head) + "|";
-  for (std::size_t i = 0; i < head.size(); ++i)
-    text += i + metrics.size() < head.size() ? "---|" : "---:|";
-  text += "\n";
-  for (const SweepGroup* group : groups)
-    text += table_line(body(results, with_dataset, *group, best));
-  return text + "\n";
+  Table table{.columns = header(results, with_dataset, metrics)};
+  for (const SweepGroup* group : groups) table.add(body(results, with_dataset, *group, best));
+  return table_markdown(table) + "\n";
 }
 
 /// The groups of each dataset, in the order of the plan.
@@ -160,7 +141,7 @@ std::string tables_of(const SweepResults& results, const Groups& groups) {
   const std::vector<Groups> modules = by_module(groups);
   for (const Groups& module : modules) {
     if (modules.size() > 1) text += "### " + module.front()->point.module + "\n";
-    text += table(results, module, false);
+    text += table_of(results, module, false);
   }
   return text;
 }
@@ -176,16 +157,18 @@ std::string expected_table(std::span<const ExpectationResult> expectations) {
   if (expectations.empty()) return "";
   const auto met = std::count_if(expectations.begin(), expectations.end(),
                                  [](const ExpectationResult& result) { return result.met; });
-  std::string text =
-      fmt::format("## Expected metrics\n{} of {} met.\n\n", met, expectations.size());
-  text +=
-      "| configuration | dataset | metric | expected | measured | |\n|---|---|---|---:|---:|---|\n";
+  Table table{.columns = {{"configuration"},
+                          {"dataset"},
+                          {"metric"},
+                          {"expected", true},
+                          {"measured", true},
+                          {""}}};
   for (const ExpectationResult& result : expectations)
-    text += table_line({cell_text(result.expected->configuration), cell_text(result.dataset),
-                        cell_text(metric_info(result.expected->metric).label),
-                        bound_of(*result.expected), rounded(result.value),
-                        result.met ? "met" : "**missed**"});
-  return text + "\n";
+    table.add({result.expected->configuration, result.dataset,
+               metric_info(result.expected->metric).label, bound_of(*result.expected),
+               rounded(result.value), result.met ? "met" : "**missed**"});
+  return fmt::format("## Expected metrics\n{} of {} met.\n\n", met, expectations.size()) +
+         table_markdown(table) + "\n";
 }
 
 std::string method_text(const SweepResults& results) {
@@ -261,7 +244,7 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
     // One row per dataset: a single table.
     std::vector<const SweepGroup*> all;
     for (const SweepGroup& group : results.groups) all.push_back(&group);
-    text += table(results, all, true);
+    text += table_of(results, all, true);
   } else {
     for (const Groups& groups : parts) text += tables_of(results, groups);
   }
