@@ -32,7 +32,8 @@ struct BootstrapMean {
 ///   p_above = (1 + #{t* >= m / se}) / (1 + resamples)
 /// with q the quantiles of t*. A resample without spread counts as infinitely far on its side.
 /// Where all values are equal the interval is that value, and p is the smallest value that the
-/// number of resamples permits (1 for a mean of 0). Contract: at least kLeastForBootstrap finite values.
+/// number of resamples permits (1 for a mean of 0). Contract: at least kLeastForBootstrap finite
+/// values.
 [[nodiscard]] BootstrapMean bootstrap_mean(std::span<const double> values,
                                            const ResampleOptions& options = {});
 

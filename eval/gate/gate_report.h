@@ -6,8 +6,8 @@
 
 namespace saccade {
 
-/// The result for a terminal: the rows that regressed or improved (with `all` every row), the notes,
-/// and the numbers of rows.
+/// The result for a terminal: the rows that regressed or improved (with `all` every row), the
+/// notes, and the numbers of rows.
 [[nodiscard]] std::string gate_text(const GateResult& result, bool all);
 
 /// The same as a Markdown table, for a comment or a job summary.

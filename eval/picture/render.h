@@ -22,18 +22,17 @@ struct RenderOptions {
   int upscale = 3;  ///< screen pixels per sensor pixel, 1..8
   /// Frame rate of a video, 1..240; nullopt: 30, for views and growing reconstructions 3.
   std::optional<double> fps = std::nullopt;
-  int crf =
-      18;  ///< H.264's constant rate factor, 0..51; larger gives smaller files and less quality
+  int crf = 18;             ///< constant rate factor of H.264, 0..51; larger is smaller and worse
   double slow_motion = 10;  ///< seconds of video per second of recording, > 0
   bool dark = true;         ///< on a dark or a light background
-  /// A picture at a fixed pose in the world, over undistorted events and frames; each frame uses the
-  /// pose at its own time.
+  /// A picture at a fixed pose in the world, over undistorted events and frames; each frame uses
+  /// the pose at its own time.
   std::optional<OverlayOptions> overlay = std::nullopt;
 };
 
 /// Draws a dataset or a run (a folder with run.yaml) into `output`:
-///   .png   contact sheet over the whole time, or one picture at `time_s`: grey frame, events and depth
-///          of a dataset; events, map tracked over events and trajectory of a run
+///   .png   contact sheet over the whole time, or one picture at `time_s`: grey frame, events and
+///          depth of a dataset; events, map tracked over events and trajectory of a run
 ///   .mp4   events beside the frame, or events under the tracked map; encoded by the program ffmpeg
 /// Of an odometry run, four pictures: map over events, depth and image of the current keyframe,
 /// trajectory from above with the errors so far:

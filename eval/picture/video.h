@@ -14,8 +14,8 @@ namespace saccade {
 void write_video(const std::filesystem::path& output, std::size_t count, double fps, int crf,
                  const std::function<ImageRgb8(std::size_t)>& frame);
 
-/// Writes a video of a time span in slow motion, `options.slow_motion` times as long, by default with 30
-/// frames per second; `frame` draws the picture at a time [s].
+/// Writes a video of a time span in slow motion, `options.slow_motion` times as long, by default
+/// with 30 frames per second; `frame` draws the picture at a time [s].
 void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
                              const RenderOptions& options,
                              const std::function<ImageRgb8(double)>& frame);

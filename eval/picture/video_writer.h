@@ -8,8 +8,8 @@
 
 namespace saccade {
 
-/// An H.264 MP4 file, encoded by the program ffmpeg, which receives the frames through a socket. The
-/// file appears under its name when finish() has returned.
+/// An H.264 MP4 file, encoded by the program ffmpeg, which receives the frames through a socket.
+/// The file appears under its name when finish() has returned.
 class VideoWriter {
  public:
   /// `crf`: H.264's constant rate factor, 0..51, more is smaller and worse. Throws InputError where
@@ -19,8 +19,8 @@ class VideoWriter {
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  /// `frame` has the size given to the constructor (contract). Throws InputError when ffmpeg stopped
-  /// early.
+  /// `frame` has the size given to the constructor (contract). Throws InputError when ffmpeg
+  /// stopped early.
   void add(const ImageRgb8& frame);
   void finish();
 

@@ -22,19 +22,19 @@ struct SweepSummary {
   bool interrupted = false;
 };
 
-/// Makes all datasets, runs and scores that do not exist yet, then writes the tables over all of them
-/// (write_sweep_results). `folder` holds sweep.yaml, data/NAME, runs/NAME,
+/// Makes all datasets, runs and scores that do not exist yet, then writes the tables over all of
+/// them (write_sweep_results). `folder` holds sweep.yaml, data/NAME, runs/NAME,
 /// jobs/NAME/{job.yaml, log.txt}. Simulations run first and one at a time, because each uses all
-/// cores. A job that fails is reported on stderr with its command and the end of its log; the others
-/// continue. A sweep with `generate` makes its datasets, each with `threads` threads, and their
-/// manifest (write_manifest), which is also written after an interrupt. Throws InputError when
-/// `folder` holds anything but a sweep, or another program is writing to it.
+/// cores. A job that fails is reported on stderr with its command and the end of its log; the
+/// others continue. A sweep with `generate` makes its datasets, each with `threads` threads, and
+/// their manifest (write_manifest), which is also written after an interrupt. Throws InputError
+/// when `folder` holds anything but a sweep, or another program is writing to it.
 SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& folder,
                        Launcher& launcher, const SweepOptions& options = {});
 
 /// Estimates the cost of the datasets that a sweep with `generate` has still to make: their number,
-/// the first command line, and the events, disk space and time from a calibration run on this machine
-/// (run_calibration). Writes nothing.
+/// the first command line, and the events, disk space and time from a calibration run on this
+/// machine (run_calibration). Writes nothing.
 [[nodiscard]] std::string estimate_generation(const SweepConfig& sweep,
                                               const std::filesystem::path& folder,
                                               const SweepOptions& options = {});

@@ -9,8 +9,8 @@
 
 namespace saccade {
 
-/// A picture with anti-aliased drawing. Positions in pixels; (0, 0) is the centre of the top-left pixel.
-/// What falls outside is clipped.
+/// A picture with anti-aliased drawing. Positions in pixels; (0, 0) is the centre of the top-left
+/// pixel. What falls outside is clipped.
 class Canvas {
  public:
   Canvas(int width, int height, const Rgb8& background);

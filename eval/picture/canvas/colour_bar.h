@@ -8,8 +8,8 @@
 
 namespace saccade {
 
-/// Draws a colour bar along the lower edge, from colour(0) at its left end to colour(1) at its right
-/// end, with the texts above its ends.
+/// Draws a colour bar along the lower edge, from colour(0) at its left end to colour(1) at its
+/// right end, with the texts above its ends.
 [[nodiscard]] ImageRgb8 with_colour_bar(ImageRgb8 picture,
                                         const std::function<Rgb8(double)>& colour,
                                         const std::string& left, const std::string& right);

@@ -14,8 +14,8 @@ struct ChartValue {
   double high = 0;
 };
 
-/// The axis of a chart: maps values to positions, and has its ticks at round numbers. Logarithmic where
-/// all values are above 0 and span more than a decade.
+/// The axis of a chart: maps values to positions, and has its ticks at round numbers. Logarithmic
+/// where all values are above 0 and span more than a decade.
 class Axis {
  public:
   /// The axis covers `values`. `from_zero`: a linear axis includes 0.

@@ -15,8 +15,8 @@ inline constexpr double kChartLetters = 9;
 /// Colour of the numbers at the ticks.
 [[nodiscard]] Rgb8 tick_colour(const Theme& theme);
 
-/// Draws the grid lines of a horizontal axis inside a plot, and the numbers below it; numbers that would
-/// overlap are left out.
+/// Draws the grid lines of a horizontal axis inside a plot, and the numbers below it; numbers that
+/// would overlap are left out.
 void draw_x_axis(Canvas& canvas, const Axis& axis, const Eigen::Vector2d& top_left,
                  const Eigen::Vector2d& size, double letters, const Theme& theme);
 

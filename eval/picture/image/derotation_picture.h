@@ -14,8 +14,8 @@ namespace saccade {
 [[nodiscard]] ImageF count_events(std::span<const Event> events, const PinholeCamera& camera);
 
 /// The same after every event was rotated into the orientation of the camera at `reference_s`,
-/// pi(R^-1 R_k pi^-1(u_k)) (thesis 5.15), with R_k at the event's own time. The remaining motion blur
-/// is that of the translation. `world_from_camera` is not empty.
+/// pi(R^-1 R_k pi^-1(u_k)) (thesis 5.15), with R_k at the event's own time. The remaining motion
+/// blur is that of the translation. `world_from_camera` is not empty.
 [[nodiscard]] ImageF count_derotated_events(std::span<const Event> events,
                                             const PinholeCamera& camera,
                                             const Trajectory& world_from_camera,

@@ -9,8 +9,8 @@
 
 namespace saccade {
 
-/// One pixel per sensor pixel in the ON or OFF colour of its last event; more events give a stronger
-/// colour, up to three. Events outside width x height are left out.
+/// One pixel per sensor pixel in the ON or OFF colour of its last event; more events give a
+/// stronger colour, up to three. Events outside width x height are left out.
 [[nodiscard]] ImageRgb8 draw_events(std::span<const Event> events, int width, int height,
                                     const Theme& theme);
 

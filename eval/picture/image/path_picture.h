@@ -8,9 +8,9 @@
 
 namespace saccade {
 
-/// The camera trajectory seen from above (x to the right, y up; world up is +z), with a scale bar: the
-/// whole true trajectory as a broad line, over it the estimate up to a time. All pictures of one object
-/// have the same scale.
+/// The camera trajectory seen from above (x to the right, y up; world up is +z), with a scale bar:
+/// the whole true trajectory as a broad line, over it the estimate up to a time. All pictures of
+/// one object have the same scale.
 class TopDownPath {
  public:
   /// Either trajectory may be empty. `width`, `height` [px].

@@ -162,7 +162,8 @@ bool Overlay::is_lost(double t_s) const {
 
 OcclusionTest Overlay::occlusion_at(double t_s) const {
   if (options_.on_top) return {};
-  // The true motion where it is known: occlusion is a property of the recording, not of the estimate.
+  // The true motion where it is known: occlusion is a property of the recording, not of the
+  // estimate.
   const Trajectory& truth = dataset_.groundtruth();
   std::vector<PosedDepthMap> maps =
       depth_maps_near(dataset_, truth.empty() ? poses_of(dataset_, run_) : truth, t_s);

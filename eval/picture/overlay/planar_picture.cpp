@@ -16,8 +16,8 @@ constexpr int kSamples = 3;  ///< per screen pixel and axis
 /// Points with a smaller ratio of depth to distance lie far outside the image and are clipped.
 constexpr double kMinDepthRatio = 0.01;
 
-/// The screen pixels that the picture may cover, max() excluded: all where a part of it is beside or
-/// behind the camera.
+/// The screen pixels that the picture may cover, max() excluded: all where a part of it is beside
+/// or behind the camera.
 Eigen::AlignedBox2i bounding_box(const PlanarPicture& picture, const ScreenView& view,
                                  const ImageRgb8& image) {
   const Rigid3 camera_from_world = view.world_from_camera.inverse();

@@ -18,8 +18,8 @@ namespace saccade {
 [[nodiscard]] Eigen::Matrix3d pixel_from_plane(const PinholeCamera& camera,
                                                const Rigid3& camera_from_plane);
 
-/// A picture at a fixed pose in the world: in the plane z = 0 of its frame, x to the right, y down, its
-/// centre at the origin. From behind it appears mirrored.
+/// A picture at a fixed pose in the world: in the plane z = 0 of its frame, x to the right, y down,
+/// its centre at the origin. From behind it appears mirrored.
 struct PlanarPicture {
   PicturePyramid texels;
   Rigid3 world_from_picture;
@@ -46,8 +46,8 @@ struct ScreenView {
 using OcclusionTest = std::function<bool(const Eigen::Vector3d& point_in_camera)>;
 
 /// Draws the picture over `image` (camera width x upscale by height x upscale): 3 x 3 samples per
-/// screen pixel, blended in linear light. Parts behind the camera, pictures seen exactly edge-on, and
-/// pixels where `is_occluded` holds (called once per screen pixel; may be empty) are not drawn.
+/// screen pixel, blended in linear light. Parts behind the camera, pictures seen exactly edge-on,
+/// and pixels where `is_occluded` holds (called once per screen pixel; may be empty) are not drawn.
 /// `opacity` in [0, 1] multiplies the picture's own. Returns false where no pixel was drawn.
 bool draw_planar_picture(const PlanarPicture& picture, const ScreenView& view, double opacity,
                          const OcclusionTest& is_occluded, ImageRgb8& image);

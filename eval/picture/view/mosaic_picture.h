@@ -9,8 +9,9 @@
 
 namespace saccade {
 
-/// The mosaic fitted to the truth and tinted where unobserved; the truth, aligned by the mean rotation
-/// and tinted where it was never in view; the error. The mosaic alone where the truth is unknown.
+/// The mosaic fitted to the truth and tinted where unobserved; the truth, aligned by the mean
+/// rotation and tinted where it was never in view; the error. The mosaic alone where the truth is
+/// unknown.
 [[nodiscard]] std::vector<CaptionedPicture> mosaic_pictures(const MosaicView& view,
                                                             const RunFolder& run,
                                                             const Dataset& dataset);

@@ -14,8 +14,8 @@
 
 namespace saccade {
 
-/// The state of an odometry run at a time, in four pictures of the same size. Holds the events of a time
-/// span in memory.
+/// The state of an odometry run at a time, in four pictures of the same size. Holds the events of a
+/// time span in memory.
 class OdometryView {
  public:
   /// `loaded`: the time span that is drawn. `run` has poses. All must outlive this.
@@ -23,8 +23,8 @@ class OdometryView {
                const TimeSpan& loaded, const SensorViewStyle& style);
 
   /// The current map over the events around `t_s`, seen from the estimated pose; the depth of the
-  /// current keyframe; its image, where the run made one; the trajectory until `t_s` from above, with
-  /// the keyframes (dots), the errors at `t_s` and their means until then.
+  /// current keyframe; its image, where the run made one; the trajectory until `t_s` from above,
+  /// with the keyframes (dots), the errors at `t_s` and their means until then.
   [[nodiscard]] std::vector<CaptionedPicture> pictures(double t_s) const;
 
  private:

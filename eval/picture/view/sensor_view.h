@@ -24,8 +24,8 @@ struct DepthPicture {
   DepthRange range;
 };
 
-/// Draws the data of a dataset at a time; all pictures have the same size, width x upscale by height x
-/// upscale. Holds the events of a time span in memory.
+/// Draws the data of a dataset at a time; all pictures have the same size, width x upscale by
+/// height x upscale. Holds the events of a time span in memory.
 class SensorView {
  public:
   /// Loads the events between the two times, with a margin for the pictures at the ends.
@@ -44,8 +44,8 @@ class SensorView {
                                           const Rigid3& world_from_camera) const;
   /// The undistorted events alone.
   [[nodiscard]] ImageRgb8 undistorted_events(double t_s) const;
-  /// Time [s] and picture of the latest grey frame at `t_s`, undistorted; nullopt when the dataset has
-  /// no frames.
+  /// Time [s] and picture of the latest grey frame at `t_s`, undistorted; nullopt when the dataset
+  /// has no frames.
   [[nodiscard]] std::optional<std::pair<double, ImageRgb8>> undistorted_frame(double t_s) const;
   /// The latest grey frame and depth map at `t_s` (the first one before it); nullopt when the
   /// dataset has none.

@@ -12,14 +12,14 @@
 
 namespace saccade {
 
-/// The estimated depth of a view, the truth and the relative error; the estimate alone where the truth
-/// is unknown. `upscale` screen pixels per sensor pixel.
+/// The estimated depth of a view, the truth and the relative error; the estimate alone where the
+/// truth is unknown. `upscale` screen pixels per sensor pixel.
 [[nodiscard]] std::vector<CaptionedPicture> depth_pictures(const EstimatedView& view,
                                                            const Dataset& dataset, int upscale,
                                                            const Theme& theme);
 
-/// The log intensity of a view, fitted to the truth and tinted where unobserved; the truth; the error.
-/// The estimate alone, in its own range, where the truth is unknown.
+/// The log intensity of a view, fitted to the truth and tinted where unobserved; the truth; the
+/// error. The estimate alone, in its own range, where the truth is unknown.
 [[nodiscard]] std::vector<CaptionedPicture> image_pictures(const ImageView& view,
                                                            const Dataset& dataset, int upscale);
 

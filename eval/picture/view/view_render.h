@@ -18,8 +18,8 @@ void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictur
                   const std::string& title, const TimeSpan& span,
                   const std::filesystem::path& output, const RenderOptions& options);
 
-/// Writes a video of growth/, beside a `truth` that has the size of its pictures times `options.upscale`;
-/// without one the pictures as they are.
+/// Writes a video of growth/, beside a `truth` that has the size of its pictures times
+/// `options.upscale`; without one the pictures as they are.
 void write_growth_video(const std::vector<GrowthStep>& steps,
                         const std::optional<CaptionedPicture>& truth,
                         const std::filesystem::path& output, const RenderOptions& options);

@@ -43,8 +43,8 @@ struct LaunchCallbacks {
   std::function<void(const std::string&)> on_note;               ///< a problem that was handled
 };
 
-/// Runs the jobs of a sweep. A launcher knows nothing of sweeps: jobs are command lines and paths that
-/// are valid on every machine that shares the file system.
+/// Runs the jobs of a sweep. A launcher knows nothing of sweeps: jobs are command lines and paths
+/// that are valid on every machine that shares the file system.
 class Launcher {
  public:
   Launcher() = default;
@@ -53,8 +53,8 @@ class Launcher {
   Launcher& operator=(const Launcher&) = delete;
 
   /// Runs all jobs and starts them in their order. Returns false when it was interrupted (SIGINT,
-  /// SIGTERM, SIGHUP): running jobs are stopped, or continue where the launcher can adopt them later;
-  /// on_end is not called for them.
+  /// SIGTERM, SIGHUP): running jobs are stopped, or continue where the launcher can adopt them
+  /// later; on_end is not called for them.
   [[nodiscard]] virtual bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
                                  const LaunchCallbacks& callbacks) = 0;
   /// The number of jobs of `threads` >= 0 threads (0: a whole machine) that run in parallel by
@@ -69,8 +69,8 @@ struct LauncherOptions {
   SlurmOptions slurm;
 };
 
-/// "local": child processes on this machine; "slurm": job arrays on a cluster. Throws InputError that
-/// lists the valid names for any other name.
+/// "local": child processes on this machine; "slurm": job arrays on a cluster. Throws InputError
+/// that lists the valid names for any other name.
 [[nodiscard]] std::unique_ptr<Launcher> make_launcher(const std::string& name,
                                                       LauncherOptions options = {});
 

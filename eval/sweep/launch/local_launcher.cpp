@@ -53,7 +53,8 @@ void stop_all(std::vector<Running>& running) {
   }
 }
 
-/// Starts the next command of a job after one has ended. Returns the result where the job has ended.
+/// Starts the next command of a job after one has ended. Returns the result where the job has
+/// ended.
 std::optional<LaunchResult> advance(Running& one, const ChildEnd& end, const LaunchJob& job,
                                     const std::filesystem::path& program) {
   const double wall_s = one.stopwatch.seconds();

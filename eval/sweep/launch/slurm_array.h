@@ -41,9 +41,9 @@ struct SlurmStart {
   std::size_t call = 0;  ///< index of the last command that was started
 };
 
-/// Jobs that were submitted as one job array, as a folder that outlives this program: the script and
-/// the files that the jobs write. The state of a job follows from these files and the queue alone,
-/// since a cluster need not keep accounts.
+/// Jobs that were submitted as one job array, as a folder that outlives this program: the script
+/// and the files that the jobs write. The state of a job follows from these files and the queue
+/// alone, since a cluster need not keep accounts.
 class SlurmArray {
  public:
   /// Writes the folder of a new array. `jobs`: those of the record, in the same order.

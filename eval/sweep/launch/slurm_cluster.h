@@ -21,7 +21,8 @@ class SlurmCluster {
   virtual void check() = 0;
   /// The largest number of tasks of an array.
   [[nodiscard]] virtual int max_array_size() = 0;
-  /// Submits a script with options of sbatch. Returns why it was rejected; empty when it was accepted.
+  /// Submits a script with options of sbatch. Returns why it was rejected; empty when it was
+  /// accepted.
   [[nodiscard]] virtual std::string submit(const std::filesystem::path& script,
                                            const std::vector<std::string>& options) = 0;
   /// The states of the tasks of these arrays; nullopt when Slurm does not answer.

@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Does its work periodically, and so rarely that it takes at most 1 / kMaxLoad of the time, however
-/// slow the file system or the controller of the cluster is.
+/// Does its work periodically, and so rarely that it takes at most 1 / kMaxLoad of the time,
+/// however slow the file system or the controller of the cluster is.
 class PeriodicWork {
  public:
   PeriodicWork(std::chrono::milliseconds period, std::function<void()> work)

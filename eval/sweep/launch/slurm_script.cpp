@@ -25,8 +25,8 @@ std::string size_and_second(const fs::path& file) {
   return fmt::format("{} {}", status.st_size, status.st_mtim.tv_sec);
 }
 
-// A time limit or a cancellation reaches the script as SIGTERM, and Slurm tells which; the job must
-// not look as if it had ended by itself.
+// A time limit or a cancellation reaches the script as SIGTERM. Slurm reports which; the job itself
+// must then not write an exit file.
 constexpr const char* kFunctions = R"sh(
 trap 'exit 143' TERM
 

@@ -38,8 +38,8 @@ void check_configurations(const std::vector<const SweepJob*>& jobs, Launcher& la
 
 /// Simulates the beginning of up to eight of the jobs, evenly spaced, twice: over `window_s` and
 /// over twice that time. The cost of the whole is extrapolated linearly from the two. Runs through
-/// `launcher`, one job at a time, in a temporary folder. Throws InputError with the program's output
-/// where a simulation fails.
+/// `launcher`, one job at a time, in a temporary folder. Throws InputError with the program's
+/// output where a simulation fails.
 [[nodiscard]] CalibrationRun run_calibration(const std::vector<const SweepJob*>& jobs,
                                              Launcher& launcher);
 

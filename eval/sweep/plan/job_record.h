@@ -21,14 +21,14 @@ struct JobRecord {
 
 void describe(config::Fields& fields, JobRecord& record);
 
-/// Computes the inputs of jobs. Every file is read once, so the object must not be used after a file
-/// has changed.
+/// Computes the inputs of jobs. Every file is read once, so the object must not be used after a
+/// file has changed.
 class JobInputs {
  public:
   /// Hashes of the program, the settings, the dataset, and the configuration with its includes and
-  /// the files that it names (of a scene also the files beside them: materials and textures). Throws
-  /// InputError where a configuration cannot be read. A dataset that does not exist yet has a value
-  /// of its own.
+  /// the files that it names (of a scene also the files beside them: materials and textures).
+  /// Throws InputError where a configuration cannot be read. A dataset that does not exist yet has
+  /// a value of its own.
   [[nodiscard]] Fingerprint of(const SweepJob& job);
 
  private:

@@ -49,8 +49,8 @@ struct SweepJob {
   [[nodiscard]] const char* marker() const { return is_simulation() ? "dataset.yaml" : "run.yaml"; }
 };
 
-/// The jobs of a sweep. Runs are ordered by dataset, configuration, variant, grid point (the last key
-/// changes fastest) and seed.
+/// The jobs of a sweep. Runs are ordered by dataset, configuration, variant, grid point (the last
+/// key changes fastest) and seed.
 struct SweepPlan {
   std::vector<std::string> axes;  ///< keys of the grid
   std::vector<SweepJob> simulations;

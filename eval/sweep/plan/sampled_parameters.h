@@ -7,8 +7,8 @@
 
 namespace saccade {
 
-/// Overrides `key.path: value` where a value, or any part of it, may be a distribution. Each dataset
-/// gets its own sample:
+/// Overrides `key.path: value` where a value, or any part of it, may be a distribution. Each
+/// dataset gets its own sample:
 ///   {uniform: [low, high]}          low <= x < high
 ///   {log_uniform: [low, high]}      ln x is uniform; 0 < low
 ///   {integer: [low, high]}          whole numbers, both ends included
@@ -24,9 +24,9 @@ struct SampledParameters {
 void from_node(const config::Node& node, const std::string& name, SampledParameters& parameters);
 [[nodiscard]] config::Node to_node(const SampledParameters& parameters);
 
-/// Samples all distributions for the dataset number `index`. A sample depends on the seed, the index
-/// and the path of its key alone, not on other keys or on the number of datasets. Numbers have six
-/// significant digits.
+/// Samples all distributions for the dataset number `index`. A sample depends on the seed, the
+/// index and the path of its key alone, not on other keys or on the number of datasets. Numbers
+/// have six significant digits.
 [[nodiscard]] config::Node sample_values(const SampledParameters& parameters, std::uint64_t seed,
                                          std::uint64_t index);
 

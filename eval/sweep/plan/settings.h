@@ -7,8 +7,8 @@
 
 namespace saccade {
 
-/// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line. Texts that begin with ./ or ../
-/// are relative to the sweep file; here they are absolute paths.
+/// One `--set KEY.PATH=VALUE` of a job. The value is YAML on one line. Texts that begin with ./ or
+/// ../ are relative to the sweep file; here they are absolute paths.
 struct Setting {
   std::string key;
   std::string value;
@@ -25,8 +25,8 @@ struct GridAxis {
 
 using Grid = std::vector<GridAxis>;
 
-/// Makes every text in a value that begins with ./ or ../ an absolute path, relative to the folder of
-/// its file. Other texts are not taken for paths.
+/// Makes every text in a value that begins with ./ or ../ an absolute path, relative to the folder
+/// of its file. Other texts are not taken for paths.
 void make_paths_absolute(config::Node& value);
 
 // In the namespace of the types, where the templates of Fields find them. InputError at the node's

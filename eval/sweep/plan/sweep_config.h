@@ -32,8 +32,8 @@ struct SweepConfiguration {
   std::vector<std::string> datasets;  ///< empty: all
   std::vector<std::uint64_t> seeds;   ///< empty: the sweep's
   std::optional<int> repeat;          ///< nullopt: the sweep's
-  /// Earlier configurations whose run at the same dataset, variant, grid point and seed is passed as
-  /// --from, --poses-from and --depth-from. Empty: none.
+  /// Earlier configurations whose run at the same dataset, variant, grid point and seed is passed
+  /// as --from, --poses-from and --depth-from. Empty: none.
   std::string from, poses_from, depth_from;
 
   [[nodiscard]] bool runs_over(const std::string& dataset) const;

@@ -98,8 +98,8 @@ LineChart line_chart(const SweepResults& results, std::size_t axis) {
   return chart;
 }
 
-/// The rows are the labels or the datasets, whichever are more; the others are the bars of a row, which
-/// differ in colour.
+/// The rows are the labels or the datasets, whichever are more; the others are the bars of a row,
+/// which differ in colour.
 BarChart bar_chart(const SweepResults& results) {
   BarChart chart;
   std::vector<std::string> labels, datasets;

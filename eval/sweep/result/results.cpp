@@ -12,7 +12,6 @@
 #include "eval/run_folder.h"
 #include "eval/sweep/metric_info.h"
 #include "eval/sweep/result/charts.h"
-#include "eval/sweep/result/expectations.h"
 #include "eval/sweep/result/tables.h"
 
 namespace saccade {
@@ -68,6 +67,24 @@ void warn_of_unknown(const SweepResults& results) {
                   config::suggestion(metric, keys, "metrics"));
 }
 
+bool applies_to(const ExpectedMetric& expected, const SweepPoint& point) {
+  const std::vector<std::string>& datasets = expected.datasets;
+  return point.configuration == expected.configuration &&
+         (datasets.empty() ||
+          std::find(datasets.begin(), datasets.end(), point.dataset) != datasets.end());
+}
+
+ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group) {
+  ExpectationResult result{&expected, group.point.dataset, std::nullopt, false};
+  const std::optional<MetricSummary> summary = summarise(group, expected.metric);
+  if (!summary) return result;
+  result.value = summary->value;
+  result.met = summary->count == group.rows.size() &&
+               (!expected.at_most || summary->value <= *expected.at_most) &&
+               (!expected.at_least || summary->value >= *expected.at_least);
+  return result;
+}
+
 }  // namespace
 
 std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs) {
@@ -115,6 +132,14 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
     for (const MetricInfo& metric : usual_metrics())
       if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
   return results;
+}
+
+std::vector<ExpectationResult> check_expectations(const SweepResults& results) {
+  std::vector<ExpectationResult> found;
+  for (const ExpectedMetric& expected : results.sweep.expected)
+    for (const SweepGroup& group : results.groups)
+      if (applies_to(expected, group.point)) found.push_back(check(expected, group));
+  return found;
 }
 
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,

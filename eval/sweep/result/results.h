@@ -53,9 +53,20 @@ struct SweepResults {
 };
 [[nodiscard]] SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan);
 
-/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (one row per group
-/// with `metrics`, and the expected metrics) and FOLDER/*.png. Returns the number of expected metrics
-/// that were missed.
+/// An expected metric and its value on one dataset.
+struct ExpectationResult {
+  const ExpectedMetric* expected;
+  std::string dataset;
+  std::optional<double> value;  ///< over all seeds; nullopt where nothing was measured
+  bool met = false;             ///< false without a value, and where the run of a seed failed
+};
+
+/// One result per expected metric and group of its configuration.
+[[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
+
+/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (one row per
+/// group with `metrics`, and the expected metrics) and FOLDER/*.png. Returns the number of expected
+/// metrics that were missed.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
                                 const std::filesystem::path& folder);
 

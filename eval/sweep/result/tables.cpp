@@ -44,8 +44,8 @@ bool was_lost(const SweepGroup& group) {
   return lost_s && lost_s->high > 0;
 }
 
-/// The best value of a metric among the rows of a table; nullopt where all are equal. The speed of an
-/// estimator that lost track does not count.
+/// The best value of a metric among the rows of a table; nullopt where all are equal. The speed of
+/// an estimator that lost track does not count.
 std::optional<double> best_of(const std::vector<const SweepGroup*>& groups,
                               const std::string& metric) {
   const MetricInfo info = metric_info(metric);
