@@ -7,6 +7,7 @@
 #include "core/config/suggest.h"
 #include "core/io/atomic_file.h"
 #include "core/io/dataset_record.h"
+#include "core/median.h"
 #include "core/progress.h"
 #include "eval/evaluate.h"
 #include "eval/run_folder.h"
@@ -85,15 +86,19 @@ ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group)
   return result;
 }
 
-}  // namespace
-
-std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs) {
-  std::vector<SweepRow> rows;
-  for (const SweepJob& job : jobs)
-    rows.push_back(job.state == JobState::kFailed ? SweepRow{&job, true, {}, {}, {}}
-                                                  : read_row(job));
-  return rows;
+SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
+  SweepResults results{sweep, plan, {}, {}, sweep.metrics};
+  for (const SweepJob& job : plan.rows())
+    results.rows.push_back(job.state == JobState::kFailed ? SweepRow{&job, true, {}, {}, {}}
+                                                          : read_row(job));
+  results.groups = group_by_seed(results.rows);
+  if (sweep.metrics.empty())
+    for (const MetricInfo& metric : usual_metrics())
+      if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
+  return results;
 }
+
+}  // namespace
 
 std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
   std::vector<SweepGroup> groups;
@@ -119,19 +124,9 @@ std::optional<MetricSummary> summarise(const SweepGroup& group, const std::strin
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
-  const double median = (values[(n - 1) / 2] + values[n / 2]) / 2;
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
-  return MetricSummary{metric_info(key).is_speed ? median : mean, values.front(), values.back(), n};
-}
-
-SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
-  SweepResults results{sweep, plan, {}, {}, sweep.metrics};
-  results.rows = read_rows(plan.rows());
-  results.groups = group_by_seed(results.rows);
-  if (sweep.metrics.empty())
-    for (const MetricInfo& metric : usual_metrics())
-      if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
-  return results;
+  return MetricSummary{metric_info(key).is_speed ? median(values) : mean, values.front(),
+                       values.back(), n};
 }
 
 std::vector<ExpectationResult> check_expectations(const SweepResults& results) {

@@ -22,9 +22,6 @@ struct SweepRow {
   std::string problem = {};
 };
 
-/// Reads the results of the jobs that did not fail.
-[[nodiscard]] std::vector<SweepRow> read_rows(const std::vector<SweepJob>& jobs);
-
 /// Rows that differ in their seeds alone, in the order of the plan.
 struct SweepGroup {
   SweepPoint point;  ///< of the first
@@ -51,7 +48,6 @@ struct SweepResults {
   std::vector<SweepGroup> groups;
   std::vector<std::string> metrics;  ///< keys that the sweep states, or the usual ones that it has
 };
-[[nodiscard]] SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan);
 
 /// An expected metric and its value on one dataset.
 struct ExpectationResult {
