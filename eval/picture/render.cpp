@@ -10,12 +10,12 @@
 #include "eval/metrics/scored_samples.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/trajectory_picture.h"
-#include "eval/picture/video.h"
 #include "eval/picture/view/mosaic_picture.h"
 #include "eval/picture/view/odometry_view.h"
 #include "eval/picture/view/sensor_view.h"
 #include "eval/picture/view/stabilized_view.h"
 #include "eval/picture/view/view_render.h"
+#include "eval/picture/write_video.h"
 #include "eval/run_folder.h"
 
 namespace saccade {

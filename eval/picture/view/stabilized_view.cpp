@@ -10,7 +10,7 @@
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/event_picture.h"
 #include "eval/picture/image/log_picture.h"
-#include "eval/picture/video.h"
+#include "eval/picture/write_video.h"
 
 namespace saccade {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/io/image_file.h"
 #include "eval/number_text.h"
 #include "eval/picture/canvas/canvas.h"
-#include "eval/picture/video.h"
+#include "eval/picture/write_video.h"
 
 namespace saccade {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/picture/video.h"
+#include "eval/picture/write_video.h"
 
 #include "core/progress.h"
 #include "eval/picture/video_writer.h"
