@@ -126,7 +126,7 @@ TEST_F(OverlayTest, TheTruthIsAnOutline) {
 
 TEST_F(OverlayTest, SaysWhatIsMissing) {
   options.truth = true;
-  EXPECT_THAT(error_of([&] { return over_data(); }), HasSubstr("--overlay-truth: is for runs"));
+  EXPECT_THAT(error_of([&] { return over_data(); }), HasSubstr("--overlay-truth: applies to runs"));
   options.truth = false;
   options.at_s = 3;
   EXPECT_THAT(error_of([&] { return over_data(); }),
