@@ -66,8 +66,8 @@ TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
     });
   };
   const std::string a = "{name: a, datasets: [walls]}";
-  EXPECT_THAT(error("{name: a, datasets: [wals]}"), HasSubstr("'wals' is no dataset"));
-  EXPECT_THAT(error("{name: b, from: a}, " + a), HasSubstr("no configuration before it"));
+  EXPECT_THAT(error("{name: a, datasets: [wals]}"), HasSubstr("'wals' is not a dataset"));
+  EXPECT_THAT(error("{name: b, from: a}, " + a), HasSubstr("not a configuration before it"));
   EXPECT_THAT(error(a + ", {name: b, from: a}"),
               HasSubstr("'b' runs over recorded, but 'a', which it starts from, does not"));
   EXPECT_EQ(error(a + ", {name: b, from: a, datasets: [walls]}"), "no error");
