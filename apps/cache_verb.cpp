@@ -62,20 +62,21 @@ void work_on_cache(const CacheOptions& options) {
 void add_cache_verb(CLI::App& command) {
   const auto options = std::make_shared<CacheOptions>();
   CLI::App* verb = command.add_subcommand(
-      "cache", "List or remove the simulated datasets that sweeps share ($SACCADE_CACHE)");
-  verb->add_option("ACTION", options->action, "list or prune")
+      "cache", "List or remove the simulated datasets that sweeps share ($SACCADE_CACHE).");
+  verb->add_option("ACTION", options->action,
+                   "list: show the cached datasets; prune: remove some of them.")
       ->required()
       ->check(CLI::IsMember({"list", "prune"}));
-  verb->add_flag("--all", options->prune.all, "Remove everything");
+  verb->add_flag("--all", options->prune.all, "Remove every cached dataset.");
   verb->add_option("--older-than-days", options->prune.older_than_days,
-                   "Remove what was not used for so long")
+                   "Remove the datasets that nobody used for N days.")
       ->type_name("N")
       ->check(number_between(0, 1e5));
   verb->add_option("--keep-gb", options->prune.keep_gb,
-                   "Remove what was not used for the longest time until so much is left")
+                   "Remove the least recently used datasets until N GB remain.")
       ->type_name("N")
       ->check(number_between(0, 1e9));
-  verb->add_flag("--dry-run", options->prune.dry_run, "Only say what would be removed");
+  verb->add_flag("--dry-run", options->prune.dry_run, "Only print what would be removed.");
   verb->footer(
       "Examples:\n"
       "  saccade cache list\n"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/shell.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -1,8 +1,11 @@
 #include "apps/common_options.h"
 
+#include <fmt/core.h>
+
 #include "apps/option_checks.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "apps/reference_page.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 
@@ -18,24 +21,37 @@ config::Document CommonOptions::load(const std::string& config_file) const {
 }
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
-  command.add_option("--threads", options.threads, "Number of threads (default: all cores)")
+  command.add_option("--threads", options.threads, "Number of threads (default: all cores).")
       ->type_name("N")
       ->check(whole_number(1, 4096));
-  command.add_flag("-q,--quiet", options.quiet, "No progress, no tables: errors only");
+  command.add_flag("-q,--quiet", options.quiet, "Print errors only: no progress, no tables.");
 }
 
 void add_config_options(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--set", options.overrides,
-                  "Override one key, e.g. --set events.contrast_on=0.2 (repeatable)")
+                  "Override one key, e.g. --set events.contrast_on=0.2 (repeatable).")
       ->type_name("KEY.PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--seed", options.seed, "The same as --set seed=N")
+  command
+      .add_option("--seed", options.seed, "Seed of all random numbers; the same as --set seed=N.")
       ->type_name("N")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   command.add_flag("--print-config", options.print_config,
-                   "Print every key with its value, help and range, and stop");
+                   "Print every key with its value, help and range, and stop.");
+}
+
+void add_reference_option(CLI::App& command, const std::string& page) {
+  command
+      .add_flag_callback(
+          "--reference",
+          [page] {
+            fmt::print("{}", reference_page(page).markdown());
+            throw CLI::Success();
+          },
+          "Print every key of the configuration as a page of docs/reference/, and stop.")
+      ->trigger_on_parse();
 }
 
 }  // namespace saccade

@@ -29,5 +29,7 @@ struct CommonOptions {
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// --set, --seed and --print-config, for verbs that read a configuration.
 void add_config_options(CLI::App& command, CommonOptions& options);
+/// --reference, for verbs whose page has this name: prints it in place of everything else.
+void add_reference_option(CLI::App& command, const std::string& page);
 
 }  // namespace saccade

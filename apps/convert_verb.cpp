@@ -9,8 +9,8 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/event_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "core/io/import/public_sequence.h"
 
 namespace saccade {
@@ -81,21 +81,23 @@ void convert(const ConvertOptions& options) {
 void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* verb = command.add_subcommand(
-      "convert", "Convert events between text and HDF5, or a public sequence into a dataset");
-  verb->add_option("IN", options->input,
-                   "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or "
-                   "TUM-VIE")
+      "convert", "Convert events between text and HDF5, or a public sequence into a dataset.");
+  verb->add_option(
+          "IN", options->input,
+          "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or TUM-VIE.")
       ->required();
-  verb->add_option("OUT", options->output,
-                   "Event file, whose ending names the format; of a sequence a dataset folder")
+  verb->add_option(
+          "OUT", options->output,
+          "Event file, whose extension selects the format, or the dataset folder for a sequence.")
       ->required();
-  verb->add_option("--unit", options->unit,
-                   "Unit of the times in HDF5 (default: us, or ns where us would round)")
+  verb->add_option(
+          "--unit", options->unit,
+          "Unit of the time stamps in HDF5 (default: us, or ns where us would round them).")
       ->check(CLI::IsMember({"us", "ns"}));
   verb->add_option("--start-s", options->window.start_s,
-                   "Begin of the part of a sequence, from its first event")
+                   "Start of the part of a sequence to convert, in seconds from its first event.")
       ->check(number_between(0, 1e9));
-  verb->add_option("--duration-s", options->window.duration_s, "Length of that part")
+  verb->add_option("--duration-s", options->window.duration_s, "Length of that part in seconds.")
       ->check(positive_number());
   add_common_options(*verb, options->common);
   verb->footer(

@@ -9,7 +9,7 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/store/result_store.h"
 
@@ -95,34 +95,33 @@ void evaluate(const EvalOptions& options) {
 void add_eval_verb(CLI::App& command) {
   const auto options = std::make_shared<EvalOptions>();
   CLI::App* verb = command.add_subcommand(
-      "eval", "Score a run, or the trajectory of any program, against ground truth");
+      "eval", "Score a run, or the trajectory of any program, against ground truth.");
   verb->add_option("RUN", options->run,
-                   "Run folder; its metrics.json is written, and results.sqlite beside it");
+                   "Run folder; its metrics.json is written, and results.sqlite beside it.");
   verb->add_option("--trajectory", options->trajectory,
-                   "Trajectory of any program (TUM: t tx ty tz qx qy qz qw)");
+                   "Trajectory of any program (TUM: t tx ty tz qx qy qz qw).");
   verb->add_option("--depth", options->depth,
-                   "Depth map of any program (EXR: z [m], 0 = unknown, undistorted), or a folder "
-                   "with depth maps and views.yaml");
-  verb->add_option("--cloud", options->cloud, "Point cloud of any program (PLY, world frame)");
-  verb->add_option(
-      "--image", options->image,
-      "Image of any program (EXR: log intensity, or an 8-bit picture; undistorted), or "
-      "a folder with images and views.yaml");
+                   "Depth map of any program (EXR: z in metres, 0 is unknown, undistorted), or a "
+                   "folder with depth maps and views.yaml.");
+  verb->add_option("--cloud", options->cloud, "Point cloud of any program (PLY, world frame).");
+  verb->add_option("--image", options->image,
+                   "Image of any program (EXR: log intensity, or an 8-bit picture; undistorted), "
+                   "or a folder with images and views.yaml.");
   verb->add_option("--at-s", options->at_s,
-                   "Time of the view of --image, --depth or --cloud (default of the latter: of the "
-                   "first depth map)")
+                   "Time of the view of --image, --depth or --cloud in seconds (default for "
+                   "--cloud: the time of the first depth map).")
       ->check(finite_number());
   verb->add_option("--data", options->evaluate.dataset,
-                   "Dataset to score against (default: the one the run used)");
+                   "Dataset with the ground truth (default: the dataset that the run used).");
   verb->add_option("--mean-depth-m", options->evaluate.mean_depth_m,
-                   "d of dt_rel, where the dataset states none")
+                   "Mean scene depth in metres, for dt_rel, where the dataset states none.")
       ->check(positive_number());
   verb->add_option("--refined", options->evaluate.refined,
-                   "Run of refine over the same dataset: refined_ratio.* says how many times its "
-                   "errors the run's are")
+                   "Run of refine over the same dataset; refined_ratio.* is the error of the run "
+                   "divided by that of the refined run.")
       ->type_name("RUN");
   verb->add_option("-o,--output", options->output,
-                   "Where the scores of another program's result go (JSON)");
+                   "JSON file for the scores of another program's result.");
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"

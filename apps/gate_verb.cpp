@@ -11,8 +11,8 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/progress.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/progress.h"
 #include "eval/gate/baseline_file.h"
 #include "eval/gate/build_race.h"
 #include "eval/gate/comparison.h"
@@ -106,47 +106,50 @@ void gate(GateVerbOptions& options) {
 }
 
 void add_rule_options(CLI::App& verb, GateOptions& gate) {
-  verb.add_option("--tolerance", gate.tolerance, "Smallest relative change that counts")
+  verb.add_option("--tolerance", gate.tolerance,
+                  "Smallest relative change of a metric that counts.")
       ->capture_default_str();
   verb.add_option("--gross", gate.gross,
-                  "Relative change that counts in a sequence with fewer than six pairs")
+                  "Smallest relative change that counts in a sequence with fewer than six pairs.")
       ->capture_default_str();
-  verb.add_option("--slower", gate.slower, "Smallest factor of the time that counts")
+  verb.add_option("--slower", gate.slower, "Smallest factor of the time that counts as slower.")
       ->capture_default_str();
-  verb.add_option("--confidence", gate.confidence, "Of all comparisons together")
+  verb.add_option("--confidence", gate.confidence, "Confidence level of all comparisons together.")
       ->capture_default_str();
-  verb.add_option("--resamples", gate.resamples, "Of the bootstrap")->capture_default_str();
-  verb.add_option("--metric", gate.metrics, "Judge this metric, too (repeatable)")
+  verb.add_option("--resamples", gate.resamples, "Number of bootstrap resamples.")
+      ->capture_default_str();
+  verb.add_option("--metric", gate.metrics, "Also compare this metric (repeatable).")
       ->type_name("KEY")
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--partial", gate.partial,
-                "Runs of the baseline may be left out; --update then keeps them");
+                "Runs of the baseline may be missing; --update then keeps their old values.");
 }
 
 void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
   verb.add_option("RUN", options.words,
-                  "Scored run folders; with --build, behind --, the arguments of both programs");
-  verb.add_option("--baseline", options.baseline, "What the runs are held against")
+                  "Scored run folders; with --build, the arguments of both programs after --.");
+  verb.add_option("--baseline", options.baseline, "Baseline file that the runs are compared with.")
       ->type_name("FILE");
-  verb.add_flag("--update", options.update, "Write the runs to the baseline and compare nothing");
-  verb.add_option("--build", options.builds,
-                  "Given twice: run both programs in turn and compare their times")
+  verb.add_flag("--update", options.update, "Write the runs to the baseline and compare nothing.");
+  verb.add_option(
+          "--build", options.builds,
+          "Program to time; give it twice to run both builds in turn and compare their times.")
       ->type_name("PROGRAM")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_option("--repeats", options.repeats, "Timed runs of each build")
+  verb.add_option("--repeats", options.repeats, "Number of timed runs of each build.")
       ->type_name("N")
       ->check(whole_number(2, 100000))
       ->capture_default_str();
   add_rule_options(verb, options.gate);
-  verb.add_flag("--no-speed", options.no_speed, "Leave the times of the runs out");
-  verb.add_option("--junit", options.junit, "Write the result as JUnit XML")->type_name("FILE");
-  verb.add_option("--markdown", options.markdown, "Write the result as Markdown")
+  verb.add_flag("--no-speed", options.no_speed, "Do not compare the times of the runs.");
+  verb.add_option("--junit", options.junit, "Write the result as JUnit XML.")->type_name("FILE");
+  verb.add_option("--markdown", options.markdown, "Write the result as Markdown.")
       ->type_name("FILE");
   verb.add_flag("--all", options.all,
-                "Show the comparisons that neither regressed nor improved, too");
-  verb.add_flag("-q,--quiet", options.quiet, "No progress, no table: the exit code and errors");
+                "Also show the comparisons that neither regressed nor improved.");
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only: no progress, no table.");
 }
 
 }  // namespace
@@ -154,7 +157,7 @@ void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
 void add_gate_verb(CLI::App& command) {
   const auto options = std::make_shared<GateVerbOptions>();
   CLI::App* verb = command.add_subcommand(
-      "gate", "Hold scored runs against a baseline, or two builds against each other");
+      "gate", "Hold scored runs against a baseline, or two builds against each other.");
   add_gate_options(*verb, *options);
   verb->footer(
       "Examples:\n"

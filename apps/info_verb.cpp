@@ -29,9 +29,9 @@ void info(const InfoOptions& options) {
 
 void add_info_verb(CLI::App& command) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* verb = command.add_subcommand("info", "Say what a dataset, event file or run holds");
-  verb->add_option("PATH", options->path, "Dataset or run folder, or event file")->required();
-  verb->add_flag("--verify", options->verify, "Compare every file with the hashes of dataset.yaml");
+  CLI::App* verb = command.add_subcommand("info", "Say what a dataset, event file or run holds.");
+  verb->add_option("PATH", options->path, "Dataset folder, run folder, or event file.")->required();
+  verb->add_flag("--verify", options->verify, "Compare every file with its hash in dataset.yaml.");
   verb->footer("Example:\n  saccade info data/walls --verify");
   verb->callback([options] { info(*options); });
 }

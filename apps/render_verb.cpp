@@ -45,22 +45,25 @@ void add_overlay_options(CLI::App& verb, RenderVerbOptions& options) {
   OverlayOptions& overlay = options.overlay;
   CLI::Option* const picture =
       verb.add_option("--overlay", options.picture,
-                      "Picture that hangs in the world, over events and frames")
+                      "Picture that is drawn into the world, over events and frames.")
           ->type_name("PICTURE");
   const auto add = [&](CLI::Option* option) { return option->needs(picture); };
   add(verb.add_option("--overlay-pose", options.overlay_pose,
-                      "World from picture (default: just in front of the scene)"))
+                      "Pose world from picture (default: just in front of the scene)."))
       ->type_name("\"x y z qx qy qz qw\"");
   add(verb.add_option("--overlay-width", overlay.width_m,
-                      "Its width [m] (default: a quarter of the view)"))
+                      "Width of the picture in metres (default: a quarter of the view)."))
       ->check(positive_number());
   add(verb.add_option("--overlay-at-s", overlay.at_s,
-                      "The camera that it is in front of by default [s] (default: the first)"))
+                      "Time in seconds of the camera pose in front of which the picture is placed "
+                      "by default (default: the first pose)."))
       ->check(finite_number());
-  add(verb.add_flag("--overlay-truth", overlay.truth,
-                    "Its outline where the true pose of a run sees it"));
-  add(verb.add_flag("--overlay-on-top", overlay.on_top,
-                    "Not hidden by what the depth maps see before it"));
+  add(verb.add_flag(
+      "--overlay-truth", overlay.truth,
+      "Also draw the outline of the picture as seen from the ground-truth pose of a run."));
+  add(verb.add_flag(
+      "--overlay-on-top", overlay.on_top,
+      "Draw the picture over everything, even where the depth maps say that it is occluded."));
 }
 
 }  // namespace
@@ -68,34 +71,40 @@ void add_overlay_options(CLI::App& verb, RenderVerbOptions& options) {
 void add_render_verb(CLI::App& command) {
   const auto options = std::make_shared<RenderVerbOptions>();
   RenderOptions& render = options->render;
-  CLI::App* verb = command.add_subcommand("render",
-                                          "Draw a dataset (events, frames, depth) or a run (the "
-                                          "map over its events, keyframes, views, or what "
-                                          "it stabilized)");
-  verb->add_option("PATH", options->path, "Dataset or run folder")->required();
-  verb->add_option("-o,--output", options->output, "Picture (.png) or video (.mp4, by ffmpeg)")
+  CLI::App* verb =
+      command.add_subcommand("render",
+                             "Draw a dataset (events, frames, depth) or a run (the map over its "
+                             "events, keyframes, views, or what it stabilized).");
+  verb->add_option("PATH", options->path, "Dataset or run folder.")->required();
+  verb->add_option("-o,--output", options->output,
+                   "Picture (.png) or video (.mp4, by ffmpeg) to write.")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--time", render.time_s, "One moment instead of a contact sheet [s]")
+  verb->add_option("--time", render.time_s,
+                   "Draw one moment, in seconds, instead of a contact sheet.")
       ->check(finite_number());
-  verb->add_option("--start-s", render.start_s, "Begin of the part that is shown [s]")
+  verb->add_option("--start-s", render.start_s, "Start of the part that is drawn, in seconds.")
       ->check(finite_number());
-  verb->add_option("--duration-s", render.duration_s, "Length of the part that is shown [s]")
+  verb->add_option("--duration-s", render.duration_s,
+                   "Length of the part that is drawn, in seconds.")
       ->check(positive_number());
-  verb->add_option("--data", render.dataset, "Dataset of a run, instead of the one it names");
-  verb->add_option("--events", render.events, "Events per picture (default: 15 % of the pixels)")
+  verb->add_option("--data", render.dataset,
+                   "Dataset of a run, instead of the one that the run names.");
+  verb->add_option("--events", render.events,
+                   "Number of events per picture (default: 15 % of the pixels).")
       ->type_name("N")
       ->check(whole_number(1));
-  verb->add_option("--upscale", render.upscale, "Screen pixels per sensor pixel")
+  verb->add_option("--upscale", render.upscale, "Number of screen pixels per sensor pixel.")
       ->check(whole_number(1, 8))
       ->capture_default_str();
-  verb->add_option("--fps", render.fps,
-                   "Frame rate of a video (default: 30; of views and growth 3)")
+  verb->add_option(
+          "--fps", render.fps,
+          "Frame rate of a video in Hz (default: 30; 3 for views and for the growth of a map).")
       ->check(number_between(1, 240));
-  verb->add_option("--slow-motion", render.slow_motion, "Seconds of video per second recorded")
+  verb->add_option("--slow-motion", render.slow_motion, "Seconds of video per recorded second.")
       ->check(positive_number())
       ->capture_default_str();
-  verb->add_flag("--light", options->light, "On a light background");
+  verb->add_flag("--light", options->light, "Draw on a light background.");
   add_overlay_options(*verb, *options);
   add_common_options(*verb, options->common);
   verb->footer(

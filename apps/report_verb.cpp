@@ -34,20 +34,23 @@ void report(const ReportVerbOptions& options) {
 void add_report_verb(CLI::App& command) {
   const auto options = std::make_shared<ReportVerbOptions>();
   CLI::App* verb =
-      command.add_subcommand("report", "Write one self-contained HTML page about runs");
-  verb->add_option("RUN", options->runs, "Run folders, in the order of the page")->required();
-  verb->add_option("-o,--output", options->output, "The page")->required()->type_name("FILE.html");
-  verb->add_option("--title", options->report.title, "Title of the page")->capture_default_str();
+      command.add_subcommand("report", "Write one self-contained HTML page about runs.");
+  verb->add_option("RUN", options->runs, "Run folders, in the order of the page.")->required();
+  verb->add_option("-o,--output", options->output, "HTML page to write.")
+      ->required()
+      ->type_name("FILE.html");
+  verb->add_option("--title", options->report.title, "Title of the page.")->capture_default_str();
   verb->add_option("--published", options->report.published,
-                   "Scores of other methods for the leaderboard, such as reports/published.yaml")
+                   "File with published scores of other methods for the leaderboard, such as "
+                   "reports/published.yaml.")
       ->type_name("FILE.yaml");
   verb->add_option("--against", options->report.against,
-                   "Run folders of another build or configuration, with which the runs are paired")
+                   "Run folders of another build or configuration, which are paired with the runs.")
       ->type_name("RUN");
   verb->add_option("--export", options->report.exports,
-                   "Folder for the tables of the leaderboard and of --against as LaTeX and CSV")
+                   "Folder for the tables of the leaderboard and of --against as LaTeX and CSV.")
       ->type_name("DIR");
-  verb->add_flag("--video", options->report.film, "A short film of every run, by ffmpeg");
+  verb->add_flag("--video", options->report.film, "Add a short film of every run, made by ffmpeg.");
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"

@@ -98,28 +98,28 @@ void add_results_verb(CLI::App& command) {
   const auto options = std::make_shared<ResultsOptions>();
   CLI::App* verb = command.add_subcommand(
       "results",
-      "List, filter and compare the stored results of runs (results.sqlite beside them)");
+      "List, filter and compare the stored results of runs (results.sqlite beside them).");
   verb->add_option("STORE", options->store,
                    "results.sqlite or the folder that holds it, also as runs/results.sqlite "
-                   "(default: the working directory)");
+                   "(default: the working directory).");
   verb->add_option("--where", options->where,
-                   "Condition over columns and metrics; text goes in quotes")
+                   "Condition over columns and metrics; text goes in quotes.")
       ->type_name("EXPR");
-  verb->add_option("--columns", options->columns, "Columns and metrics to show")
+  verb->add_option("--columns", options->columns, "Columns and metrics to show.")
       ->type_name("NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option("--diff", options->diff,
                    "Compare two runs, or the runs of two commits, versions or configurations that "
-                   "agree in dataset, module, window, configuration and seed")
+                   "agree in dataset, module, window, configuration and seed.")
       ->type_name("A B")
       ->expected(2);
-  verb->add_option("--format", options->format, "table, csv or json")
+  verb->add_option("--format", options->format, "Output format: table, csv or json.")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
-  verb->add_option("--add", options->add, "Add runs to the stores beside them")
+  verb->add_option("--add", options->add, "Add runs to the stores beside them.")
       ->type_name("RUN...");
-  verb->add_option("--scan", options->scan, "Add every run below a folder")->type_name("FOLDER");
+  verb->add_option("--scan", options->scan, "Add every run below a folder.")->type_name("FOLDER");
   verb->footer(
       "Examples:\n"
       "  saccade results runs\n"

@@ -6,9 +6,10 @@
 #include "apps/command_line.h"
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
+#include "apps/reference_page.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/registry.h"
 
 namespace saccade {
@@ -18,6 +19,7 @@ struct RunVerbOptions {
   std::string module;
   std::string config;
   RunRequest request;
+  bool reference = false;
   CommonOptions common;
 };
 
@@ -42,6 +44,10 @@ void show(const std::filesystem::path& output, const RunSummary& summary) {
 void run(RunVerbOptions options) {
   options.common.apply();
   const Module& module = find_module(options.module);
+  if (options.reference) {
+    fmt::print("{}", reference_page(options.module).markdown());
+    return;
+  }
   options.request.config = options.common.load(options.config);
   if (options.common.print_config) {
     fmt::print("{}", module.print_config(options.request.config));
@@ -61,30 +67,36 @@ void run(RunVerbOptions options) {
 void add_run_verb(CLI::App& command) {
   const auto options = std::make_shared<RunVerbOptions>();
   RunRequest& request = options->request;
-  CLI::App* verb = command.add_subcommand("run", "Run one estimator over a dataset");
+  CLI::App* verb = command.add_subcommand("run", "Run one estimator over a dataset.");
   verb->add_option("MODULE", options->module, module_list())->required();
-  verb->add_option("--data", request.dataset, "Dataset folder, simulated or recorded")
+  verb->add_option("--data", request.dataset, "Dataset folder, simulated or recorded.")
       ->type_name("DATASET");
-  verb->add_option("-o,--output", request.output, "Run folder to write")->type_name("RUN");
-  verb->add_option("-c,--config", options->config, "Configuration of the module (YAML)")
+  verb->add_option("-o,--output", request.output, "Run folder to write.")->type_name("RUN");
+  verb->add_option("-c,--config", options->config,
+                   "Configuration of the module (YAML); default: all defaults.")
       ->type_name("CONFIG");
   verb->add_option("--poses-from", request.poses_from,
-                   "Poses of this run or trajectory file (TUM) in place of the ground truth's")
+                   "Run or trajectory file (TUM) whose poses replace the ground truth.")
       ->type_name("RUN");
   verb->add_option("--depth-from", request.depth_from,
-                   "Depth of this run in place of the dataset's depth maps")
+                   "Run whose depth replaces the depth maps of the dataset.")
       ->type_name("RUN");
   verb->add_option(
           "--from", request.from,
-          "Run of track, depth or odometry over the same dataset, which refine starts from")
+          "Run of track, depth or odometry over the same dataset, from which refine starts.")
       ->type_name("RUN");
-  verb->add_option("--start-s", request.start_s, "Begin of the window (default: first event)")
+  verb->add_option("--start-s", request.start_s,
+                   "Start of the time window in seconds (default: the first event).")
       ->check(finite_number());
-  verb->add_option("--duration-s", request.duration_s, "Length of the window")
+  verb->add_option("--duration-s", request.duration_s,
+                   "Length of the time window in seconds (default: to the last event).")
       ->check(positive_number());
-  verb->add_option("--repeat", request.repeat, "Repeat the work, for timing")
+  verb->add_option("--repeat", request.repeat, "Number of repetitions, for timing.")
       ->check(whole_number(1, 100000))
       ->capture_default_str();
+  verb->add_flag(
+      "--reference", options->reference,
+      "Print every key of the module's configuration as a page of docs/reference/, and stop.");
   add_config_options(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(
@@ -98,7 +110,8 @@ void add_run_verb(CLI::App& command) {
       "  saccade run mosaic --data data/panorama -c configs/mosaic/best.yaml -o runs/mosaic\n"
       "  saccade run rotation --data data/panorama -c configs/rotation/events.yaml -o "
       "runs/rotation\n"
-      "  saccade run refine --data data/walls --from runs/walls -o runs/walls_refined");
+      "  saccade run refine --data data/walls --from runs/walls -o runs/walls_refined\n"
+      "  saccade run depth --reference > depth.md");
   verb->callback([options] {
     options->request.command = command_line();
     run(*options);

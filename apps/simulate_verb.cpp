@@ -74,13 +74,15 @@ void simulate_config(const SimulateVerbOptions& options) {
 void add_simulate_verb(CLI::App& command) {
   const auto options = std::make_shared<SimulateVerbOptions>();
   CLI::App* verb = command.add_subcommand(
-      "simulate", "Render a scene along a trajectory into events, frames, depth, IMU and poses");
-  verb->add_option("CONFIG", options->config, "Simulation configuration (YAML)")->required();
-  verb->add_option("-o,--output", options->output, "Dataset folder to write")->type_name("DATASET");
+      "simulate", "Render a scene along a trajectory into events, frames, depth, IMU and poses.");
+  verb->add_option("CONFIG", options->config, "Simulation configuration (YAML).")->required();
+  verb->add_option("-o,--output", options->output, "Dataset folder to write.")
+      ->type_name("DATASET");
   verb->add_flag("--cached", options->cached,
-                 "Into the cache ($SACCADE_CACHE, see `saccade cache`) unless it is there; DATASET "
-                 "becomes a link to it");
+                 "Simulate into the cache ($SACCADE_CACHE, see `saccade cache`) unless the dataset "
+                 "is there already; DATASET becomes a link to it.");
   add_config_options(*verb, options->common);
+  add_reference_option(*verb, "simulate");
   add_common_options(*verb, options->common);
   verb->footer(
       "Example:\n"

@@ -51,14 +51,14 @@ void show_statistics(const StatisticsOptions& options) {
 void add_statistics_verb(CLI::App& command) {
   const auto options = std::make_shared<StatisticsOptions>();
   CLI::App* verb = command.add_subcommand(
-      "statistics", "Hold the events of recordings against each other: rates, gaps, noise");
-  verb->add_option("PATH", options->paths, "Dataset folders or event files")->required();
-  verb->add_option("-o,--output", options->output, "Folder for tables (.csv) and a picture")
+      "statistics", "Hold the events of recordings against each other: rates, gaps, noise.");
+  verb->add_option("PATH", options->paths, "Dataset folders or event files.")->required();
+  verb->add_option("-o,--output", options->output, "Folder for tables (.csv) and a picture.")
       ->type_name("FOLDER");
   verb->add_option("--start-s", options->part.start_s,
-                   "Begin of the part that counts (default: first event)")
+                   "Begin of the part that counts (default: first event).")
       ->check(number_between(-kLongest_s, kLongest_s));
-  verb->add_option("--duration-s", options->part.duration_s, "Length of the part that counts")
+  verb->add_option("--duration-s", options->part.duration_s, "Length of the part that counts.")
       ->check(number_between(1e-9, kLongest_s));
   add_common_options(*verb, options->common);
   verb->footer(

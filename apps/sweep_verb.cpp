@@ -10,7 +10,7 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/sweep/sweep.h"
 #include "eval/sweep/sweep_config.h"
 
@@ -81,39 +81,39 @@ void sweep(const SweepVerbOptions& options) {
 }
 
 void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
-  verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm")
+  verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm.")
       ->capture_default_str();
   verb.add_option("--slurm-option", options.slurm_options,
-                  "An option of sbatch, e.g. --slurm-option=--partition=long (repeatable)")
+                  "Option for sbatch, e.g. --slurm-option=--partition=long (repeatable).")
       ->type_name("OPTION")
       ->take_all()
       ->allow_extra_args(false);
   verb.add_option(
           "-j,--jobs", options.sweep.jobs,
-          "Jobs at a time (default: as many as there are cores for; on Slurm as many as it has "
-          "room for). Speeds are worth quoting with 1 alone; "
-          "`timing: true` in the file demands it")
+          "Number of jobs at a time (default: as many as the cores allow; on Slurm, as many as it "
+          "accepts). Speeds are comparable only with 1; `timing: true` in the file requires it.")
       ->type_name("N")
       ->check(whole_number(1, 4096));
   verb.add_flag("--dry-run", options.dry_run,
-                "Print the command lines and what would be skipped; of a sweep that generates, an "
-                "estimate of its events, bytes and time from a short pilot");
+                "Print the command lines and what would be skipped; for a sweep that generates "
+                "datasets, estimate events, bytes and time from a short calibration run.");
   verb.add_option("--set", options.overrides,
-                  "Override one key of the sweep file, e.g. --set repeat=1 (repeatable)")
+                  "Override one key of the sweep file, e.g. --set repeat=1 (repeatable).")
       ->type_name("KEY.PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_option("--seed", options.seeds, "A seed in place of the file's (repeatable)")
+  verb.add_option("--seed", options.seeds, "Seed that replaces the seeds of the file (repeatable).")
       ->type_name("N")
       ->take_all()
       ->allow_extra_args(false)
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
-  verb.add_option("--threads", options.threads, "Threads of one run, in place of the file's")
+  verb.add_option("--threads", options.threads,
+                  "Number of threads of one run, in place of the file's.")
       ->type_name("N")
       ->check(whole_number(1, 4096));
   verb.add_flag("--print-config", options.print_config,
-                "Print every key with its value, help and range, and stop");
-  verb.add_flag("-q,--quiet", options.quiet, "No progress, no summary: errors only");
+                "Print every key with its value, help and range, and stop.");
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only: no progress, no summary.");
 }
 
 }  // namespace
@@ -121,10 +121,11 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
 void add_sweep_verb(CLI::App& command) {
   const auto options = std::make_shared<SweepVerbOptions>();
   CLI::App* verb = command.add_subcommand(
-      "sweep", "Run a grid of configurations x datasets x seeds into one table; resumable");
-  verb->add_option("SWEEP", options->file, "Sweep file (YAML)")->required();
-  verb->add_option("-o,--output", options->output, "Folder of the sweep")->type_name("DIR");
+      "sweep", "Run a grid of configurations x datasets x seeds into one table; resumable.");
+  verb->add_option("SWEEP", options->file, "Sweep file (YAML).")->required();
+  verb->add_option("-o,--output", options->output, "Folder of the sweep.")->type_name("DIR");
   add_sweep_options(*verb, *options);
+  add_reference_option(*verb, "sweep");
   verb->footer(
       "Examples:\n"
       "  saccade sweep configs/sweeps/tracking_samples.yaml -o sweeps/samples\n"

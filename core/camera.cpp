@@ -10,26 +10,20 @@
 namespace saccade {
 namespace {
 
-struct Distorted {
-  Eigen::Vector2d point;
-  Eigen::Matrix2d jacobian;
-};
-
-/// Brown's model on normalised coordinates, with its derivative.
-Distorted distort_normalised(const std::array<double, 5>& k, const Eigen::Vector2d& p) {
+/// Brown's model on normalised coordinates (Brown, 1966; OpenCV's calib3d); `jacobian`: d result / dp.
+Eigen::Vector2d distort_normalised(const std::array<double, 5>& k, const Eigen::Vector2d& p,
+                                   Eigen::Matrix2d& jacobian) {
   const auto [k1, k2, p1, p2, k3] = k;
   const double x = p.x();
   const double y = p.y();
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
   const double slope = 2 * (k1 + r2 * (2 * k2 + 3 * r2 * k3));  // d radial / d(r2), doubled
-  Distorted d;
-  d.point = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-             y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
-  d.jacobian << radial + x * x * slope + 2 * p1 * y + 6 * p2 * x,
+  jacobian << radial + x * x * slope + 2 * p1 * y + 6 * p2 * x,
       x * y * slope + 2 * p1 * x + 2 * p2 * y, x * y * slope + 2 * p1 * x + 2 * p2 * y,
       radial + y * y * slope + 6 * p1 * y + 2 * p2 * x;
-  return d;
+  return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+          y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
 }
 
 }  // namespace
@@ -49,7 +43,8 @@ Eigen::Matrix<double, 2, 3> PinholeCamera::project_jacobian(const Eigen::Vector3
 
 Eigen::Vector2d PinholeCamera::distort(const Eigen::Vector2d& pixel) const {
   if (!is_distorted()) return pixel;
-  const Eigen::Vector2d d = distort_normalised(distortion, ray(pixel).head<2>()).point;
+  Eigen::Matrix2d jacobian;
+  const Eigen::Vector2d d = distort_normalised(distortion, ray(pixel).head<2>(), jacobian);
   return {fx * d.x() + cx, fy * d.y() + cy};
 }
 
@@ -60,10 +55,10 @@ Eigen::Vector2d PinholeCamera::undistort(const Eigen::Vector2d& pixel) const {
   const double tolerance = 1e-9 / std::max(fx, fy);
   Eigen::Vector2d estimate = target;
   for (int i = 0; i < kMaxIterations; ++i) {
-    const Distorted d = distort_normalised(distortion, estimate);
-    const Eigen::Vector2d residual = target - d.point;
-    if (residual.norm() < tolerance || std::abs(d.jacobian.determinant()) < 1e-6) break;
-    estimate += d.jacobian.inverse() * residual;
+    Eigen::Matrix2d jacobian;
+    const Eigen::Vector2d residual = target - distort_normalised(distortion, estimate, jacobian);
+    if (residual.norm() < tolerance || std::abs(jacobian.determinant()) < 1e-6) break;
+    estimate += jacobian.inverse() * residual;
   }
   return {fx * estimate.x() + cx, fy * estimate.y() + cy};
 }

@@ -16,45 +16,41 @@ bool alike(float a, float b, float c) {
   return low > 0 && std::max({a, b, c}) <= kMaxDepthRatio * low;
 }
 
-/// Draws triangles into a map of inverse depth.
-struct MeshPainter {
-  using Vertex = DepthMesh::Vertex;
-  ImageF& inverse_depth;
+/// First and last pixel between two sub-pixel bounds.
+int first_pixel(float low) {
+  return static_cast<int>(std::ceil(std::clamp(low - 1e-3F, 0.0F, 1e6F)));
+}
+int last_pixel(float high, int size) {
+  return static_cast<int>(
+      std::floor(std::clamp(high + 1e-3F, -1.0F, static_cast<float>(size - 1))));
+}
 
-  void draw(const Vertex& a, const Vertex& b, const Vertex& c) const {
-    if (!(std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0)) return;
-    const int left = first(std::min({a.x, b.x, c.x}));
-    const int right = last(std::max({a.x, b.x, c.x}), inverse_depth.width());
-    const int top = first(std::min({a.y, b.y, c.y}));
-    const int bottom = last(std::max({a.y, b.y, c.y}), inverse_depth.height());
-    if (left > right || top > bottom) return;
-    const float bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
-    const float area = bx * cy - by * cx;
-    if (std::abs(area) < 1e-6F) return;
-    const float scale = 1 / area;
-    for (int y = top; y <= bottom; ++y)
-      for (int x = left; x <= right; ++x) {
-        const float px = static_cast<float>(x) - a.x, py = static_cast<float>(y) - a.y;
-        const float s = (px * cy - py * cx) * scale;
-        const float t = (bx * py - by * px) * scale;
-        // Half a thousandth of room, lest a pixel falls between two triangles.
-        if (!(s >= -5e-4F && t >= -5e-4F && s + t <= 1 + 5e-4F)) continue;
-        const float inverse = a.inverse_depth + s * (b.inverse_depth - a.inverse_depth) +
-                              t * (c.inverse_depth - a.inverse_depth);
-        float& pixel = inverse_depth(x, y);
-        pixel = std::max(pixel, inverse);
-      }
-  }
-
- private:
-  static int first(float low) {
-    return static_cast<int>(std::ceil(std::clamp(low - 1e-3F, 0.0F, 1e6F)));
-  }
-  static int last(float high, int size) {
-    return static_cast<int>(
-        std::floor(std::clamp(high + 1e-3F, -1.0F, static_cast<float>(size - 1))));
-  }
-};
+/// Draws a triangle into a map of inverse depth, which keeps the nearest.
+void draw_triangle(const DepthMesh::Vertex& a, const DepthMesh::Vertex& b,
+                   const DepthMesh::Vertex& c, ImageF& inverse_depth) {
+  if (!(std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0)) return;
+  const int left = first_pixel(std::min({a.x, b.x, c.x}));
+  const int right = last_pixel(std::max({a.x, b.x, c.x}), inverse_depth.width());
+  const int top = first_pixel(std::min({a.y, b.y, c.y}));
+  const int bottom = last_pixel(std::max({a.y, b.y, c.y}), inverse_depth.height());
+  if (left > right || top > bottom) return;
+  const float bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+  const float area = bx * cy - by * cx;
+  if (std::abs(area) < 1e-6F) return;
+  const float scale = 1 / area;
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x) {
+      const float px = static_cast<float>(x) - a.x, py = static_cast<float>(y) - a.y;
+      const float s = (px * cy - py * cx) * scale;
+      const float t = (bx * py - by * px) * scale;
+      // Half a thousandth of room, lest a pixel falls between two triangles.
+      if (!(s >= -5e-4F && t >= -5e-4F && s + t <= 1 + 5e-4F)) continue;
+      const float inverse = a.inverse_depth + s * (b.inverse_depth - a.inverse_depth) +
+                            t * (c.inverse_depth - a.inverse_depth);
+      float& pixel = inverse_depth(x, y);
+      pixel = std::max(pixel, inverse);
+    }
+}
 
 }  // namespace
 
@@ -115,12 +111,12 @@ std::vector<DepthMesh::Vertex> DepthMesh::project(const Rigid3& camera_from_mesh
 void DepthMesh::draw(std::span<const Vertex> vertices, ImageF& inverse_depth) const {
   SACCADE_CHECK(vertices.size() == points_.size());
   inverse_depth.fill(0);
-  const MeshPainter painter{inverse_depth};
   const auto row = static_cast<std::size_t>(width_);
   for (std::size_t i = 0; i + row + 1 < vertices.size(); ++i) {
-    if ((triangles_[i] & 1) != 0) painter.draw(vertices[i], vertices[i + 1], vertices[i + row]);
+    if ((triangles_[i] & 1) != 0)
+      draw_triangle(vertices[i], vertices[i + 1], vertices[i + row], inverse_depth);
     if ((triangles_[i] & 2) != 0)
-      painter.draw(vertices[i + 1], vertices[i + row + 1], vertices[i + row]);
+      draw_triangle(vertices[i + 1], vertices[i + row + 1], vertices[i + row], inverse_depth);
   }
 }
 

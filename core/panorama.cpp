@@ -6,7 +6,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {

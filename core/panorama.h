@@ -16,8 +16,8 @@ namespace saccade {
 /// around and W / 2 rows from the zenith (+z) down to the nadir, pixel (u, v) of the whole shows
 ///   longitude pi - 2 pi (u + 1/2) / W,   latitude pi/2 - 2 pi (v + 1/2) / W,
 /// the longitude counted from +x towards +y: +x is in the middle of the picture, +y left of it as
-/// seen from within, and the seam is at -x. Pixel (x, y) of the rectangle is pixel ((left + x) mod
-/// W, top + y) of the whole.
+/// seen from within, and the seam is at -x. Pixel (x, y) of the rectangle is pixel
+///   ((left + x) mod W, top + y) of the whole.
 struct Panorama {
   int around = 0;  ///< W [px], even, >= 4
   int left = 0;    ///< first column, in [0, W)

@@ -12,7 +12,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// The cross-product matrix: skew(a) b = a x b.
 [[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& a);
 
-/// SO(3) exponential of a rotation vector [rad]; exact to machine precision also near zero.
+/// SO(3) exponential of a rotation vector [rad] (Rodrigues); exact to machine precision also near zero.
 [[nodiscard]] Eigen::Quaterniond so3_exp(const Eigen::Vector3d& rotation_vector);
 
 /// SO(3) logarithm, |result| <= pi. Sign of the quaternion does not matter.
@@ -23,8 +23,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Eigen::Matrix3d so3_left_jacobian_inverse(const Eigen::Vector3d& rotation_vector);
 
 /// A rigid transformation p_a = R p_b + t. Objects are named a_from_b (`world_from_camera`), so
-/// that neighbouring names cancel in products: world_from_camera * camera_from_imu =
-/// world_from_imu.
+/// that neighbouring names cancel in products:
+///   world_from_camera * camera_from_imu = world_from_imu.
 class Rigid3 {
  public:
   Rigid3() = default;

@@ -1,8 +1,7 @@
 #include "core/trajectory.h"
 
-#include <algorithm>
-
 #include "core/check.h"
+#include "core/time_search.h"
 
 namespace saccade {
 
@@ -11,10 +10,9 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
 }
 
 std::optional<std::size_t> Trajectory::last_before(double t_s) const {
-  const auto after = std::upper_bound(poses_.begin(), poses_.end(), t_s,
-                                      [](double t, const StampedPose& p) { return t < p.t_s; });
-  if (after == poses_.begin()) return std::nullopt;
-  return static_cast<std::size_t>(after - poses_.begin()) - 1;
+  const std::size_t count = count_until(poses_, t_s, &StampedPose::t_s);
+  if (count == 0) return std::nullopt;
+  return count - 1;
 }
 
 std::optional<Rigid3> Trajectory::at(double t_s) const {

@@ -11,17 +11,17 @@ namespace saccade {
 /// One estimator that `saccade run` offers.
 struct Module {
   const char* name;
-  const char* help;  ///< one line
-  bool takes_poses;  ///< from the ground truth or RunRequest::poses_from
-  bool takes_depth;  ///< from the dataset or RunRequest::depth_from
-  bool takes_run;    ///< RunRequest::from
+  const char* help;          ///< one sentence
+  bool takes_poses = false;  ///< from the ground truth or RunRequest::poses_from
+  bool takes_depth = false;  ///< from the dataset or RunRequest::depth_from
+  bool takes_run = false;    ///< RunRequest::from
   /// Runs over a dataset and writes the run folder. Throws InputError for bad input.
-  RunSummary (*run)(const RunRequest&);
+  RunSummary (*run)(const RunRequest&) = nullptr;
   /// The resolved configuration, documented, as YAML. Throws InputError for a bad one.
-  std::string (*print_config)(const config::Document&);
+  std::string (*print_config)(const config::Document&) = nullptr;
 };
 
-/// All modules. A new one is one entry here and the files of its room.
+/// All modules. A new one is a row here and the files of its room.
 [[nodiscard]] std::span<const Module> modules();
 
 /// Throws InputError that lists the modules when there is none of this name.

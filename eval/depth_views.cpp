@@ -29,7 +29,7 @@ const std::vector<float>* find_scalar(const PointCloud& cloud, const std::string
 
 /// The points of the cloud that say which view they belong to and where they lie in it; false where
 /// the cloud does not say.
-bool add_points(const PointCloud& cloud, const std::string& place,
+bool add_points(const PointCloud& cloud, const std::string& source,
                 std::vector<EstimatedView>& views) {
   const auto* view = find_scalar(cloud, "view");
   const auto* x = find_scalar(cloud, "x_px");
@@ -40,8 +40,9 @@ bool add_points(const PointCloud& cloud, const std::string& place,
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
     const auto index = static_cast<double>((*view)[i]);
     if (!(index >= 0) || index >= static_cast<double>(views.size()) || !((*depth)[i] > 0))
-      throw InputError(place, fmt::format("point {} has view {} and depth {} m; there are {} views",
-                                          i, index, (*depth)[i], views.size()));
+      throw InputError(
+          source, fmt::format("point {} has view {} and depth {} m; there are {} views", i, index,
+                              (*depth)[i], views.size()));
     DepthPoint point{{(*x)[i], (*y)[i]}, static_cast<double>((*depth)[i]), std::nullopt};
     if (sigma != nullptr) point.sigma_m = static_cast<double>((*sigma)[i]);
     views[static_cast<std::size_t>(index)].points.push_back(point);
@@ -107,9 +108,9 @@ EstimatedView load_cloud(const std::filesystem::path& file, const Dataset& datas
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
     const Eigen::Vector3d point = camera_from_world * cloud.positions[i].cast<double>();
     if (point.z() <= 0) continue;
-    DepthPoint seen{camera.project(point), point.z(), std::nullopt};
-    if (sigma != nullptr) seen.sigma_m = static_cast<double>((*sigma)[i]);
-    if (camera.contains(seen.pixel)) view.points.push_back(seen);
+    DepthPoint visible{camera.project(point), point.z(), std::nullopt};
+    if (sigma != nullptr) visible.sigma_m = static_cast<double>((*sigma)[i]);
+    if (camera.contains(visible.pixel)) view.points.push_back(visible);
   }
   return view;
 }
@@ -156,16 +157,16 @@ Metrics score_depth(const std::vector<EstimatedView>& views, const std::vector<D
   std::size_t points = 0;
   for (const EstimatedView& view : views) points += view.points.size();
   const auto planes = planes_of(views, camera);
-  std::size_t held = 0;
+  std::size_t on_planes = 0;
   for (std::size_t i = 0; i < std::min<std::size_t>(planes.size(), 2); ++i)
-    held += planes[i].points.size();
-  std::optional<double> angle_deg, share;
+    on_planes += planes[i].points.size();
+  std::optional<double> angle_deg, fraction;
   if (planes.size() >= 2) {
     angle_deg = angle_between_deg(planes[0].plane, planes[1].plane);
-    share = static_cast<double>(held) / static_cast<double>(points);
+    fraction = static_cast<double>(on_planes) / static_cast<double>(points);
   }
   metrics.set("depth.two_planes.angle_deg", angle_deg);
-  metrics.set("depth.two_planes.share", share);
+  metrics.set("depth.two_planes.share", fraction);
   return metrics;
 }
 

@@ -27,7 +27,7 @@ struct EstimatedView {
 [[nodiscard]] EstimatedView load_depth_map(const std::filesystem::path& file,
                                            const Dataset& dataset, double t_s);
 
-/// One view from a point cloud in the world (PLY), as the camera sees it from its true pose at
+/// One view from a point cloud in the world (PLY), as it projects into the camera at its true pose at
 /// `t_s`: points before it and within the image. What stands in front of a point is not tested.
 [[nodiscard]] EstimatedView load_cloud(const std::filesystem::path& file, const Dataset& dataset,
                                        double t_s);
@@ -48,7 +48,7 @@ struct EstimatedView {
                                                  const PinholeCamera& camera);
 
 /// set_depth_scores() and depth.two_planes.{angle_deg,share}: the angle between the two planes that
-/// most points lie on, and the share of the points on either.
+/// most points lie on, and the fraction of the points on either.
 [[nodiscard]] Metrics score_depth(const std::vector<EstimatedView>& views,
                                   const std::vector<DepthErrors>& errors,
                                   const PinholeCamera& camera);

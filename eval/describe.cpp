@@ -10,9 +10,9 @@
 #include "core/io/dataset.h"
 #include "core/io/event_file.h"
 #include "eval/evaluate.h"
-#include "eval/number_text.h"
 #include "eval/picture/sensor_view.h"
 #include "eval/run_folder.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace fs = std::filesystem;

@@ -10,14 +10,15 @@
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
-#include "eval/metrics/consistency.h"
-#include "eval/metrics/keyframe_metrics.h"
 #include "eval/metrics/orientation_metrics.h"
-#include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/trajectory/consistency.h"
+#include "eval/metrics/trajectory/keyframe_metrics.h"
+#include "eval/metrics/trajectory/reprojection.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/mosaic_view.h"
 #include "eval/refined_ratio.h"
+#include "eval/score_inputs.h"
 
 namespace saccade {
 namespace {
@@ -30,17 +31,8 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
   for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
 }
 
-/// What `run` found of depth, and how far it is off.
-struct ScoredDepth {
-  std::vector<EstimatedView> views;
-  std::vector<DepthErrors> errors;
-
-  ScoredDepth(const RunFolder& run, const Dataset& dataset)
-      : views(load_depth_views(run.folder)), errors(compare_views(views, dataset)) {}
-};
-
-/// What `run` found of orientation, and events that it stabilized.
-void score_turning(const RunFolder& run, const Dataset& dataset, Metrics& metrics) {
+/// The orientations that `run` estimated, and the events that it stabilized.
+void score_rotation(const RunFolder& run, const Dataset& dataset, Metrics& metrics) {
   const std::filesystem::path orientation = run.folder / "orientation.txt";
   const std::filesystem::path biases = run.folder / "gyro_bias.txt";
   if (std::filesystem::exists(orientation)) {
@@ -59,15 +51,16 @@ void score_turning(const RunFolder& run, const Dataset& dataset, Metrics& metric
     merge(metrics, score_stabilization(load_stabilized(run.folder / "stabilized"), dataset), "");
 }
 
-Metrics score(const RunFolder& run, const Dataset& dataset, const ScoredDepth& depth,
+Metrics score(const RunFolder& run, const Dataset& dataset,
+              const std::vector<EstimatedView>& depths,
+              const std::vector<DepthErrors>& depth_errors,
               const std::optional<double>& mean_depth_m) {
   Metrics metrics;
   merge(metrics, run.timing, "speed.");
-  if (!depth.views.empty())
-    merge(metrics, score_depth(depth.views, depth.errors, dataset.camera()), "");
+  if (!depths.empty()) merge(metrics, score_depth(depths, depth_errors, dataset.camera()), "");
   if (const auto images = load_image_views(run.folder); !images.empty())
     merge(metrics, score_images(images, dataset), "");
-  score_turning(run, dataset, metrics);
+  score_rotation(run, dataset, metrics);
   if (const auto mosaic = load_mosaic(run))
     merge(metrics, score_mosaic(compare_mosaic(*mosaic, run, dataset)), "");
   if (!run.trajectory) return metrics;
@@ -99,22 +92,25 @@ Metrics score_refined(const std::filesystem::path& folder, const RunFolder& run,
 
 Metrics score_run(const RunFolder& run, const Dataset& dataset,
                   const std::optional<double>& mean_depth_m) {
-  return score(run, dataset, ScoredDepth(run, dataset), mean_depth_m);
+  const std::vector<EstimatedView> depths = load_depth_views(run.folder);
+  return score(run, dataset, depths, compare_views(depths, dataset), mean_depth_m);
 }
 
 Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOptions& options) {
   check_depth(options.mean_depth_m);
   const RunFolder run = RunFolder::open(run_folder);
   const Dataset dataset = run.open_dataset(options.dataset);
-  const ScoredDepth depth(run, dataset);
+  const std::vector<EstimatedView> depths = load_depth_views(run.folder);
+  const std::vector<DepthErrors> depth_errors = compare_views(depths, dataset);
   const std::optional<double> mean_depth_m =
       options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m;
-  Metrics metrics = score(run, dataset, depth, mean_depth_m);
+  Metrics metrics = score(run, dataset, depths, depth_errors, mean_depth_m);
   if (options.refined)
     merge(metrics,
           refined_ratios(metrics, score_refined(*options.refined, run, dataset, mean_depth_m)), "");
-  write_atomically(run_folder / "metrics.json", to_json(metrics));
-  if (!depth.views.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth.errors);
+  write_atomically(run_folder / "metrics.json",
+                   to_json(metrics, score_inputs(run_folder, dataset)));
+  if (!depths.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth_errors);
   return metrics;
 }
 
@@ -133,7 +129,7 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
   return metrics;
 }
 
-Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
+Metrics evaluate_depth(const ExternalDepth& depth, const std::filesystem::path& dataset_folder,
                        const std::optional<std::filesystem::path>& output) {
   const Dataset dataset = Dataset::open(dataset_folder);
   std::vector<EstimatedView> views;

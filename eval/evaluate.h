@@ -14,7 +14,7 @@ struct EvaluateOptions {
   std::optional<std::filesystem::path> dataset;
   /// d of dt_rel instead of the dataset's mean scene depth [m], > 0.
   std::optional<double> mean_depth_m;
-  /// A run of `refine` over the same dataset: how many times its errors the run's are.
+  /// A run of `refine` over the same dataset: the run's errors are divided by its errors.
   std::optional<std::filesystem::path> refined;
 };
 
@@ -35,8 +35,8 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
                             const std::optional<std::filesystem::path>& output = std::nullopt,
                             const std::optional<double>& mean_depth_m = std::nullopt);
 
-/// Depth that any program found.
-struct ForeignDepth {
+/// Depth that an external program estimated.
+struct ExternalDepth {
   /// A point cloud in the world (PLY), a depth map (EXR), or a folder with depth maps that
   /// views.yaml lists.
   std::filesystem::path file;
@@ -46,7 +46,7 @@ struct ForeignDepth {
 };
 
 /// Scores it as evaluate_run() scores a run of `depth`.
-Metrics evaluate_depth(const ForeignDepth& depth, const std::filesystem::path& dataset_folder,
+Metrics evaluate_depth(const ExternalDepth& depth, const std::filesystem::path& dataset_folder,
                        const std::optional<std::filesystem::path>& output = std::nullopt);
 
 /// Scores an image of any program (EXR of log intensity, or a picture; undistorted) at `at_s`, or a

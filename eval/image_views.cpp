@@ -59,7 +59,8 @@ ImageF log_frame(const Dataset& dataset, std::size_t frame) {
 /// What the frame shows of every pixel of a view with this depth, from elsewhere.
 ImageF carried_over(const ImageF& frame, const PinholeCamera& camera, const DepthTruth& at_view,
                     const DepthTruth& at_frame) {
-  constexpr double kHidden = 0.05;  // relative depth behind what the frame sees
+  constexpr double kHidden =
+      0.05;  // relative depth behind the surface that is visible in the frame
   ImageF result(frame.width(), frame.height(), kUnknown);
   const Rigid3 frame_from_view = at_frame.world_from_camera.inverse() * at_view.world_from_camera;
   for (int y = 0; y < frame.height(); ++y)
@@ -70,9 +71,9 @@ ImageF carried_over(const ImageF& frame, const PinholeCamera& camera, const Dept
       if (point.z() <= 0) continue;
       const Eigen::Vector2d pixel = camera.project(point);
       if (!is_inside(frame, pixel.x(), pixel.y())) continue;
-      const auto seen = static_cast<double>(at_frame.depth(
+      const auto visible_m = static_cast<double>(at_frame.depth(
           static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))));
-      if (!(std::abs(seen - point.z()) <= kHidden * point.z())) continue;
+      if (!(std::abs(visible_m - point.z()) <= kHidden * point.z())) continue;
       result(x, y) = static_cast<float>(sample(frame, pixel.x(), pixel.y()));
     }
   return result;

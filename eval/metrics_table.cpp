@@ -1,154 +1,178 @@
 #include <fmt/format.h>
 
+#include <sstream>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "eval/evaluate.h"
-#include "eval/number_text.h"
+#include "eval/metrics/catalogue.h"
+#include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
 
+/// Values of one part of the metrics as text, in the units that people are shown.
+class Shown {
+ public:
+  Shown(const Metrics& metrics, std::string prefix)
+      : metrics_(metrics), prefix_(std::move(prefix)) {}
+
+  [[nodiscard]] std::string fixed(const std::string& key, int decimals) const {
+    return saccade::fixed(shown_value(metrics_, prefix_ + key), decimals);
+  }
+  [[nodiscard]] std::string grouped(const std::string& key) const {
+    return saccade::grouped(metrics_.get(prefix_ + key));
+  }
+  [[nodiscard]] bool has(const std::string& key) const {
+    return metrics_.get(prefix_ + key).has_value();
+  }
+
+ private:
+  const Metrics& metrics_;
+  std::string prefix_;
+};
+
+Table table_of(std::vector<std::string> titles) {
+  Table table{.columns = {{titles.front()}}};
+  for (std::size_t i = 1; i < titles.size(); ++i) table.columns.push_back({titles[i], true});
+  return table;
+}
+
+/// Below the title of the scores.
+void add(std::string& text, const Table& table) {
+  std::istringstream lines(table_text(table));
+  for (std::string line; std::getline(lines, line);) text += "  " + line + "\n";
+}
+
 void add_errors(std::string& text, const Metrics& metrics) {
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "sigma", "max", "RMSE");
-  const auto row = [&](const char* label, const std::string& key, int decimals) {
-    text += fmt::format("  {:<14}", label);
-    for (const char* name : {".mean", ".sigma", ".max", ".rmse"})
-      text += fmt::format("{:>10}", fixed(metrics.get("trajectory." + key + name), decimals));
-    text += "\n";
-  };
-  row("dt_rel [%]", "dt_rel_percent", 3);
-  row("dtheta [deg]", "dtheta_deg", 3);
-  row("dt [m]", "dt_m", 4);
+  Table table = table_of({"", "mean", "sigma", "max", "RMSE"});
+  for (const auto& [label, key, decimals] : {std::tuple{"dt_rel [%]", "dt_rel_percent", 3},
+                                             {"dtheta [deg]", "dtheta_deg", 3},
+                                             {"dt [mm]", "dt_m", 1}}) {
+    const Shown of(metrics, std::string("trajectory.") + key);
+    table.add({label, of.fixed(".mean", decimals), of.fixed(".sigma", decimals),
+               of.fixed(".max", decimals), of.fixed(".rmse", decimals)});
+  }
+  add(text, table);
 }
 
 void add_alignments(std::string& text, const Metrics& metrics) {
-  text +=
-      fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", "alignment", "ATE [mm]", "rot [deg]", "scale");
+  Table table = table_of({"alignment", "ATE [mm]", "rot [deg]", "scale"});
   for (const char* name : {"none", "se3", "sim3"}) {
-    const std::string key = std::string("trajectory.") + name;
-    std::optional<double> ate_mm = metrics.get(key + ".ate_rmse_m");
-    if (ate_mm) *ate_mm *= 1000;
-    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}\n", name, fixed(ate_mm, 2),
-                        fixed(metrics.get(key + ".rot_rmse_deg"), 3),
-                        fixed(metrics.get(key + ".scale"), 5));
+    const Shown of(metrics, std::string("trajectory.") + name);
+    table.add(
+        {name, of.fixed(".ate_rmse_m", 2), of.fixed(".rot_rmse_deg", 3), of.fixed(".scale", 5)});
   }
+  add(text, table);
 }
 
 void add_tracking(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key) { return metrics.get(std::string("trajectory.") + key); };
-  std::optional<double> coverage = get("coverage");
-  if (coverage) *coverage *= 100;
+  const Shown of(metrics, "trajectory.");
   text += fmt::format("  {} poses over {} s, coverage {} %, lost {} s (reported {} s)\n",
-                      grouped(get("poses")), fixed(get("duration_s"), 3), fixed(coverage, 2),
-                      fixed(get("lost_s"), 3), fixed(get("reported_lost_s"), 3));
+                      of.grouped("poses"), of.fixed("duration_s", 3), of.fixed("coverage", 2),
+                      of.fixed("lost_s", 3), of.fixed("reported_lost_s", 3));
   text += fmt::format("  path {} m, end drift {} %, per second {} m and {} deg\n",
-                      fixed(get("path_length_m"), 3), fixed(get("drift_percent"), 3),
-                      fixed(get("rpe.per_second.trans_rmse_m"), 4),
-                      fixed(get("rpe.per_second.rot_rmse_deg"), 3));
+                      of.fixed("path_length_m", 3), of.fixed("drift_percent", 3),
+                      of.fixed("rpe.per_second.trans_rmse_m", 4),
+                      of.fixed("rpe.per_second.rot_rmse_deg", 3));
   if (metrics.values().contains("trajectory.reprojection_px.rms"))
-    text +=
-        fmt::format("  reprojection {} px RMS, worst instant {} px RMS, worst point {} px\n",
-                    fixed(get("reprojection_px.rms"), 3), fixed(get("reprojection_px.rms_max"), 3),
-                    fixed(get("reprojection_px.max"), 2));
+    text += fmt::format("  reprojection {} px RMS, worst instant {} px RMS, worst point {} px\n",
+                        of.fixed("reprojection_px.rms", 3), of.fixed("reprojection_px.rms_max", 3),
+                        of.fixed("reprojection_px.max", 2));
 }
 
 void add_depth(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const std::string& key) { return metrics.get("depth." + key); };
-  const auto percent = [&](const std::string& key, int decimals = 2) {
-    std::optional<double> value = get(key);
-    if (value) *value *= 100;
-    return fixed(value, decimals);
-  };
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "depth", "median %",
-                      "mean %", "> 5 %", "RMSE [m]", "1 sigma %", "2 sigma %");
-  for (const std::string prefix : {"", "strict."})
-    text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
-                        prefix.empty() ? "best of 3 x 3" : "strict", percent(prefix + "rel_median"),
-                        percent(prefix + "rel_mean"), percent(prefix + "outlier_5_percent"),
-                        fixed(get(prefix + "rmse_m"), 4), percent(prefix + "within_1_sigma", 1),
-                        percent(prefix + "within_2_sigma", 1));
-  text += fmt::format("  {} points in {} views, completeness {} %\n", grouped(get("points")),
-                      grouped(get("views.count")), percent("completeness", 1));
-  const auto spread = [&](const char* name) {
-    const std::string key = std::string("views.") + name;
-    return fmt::format("{} (worst {})", percent(key + ".median"), percent(key + ".worst"));
+  Table table =
+      table_of({"depth", "median %", "mean %", "> 5 %", "RMSE [m]", "1 sigma %", "2 sigma %"});
+  for (const auto& [name, prefix] :
+       {std::pair{"best of 3 x 3", "depth."}, {"strict", "depth.strict."}}) {
+    const Shown of(metrics, prefix);
+    table.add({name, of.fixed("rel_median", 2), of.fixed("rel_mean", 2),
+               of.fixed("outlier_5_percent", 2), of.fixed("rmse_m", 4),
+               of.fixed("within_1_sigma", 1), of.fixed("within_2_sigma", 1)});
+  }
+  add(text, table);
+  const Shown of(metrics, "depth.");
+  text += fmt::format("  {} points in {} views, completeness {} %\n", of.grouped("points"),
+                      of.grouped("views.count"), of.fixed("completeness", 1));
+  const auto spread = [&](const std::string& name) {
+    return fmt::format("{} (worst {})", of.fixed("views." + name + ".median", 2),
+                       of.fixed("views." + name + ".worst", 2));
   };
   text += fmt::format("  per view: median {} %, mean {} %, over 5 % {} %, completeness {} %\n",
                       spread("rel_median"), spread("rel_mean"), spread("outlier_5_percent"),
                       spread("completeness"));
-  text += fmt::format("  per view: {} points (fewest {})\n", grouped(get("views.points.median")),
-                      grouped(get("views.points.worst")));
-  if (get("two_planes.angle_deg"))
+  text += fmt::format("  per view: {} points (fewest {})\n", of.grouped("views.points.median"),
+                      of.grouped("views.points.worst"));
+  if (of.has("two_planes.angle_deg"))
     text += fmt::format("  two planes at {} deg hold {} % of the points\n",
-                        fixed(get("two_planes.angle_deg"), 2), percent("two_planes.share", 1));
+                        of.fixed("two_planes.angle_deg", 2), of.fixed("two_planes.share", 1));
 }
 
 void add_reconstruction(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const std::string& key) { return metrics.get("reconstruction." + key); };
-  std::optional<double> observed = get("observed");
-  if (observed) *observed *= 100;
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}{:>12}{:>10}\n", "image", "SSIM", "Pearson",
-                      "RMSE log", "grad Pearson", "observed %", "views");
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}{:>12}{:>10}\n", "mean",
-                      fixed(get("ssim"), 4), fixed(get("pearson"), 4), fixed(get("rmse_log"), 4),
-                      fixed(get("gradient_pearson"), 4), fixed(observed, 1), grouped(get("views")));
-  text += fmt::format("  {:<14}{:>10}{:>10}\n", "worst view", fixed(get("worst.ssim"), 4),
-                      fixed(get("worst.pearson"), 4));
+  const Shown of(metrics, "reconstruction.");
+  Table table =
+      table_of({"image", "SSIM", "Pearson", "RMSE log", "grad Pearson", "observed %", "views"});
+  table.add({"mean", of.fixed("ssim", 4), of.fixed("pearson", 4), of.fixed("rmse_log", 4),
+             of.fixed("gradient_pearson", 4), of.fixed("observed", 1), of.grouped("views")});
+  table.add(
+      {"worst view", of.fixed("worst.ssim", 4), of.fixed("worst.pearson", 4), "", "", "", ""});
+  add(text, table);
 }
 
 void add_orientation(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key) { return metrics.get(std::string("orientation.") + key); };
+  const Shown of(metrics, "orientation.");
   text += fmt::format("  roll and pitch {} deg RMSE, heading drifts by {} deg/min\n",
-                      fixed(get("roll_pitch_rmse_deg"), 3), fixed(get("yaw_drift_deg_per_min"), 2));
-  if (get("bias_error_rad_s"))
-    text += fmt::format("  gyroscope's bias after the first rest: {} rad/s off, believed {}\n",
-                        fixed(get("bias_error_rad_s"), 6), fixed(get("bias_sigma_rad_s"), 6));
+                      of.fixed("roll_pitch_rmse_deg", 3), of.fixed("yaw_drift_deg_per_min", 2));
+  if (of.has("bias_error_rad_s"))
+    text +=
+        fmt::format("  error of the gyroscope's bias after the first rest: {} rad/s, sigma {}\n",
+                    of.fixed("bias_error_rad_s", 6), of.fixed("bias_sigma_rad_s", 6));
 }
 
 void add_rates(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key, int decimals) {
-    return fixed(metrics.get(std::string("orientation.rate_") + key), decimals);
-  };
+  const Shown of(metrics, "orientation.rate_");
   text += fmt::format("  angular velocity {} rad/s RMSE, {} % of the peak of {} rad/s\n",
-                      get("rmse_rad_s", 4), get("rmse_percent", 2), get("peak_rad_s", 2));
+                      of.fixed("rmse_rad_s", 4), of.fixed("rmse_percent", 2),
+                      of.fixed("peak_rad_s", 2));
 }
 
 void add_sharpness(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key) { return fixed(metrics.get(key), 1); };
+  const Shown of(metrics, "");
   text += fmt::format("  sharpness: raw {}, stabilized {}, by the true rotation {}\n",
-                      get("sharpness.raw"), get("sharpness.stabilized"), get("sharpness.truth"));
-  std::optional<double> within = metrics.get("stabilization.within_1px");
-  if (!within) return;
-  *within *= 100;
-  text += fmt::format("  {} % of the events within 1 px of their true place\n", fixed(within, 2));
+                      of.fixed("sharpness.raw", 1), of.fixed("sharpness.stabilized", 1),
+                      of.fixed("sharpness.truth", 1));
+  if (of.has("stabilization.within_1px"))
+    text += fmt::format("  {} % of the events within 1 px of their true position\n",
+                        of.fixed("stabilization.within_1px", 2));
 }
 
 void add_mosaic(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key) { return metrics.get(std::string("mosaic.") + key); };
-  std::optional<double> observed = get("observed");
-  if (observed) *observed *= 100;
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}\n", "mosaic", "SSIM", "Pearson", "RMSE log",
-                      "grad Pearson");
-  text += fmt::format("  {:<14}{:>10}{:>10}{:>10}{:>14}\n", "by the start", fixed(get("ssim"), 4),
-                      fixed(get("pearson"), 4), fixed(get("rmse_log"), 4),
-                      fixed(get("gradient_pearson"), 4));
-  text +=
-      fmt::format("  {:<14}{:>10}{:>10}   turned by {} deg, orientations then off by {} deg\n",
-                  "by the mean", fixed(get("aligned.ssim"), 4), fixed(get("aligned.pearson"), 4),
-                  fixed(get("alignment.rotation_deg"), 3), fixed(get("alignment.residual_deg"), 3));
+  const Shown of(metrics, "mosaic.");
+  Table table = table_of({"mosaic", "SSIM", "Pearson", "RMSE log", "grad Pearson"});
+  table.add({"aligned at the start", of.fixed("ssim", 4), of.fixed("pearson", 4),
+             of.fixed("rmse_log", 4), of.fixed("gradient_pearson", 4)});
+  table.add(
+      {"aligned by all", of.fixed("aligned.ssim", 4), of.fixed("aligned.pearson", 4), "", ""});
+  add(text, table);
+  text += fmt::format("  the alignments differ by {} deg; error of the orientations {} deg RMS\n",
+                      of.fixed("alignment.rotation_deg", 3), of.fixed("alignment.residual_deg", 3));
   text += fmt::format("  {} % of the swept area observed; {} fields of view by area, {} by width\n",
-                      fixed(observed, 1), fixed(get("span.solid_angle"), 2),
-                      fixed(get("span.horizontal"), 2));
+                      of.fixed("observed", 1), of.fixed("span.solid_angle", 2),
+                      of.fixed("span.horizontal", 2));
 }
 
 void add_ratios(std::string& text, const Metrics& metrics) {
-  const auto get = [&](const char* key) {
-    return fixed(metrics.get(std::string("refined_ratio.") + key), 2);
-  };
+  const Shown of(metrics, "refined_ratio.");
   if (metrics.values().contains("refined_ratio.trajectory.dt_rel_percent.mean"))
     text += fmt::format("  x refined optimum: dt_rel {}, dtheta {} (means)\n",
-                        get("trajectory.dt_rel_percent.mean"), get("trajectory.dtheta_deg.mean"));
+                        of.fixed("trajectory.dt_rel_percent.mean", 2),
+                        of.fixed("trajectory.dtheta_deg.mean", 2));
   if (metrics.values().contains("refined_ratio.depth.rel_median"))
     text += fmt::format("  x refined optimum: depth {} (median), {} (mean)\n",
-                        get("depth.rel_median"), get("depth.rel_mean"));
+                        of.fixed("depth.rel_median", 2), of.fixed("depth.rel_mean", 2));
 }
 
 void add_speed(std::string& text, const Metrics& metrics) {

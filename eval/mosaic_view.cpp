@@ -18,7 +18,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kStepS = 1e-3;  ///< of what is looked at over time
+constexpr double kStepS = 1e-3;  ///< between samples over time
 
 /// The rotation nearest to a matrix.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
@@ -46,26 +46,32 @@ std::vector<double> common_times(const MosaicView& view, const RunFolder& run,
   return times;
 }
 
-Eigen::Matrix3d turn_at(const Trajectory& trajectory, double t_s) {
+Eigen::Matrix3d rotation_at(const Trajectory& trajectory, double t_s) {
   return trajectory.at_clamped(t_s).rotation_matrix();
 }
 
-MosaicAlignment align_orientations(const MosaicView& view, const Trajectory& truth,
-                                   const std::vector<double>& times) {
+/// truth_from_estimate at each of the times, of the two worlds.
+std::vector<Eigen::Matrix3d> world_rotations(const MosaicView& view, const Trajectory& truth,
+                                             const std::vector<double>& times) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const double t_s : times)
+    rotations.push_back(rotation_at(truth, t_s) *
+                        rotation_at(view.world_from_camera, t_s).transpose());
+  return rotations;
+}
+
+Eigen::Matrix3d mean_rotation(const std::vector<Eigen::Matrix3d>& rotations) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  std::vector<Eigen::Matrix3d> differences;
-  for (const double t_s : times) {
-    differences.push_back(turn_at(truth, t_s) * turn_at(view.world_from_camera, t_s).transpose());
-    sum += differences.back();
-  }
-  MosaicAlignment alignment;
-  alignment.initial = differences.front();
-  alignment.mean = nearest_rotation(sum);
+  for (const Eigen::Matrix3d& rotation : rotations) sum += rotation;
+  return nearest_rotation(sum);
+}
+
+/// RMS of the angles between the rotations and `mean`.
+double rms_angle(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& mean) {
   double squares = 0;
-  for (const Eigen::Matrix3d& difference : differences)
-    squares += std::pow(angle_of(alignment.mean.transpose() * difference), 2);
-  alignment.residual_rad = std::sqrt(squares / static_cast<double>(times.size()));
-  return alignment;
+  for (const Eigen::Matrix3d& rotation : rotations)
+    squares += std::pow(angle_of(mean.transpose() * rotation), 2);
+  return std::sqrt(squares / static_cast<double>(rotations.size()));
 }
 
 /// A whole sphere at a direction, bilinear and around the seam.
@@ -76,16 +82,16 @@ float sample_sphere(const ImageF& image, const Panorama& sphere, const Eigen::Ve
   const int left = (static_cast<int>(floor_x) % image.width() + image.width()) % image.width();
   const int right = (left + 1) % image.width();
   const BilinearCell<double> rows(0, y, image.width(), image.height());
-  const double share = pixel.x() - floor_x;
+  const double weight = pixel.x() - floor_x;
   const auto at = [&](int x, int v) { return static_cast<double>(image(x, v)); };
-  const double above = at(left, rows.y0) + share * (at(right, rows.y0) - at(left, rows.y0));
+  const double above = at(left, rows.y0) + weight * (at(right, rows.y0) - at(left, rows.y0));
   const double below =
-      at(left, rows.y0 + 1) + share * (at(right, rows.y0 + 1) - at(left, rows.y0 + 1));
+      at(left, rows.y0 + 1) + weight * (at(right, rows.y0 + 1) - at(left, rows.y0 + 1));
   return static_cast<float>(above + rows.fy * (below - above));
 }
 
-ImageF turned(const ImageF& image, const Eigen::Matrix3d& truth_from_estimate,
-              const Panorama& panorama) {
+ImageF rotated(const ImageF& image, const Eigen::Matrix3d& truth_from_estimate,
+               const Panorama& panorama) {
   const Panorama sphere = Panorama::sphere(image.width());
   ImageF result(panorama.width, panorama.height);
   parallel_for(static_cast<std::size_t>(panorama.height), [&](std::size_t row) {
@@ -96,13 +102,14 @@ ImageF turned(const ImageF& image, const Eigen::Matrix3d& truth_from_estimate,
   return result;
 }
 
-/// What the true camera saw, in the estimate's world.
-std::vector<Eigen::Matrix3d> true_turns(const Trajectory& truth, const std::vector<double>& times,
-                                        const Eigen::Matrix3d& truth_from_estimate) {
-  std::vector<Eigen::Matrix3d> turns;
+/// Orientations of the true camera in the estimate's world.
+std::vector<Eigen::Matrix3d> true_rotations(const Trajectory& truth,
+                                            const std::vector<double>& times,
+                                            const Eigen::Matrix3d& truth_from_estimate) {
+  std::vector<Eigen::Matrix3d> rotations;
   for (const double t_s : times)
-    turns.push_back(truth_from_estimate.transpose() * turn_at(truth, t_s));
-  return turns;
+    rotations.push_back(truth_from_estimate.transpose() * rotation_at(truth, t_s));
+  return rotations;
 }
 
 double solid_angle(const Panorama& panorama, const auto& is_counted) {
@@ -114,18 +121,18 @@ double solid_angle(const Panorama& panorama, const auto& is_counted) {
 }
 
 void set_extent(MosaicComparison& c, const MosaicView& view, const FieldOfView& camera,
-                std::span<const Eigen::Matrix3d> turns) {
+                std::span<const Eigen::Matrix3d> rotations) {
   constexpr double kStepPx = 4;
   const Panorama& panorama = view.panorama;
-  const auto steps = thinned(turns, kStepPx / panorama.pixels_per_radian());
+  const auto steps = thinned(rotations, kStepPx / panorama.pixels_per_radian());
   const Panorama sphere = Panorama::sphere(panorama.around);
-  const ImageU8 seen = seen_by(camera, steps, sphere);
+  const ImageU8 visible = seen_by(camera, steps, sphere);
   c.swept = ImageU8(panorama.width, panorama.height);
   for (int y = 0; y < panorama.height; ++y)
     for (int x = 0; x < panorama.width; ++x)
-      c.swept(x, y) = seen((panorama.left + x) % panorama.around, panorama.top + y);
+      c.swept(x, y) = visible((panorama.left + x) % panorama.around, panorama.top + y);
   const auto is_observed = [&](int x, int y) { return view.observed(x, y) != 0; };
-  const double swept = solid_angle(sphere, [&](int x, int y) { return seen(x, y) != 0; });
+  const double swept = solid_angle(sphere, [&](int x, int y) { return visible(x, y) != 0; });
   const double found =
       solid_angle(panorama, [&](int x, int y) { return is_observed(x, y) && c.swept(x, y) != 0; });
   c.image.observed = swept > 0 ? found / swept : 0;
@@ -170,13 +177,16 @@ std::optional<MosaicComparison> compare_mosaic(const MosaicView& view, const Run
   for (float& value : truth.pixels())
     value = static_cast<float>(std::log(dataset.facts().log_eps + static_cast<double>(value)));
   MosaicComparison c;
-  c.alignment = align_orientations(view, dataset.groundtruth(), times);
+  const auto rotations = world_rotations(view, dataset.groundtruth(), times);
+  const Eigen::Matrix3d &initial = rotations.front(), mean = mean_rotation(rotations);
+  c.alignments_differ_rad = angle_of(initial.transpose() * mean);
+  c.residual_rad = rms_angle(rotations, mean);
   c.image.estimate = view.log_image;
   c.image.mask = view.observed;
-  c.image.truth = turned(truth, c.alignment.initial, view.panorama);
-  c.mean_truth = turned(truth, c.alignment.mean, view.panorama);
+  c.image.truth = rotated(truth, initial, view.panorama);
+  c.mean_truth = rotated(truth, mean, view.panorama);
   set_extent(c, view, FieldOfView(dataset.camera()),
-             true_turns(dataset.groundtruth(), times, c.alignment.initial));
+             true_rotations(dataset.groundtruth(), times, initial));
   return c;
 }
 
@@ -211,10 +221,9 @@ Metrics score_mosaic(const std::optional<MosaicComparison>& comparison) {
   set_if("span.solid_angle", [](const MosaicComparison& c) { return c.span; });
   set_if("span.horizontal", [](const MosaicComparison& c) { return c.span_horizontal; });
   set_if("alignment.residual_deg",
-         [](const MosaicComparison& c) { return kDegrees * c.alignment.residual_rad; });
-  set_if("alignment.rotation_deg", [](const MosaicComparison& c) {
-    return kDegrees * angle_of(c.alignment.initial.transpose() * c.alignment.mean);
-  });
+         [](const MosaicComparison& c) { return kDegrees * c.residual_rad; });
+  set_if("alignment.rotation_deg",
+         [](const MosaicComparison& c) { return kDegrees * c.alignments_differ_rad; });
   return metrics;
 }
 

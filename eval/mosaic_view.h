@@ -25,21 +25,17 @@ struct MosaicView {
 /// nullopt where the run holds no mosaic.yaml. InputError where it holds the rest of it malformed.
 [[nodiscard]] std::optional<MosaicView> load_mosaic(const RunFolder& run);
 
-/// The truth's world from the estimate's: an inertial sensor does not know the heading.
-struct MosaicAlignment {
-  /// Equal orientations at the beginning of the run's window.
-  Eigen::Matrix3d initial = Eigen::Matrix3d::Identity();
-  /// Least squares over the orientations within it.
-  Eigen::Matrix3d mean = Eigen::Matrix3d::Identity();
-  double residual_rad = 0;  ///< RMS of what the orientations are off after `mean`
-};
-
-/// A mosaic beside ln(eps + I) of the dataset's panorama, as the mosaic's pixels see it.
+/// A mosaic beside ln(eps + I) of the dataset's panorama, sampled at the mosaic's pixels.
+/// The truth's world is aligned with the estimate's in two ways, since an inertial sensor does not
+/// know the heading.
 struct MosaicComparison {
-  MosaicAlignment alignment;
-  ImageComparison image;       ///< by the initial orientation; observed: share of the area `swept`
-  ImageF mean_truth;           ///< by the mean one
-  ImageU8 swept;               ///< 1 where the true camera saw the mosaic's pixel
+  double alignments_differ_rad = 0;  ///< angle between the two alignments
+  double residual_rad = 0;           ///< RMS error of the orientations after the mean one
+  /// Aligned by equal orientations at the beginning of the run's window; its `observed` is the
+  /// fraction of the area `swept`.
+  ImageComparison image;
+  ImageF mean_truth;           ///< aligned by least squares over the orientations of the window
+  ImageU8 swept;               ///< 1 where the mosaic's pixel came into the true camera's view
   double span = 0;             ///< solid angle observed against the camera's field of view
   double span_horizontal = 0;  ///< angle of the columns observed against the camera's
 };
@@ -51,7 +47,7 @@ struct MosaicComparison {
 
 /// mosaic.{ssim,pearson,rmse_log,mse,gradient_pearson,fit.scale,fit.offset} by the initial
 /// orientation, mosaic.aligned.{ssim,pearson} by the mean one, mosaic.alignment.{rotation_deg (from
-/// the one to the other),residual_deg}, mosaic.observed (share of the solid angle that came into
+/// the one to the other),residual_deg}, mosaic.observed (fraction of the solid angle that came into
 /// view), mosaic.span.{solid_angle,horizontal} (in fields of view). Scores are null without truth.
 [[nodiscard]] Metrics score_mosaic(const std::optional<MosaicComparison>& comparison);
 

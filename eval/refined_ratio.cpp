@@ -53,13 +53,14 @@ Metrics refined_ratios(const Metrics& scores, const Metrics& refined) {
 
 const RunFolder* find_refined(const RunFolder& run, std::span<const RunFolder* const> runs) {
   if (run.record.module == "refine") return nullptr;
-  const RunFolder* alike = nullptr;
+  const RunFolder* of_same_module = nullptr;
   for (const RunFolder* other : runs) {
     if (other->record.module != "refine" || !is_same_dataset(run.record, other->record)) continue;
     if (is_same_folder(other->record.from, run.folder)) return other;
-    if (alike == nullptr && refined_module(other->record) == run.record.module) alike = other;
+    if (of_same_module == nullptr && refined_module(other->record) == run.record.module)
+      of_same_module = other;
   }
-  return alike;
+  return of_same_module;
 }
 
 }  // namespace saccade

@@ -11,7 +11,7 @@
 #include "core/io/run_record.h"
 #include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 
 namespace saccade {
 

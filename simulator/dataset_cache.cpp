@@ -21,8 +21,8 @@
 #include "core/progress.h"
 #include "core/version.h"
 #include "simulator/motion/motion.h"
+#include "simulator/resume.h"
 #include "simulator/scene/scene_builder.h"
-#include "simulator/unfinished.h"
 
 namespace saccade {
 namespace {

@@ -33,13 +33,14 @@ std::uint64_t checksum_of(std::string_view bytes) {
 
 }  // namespace
 
-EventLog::EventLog(const std::filesystem::path& folder, const CheckpointPace& pace)
-    : folder_(folder), pace_(pace) {
+EventLog::EventLog(const std::filesystem::path& folder, std::chrono::milliseconds shortest_interval,
+                   int time_divisor)
+    : folder_(folder), shortest_interval_(shortest_interval), time_divisor_(time_divisor) {
   std::filesystem::create_directories(folder);
   if (std::filesystem::exists(folder / "checkpoint")) read_checkpoint();
   journal_.emplace(folder / "events.journal", head_.journal_length);
   journal_->read([](std::span<const std::byte>) {});  // whether it is damaged
-  next_ = Clock::now() + pace_.shortest;
+  next_ = Clock::now() + shortest_interval_;
 }
 
 void EventLog::read_checkpoint() {
@@ -96,7 +97,7 @@ void EventLog::write_checkpoint(std::string_view payload) {
   std::memcpy(text.data(), &head_, sizeof head_);
   write_atomically(folder_ / "checkpoint", text);
   const Clock::time_point end = Clock::now();
-  next_ = end + std::max<Clock::duration>(pace_.shortest, pace_.time_share * (end - start));
+  next_ = end + std::max<Clock::duration>(shortest_interval_, time_divisor_ * (end - start));
 }
 
 void EventLog::replay(const std::function<void(std::span<const SensedEvent>)>& use) const {

@@ -12,15 +12,9 @@
 
 #include "core/io/block_journal.h"
 #include "simulator/sensor/event_tile.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
-
-/// How often an unfinished recording is saved.
-struct CheckpointPace {
-  std::chrono::milliseconds shortest{500};  ///< from one checkpoint to the next
-  int time_share = 20;                      ///< saving takes at most 1 / this of the time
-};
 
 /// The events of a recording in the making, with what the event camera needs to go on from there,
 /// in a folder that outlives an interrupted program: `events.journal`, 16 bytes an event in blocks
@@ -30,8 +24,11 @@ struct CheckpointPace {
 class EventLog {
  public:
   /// Goes on with what `folder` holds, which is created when it is not there. InputError when that
-  /// is damaged.
-  explicit EventLog(const std::filesystem::path& folder, const CheckpointPace& pace = {});
+  /// is damaged. `shortest_interval`: from one checkpoint to the next; saving takes at most
+  /// 1 / `time_divisor` of the time.
+  explicit EventLog(const std::filesystem::path& folder,
+                    std::chrono::milliseconds shortest_interval = std::chrono::milliseconds(500),
+                    int time_divisor = 20);
 
   /// Time up to which the log holds all events that the state stands for [s]; 0 for a new one.
   [[nodiscard]] double reached_s() const { return head_.reached_s; }
@@ -67,7 +64,8 @@ class EventLog {
   void write_checkpoint(std::string_view payload);
 
   std::filesystem::path folder_;
-  CheckpointPace pace_;
+  std::chrono::milliseconds shortest_interval_;
+  int time_divisor_;
   Head head_;
   std::string state_;
   std::optional<EventStatistics> statistics_;

@@ -15,12 +15,13 @@ std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 *
 
 /// Records what the log does not hold yet.
 template <class Camera>
-void fill(const Take& take) {
-  Camera camera(take.scene, take.world_from_camera, take.camera, take.events, take.seed);
-  double shown_s = take.log.reached_s();
-  Progress progress("events", microseconds(take.duration_s()), "simulated us",
+void fill(const CameraRecording& recording) {
+  Camera camera(recording.scene, recording.world_from_camera, recording.camera, recording.events,
+                recording.seed);
+  double shown_s = recording.log.reached_s();
+  Progress progress("events", microseconds(recording.duration_s()), "simulated us",
                     microseconds(shown_s));
-  record_into(take.log, camera, take.duration_s(), [&](double t_s) {
+  record_into(recording.log, camera, recording.duration_s(), [&](double t_s) {
     progress.add(microseconds(t_s) - microseconds(shown_s));
     shown_s = t_s;
   });
@@ -30,18 +31,19 @@ void fill(const Take& take) {
 constexpr std::size_t kLabelBatch = 4096;
 
 /// The events of the log, and their labels where they are asked for.
-void write(const Take& take) {
+void write(const CameraRecording& recording) {
   std::optional<LabelsH5Writer> labels;
-  if (take.config.groundtruth.event_labels) labels.emplace(take.writer.folder() / "labels.h5");
-  const EventLabeller labeller(take.scene, take.world_from_camera, take.camera);
+  if (recording.config.groundtruth.event_labels)
+    labels.emplace(recording.writer.folder() / "labels.h5");
+  const EventLabeller labeller(recording.scene, recording.world_from_camera, recording.camera);
   Events events;
   SensedEvents unlabelled;
-  take.log.replay([&](std::span<const SensedEvent> part) {
+  recording.log.replay([&](std::span<const SensedEvent> part) {
     events.clear();
     for (const SensedEvent& event : part) events.push_back(event.event());
-    take.writer.write_events(events);
+    recording.writer.write_events(events);
     if (!labels) return;
-    // Packets of rays are filled alike however the log is cut: what a ray at an edge meets may
+    // Packets of rays are filled alike however the log is cut: what a ray at an edge intersects may
     // depend on its neighbours.
     unlabelled.insert(unlabelled.end(), part.begin(), part.end());
     const auto whole = static_cast<std::ptrdiff_t>(unlabelled.size() / kLabelBatch * kLabelBatch);
@@ -55,15 +57,15 @@ void write(const Take& take) {
 
 }  // namespace
 
-EventStatistics record_events(const Take& take) {
-  if (!take.log.statistics()) {
-    if (take.events.sampling == Sampling::kFrames)
-      fill<FrameCamera>(take);
+EventStatistics record_events(const CameraRecording& recording) {
+  if (!recording.log.statistics()) {
+    if (recording.events.sampling == Sampling::kFrames)
+      fill<FrameCamera>(recording);
     else
-      fill<EventCamera>(take);
+      fill<EventCamera>(recording);
   }
-  write(take);
-  return *take.log.statistics();
+  write(recording);
+  return *recording.log.statistics();
 }
 
 }  // namespace saccade

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "simulator/camera_recording.h"
 #include "simulator/sensor/event_camera.h"
-#include "simulator/take.h"
 
 namespace saccade {
 
 /// Records the events into the log, from where an interrupted program left off, and writes them
 /// from there. The bytes do not depend on interruptions.
-EventStatistics record_events(const Take& take);
+EventStatistics record_events(const CameraRecording& recording);
 
 }  // namespace saccade

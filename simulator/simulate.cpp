@@ -11,9 +11,9 @@
 #include "simulator/record_events.h"
 #include "simulator/record_groundtruth.h"
 #include "simulator/record_images.h"
+#include "simulator/resume.h"
 #include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
-#include "simulator/unfinished.h"
 
 namespace saccade {
 namespace {
@@ -32,37 +32,40 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-DatasetRecord facts(const Take& take, const EventStatistics& events, double path_length_m) {
+DatasetRecord facts(const CameraRecording& recording, const EventStatistics& events,
+                    double path_length_m) {
   DatasetRecord record;
-  record.seed = take.config.seed;
-  record.config_yaml = config::print(take.config);
-  record.duration_s = take.duration_s();
-  record.contrast_on = take.events.contrast.on;
-  record.contrast_off = take.events.contrast.off;
-  record.log_eps = take.events.log_eps;
+  record.seed = recording.config.seed;
+  record.config_yaml = config::print(recording.config);
+  record.duration_s = recording.duration_s();
+  record.contrast_on = recording.events.contrast.on;
+  record.contrast_off = recording.events.contrast.off;
+  record.log_eps = recording.events.log_eps;
   record.rays = static_cast<std::int64_t>(events.rays);
   record.lit_points = static_cast<std::int64_t>(events.lit_points);
   record.surface_looks = static_cast<std::int64_t>(events.surface_looks);
-  if (take.events.noise.readout.on()) record.lost_events = static_cast<std::int64_t>(events.lost);
+  if (recording.events.noise.readout.on())
+    record.lost_events = static_cast<std::int64_t>(events.lost);
   record.time_bound_us = 1e6 * events.time_bound_s;
   record.path_length_m = path_length_m;
   return record;
 }
 
 /// Records what one camera sees; the first one carries the IMU.
-CameraReport record_camera(const Take& take, bool is_first, const std::string& name) {
+CameraReport record_camera(const CameraRecording& recording, bool is_first,
+                           const std::string& name) {
   Stopwatch watch;
   CameraReport report;
-  const double path_length_m = record_groundtruth(take);
-  if (is_first) record_imu(take);
-  if (is_first) record_panorama(take);
-  record_images(take);
+  const double path_length_m = record_groundtruth(recording);
+  if (is_first) record_imu(recording);
+  if (is_first) record_panorama(recording);
+  record_images(recording);
   report.images_s = watch.lap();
-  report.events = record_events(take);
+  report.events = record_events(recording);
   report.events_s = watch.lap();
-  DatasetRecord record = facts(take, report.events, path_length_m);
+  DatasetRecord record = facts(recording, report.events, path_length_m);
   record.name = name;
-  report.record = take.writer.finish(std::move(record));
+  report.record = recording.writer.finish(std::move(record));
   return report;
 }
 
@@ -98,10 +101,10 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
       return is_first ? root : root / camera.folder;
     };
     DatasetWriter writer(within(folder.path()), camera.camera, options);
-    const Take take{config, camera.camera, camera.events, camera.seed,
-                    scene,  camera_motion, writer,        *logs[i]};
+    const CameraRecording recording{config, camera.camera, camera.events, camera.seed,
+                                    scene,  camera_motion, writer,        *logs[i]};
     report.cameras[i] =
-        record_camera(take, is_first, within(folder.target().filename()).generic_string());
+        record_camera(recording, is_first, within(folder.target().filename()).generic_string());
   }
   folder.commit();
   report.total_s = whole.lap();

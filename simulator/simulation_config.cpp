@@ -9,7 +9,8 @@ constexpr double kHighestRate_hz = 1e6;
 
 /// `gamma: srgb` or a number.
 void describe_gamma(config::Fields& fields, std::optional<double>& gamma) {
-  const char* const help = "8-bit pictures: srgb, or a number for the power 1 / gamma";
+  const char* const help =
+      "Tone curve of the 8-bit frames: srgb, or a number for the power 1 / gamma.";
   const bool number =
       fields.reading() ? fields.form("gamma") == config::Form::kNumber : gamma.has_value();
   if (number) {
@@ -26,77 +27,108 @@ void describe_gamma(config::Fields& fields, std::optional<double>& gamma) {
 }  // namespace
 
 void describe(config::Fields& fields, PinholeCamera& camera) {
-  fields.value("width", camera.width, "[px]").range(2, 65535);
-  fields.value("height", camera.height, "[px]").range(2, 65535);
-  fields.value("fx", camera.fx, "focal length [px]").range(1, 1e6);
-  fields.value("fy", camera.fy, "focal length [px]").range(1, 1e6);
+  fields.value("width", camera.width, "Width of the image, in pixels.").range(2, 65535);
+  fields.value("height", camera.height, "Height of the image, in pixels.").range(2, 65535);
+  fields.value("fx", camera.fx, "Horizontal focal length, in pixels.").range(1, 1e6);
+  fields.value("fy", camera.fy, "Vertical focal length, in pixels.").range(1, 1e6);
   // The principal point of another sensor size is its own centre unless stated.
   if (fields.has("width") || fields.has("height")) {
     camera.cx = 0.5 * (camera.width - 1);
     camera.cy = 0.5 * (camera.height - 1);
   }
-  fields.value("cx", camera.cx, "principal point [px]; default: the image's centre")
+  fields
+      .value("cx", camera.cx,
+             "Column of the principal point, in pixels; the default is the centre of the image.")
       .range(-1e6, 1e6);
-  fields.value("cy", camera.cy, "principal point [px]; default: the image's centre")
+  fields
+      .value("cy", camera.cy,
+             "Row of the principal point, in pixels; the default is the centre of the image.")
       .range(-1e6, 1e6);
-  fields.value("distortion", camera.distortion, "k1 k2 p1 p2 k3").range(-100, 100);
+  fields.value("distortion", camera.distortion, "Lens distortion k1, k2, p1, p2, k3 as in OpenCV.")
+      .range(-100, 100);
 }
 
 void describe(config::Fields& fields, FrameOptions& options) {
-  fields.value("rate_hz", options.rate_hz, "grey frames per second; 0: none")
+  fields.value("rate_hz", options.rate_hz, "Number of grey frames per second. 0 disables frames.")
       .range(0, kHighestRate_hz);
-  fields.value("exposure_s", options.exposure_s, "centred on the frame's time; 0: sharp [s]")
+  fields
+      .value("exposure_s", options.exposure_s,
+             "Exposure of a frame, centred on its time, in seconds; longer exposures blur motion. "
+             "0 gives sharp frames.")
       .range(0, 1);
   fields.choice("radiance", options.radiance,
                 {{"exposed", FrameOptions::Radiance::kExposed},
                  {"instant", FrameOptions::Radiance::kInstant}},
-                "the EXR shows the exposure, as the PNG does, or the frame's instant");
-  fields.value("gain", options.tone.gain, "8-bit pictures: radiance 1 / gain is white")
+                "Whether the EXR file shows the exposure, as the PNG file does, or the scene at "
+                "the time of the frame, without blur.");
+  fields
+      .value("gain", options.tone.gain,
+             "Gain of the 8-bit frames: radiance 1 / gain becomes white.")
       .range(1e-6, 1e6);
   describe_gamma(fields, options.tone.gamma);
 }
 
 void describe(config::Fields& fields, RigCameraOptions& options) {
-  fields.section("camera", options.camera, "default: the first camera's");
+  fields.section("camera", options.camera,
+                 "Lens and image size; the default is that of the first camera.");
   fields
       .value("T_camera0_camera", options.camera0_from_camera,
-             "4 x 4, point in the first camera = T * point in this one [m]")
+             "Pose as a 4 x 4 matrix: a point in the first camera is T times the point in this "
+             "camera, in metres.")
       .required();
-  fields.section("events", options.events, "default: the first camera's");
+  fields.section("events", options.events,
+                 "Event pixels; the default is those of the first camera.");
 }
 
 void describe(config::Fields& fields, GroundtruthOptions& options) {
-  fields.value("pose_rate_hz", options.pose_rate_hz, "poses per second, both ends included")
+  fields
+      .value("pose_rate_hz", options.pose_rate_hz,
+             "Number of ground-truth poses per second; the first and the last time of the "
+             "recording are included.")
       .range(0.1, kHighestRate_hz);
-  fields.value("depth_rate_hz", options.depth_rate_hz, "depth maps per second besides the frames'")
+  fields
+      .value("depth_rate_hz", options.depth_rate_hz,
+             "Number of depth maps per second, in addition to one at every frame. 0 gives those of "
+             "the frames alone.")
       .range(0, kHighestRate_hz);
-  fields.value("flow_rate_hz", options.flow_rate_hz, "motion fields per second")
+  fields
+      .value("flow_rate_hz", options.flow_rate_hz,
+             "Number of motion fields per second. 0 disables them.")
       .range(0, kHighestRate_hz);
   fields.value("event_labels", options.event_labels,
-               "labels.h5: depth, motion, object and origin of every event");
+               "Whether labels.h5 is written: depth, motion, object and origin of every event.");
   fields
       .value("panorama_px_per_rad", options.panorama_px_per_rad,
-             "panorama.exr: all that is seen from the first position, so fine; 0: none")
+             "Resolution of panorama.exr, the whole sphere as seen from the first position, in "
+             "pixels per radian. 0 disables it.")
       .range(0, 5000);
 }
 
 void describe(config::Fields& fields, SimulationConfig& config) {
-  fields.section("scene", config.scene, "meshes, background and light").required();
-  fields.section("trajectory", config.trajectory, "motion of the camera").required();
-  fields.value("start_s", config.start_s, "from the trajectory's first pose [s]").at_least(0);
-  fields.value("duration_s", config.duration_s, "default: to the trajectory's end [s]").above(0);
-  fields.section("camera", config.camera, "pinhole camera with lens distortion");
-  fields.section("events", config.events, "event pixels");
+  fields.section("scene", config.scene, "Meshes, background and light.").required();
+  fields.section("trajectory", config.trajectory, "Motion of the camera.").required();
   fields
-      .list("rig", config.rig, "further cameras, fixed to the first",
+      .value("start_s", config.start_s,
+             "Start of the recording, in seconds after the first pose of the trajectory.")
+      .at_least(0);
+  fields
+      .value("duration_s", config.duration_s,
+             "Length of the recording, in seconds; the default is the rest of the trajectory.")
+      .above(0);
+  fields.section("camera", config.camera, "Pinhole camera with lens distortion.");
+  fields.section("events", config.events, "Event pixels and their imperfections.");
+  fields
+      .list("rig", config.rig, "Further cameras, fixed to the first one.",
             {config.camera, Rigid3(), config.events})
       .length(0, 63);
-  fields.section("imu", config.imu, "inertial sensor");
-  fields.section("frames", config.frames, "grey frames");
-  fields.section("groundtruth", config.groundtruth, "rates of the ground truth");
-  fields.value("gravity_m_s2", config.gravity_m_s2, "gravity in the world [m/s^2]")
+  fields.section("imu", config.imu, "Inertial sensor.");
+  fields.section("frames", config.frames, "Grey frames.");
+  fields.section("groundtruth", config.groundtruth, "Rates of the ground truth.");
+  fields.value("gravity_m_s2", config.gravity_m_s2, "Gravity in the world, in m/s^2.")
       .range(-1000, 1000);
-  fields.value("seed", config.seed, "of all random numbers");
+  fields.value("seed", config.seed,
+               "Seed of all random numbers of the sensors; another seed gives another realisation "
+               "of their noise.");
 }
 
 }  // namespace saccade

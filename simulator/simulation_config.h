@@ -13,20 +13,20 @@
 #include "simulator/motion/motion_options.h"
 #include "simulator/scene/scene_options.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/imu.h"
+#include "simulator/sensor/imu/imu.h"
 
 namespace saccade {
 
 /// Grey frames (section `frames`): frame k shows time k / rate_hz.
 struct FrameOptions {
-  double rate_hz = 24;  ///< 0: none
+  double rate_hz = 24;
   /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
   /// recording.
   double exposure_s = 0;
   /// What the EXR holds: the exposure that the PNG shows, or the frame's instant, without blur.
   enum class Radiance { kExposed, kInstant };
   Radiance radiance = Radiance::kExposed;
-  ToneCurve tone;  ///< of the 8-bit pictures: keys `gain` and `gamma`; the EXR holds radiance
+  ToneCurve tone;
 };
 
 /// A further camera of a rig (list `rig`), fixed to the first one.
@@ -38,10 +38,10 @@ struct RigCameraOptions {
 
 /// Rates of the ground truth, from time 0 (section `groundtruth`); 0: none.
 struct GroundtruthOptions {
-  double pose_rate_hz = 1000;  ///< the last pose is at the recording's end, whatever the rate
-  double depth_rate_hz = 10;   ///< besides at the time of every frame
+  double pose_rate_hz = 1000;
+  double depth_rate_hz = 10;
   double flow_rate_hz = 0;
-  bool event_labels = false;  ///< labels.h5
+  bool event_labels = false;
   /// Pixels per radian of panorama.exr, what is seen all around at time 0; 0: none.
   double panorama_px_per_rad = 0;
 };
@@ -50,8 +50,8 @@ struct GroundtruthOptions {
 struct SimulationConfig {
   SceneOptions scene;
   MotionOptions trajectory;
-  double start_s = 0;                ///< from the trajectory's first pose
-  std::optional<double> duration_s;  ///< default: to the trajectory's end
+  double start_s = 0;
+  std::optional<double> duration_s;
   PinholeCamera camera{240, 180, 200, 200, 119.5, 89.5, {}};
   EventOptions events;
   std::vector<RigCameraOptions> rig;  ///< unless stated with the first camera's lens and pixels

@@ -2,8 +2,10 @@
 
 namespace saccade::config {
 
-void Session::read(const Document& document, const std::function<void(Fields&)>& describe_root) {
-  const Fields root(Fields::Mode::kRead, {}, nullptr, document.root().place);
+void Session::read(const Document& document, const std::function<void(Fields&)>& describe_root,
+                   std::span<const FormerKey> former) {
+  Fields root(Fields::Mode::kRead, {}, nullptr, document.root().location);
+  root.former_keys_ = former;
   root.child({}, &document.root(), describe_root);
 }
 
@@ -13,6 +15,14 @@ Node Session::write(const std::function<void(Fields&)>& describe_root) {
 
 void Session::check(const std::function<void(Fields&)>& describe_root) {
   Fields(Fields::Mode::kCheck, {}, nullptr, {}).child({}, nullptr, describe_root);
+}
+
+std::vector<ReferenceKey> Session::reference(const std::function<void(Fields&)>& describe_root) {
+  return explore_keys([&](ReferenceRecord& record) {
+    Fields root(Fields::Mode::kReference, {}, nullptr, {});
+    root.reference_ = &record;
+    root.child({}, nullptr, describe_root);
+  });
 }
 
 }  // namespace saccade::config

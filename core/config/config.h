@@ -1,10 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/config/document.h"
 #include "core/config/fields.h"
+#include "core/config/former_keys.h"
+#include "core/config/reference.h"
 #include "core/config/yaml_emit.h"
 
 namespace saccade::config {
@@ -12,18 +16,24 @@ namespace saccade::config {
 /// Runs a description in the modes of Fields; use the functions below.
 class Session {
  public:
-  static void read(const Document& document, const std::function<void(Fields&)>& describe_root);
+  static void read(const Document& document, const std::function<void(Fields&)>& describe_root,
+                   std::span<const FormerKey> former);
   [[nodiscard]] static Node write(const std::function<void(Fields&)>& describe_root);
   static void check(const std::function<void(Fields&)>& describe_root);
+  [[nodiscard]] static std::vector<ReferenceKey> reference(
+      const std::function<void(Fields&)>& describe_root);
 };
 
 /// Reads a whole document into a struct with a describe(Fields&, T&); `options` holds the defaults.
-/// Throws InputError with its place for unknown keys (with the nearest valid one), wrong types,
-/// values out of range and missing required keys. Conditions between keys belong into describe()
-/// (Fields::expect); no other check is called.
+/// Throws InputError with its location for unknown keys (with what a former key of the table
+/// `former` is called now, or else the nearest valid key), wrong types, values out of range and
+/// missing required keys. Conditions between keys belong into describe() (Fields::expect); no other
+/// check is called.
 template <class T>
-[[nodiscard]] T read(const Document& document, T options = {}) {
-  Session::read(document, [&](Fields& fields) { describe(fields, options); });
+[[nodiscard]] T read(const Document& document, T options = {},
+                     std::span<const FormerKey> former = former_keys()) {
+  Session::read(
+      document, [&](Fields& fields) { describe(fields, options); }, former);
   return options;
 }
 
@@ -40,8 +50,18 @@ template <class T>
   return to_yaml(Session::write([&](Fields& fields) { describe(fields, options); }), true);
 }
 
+/// All keys of a T with their defaults, rules and help, those of choices that are not taken by
+/// default included.
+template <class T>
+[[nodiscard]] std::vector<ReferenceKey> reference() {
+  return Session::reference([](Fields& fields) {
+    T options;
+    describe(fields, options);
+  });
+}
+
 /// Checks options that code has set against the ranges of their describe(). Throws InputError whose
-/// place is the key.
+/// location is the key.
 template <class T>
 void check(T options) {
   Session::check([&](Fields& fields) { describe(fields, options); });

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMaxExactWhole = 9007199254740992.0;
 
 [[noreturn]] void fail(const Node& node, const std::string& name, const std::string& problem) {
-  throw error_at(node.place, name, ": ", problem);
+  throw error_at(node.location, name, ": ", problem);
 }
 
 [[noreturn]] void fail_expected(const Node& node, const std::string& name,
@@ -156,8 +156,8 @@ void from_node(const Node& node, const std::string& name, std::string& value) {
 void from_node(const Node& node, const std::string& name, std::filesystem::path& value) {
   if (node.kind != Node::Kind::kScalar) fail_expected(node, name, "a path");
   value = node.text;
-  if (value.empty() || value.is_absolute() || !node.place.source) return;
-  value = (node.place.source->folder / value).lexically_normal();
+  if (value.empty() || value.is_absolute() || !node.location.source) return;
+  value = (node.location.source->folder / value).lexically_normal();
 }
 
 Node to_node(bool value) { return Node::scalar(value ? "true" : "false", false); }

@@ -14,7 +14,7 @@
 
 namespace saccade::config {
 
-/// Strict conversions between nodes and values. from_node throws InputError at the node's place,
+/// Strict conversions between nodes and values. from_node throws InputError at the node's location,
 /// calling it `name`; numbers are finite and without rest ("1e6" is a whole number, "1.5" and "'3'"
 /// are not). to_node writes what from_node reads back to the same value, doubles in their shortest
 /// exact form.

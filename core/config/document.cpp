@@ -13,7 +13,7 @@
 #include "core/config/merge.h"
 #include "core/config/yaml_parse.h"
 #include "core/error.h"
-#include "core/io/input_log.h"
+#include "core/io/files/input_log.h"
 
 namespace saccade::config {
 namespace {
@@ -23,17 +23,17 @@ namespace fs = std::filesystem;
 /// A configuration is written by people; a larger file is data given by mistake.
 constexpr std::uintmax_t kMaxBytes = 16 << 20;
 
-std::string read_text(const fs::path& file, const std::string& place) {
+std::string read_text(const fs::path& file, const std::string& location) {
   std::error_code error;
-  if (!fs::exists(file, error)) throw InputError(place, "no such file '" + file.string() + "'");
+  if (!fs::exists(file, error)) throw InputError(location, "no such file '" + file.string() + "'");
   if (fs::is_directory(file, error))
-    throw InputError(place, "'" + file.string() + "' is a folder, expected a YAML file");
+    throw InputError(location, "'" + file.string() + "' is a folder, expected a YAML file");
   if (const auto size = fs::file_size(file, error); !error && size > kMaxBytes)
-    throw InputError(place, "'" + file.string() + "' is too large to be a configuration");
+    throw InputError(location, "'" + file.string() + "' is too large to be a configuration");
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad())
-    throw InputError(place, "cannot read '" + file.string() + "'");
+    throw InputError(location, "cannot read '" + file.string() + "'");
   InputLog::note(file.string(), std::as_bytes(std::span(text)));
   return text;
 }
@@ -41,14 +41,14 @@ std::string read_text(const fs::path& file, const std::string& place) {
 /// A file and what it includes, files that include each other excluded.
 class Loader {
  public:
-  Node load(const fs::path& file, const Place& stated_at) {
-    const std::string place = stated_at.source ? stated_at.text() : file.string();
+  Node load(const fs::path& file, const SourceLocation& stated_at) {
+    const std::string location = stated_at.source ? stated_at.text() : file.string();
     std::error_code error;
     const fs::path identity = fs::weakly_canonical(file, error);
     if (std::find(open_.begin(), open_.end(), identity) != open_.end())
-      throw InputError(place, "include cycle: '" + file.string() + "' includes itself");
+      throw InputError(location, "include cycle: '" + file.string() + "' includes itself");
     open_.push_back(identity);
-    Node root = parse(read_text(file, place), file.string(), file.parent_path());
+    Node root = parse(read_text(file, location), file.string(), file.parent_path());
     open_.pop_back();
     return root;
   }
@@ -56,12 +56,12 @@ class Loader {
   Node parse(std::string_view text, const std::string& name, const fs::path& folder) {
     const auto source = std::make_shared<const Source>(Source{name, folder});
     Node stated = parse_yaml(text, source);
-    if (stated.kind == Node::Kind::kNull) stated = empty_map(stated.place);
+    if (stated.kind == Node::Kind::kNull) stated = empty_map(stated.location);
     require_map(stated);
-    Node root = empty_map(stated.place);
+    Node root = empty_map(stated.location);
     if (Entry* include = stated.find("include")) {
-      for (const auto& [file, place] : included_files(include->value))
-        merge(root, load(file, place));
+      for (const auto& [file, location] : included_files(include->value))
+        merge(root, load(file, location));
       stated.entries.erase(stated.entries.begin() + (include - stated.entries.data()));
     }
     merge(root, std::move(stated));
@@ -69,9 +69,9 @@ class Loader {
   }
 
  private:
-  static Node empty_map(const Place& place) {
+  static Node empty_map(const SourceLocation& location) {
     Node node = Node::map();
-    node.place = place;
+    node.location = location;
     return node;
   }
 
@@ -79,15 +79,15 @@ class Loader {
     if (root.kind == Node::Kind::kMap) return;
     const bool no_space =
         root.kind == Node::Kind::kScalar && root.text.find(':') != std::string::npos;
-    throw InputError(root.place.text(), "expected 'key: value' lines, got " + root.shown() +
-                                            (no_space ? "; a space must follow ':'" : ""));
+    throw InputError(root.location.text(), "expected 'key: value' lines, got " + root.shown() +
+                                               (no_space ? "; a space must follow ':'" : ""));
   }
 
-  static std::vector<std::pair<fs::path, Place>> included_files(const Node& include) {
+  static std::vector<std::pair<fs::path, SourceLocation>> included_files(const Node& include) {
     const bool single = include.kind != Node::Kind::kList;
-    std::vector<std::pair<fs::path, Place>> files;
+    std::vector<std::pair<fs::path, SourceLocation>> files;
     for (const Node& item : single ? std::vector{include} : include.items)
-      from_node(item, "include", files.emplace_back(fs::path(), item.place).first);
+      from_node(item, "include", files.emplace_back(fs::path(), item.location).first);
     return files;
   }
 
@@ -107,7 +107,7 @@ Document::Document(Node root) : root_(std::move(root)) {
 
 Document Document::empty(std::span<const std::string> overrides) {
   Node root = Node::map();
-  root.place.source = std::make_shared<const Source>(Source{"configuration", {}});
+  root.location.source = std::make_shared<const Source>(Source{"configuration", {}});
   return with_overrides(std::move(root), overrides);
 }
 

@@ -10,8 +10,8 @@
 
 namespace saccade::config {
 
-Fields::Fields(Mode mode, std::string path, const Node* input, Place place)
-    : mode_(mode), path_(std::move(path)), input_(input), place_(std::move(place)) {}
+Fields::Fields(Mode mode, std::string path, const Node* input, SourceLocation location)
+    : mode_(mode), path_(std::move(path)), input_(input), location_(std::move(location)) {}
 
 std::string Fields::name_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
@@ -34,9 +34,22 @@ const Node* Fields::put(std::string_view key, Node value, std::string_view help)
 }
 
 void Fields::note(const std::string& name, const std::string& text) {
+  if (reference_ != nullptr) reference_->add_rule(name, text);
   if (!writing()) return;
   Entry* entry = output_.find(std::string_view(name).substr(path_.empty() ? 0 : path_.size() + 1));
-  if (entry != nullptr) entry->comment += (entry->comment.empty() ? "" : "; ") + text;
+  if (entry != nullptr) entry->rules += (entry->rules.empty() ? "" : ", ") + text;
+}
+
+void Fields::record(std::string_view key, const std::string& type, const Node& initial,
+                    std::string_view help) {
+  if (reference_ == nullptr) return;
+  const std::string shown = initial.kind == Node::Kind::kMap ? "" : to_flow_yaml(initial);
+  reference_->keys.push_back({name_of(key), type, shown, {}, std::string(help), {}});
+}
+
+bool Fields::explored(std::string_view key, bool current) {
+  if (reference_ == nullptr) return current;
+  return reference_->take(name_of(key), {"false", "true"}, current ? 1 : 0) == 1;
 }
 
 void Fields::require(const std::string& name) {
@@ -45,6 +58,7 @@ void Fields::require(const std::string& name) {
 }
 
 Form Fields::form(std::string_view key) const {
+  if (reference_ != nullptr) return reference_->form(name_of(key));
   const Node* node = input_at(key);
   if (node == nullptr) return Form::kAbsent;
   switch (node->kind) {
@@ -67,14 +81,18 @@ std::size_t Fields::choose(std::string_view key, const std::vector<std::string>&
     std::string text;
     from_node(*node, name_of(key), text);
     const auto found = std::find(names.begin(), names.end(), text);
+    const auto former_value = explain_former_key(name_of(key) + "=" + text, former_keys_);
     if (found == names.end())
       fail(*node, name_of(key), ": ",
-           "unknown value '" + text + "'; " + suggestion(text, names, "values"));
+           former_value.value_or("unknown value '" + text + "'; " +
+                                 suggestion(text, names, "values")));
     current = static_cast<std::size_t>(found - names.begin());
   }
   if (mode_ == Mode::kProbe && probed_ != nullptr && probed_->key == key) current = probed_->taken;
-  if (writing())
-    put(key, Node::scalar(names[current], true), std::string(help) + ": " + joined(names));
+  record(key, "choice", Node::scalar(names[current], true), help);
+  if (reference_ != nullptr) current = reference_->take(name_of(key), names, current);
+  if (writing()) put(key, Node::scalar(names[current], true), help);
+  note(name_of(key), joined(names));
   choices_.push_back({std::string(key), names, current});
   return current;
 }
@@ -82,6 +100,7 @@ std::size_t Fields::choose(std::string_view key, const std::vector<std::string>&
 Rule Fields::group(std::string_view key, const Describe& describe_group, std::string_view help) {
   const Node* node = declare(key);
   if (node != nullptr && node->kind == Node::Kind::kNull) node = nullptr;
+  record(key, "section", Node::map(), help);
   if (mode_ != Mode::kProbe) {
     Node output = child(name_of(key), node, describe_group);
     if (writing()) put(key, std::move(output), help);
@@ -95,6 +114,13 @@ Rule Fields::each(std::string_view key, std::size_t size,
                   std::string_view help) {
   const std::string name = name_of(key);
   const Node* node = declare(key);
+  if (mode_ == Mode::kReference) {
+    record(key, "list of sections", Node::list(), help);
+    resize(1);
+    child(name + "[]", nullptr, [&](Fields& fields) { describe_item(fields, 0); });
+    resize(0);
+    return {*this, name, nullptr};
+  }
   if (node != nullptr) resize(size = items_of(*node, name).size());
   Node output = Node::list();
   for (std::size_t i = 0; i < size && (node != nullptr || writing()); ++i)
@@ -109,22 +135,25 @@ Rule Fields::embed(std::string_view key, std::string& yaml, std::string_view hel
     static_cast<void>(entries_of(*node, name_of(key)));
     yaml = to_yaml(*node);
   }
+  record(key, "map", Node::map(), help);
   if (writing()) put(key, parse(yaml, name_of(key)).root(), help);
   return {*this, name_of(key), nullptr};
 }
 
 void Fields::expect(bool holds, std::string_view key, std::string_view problem) {
-  if (holds || mode_ == Mode::kPrint || mode_ == Mode::kProbe) return;
+  if (holds || (mode_ != Mode::kRead && mode_ != Mode::kCheck)) return;
   const Node* node = input_at(key);
   Node section;
-  section.place = place_;
+  section.location = location_;
   fail(node != nullptr ? *node : section, name_of(key), " ", std::string(problem));
 }
 
 Node Fields::child(const std::string& name, const Node* input,
                    const Describe& describe_child) const {
   if (input != nullptr) static_cast<void>(entries_of(*input, name));
-  Fields fields(mode_, name, input, input != nullptr ? input->place : place_);
+  Fields fields(mode_, name, input, input != nullptr ? input->location : location_);
+  fields.former_keys_ = former_keys_;
+  fields.reference_ = reference_;
   describe_child(fields);
   fields.finish(describe_child);
   return std::move(fields.output_);
@@ -137,7 +166,7 @@ void Fields::finish(const Describe& describe_this) {
       if (std::find(keys_.begin(), keys_.end(), entry.key) == keys_.end())
         fail_unknown(entry, describe_this);
   if (!missing_.empty())
-    throw InputError(place_.text(), "missing required key '" + missing_.front() + "'");
+    throw InputError(location_.text(), "missing required key '" + missing_.front() + "'");
 }
 
 void Fields::fail_unknown(const Entry& entry, const Describe& describe_this) const {
@@ -145,21 +174,29 @@ void Fields::fail_unknown(const Entry& entry, const Describe& describe_this) con
   const bool no_space =
       entry.value.kind == Node::Kind::kNull && entry.key.find(':') != std::string::npos;
   if (no_space)
-    throw InputError(entry.place.text(),
+    throw InputError(entry.location.text(),
                      "unknown key '" + entry.key + "'" + where + "; a space must follow ':'");
   const std::string other = choice_that_knows(entry.key, describe_this);
+  if (other.empty()) fail_former(entry, name_of(entry.key));
   if (other.empty())
-    throw InputError(entry.place.text(), "unknown key '" + entry.key + "'" + where + "; " +
-                                             suggestion(entry.key, keys_, "keys"));
-  throw InputError(entry.place.text(),
+    throw InputError(entry.location.text(), "unknown key '" + entry.key + "'" + where + "; " +
+                                                suggestion(entry.key, keys_, "keys"));
+  throw InputError(entry.location.text(),
                    "key '" + entry.key + "'" + where + " does not apply to " + other);
+}
+
+void Fields::fail_former(const Entry& entry, const std::string& name) const {
+  // The most exact row: of a key inside an unknown section before one of the section itself.
+  for (const Entry& inner : entry.value.entries) fail_former(inner, name + "." + inner.key);
+  if (const auto answer = explain_former_key(name, former_keys_))
+    throw InputError(entry.location.text(), *answer);
 }
 
 std::string Fields::choice_that_knows(const std::string& key, const Describe& describe_this) const {
   for (const Choice& choice : choices_) {
     for (std::size_t i = 0; i < choice.names.size(); ++i) {
       const Choice other{choice.key, choice.names, i};
-      Fields probe(Mode::kProbe, path_, input_, place_);
+      Fields probe(Mode::kProbe, path_, input_, location_);
       probe.probed_ = &other;
       describe_this(probe);
       if (std::find(probe.keys_.begin(), probe.keys_.end(), key) == probe.keys_.end()) continue;
@@ -173,7 +210,7 @@ std::string Fields::choice_that_knows(const std::string& key, const Describe& de
 void Fields::fail(const Node& at, const std::string& name, const std::string& separator,
                   const std::string& problem) const {
   if (mode_ == Mode::kCheck) throw InputError(name, problem);
-  throw error_at(at.place, name, separator, problem);
+  throw error_at(at.location, name, separator, problem);
 }
 
 }  // namespace saccade::config

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -10,8 +11,11 @@
 #include <vector>
 
 #include "core/config/convert.h"
+#include "core/config/former_keys.h"
 #include "core/config/node.h"
+#include "core/config/reference.h"
 #include "core/config/rule.h"
+#include "core/config/type_name.h"
 
 namespace saccade::config {
 
@@ -25,10 +29,11 @@ enum class Form { kAbsent, kNumber, kText, kList, kMap };
 /// The keys of one section while they are read, printed or checked. An options struct names its
 /// keys once,
 ///   void describe(config::Fields& fields, TrackOptions& options) {
-///     fields.value("samples", options.samples, "map points drawn per iteration").range(6, 1e6);
-///     fields.section("blur", options.blur, "blur of the template");
+///     fields.value("samples", options.samples, "Map points drawn per iteration.").range(6, 1e6);
+///     fields.section("blur", options.blur, "Blur of the template.");
 ///   }
-/// in the struct's own namespace; every use (read, print, check of config.h) runs this function.
+/// in the struct's own namespace; every use (read, print, check, reference of config.h) runs this
+/// function. Help texts are sentences: they are the only text that a key has.
 /// The value the struct holds before is the default. describe() may branch on what it read before:
 /// keys of the branch not taken are then unknown, and the error says for which choice they would be
 /// valid.
@@ -82,7 +87,7 @@ class Fields {
 
   /// True while values come in, false while a struct is printed or checked. A preset that changes
   /// other keys' defaults must be applied only while reading.
-  [[nodiscard]] bool reading() const { return mode_ == Mode::kRead || mode_ == Mode::kProbe; }
+  [[nodiscard]] bool reading() const { return mode_ != Mode::kPrint && mode_ != Mode::kCheck; }
   /// Whether the input states this key; false unless reading.
   [[nodiscard]] bool has(std::string_view key) const { return form(key) != Form::kAbsent; }
   /// What the input gives for a key that takes several forms; kAbsent unless reading.
@@ -92,14 +97,14 @@ class Fields {
   friend class Rule;
   friend class Session;
   using Describe = std::function<void(Fields&)>;
-  enum class Mode { kRead, kPrint, kCheck, kProbe };
+  enum class Mode { kRead, kPrint, kCheck, kProbe, kReference };
   struct Choice {
     std::string key;
     std::vector<std::string> names;
     std::size_t taken = 0;
   };
 
-  Fields(Mode mode, std::string path, const Node* input, Place place);
+  Fields(Mode mode, std::string path, const Node* input, SourceLocation location);
 
   [[nodiscard]] bool writing() const { return mode_ == Mode::kPrint || mode_ == Mode::kCheck; }
   /// The dotted path of a key.
@@ -110,6 +115,11 @@ class Fields {
   const Node* declare(std::string_view key);
   /// Adds to the output; the value that rules must check, if any.
   const Node* put(std::string_view key, Node value, std::string_view help);
+  /// Adds a key to the reference; does nothing unless that is what is made.
+  void record(std::string_view key, const std::string& type, const Node& initial,
+              std::string_view help);
+  /// The value of a switch: of the reference, which tries both, else `current`.
+  [[nodiscard]] bool explored(std::string_view key, bool current);
   void note(const std::string& name, const std::string& text);
   void require(const std::string& name);
 
@@ -123,6 +133,8 @@ class Fields {
   /// Reports keys that nobody described, then keys that are missing.
   void finish(const Describe& describe_this);
   [[noreturn]] void fail_unknown(const Entry& entry, const Describe& describe_this) const;
+  /// Throws where the key of this name, or one in the map that it holds, is a former one.
+  void fail_former(const Entry& entry, const std::string& name) const;
   /// "source: file (it belongs to source: circle)" when another choice makes the key valid, else
   /// "".
   [[nodiscard]] std::string choice_that_knows(const std::string& key,
@@ -131,21 +143,25 @@ class Fields {
                          const std::string& problem) const;
 
   Mode mode_;
-  std::string path_;   ///< dotted keys from the root; "" at the root
-  const Node* input_;  ///< the map that is read; nullptr when absent
-  Place place_;        ///< of the map, or of the nearest one around it that exists
+  std::string path_;         ///< dotted keys from the root; "" at the root
+  const Node* input_;        ///< the map that is read; nullptr when absent
+  SourceLocation location_;  ///< of the map, or of the nearest one around it that exists
   Node output_ = Node::map();
   std::vector<std::string> keys_;     ///< described so far
   std::vector<std::string> missing_;  ///< required and not stated
   std::vector<Choice> choices_;
   const Choice* probed_ = nullptr;  ///< the choice that a probe pretends to read
   bool unknown_allowed_ = false;
+  std::span<const FormerKey> former_keys_;  ///< answers to unknown keys
+  ReferenceRecord* reference_ = nullptr;    ///< what kReference fills
 };
 
 template <class T>
 Rule Fields::value(std::string_view key, T& target, std::string_view help) {
   const Node* node = declare(key);
   if (node != nullptr) from_node(*node, name_of(key), target);
+  if (mode_ == Mode::kReference) record(key, type_name(&target), to_node(target), help);
+  if constexpr (std::is_same_v<T, bool>) target = explored(key, target);
   if (writing()) node = put(key, to_node(target), help);
   if (mode_ == Mode::kCheck) {
     T as_read = target;
@@ -178,6 +194,10 @@ Rule Fields::section(std::string_view key, std::optional<T>& target, std::string
   const Node* stated = input_at(key);
   if (stated != nullptr && stated->kind == Node::Kind::kNull) target.reset();
   if (stated != nullptr && stated->kind != Node::Kind::kNull && !target) target.emplace();
+  if (mode_ == Mode::kReference) {
+    T described = target.value_or(T{});
+    return section(key, described, help);
+  }
   if (target) return section(key, *target, help);
   declare(key);
   if (writing()) put(key, Node{}, help);

@@ -19,7 +19,7 @@ void merge_entry(Node& base, Entry over) {
   } else if (over.value.kind == Node::Kind::kNull) {
     base.entries.erase(base.entries.begin() + (under - base.entries.data()));
   } else {
-    under->place = over.place;
+    under->location = over.location;
     merge(under->value, std::move(over.value));
   }
 }
@@ -27,7 +27,8 @@ void merge_entry(Node& base, Entry over) {
 /// Walks one "key.path" into a tree, making the maps that are missing.
 class Override {
  public:
-  Override(const std::string& path, Place place) : path_(path), place_(std::move(place)) {}
+  Override(const std::string& path, SourceLocation location)
+      : path_(path), location_(std::move(location)) {}
 
   void apply(Node& root, Node value) {
     Node* node = &root;
@@ -51,8 +52,8 @@ class Override {
     if (node.kind == Node::Kind::kNull) make_map(node);
     require_map(node, key);
     if (Entry* entry = node.find(key)) return entry->value;
-    node.entries.push_back({key, place_, Node::map(), {}});
-    node.entries.back().value.place = place_;
+    node.entries.push_back({key, location_, Node::map(), {}});
+    node.entries.back().value.location = location_;
     return node.entries.back().value;
   }
 
@@ -66,36 +67,36 @@ class Override {
     Entry* entry = node.find(key);
     // A map given here replaces the one before: its keys may belong to another choice.
     if (entry != nullptr && value.kind == Node::Kind::kMap) entry->value = Node{};
-    merge_entry(node, {key, place_, std::move(value), {}});
+    merge_entry(node, {key, location_, std::move(value), {}});
   }
 
   Node& item(Node& list, const std::string& key) const {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
     if (error != std::errc() || end != key.data() + key.size())
-      fail("'" + key + "' is no list index (" + list.place.text() + " is a list)");
+      fail("'" + key + "' is no list index (" + list.location.text() + " is a list)");
     if (index >= list.items.size())
-      fail("there is no item " + key + ", the list of " + list.place.text() + " has " +
+      fail("there is no item " + key + ", the list of " + list.location.text() + " has " +
            std::to_string(list.items.size()) + " (counted from 0)");
     return list.items[index];
   }
 
   void make_map(Node& node) const {
     node = Node::map();
-    node.place = place_;
+    node.location = location_;
   }
 
   void require_map(const Node& node, const std::string& key) const {
     if (node.kind == Node::Kind::kMap) return;
-    fail("cannot set '" + key + "' in " + node.shown() + " (" + node.place.text() + ")");
+    fail("cannot set '" + key + "' in " + node.shown() + " (" + node.location.text() + ")");
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw InputError(place_.text(), problem);
+    throw InputError(location_.text(), problem);
   }
 
   std::string path_;
-  Place place_;
+  SourceLocation location_;
   std::size_t begin_ = 0;
   std::string last_key_;
 };
@@ -107,7 +108,7 @@ void merge(Node& base, Node over) {
     base = std::move(over);
     return;
   }
-  base.place = over.place;
+  base.location = over.location;
   for (Entry& entry : over.entries) merge_entry(base, std::move(entry));
 }
 

@@ -10,7 +10,7 @@ namespace saccade::config {
 void merge(Node& base, Node over);
 
 /// Applies one "key.path=value" to a tree; the value replaces what was there, a null removes it.
-/// Throws InputError with the place `--set key.path`.
+/// Throws InputError with the location `--set key.path`.
 void apply_override(Node& root, const std::string& assignment);
 
 }  // namespace saccade::config

@@ -4,19 +4,19 @@
 #include <string_view>
 #include <vector>
 
-#include "core/config/place.h"
+#include "core/config/source_location.h"
 
 namespace saccade::config {
 
 struct Entry;
 
-/// One value of a configuration tree, with its place. Maps keep the order of the file and hold
+/// One value of a configuration tree, with its location. Maps keep the order of the file and hold
 /// every key once.
 struct Node {
   enum class Kind { kNull, kScalar, kList, kMap };
 
   Kind kind = Kind::kNull;
-  Place place;
+  SourceLocation location;
   std::string text;            ///< of a scalar, unquoted
   bool quoted = false;         ///< a quoted scalar is text, never a number or a truth value
   std::vector<Node> items;     ///< of a list
@@ -36,9 +36,10 @@ struct Node {
 
 struct Entry {
   std::string key;
-  Place place;  ///< of the key
+  SourceLocation location;  ///< of the key
   Node value;
   std::string comment;  ///< written behind the key by a documented print
+  std::string rules{};  ///< "> 0, <= 1", in brackets behind the comment
 };
 
 }  // namespace saccade::config

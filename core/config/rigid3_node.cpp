@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core/config/convert.h"
-#include "core/config/place.h"
+#include "core/config/source_location.h"
 
 namespace saccade {
 namespace {
@@ -25,7 +25,7 @@ void from_node(const config::Node& node, const std::string& name, Rigid3& value)
       (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() < kTolerance && r.determinant() > 0;
   if (!rotates || rows[3] != std::array<double, 4>{0, 0, 0, 1})
     throw config::error_at(
-        node.place, name, " ",
+        node.location, name, " ",
         "is no rigid transformation: a rotation, a translation, and 0 0 0 1 below");
   value = {Eigen::Quaterniond(r), {rows[0][3], rows[1][3], rows[2][3]}};
 }

@@ -12,6 +12,11 @@ namespace {
 
 std::string shown(double number) { return to_node(number).text; }
 
+std::string length_text(std::size_t least, std::size_t most) {
+  if (most == Rule::kAnyLength) return std::to_string(least) + " or more";
+  return std::to_string(least) + (most != least ? " to " + std::to_string(most) : "");
+}
+
 }  // namespace
 
 Rule& Rule::range(double low, double high) {
@@ -45,14 +50,13 @@ Rule& Rule::at_most(double high) {
 
 Rule& Rule::length(std::size_t least, std::size_t most) {
   if (node_ != nullptr) check_length(*node_, key_, least, most);
-  return *this;
+  return note(length_text(least, most) + " values");
 }
 
 Rule& Rule::item_length(std::size_t least, std::size_t most) {
-  if (node_ == nullptr) return *this;
-  for (std::size_t i = 0; i < node_->items.size(); ++i)
+  for (std::size_t i = 0; node_ != nullptr && i < node_->items.size(); ++i)
     check_length(node_->items[i], item_name(key_, i), least, most);
-  return *this;
+  return note(length_text(least, most) + " numbers each");
 }
 
 Rule& Rule::one_of(const std::vector<std::string>& names) {
@@ -108,11 +112,9 @@ void Rule::check_length(const Node& list, const std::string& name, std::size_t l
                         std::size_t most) const {
   const std::size_t size = list.items.size();
   if (list.kind != Node::Kind::kList || (size >= least && size <= most)) return;
-  std::string allowed = std::to_string(least);
-  if (most == kAnyLength) allowed += " or more";
-  if (most != kAnyLength && most != least) allowed += " to " + std::to_string(most);
-  fields_.fail(list, name, ": ",
-               "expected a list of " + allowed + " values, got " + std::to_string(size));
+  fields_.fail(
+      list, name, ": ",
+      "expected a list of " + length_text(least, most) + " values, got " + std::to_string(size));
 }
 
 Rule& Rule::note(const std::string& text) {

@@ -12,7 +12,7 @@ namespace saccade::config {
 class Fields;
 
 /// What a described key must satisfy; returned by Fields, rules are chained behind it. Each rule
-/// holds for every number of a list as well. A broken rule throws InputError with the place of the
+/// holds for every number of a list as well. A broken rule throws InputError with the location of the
 /// value; a key that the file leaves out keeps its default, which is not checked again.
 class Rule {
  public:

@@ -98,7 +98,12 @@ class Emitter {
         out_ += "- ";
         // The first key of a map stands behind the dash.
         fresh_ = !is_inline(item);
-        is_inline(item) ? end_line(item, {}) : block(item, indent + 2);
+        if (fresh_) {
+          block(item, indent + 2);
+        } else {
+          flow(item);
+          end_line({}, {});
+        }
       }
     }
   }
@@ -133,20 +138,17 @@ class Emitter {
     out_ += key_text(entry) + ":";
     if (is_inline(entry.value)) {
       out_ += " ";
-      end_line(entry.value, entry.comment);
+      flow(entry.value);
+      end_line(entry.comment, entry.rules);
     } else {
-      end_line_with(entry.comment);
+      end_line(entry.comment, entry.rules);
       block(entry.value, indent + 2);
     }
   }
 
-  void end_line(const Node& node, const std::string& comment) {
-    flow(node);
-    end_line_with(comment);
-  }
-
-  void end_line_with(const std::string& comment) {
+  void end_line(const std::string& comment, const std::string& rules) {
     if (comments_ && !comment.empty()) out_ += "  # " + comment;
+    if (comments_ && !rules.empty()) out_ += " [" + rules + "]";
     out_ += "\n";
   }
 

@@ -30,7 +30,7 @@ class Builder final : public YAML::EventHandler {
   Builder(std::string_view text, std::shared_ptr<const Source> source, bool lines)
       : text_(text), source_(std::move(source)), lines_(lines) {}
 
-  [[nodiscard]] Place place(const YAML::Mark& mark) const {
+  [[nodiscard]] SourceLocation location(const YAML::Mark& mark) const {
     return {source_, lines_ && !mark.is_null() ? mark.line + 1 : 0};
   }
 
@@ -92,7 +92,7 @@ class Builder final : public YAML::EventHandler {
 
   void open(const YAML::Mark& mark, YAML::anchor_t anchor, Node node) {
     if (open_.size() >= kMaxDepth) fail(mark, "nested too deeply");
-    node.place = place(mark);
+    node.location = location(mark);
     open_.push_back({std::move(node), mark, anchor, nodes_++, false, {}});
   }
 
@@ -103,7 +103,7 @@ class Builder final : public YAML::EventHandler {
   }
 
   void add(const YAML::Mark& mark, YAML::anchor_t anchor, Node node, std::size_t count) {
-    if (node.place.line == 0) node.place = place(mark);
+    if (node.location.line == 0) node.location = location(mark);
     nodes_ += count;
     put(mark, anchor, std::move(node), count);
   }
@@ -122,7 +122,7 @@ class Builder final : public YAML::EventHandler {
     } else {
       Entry& entry = open_.back().node.entries.back();
       // A value left out is marked where the parser noticed, which may be lines later.
-      if (node.kind == Node::Kind::kNull) node.place = entry.place;
+      if (node.kind == Node::Kind::kNull) node.location = entry.location;
       entry.value = std::move(node);
       open_.back().has_key = false;
     }
@@ -130,13 +130,13 @@ class Builder final : public YAML::EventHandler {
 
   void put_key(Open& map, const YAML::Mark& mark, const Node& key) const {
     if (key.kind != Node::Kind::kScalar) fail(mark, "a key must be plain text");
-    const auto [first, is_new] = map.keys.emplace(key.text, place(mark).line);
+    const auto [first, is_new] = map.keys.emplace(key.text, location(mark).line);
     if (!is_new) {
       const std::string where =
           lines_ ? ", first stated in line " + std::to_string(first->second) : "";
       fail(mark, "duplicate key '" + key.text + "'" + where);
     }
-    map.node.entries.push_back({key.text, place(mark), {}, {}});
+    map.node.entries.push_back({key.text, location(mark), {}, {}});
     map.has_key = true;
   }
 
@@ -146,7 +146,7 @@ class Builder final : public YAML::EventHandler {
   }
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& problem) const {
-    throw InputError(place(mark).text(), problem);
+    throw InputError(location(mark).text(), problem);
   }
 
   std::string_view text_;
@@ -166,7 +166,7 @@ Node parse_yaml(std::string_view text, const std::shared_ptr<const Source>& sour
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (const auto line = line_of_control_character(text))
-    throw InputError(Place{source, lines ? *line : 0}.text(), "not a text file");
+    throw InputError(SourceLocation{source, lines ? *line : 0}.text(), "not a text file");
   Builder builder(text, source, lines);
   std::istringstream stream{std::string(text)};
   try {
@@ -174,7 +174,7 @@ Node parse_yaml(std::string_view text, const std::shared_ptr<const Source>& sour
     // The second call finds what stands behind the document; it must not be asked for more.
     if (parser.HandleNextDocument(builder)) parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {
-    throw InputError(builder.place(error.mark).text(), "not valid YAML: " + error.msg);
+    throw InputError(builder.location(error.mark).text(), "not valid YAML: " + error.msg);
   }
   return builder.take();
 }

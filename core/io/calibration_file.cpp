@@ -12,8 +12,8 @@
 #include "core/config/rigid3_node.h"
 #include "core/config/yaml_emit.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/text_table.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {
@@ -23,7 +23,7 @@ constexpr const char* kCalibrationColumns = "fx fy cx cy k1 k2 p1 p2 k3";
 /// The value of a key that must be there.
 const config::Node& require(const config::Node& map, const std::string& key) {
   const config::Entry* entry = map.find(key);
-  if (entry == nullptr) throw InputError(map.place.text(), "key '" + key + "' is missing");
+  if (entry == nullptr) throw InputError(map.location.text(), "key '" + key + "' is missing");
   return entry->value;
 }
 
@@ -33,8 +33,8 @@ void expect_text(const config::Node& node, const std::string& key,
   config::from_node(node, key, text);
   for (const char* candidate : allowed)
     if (text == candidate) return;
-  throw InputError(node.place.text(), fmt::format("{}: '{}' is not supported; supported: {}", key,
-                                                  text, fmt::join(allowed, ", ")));
+  throw InputError(node.location.text(), fmt::format("{}: '{}' is not supported; supported: {}",
+                                                     key, text, fmt::join(allowed, ", ")));
 }
 
 void read_distortion(const config::Node& cam, PinholeCamera& camera) {
@@ -45,7 +45,7 @@ void read_distortion(const config::Node& cam, PinholeCamera& camera) {
   std::vector<double> values;
   config::from_node(node, "distortion_coeffs", values);
   if (values.size() != 4 && values.size() != 5)
-    throw InputError(node.place.text(), "distortion_coeffs holds k1, k2, p1, p2 and perhaps k3");
+    throw InputError(node.location.text(), "distortion_coeffs holds k1, k2, p1, p2 and perhaps k3");
   std::copy(values.begin(), values.end(), camera.distortion.begin());
 }
 
@@ -63,7 +63,7 @@ PinholeCamera read_camera(const config::Node& cam) {
   camera.cx = intrinsics[2];
   camera.cy = intrinsics[3];
   read_distortion(cam, camera);
-  camera.check(cam.place.text());
+  camera.check(cam.location.text());
   return camera;
 }
 

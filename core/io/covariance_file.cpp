@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/event.h"
-#include "core/io/atomic_file.h"
-#include "core/io/text_table.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {

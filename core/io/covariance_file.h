@@ -8,8 +8,8 @@
 
 namespace saccade {
 
-/// How far a pose may be off: the covariance of the twist (v, w) of truth^-1 estimate, in the
-/// camera's axes [m, rad].
+/// Uncertainty of a pose: the covariance of the twist (v, w) of truth^-1 estimate, in the camera's
+/// axes [m, rad].
 struct StampedCovariance {
   double t_s = 0;
   Matrix6 covariance = Matrix6::Zero();

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "core/config/config.h"
-#include "core/io/atomic_file.h"
-#include "core/io/text_table.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/file_bytes.h"
-#include "core/io/text_table.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/files/file_bytes.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/text_table.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {

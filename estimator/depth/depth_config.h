@@ -2,22 +2,27 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/camera.h"
 #include "core/config/fields.h"
 #include "estimator/depth/depth_estimator.h"
-#include "estimator/depth/ray_depth.h"
-#include "estimator/depth/sweep_depth.h"
-#include "estimator/depth/thesis_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
+#include "estimator/depth/sweep/sweep_depth.h"
+#include "estimator/depth/thesis/thesis_depth.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
 
 /// The configuration of `saccade run depth`; describe() names the keys, ranges and defaults.
 struct DepthConfig {
-  enum class Method { kThesis, kRays, kSweep };
+  /// Names of the methods, the rows of the table in depth_config.cpp.
+  struct Method {
+    static constexpr std::string_view kThesis = "thesis", kRays = "rays", kSweep = "sweep";
+  };
 
-  Method method = Method::kThesis;
+  std::string method{Method::kThesis};
   ViewWindowOptions window;
   DepthLimits limits;
   ThesisDepthOptions thesis;
@@ -28,7 +33,8 @@ struct DepthConfig {
 
 void describe(config::Fields& fields, DepthConfig& config);
 
-/// The part of it that is the method, for other modules that find depth: all but window and seed.
+/// The keys of the method alone, without window and seed: for modules that estimate depth as a
+/// part of theirs.
 void describe_depth_method(config::Fields& fields, DepthConfig& config);
 
 /// The method that the configuration names. `camera` with its lens; `mean_depth_m` of the scene, >

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,8 +10,8 @@
 
 namespace saccade {
 
-/// A point of an edge with its depth, in the reference view of its window.
-struct EdgeDepth {
+/// A point on an intensity edge with its depth, in the reference view of its window.
+struct EdgePoint {
   float x_px = 0;  ///< undistorted pixel of the view, sub-pixel
   float y_px = 0;
   float inverse_depth = 0;  ///< 1 / z [1/m], > 0
@@ -31,16 +30,16 @@ struct DepthLimits {
 
 /// What a method found.
 struct DepthResult {
-  std::vector<EdgeDepth> points;  ///< in the view at reference_s
-  /// Where the method looked for depth, in the same view's pixels; for pictures. Points are among
-  /// them or near them.
+  std::vector<EdgePoint> points;  ///< in the view at reference_s
+  /// Pixels of the same view at which the method searched for depth, for pictures; every point is
+  /// one of them or near one.
   std::vector<Eigen::Vector2f> candidates;
   std::vector<std::pair<std::string, double>>
-      stages_s;  ///< time per stage, the same in all windows
+      stages_s;  ///< time per stage, the same names in all windows
 };
 
-/// A method that turns events and poses into depths of edges. Too few events or too little motion
-/// give few points or none, never an error.
+/// A method that estimates depths of edge points from events and poses. Too few events or too
+/// little motion give few points or none, never an error.
 class DepthEstimator {
  public:
   virtual ~DepthEstimator() = default;

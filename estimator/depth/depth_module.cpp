@@ -14,7 +14,7 @@
 namespace saccade {
 namespace {
 
-/// Of the scene; where the dataset does not know, the middle of the range on a logarithmic scale.
+/// Mean depth of the scene; the geometric mean of the limits where the dataset does not state it.
 double mean_depth_of(const Dataset& dataset, const DepthLimits& limits) {
   return dataset.facts().mean_depth_m.value_or(std::sqrt(limits.near_m * limits.far_m));
 }

@@ -5,41 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/io/exr_file.h"
 #include "core/io/image_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/view_list.h"
+#include "core/time_search.h"
 
 namespace saccade {
 namespace {
 
 constexpr int kUpscale = 3;  ///< of the keypoint pictures
 
-struct DepthImages {
-  ImageF depth;
-  ImageF variance;
-};
-
 /// sigma of z = 1 / rho: sigma_rho / rho^2.
-float depth_sigma(const EdgeDepth& point) {
+float depth_sigma(const EdgePoint& point) {
   return point.sigma / (point.inverse_depth * point.inverse_depth);
-}
-
-DepthImages draw_depth(const PinholeCamera& camera, const DepthResult& result) {
-  DepthImages images{ImageF(camera.width, camera.height), ImageF(camera.width, camera.height)};
-  for (const EdgeDepth& point : result.points) {
-    const auto x = static_cast<int>(std::lround(point.x_px));
-    const auto y = static_cast<int>(std::lround(point.y_px));
-    if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) continue;
-    const float sigma = depth_sigma(point);
-    const float variance = sigma * sigma;
-    if (images.depth(x, y) > 0 && images.variance(x, y) <= variance) continue;
-    images.depth(x, y) = 1 / point.inverse_depth;
-    images.variance(x, y) = variance;
-  }
-  return images;
 }
 
 void draw_dot(ImageRgb8& picture, double x_px, double y_px, const Rgb8& colour) {
@@ -50,16 +32,13 @@ void draw_dot(ImageRgb8& picture, double x_px, double y_px, const Rgb8& colour) 
       picture(u, v) = colour;
 }
 
-/// The events around the view's time in grey, the candidates over them in red, those that became
-/// points in green.
+/// The events around the view's time in grey, over them the candidates in red and the points in
+/// green.
 ImageRgb8 draw_keypoints(const PinholeCamera& camera, const ViewWindow& window,
                          const DepthResult& result) {
   ImageRgb8 picture(camera.width * kUpscale, camera.height * kUpscale, Rgb8{12, 15, 20});
   const auto count = static_cast<std::size_t>(camera.width * camera.height / 6);
-  const TimeNs at_ns = ns_from_seconds(window.reference_s);
-  const auto at = std::partition_point(window.events.begin(), window.events.end(),
-                                       [at_ns](const Event& e) { return e.t_ns < at_ns; });
-  const auto index = static_cast<std::size_t>(at - window.events.begin());
+  const std::size_t index = count_before(window.events, ns_from_seconds(window.reference_s));
   const std::size_t begin = index - std::min(index, count / 2);
   const std::size_t end = std::min(begin + count, window.events.size());
   for (const Event& event : window.events.subspan(begin, end - begin)) {
@@ -68,7 +47,7 @@ ImageRgb8 draw_keypoints(const PinholeCamera& camera, const ViewWindow& window,
   }
   for (const Eigen::Vector2f& p : result.candidates)
     draw_dot(picture, static_cast<double>(p.x()), static_cast<double>(p.y()), {240, 62, 52});
-  for (const EdgeDepth& p : result.points)
+  for (const EdgePoint& p : result.points)
     draw_dot(picture, static_cast<double>(p.x_px), static_cast<double>(p.y_px), {70, 225, 110});
   return picture;
 }
@@ -76,7 +55,7 @@ ImageRgb8 draw_keypoints(const PinholeCamera& camera, const ViewWindow& window,
 void append(PointCloud& cloud, const PinholeCamera& camera, const ViewWindow& window,
             std::size_t view, const DepthResult& result) {
   const Rigid3 world_from_view = window.world_from_reference();
-  for (const EdgeDepth& point : result.points) {
+  for (const EdgePoint& point : result.points) {
     const double depth = 1 / static_cast<double>(point.inverse_depth);
     const Eigen::Vector3d in_world =
         world_from_view * (depth * camera.ray({point.x_px, point.y_px}));
@@ -92,8 +71,17 @@ void append(PointCloud& cloud, const PinholeCamera& camera, const ViewWindow& wi
 
 void write_depth_map(const std::filesystem::path& file, const PinholeCamera& camera,
                      const DepthResult& result) {
-  const DepthImages images = draw_depth(camera, result);
-  const ExrChannel channels[] = {{"Z", images.depth}, {"variance", images.variance}};
+  ImageF depth(camera.width, camera.height), variance(camera.width, camera.height);
+  for (const EdgePoint& point : result.points) {
+    const auto x = static_cast<int>(std::lround(point.x_px));
+    const auto y = static_cast<int>(std::lround(point.y_px));
+    if (!is_inside(depth, x, y)) continue;
+    const float sigma = depth_sigma(point);
+    if (depth(x, y) > 0 && variance(x, y) <= sigma * sigma) continue;
+    depth(x, y) = 1 / point.inverse_depth;
+    variance(x, y) = sigma * sigma;
+  }
+  const ExrChannel channels[] = {{"Z", std::move(depth)}, {"variance", std::move(variance)}};
   write_exr(file, channels);
 }
 

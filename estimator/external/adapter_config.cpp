@@ -8,60 +8,81 @@ namespace {
 void describe_trajectory(config::Fields& fields, TrajectoryFormat& format) {
   using Columns = TrajectoryFormat::Columns;
   using Convention = TrajectoryFormat::Convention;
-  fields.value("file", format.file, "in {out}");
+  fields.value("file", format.file, "The trajectory file, relative to {out}.");
   fields.choice("columns", format.columns, {{"tum", Columns::kTum}, {"euroc", Columns::kEuroc}},
-                "t x y z qx qy qz qw, or with qw first");
+                "Order of the columns: t x y z qx qy qz qw (`tum`) or t x y z qw qx qy qz "
+                "(`euroc`).");
   fields.choice("time_unit", format.time_unit,
                 {{"s", StampUnit::kSeconds},
                  {"ms", StampUnit::kMilliseconds},
                  {"us", StampUnit::kMicroseconds},
                  {"ns", StampUnit::kNanoseconds}},
-                "of the stamps");
+                "Unit of the time stamps.");
   fields.choice("poses", format.poses,
                 {{"world_from_camera", Convention::kWorldFromCamera},
                  {"camera_from_world", Convention::kCameraFromWorld}},
-                "what a pose maps");
-  fields.value("time_offset_s", format.time_offset_s, "added to every stamp");
+                "Direction of the transform that a pose states.");
+  fields
+      .value("time_offset_s", format.time_offset_s,
+             "Time that is added to every stamp, in seconds.")
+      .range(-1e10, 1e10);
 }
 
 void describe_output(config::Fields& fields, AdapterOutput& output) {
   fields.group(
       "trajectory",
       [&](config::Fields& trajectory) { describe_trajectory(trajectory, output.trajectory); },
-      "poses that the program writes");
-  fields.value("covariance", output.covariance, "as covariance.txt; empty is none");
-  fields.value("map", output.map, "tracked points as map.ply; empty is none");
-  fields.value("views", output.views, "folder with views.yaml and depth maps; empty is none");
+      "The trajectory that the program writes.");
+  fields.value("covariance", output.covariance,
+               "File in the format of covariance.txt. Empty: the program writes none.");
+  fields.value("map", output.map,
+               "PLY file with the tracked points. Empty: the program writes none.");
+  fields.value("views", output.views,
+               "Folder with views.yaml and depth maps. Empty: the program writes none.");
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
   fields.choice(
       "events", config.events,
-      {{"txt", HandoverEvents::kText}, {"h5", HandoverEvents::kH5}, {"csv", HandoverEvents::kCsv}},
-      "t x y p in seconds; the layout of DSEC; t,x,y,p");
+      {{"txt", EventFileFormat::kText},
+       {"h5", EventFileFormat::kH5},
+       {"csv", EventFileFormat::kCsv}},
+      "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout of DSEC "
+      "(`h5`), or lines t,x,y,p (`csv`).");
   fields.choice("time_unit", config.event_unit,
                 {{"us", StampUnit::kMicroseconds}, {"ns", StampUnit::kNanoseconds}},
-                "of h5 and csv");
+                "Time unit of h5 and csv.");
 }
 
 }  // namespace
 
 void describe(config::Fields& fields, AdapterConfig& config) {
-  fields.value("name", config.name, "of the method");
-  fields.value("command", config.command, "words with placeholders, no shell");
-  fields.value("version_command", config.version_command, "prints a version; empty is none");
-  fields.value("files", config.files, "placeholder: file that the command needs");
-  fields.value("environment", config.environment, "variables of the program");
+  fields.value("name", config.name, "Name of the method in tables and reports.");
+  fields.value("command", config.command,
+               "Command line with placeholders in braces. It is run without a shell.");
+  fields.value("version_command", config.version_command,
+               "Command that prints the version of the program. Empty: none.");
+  fields.value("files", config.files,
+               "Further placeholders and the files that they stand for, relative to the adapter.");
+  fields.value("environment", config.environment,
+               "Environment variables of the program, with placeholders.");
   fields.group(
       "input", [&](config::Fields& input) { describe_input(input, config); },
-      "what it is handed over");
-  fields.value("groundtruth_start_s", config.groundtruth_start_s, "of true poses it may see")
+      "Events that the program receives.");
+  fields
+      .value("groundtruth_start_s", config.groundtruth_start_s,
+             "Duration of the ground-truth poses that the program receives, from the first event "
+             "on, in "
+             "seconds. 0 gives none.")
       .at_least(0);
   fields.group(
       "output", [&](config::Fields& output) { describe_output(output, config.output); },
-      "what it leaves in {out}");
-  fields.value("timeout_s", config.timeout_s, "of one repetition").above(0);
-  fields.value("seed", config.seed, "stands for {seed}");
+      "Results that the program leaves in {out}.");
+  fields
+      .value("timeout_s", config.timeout_s,
+             "Time limit of one repetition, in seconds. The program is ended after it.")
+      .above(0);
+  fields.value("seed", config.seed, "Value of the placeholder {seed}.");
   fields.expect(!config.name.empty(), "name", "must not be empty");
   for (const char* key : {"command", "version_command"}) {
     const std::string& text =

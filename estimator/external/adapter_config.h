@@ -10,7 +10,7 @@
 
 namespace saccade {
 
-enum class HandoverEvents { kText, kH5, kCsv };
+enum class EventFileFormat { kText, kH5, kCsv };
 enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
 /// The trajectory that an external program writes: a line for each pose, numbers separated by
@@ -20,36 +20,31 @@ struct TrajectoryFormat {
   enum class Columns { kTum, kEuroc };
   enum class Convention { kWorldFromCamera, kCameraFromWorld };
 
-  std::string file = "trajectory.txt";  ///< in {out}
+  std::string file = "trajectory.txt";
   Columns columns = Columns::kTum;
   StampUnit time_unit = StampUnit::kSeconds;
   Convention poses = Convention::kWorldFromCamera;
-  double time_offset_s = 0;  ///< added to every stamp
+  double time_offset_s = 0;
 };
 
-/// What an external program leaves in {out}. Paths are relative to it.
+/// Results of an external program, relative to {out}; an empty path: the program writes none.
 struct AdapterOutput {
   TrajectoryFormat trajectory;
-  /// As the files of the same name in a run folder; empty: none.
-  std::string covariance;  ///< covariance.txt
-  std::string map;         ///< map.ply, the points that were tracked
-  std::string views;       ///< folder with views.yaml and depth maps
+  std::string covariance, map, views;
 };
 
-/// How to run somebody else's estimator (docs/own_estimator.md).
+/// How to run an external estimator (docs/own_estimator.md).
 struct AdapterConfig {
-  std::string name = "external";  ///< of the method
-  std::string command;            ///< its words, with placeholders in braces; must be stated
-  /// Prints the version on its first line; empty: not asked for.
+  std::string name = "external";
+  std::string command;
   std::string version_command;
-  /// Names of placeholders and what they stand for, relative to the adapter's file.
-  std::map<std::string, std::filesystem::path> files;
-  std::map<std::string, std::string> environment;  ///< with placeholders, too
-  HandoverEvents events = HandoverEvents::kText;
-  StampUnit event_unit = StampUnit::kMicroseconds;  ///< of h5 and csv
-  double groundtruth_start_s = 0;                   ///< of true poses are handed over; 0: none
+  std::map<std::string, std::filesystem::path> files;  ///< by placeholder
+  std::map<std::string, std::string> environment;
+  EventFileFormat events = EventFileFormat::kText;
+  StampUnit event_unit = StampUnit::kMicroseconds;
+  double groundtruth_start_s = 0;
   AdapterOutput output;
-  double timeout_s = 3600;  ///< of one repetition
+  double timeout_s = 3600;
   std::uint64_t seed = 1;
 };
 

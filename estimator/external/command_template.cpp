@@ -20,8 +20,8 @@ constexpr std::array<const char*, 15> kPlaceholders{
 
 /// Calls `on_text` for what stands between placeholders and `on_name` for each of them. False where
 /// a brace is not closed.
-bool take_apart(std::string_view text, const std::function<void(std::string_view)>& on_text,
-                const std::function<void(std::string_view)>& on_name) {
+bool split_template(std::string_view text, const std::function<void(std::string_view)>& on_text,
+                    const std::function<void(std::string_view)>& on_name) {
   while (!text.empty()) {
     const std::size_t brace = text.find_first_of("{}");
     on_text(text.substr(0, brace));
@@ -59,7 +59,7 @@ std::string placeholder_problem(std::string_view text, const AdapterConfig& conf
     else if (name == "groundtruth_start" && !(config.groundtruth_start_s > 0))
       problem = "holds {groundtruth_start}, which needs groundtruth_start_s above 0";
   };
-  if (!take_apart(
+  if (!split_template(
           text, [](std::string_view) {}, check) &&
       problem.empty())
     return "holds a brace that is no placeholder; write {{ or }} for a brace";
@@ -68,14 +68,14 @@ std::string placeholder_problem(std::string_view text, const AdapterConfig& conf
 
 bool uses_placeholder(std::string_view text, std::string_view name) {
   bool found = false;
-  take_apart(
+  split_template(
       text, [](std::string_view) {}, [&](std::string_view one) { found = found || one == name; });
   return found;
 }
 
-std::string filled(std::string_view text, const Placeholders& values) {
+std::string substituted(std::string_view text, const Placeholders& values) {
   std::string result;
-  const bool closed = take_apart(
+  const bool closed = split_template(
       text, [&](std::string_view part) { result += part; },
       [&](std::string_view name) {
         const auto value = values.find(name);
@@ -86,9 +86,9 @@ std::string filled(std::string_view text, const Placeholders& values) {
   return result;
 }
 
-std::vector<std::string> filled_words(std::string_view line, const Placeholders& values) {
+std::vector<std::string> substituted_words(std::string_view line, const Placeholders& values) {
   std::vector<std::string> words = shell_words(line);
-  for (std::string& word : words) word = filled(word, values);
+  for (std::string& word : words) word = substituted(word, values);
   return words;
 }
 

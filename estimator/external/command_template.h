@@ -20,10 +20,10 @@ using Placeholders = std::map<std::string, std::string, std::less<>>;
 [[nodiscard]] bool uses_placeholder(std::string_view text, std::string_view name);
 
 /// `text` with its placeholders replaced; all of them are known (contract).
-[[nodiscard]] std::string filled(std::string_view text, const Placeholders& values);
+[[nodiscard]] std::string substituted(std::string_view text, const Placeholders& values);
 
-/// The words of a command line (core/shell.h), each filled: a value with blanks stays one word.
-[[nodiscard]] std::vector<std::string> filled_words(std::string_view line,
-                                                    const Placeholders& values);
+/// The words of a command line (core/shell.h), each substituted: a value with blanks stays one word.
+[[nodiscard]] std::vector<std::string> substituted_words(std::string_view line,
+                                                         const Placeholders& values);
 
 }  // namespace saccade

@@ -15,9 +15,9 @@
 #include "core/stopwatch.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"
+#include "estimator/external/external_input.h"
 #include "estimator/external/external_output.h"
 #include "estimator/external/external_process.h"
-#include "estimator/external/handover.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 
@@ -26,38 +26,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folders of a run while it is made.
-struct ExternalFolders {
-  fs::path run;
-  fs::path input;  ///< removed at the end
-  fs::path out;
-  fs::path log;
-
-  explicit ExternalFolders(const fs::path& folder)
-      : run(fs::absolute(folder)),
-        input(run / "input"),
-        out(run / "output"),
-        log(run / "log.txt") {}
-};
-
 ExternalCall call_of(const AdapterConfig& config, const std::string& command,
-                     const Placeholders& values, const ExternalFolders& folders) {
+                     const Placeholders& values, const fs::path& run) {
   ExternalCall call;
-  call.words = filled_words(command, values);
+  call.words = substituted_words(command, values);
   for (const auto& [name, value] : config.environment)
-    call.environment[name] = filled(value, values);
-  call.working_folder = folders.out;
-  call.log = folders.log;
+    call.environment[name] = substituted(value, values);
+  call.working_folder = run / "output";
+  call.log = run / "log.txt";
   call.timeout_s = config.timeout_s;
   return call;
 }
 
 /// The first line that the version command prints.
 std::string version_of(const AdapterConfig& config, const Placeholders& values,
-                       const ExternalFolders& folders) {
+                       const fs::path& run) {
   if (config.version_command.empty()) return {};
-  ExternalCall call = call_of(config, config.version_command, values, folders);
-  call.log = folders.run / "version.txt";
+  ExternalCall call = call_of(config, config.version_command, values, run);
+  call.log = run / "version.txt";
   const ExternalEnd end = run_external_program(call);
   std::ifstream file(call.log);
   std::string words, version;
@@ -92,7 +78,7 @@ RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfi
       external.reason = end.end.text();
     }
     if (external.status == "ok") continue;
-    if (const std::string words = last_words(call.log); !words.empty())
+    if (const std::string words = log_tail(call.log); !words.empty())
       external.reason += "; log: " + words;
     break;
   }
@@ -100,19 +86,19 @@ RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfi
 }
 
 /// Takes its poses into the run, or states why there are none.
-std::size_t take_output(const ExternalFolders& folders, const AdapterConfig& config,
+std::size_t take_output(const fs::path& run, const AdapterConfig& config,
                         RunRecord::External& external) {
   if (external.status == "ok") try {
-      return take_external_output(folders.out, config.output, folders.run);
+      return import_external_output(run / "output", config.output, run);
     } catch (const InputError& error) {
       external.status = "bad output";
       external.reason = error.what();
-      // The folder has its final name only later.
-      const std::string prefix = folders.out.string() + "/";
+      // The folder gets its final name later: paths in the reason are relative.
+      const std::string prefix = (run / "output").string() + "/";
       if (const auto at = external.reason.find(prefix); at != std::string::npos)
         external.reason.erase(at, prefix.size());
     }
-  write_tum_trajectory(folders.run / "trajectory.txt", {});
+  write_tum_trajectory(run / "trajectory.txt", {});
   return 0;
 }
 
@@ -130,29 +116,29 @@ void check_program(const AdapterConfig& config) {
 RunSummary run_external(const RunRequest& request) {
   const AdapterConfig config = read_config<AdapterConfig>(request);
   RunWriter writer(request);
-  const ExternalFolders folders(writer.path());
+  const fs::path run = fs::absolute(writer.path());
   RunTiming timing;
   std::optional<ScopedTimer> io(timing.io_s);
   const Dataset dataset = Dataset::open(request.dataset);
   check_program(config);
   const Events events = load_events(request, dataset);
-  Handover handover = write_handover(folders.input, config, request, dataset, events);
-  for (const auto& [name, file] : config.files) handover.values[name] = fs::absolute(file);
-  handover.values["out"] = folders.out;
-  fs::create_directories(folders.out);
+  ExternalInput input = write_external_input(run / "input", config, request, dataset, events);
+  for (const auto& [name, file] : config.files) input.values[name] = fs::absolute(file);
+  input.values["out"] = run / "output";
+  fs::create_directories(run / "output");
   io.reset();
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
-  const std::string version = version_of(config, handover.values, folders);
-  RunRecord::External external = run_repetitions(
-      call_of(config, config.command, handover.values, folders), config, request.repeat, timing);
+  const std::string version = version_of(config, input.values, run);
+  RunRecord::External external = run_repetitions(call_of(config, config.command, input.values, run),
+                                                 config, request.repeat, timing);
   external.version = version;
   io.emplace(timing.io_s);
-  timing.poses = take_output(folders, config, external);
-  fs::remove_all(folders.input);
+  timing.poses = take_output(run, config, external);
+  fs::remove_all(run / "input");
   io.reset();
-  writer.finish("external", request, dataset, handover.window, config.seed, config::print(config),
+  writer.finish("external", request, dataset, input.window, config.seed, config::print(config),
                 timing, external);
   RunSummary summary = summary_of(timing, fmt::format("{} poses", *timing.poses));
   if (external.status != "ok")

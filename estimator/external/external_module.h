@@ -7,7 +7,7 @@
 
 namespace saccade {
 
-/// `saccade run external`: a program of somebody else over a dataset (docs/own_estimator.md). A
+/// `saccade run external`: an external program over a dataset (docs/own_estimator.md). A
 /// crash, a time-out and bad output are a status of the run, which then holds no poses; a program
 /// that cannot be started is an InputError.
 RunSummary run_external(const RunRequest& request);

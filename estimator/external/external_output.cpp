@@ -65,7 +65,7 @@ Rigid3 pose_of(TextRow& row, const TrajectoryFormat& format) {
   return format.poses == TrajectoryFormat::Convention::kCameraFromWorld ? pose.inverse() : pose;
 }
 
-fs::path promised(const fs::path& out, const std::string& name, const char* key) {
+fs::path expected_output(const fs::path& out, const std::string& name, const char* key) {
   if (!fs::exists(out / name))
     throw InputError(name, fmt::format("was not written, which output.{} promises", key));
   return out / name;
@@ -91,22 +91,23 @@ std::vector<StampedPose> read_external_trajectory(const fs::path& file,
   return poses;
 }
 
-std::size_t take_external_output(const fs::path& out, const AdapterOutput& output,
-                                 const fs::path& run) {
+std::size_t import_external_output(const fs::path& out, const AdapterOutput& output,
+                                   const fs::path& run) {
   const std::vector<StampedPose> poses = read_external_trajectory(
-      promised(out, output.trajectory.file, "trajectory.file"), output.trajectory);
+      expected_output(out, output.trajectory.file, "trajectory.file"), output.trajectory);
   if (!output.covariance.empty()) {
-    const auto covariances = read_covariances(promised(out, output.covariance, "covariance"));
+    const auto covariances =
+        read_covariances(expected_output(out, output.covariance, "covariance"));
     write_covariances(run / "covariance.txt", covariances);
   }
   if (!output.map.empty()) {
-    const fs::path map = promised(out, output.map, "map");
+    const fs::path map = expected_output(out, output.map, "map");
     static_cast<void>(read_ply(map));
     fs::copy_file(map, run / "map.ply");
   }
   if (!output.views.empty()) {
-    const fs::path views = promised(out, output.views, "views");
-    static_cast<void>(read_view_list(promised(views, "views.yaml", "views")));
+    const fs::path views = expected_output(out, output.views, "views");
+    static_cast<void>(read_view_list(expected_output(views, "views.yaml", "views")));
     fs::copy(views, run, fs::copy_options::recursive);
   }
   write_tum_trajectory(run / "trajectory.txt", poses);

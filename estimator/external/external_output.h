@@ -10,15 +10,15 @@
 
 namespace saccade {
 
-/// The poses of `file` as world_from_camera in seconds. InputError with `file:line` for whatever is
-/// malformed: NaN, quaternions whose length is off 1, times that do not increase. No poses at all
-/// are none.
+/// The poses of `file` as world_from_camera in seconds; an empty file gives none. Throws InputError
+/// with `file:line` for malformed lines: NaN, quaternions without unit length, times that do not
+/// increase.
 [[nodiscard]] std::vector<StampedPose> read_external_trajectory(const std::filesystem::path& file,
                                                                 const TrajectoryFormat& format);
 
-/// Takes what the program left in `out` into the run folder `run`; how many poses there are.
-/// InputError where something that was promised is missing or malformed.
-std::size_t take_external_output(const std::filesystem::path& out, const AdapterOutput& output,
-                                 const std::filesystem::path& run);
+/// Copies the results in `out` into the run folder `run`; returns the number of poses. Throws
+/// InputError where a result that the adapter states is missing or malformed.
+std::size_t import_external_output(const std::filesystem::path& out, const AdapterOutput& output,
+                                   const std::filesystem::path& run);
 
 }  // namespace saccade

@@ -71,7 +71,7 @@ ExternalEnd run_external_program(const ExternalCall& call) {
   return result;
 }
 
-std::string last_words(const std::filesystem::path& log) {
+std::string log_tail(const std::filesystem::path& log) {
   constexpr std::size_t kLines = 3;
   constexpr std::size_t kLongest = 200;  // of a line
   std::ifstream file(log);

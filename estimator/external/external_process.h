@@ -9,29 +9,29 @@
 
 namespace saccade {
 
-/// A program to be run to its end.
+/// One call of an external program.
 struct ExternalCall {
-  std::vector<std::string> words;  ///< the first is the program
+  std::vector<std::string> words;  ///< program and arguments
   std::map<std::string, std::string> environment;
   std::filesystem::path working_folder;
-  std::filesystem::path log;  ///< what it prints is appended
+  std::filesystem::path log;  ///< its output is appended
   double timeout_s = 3600;
 };
 
-/// How it ended.
+/// Exit status and resources of a call.
 struct ExternalEnd {
   ChildEnd end;
   double wall_s = 0;
-  double peak_memory_mb = 0;  ///< of the largest of its processes
+  double peak_memory_mb = 0;  ///< of its largest process
   bool timed_out = false;
 };
 
-/// Runs it and waits. At the time-out it is asked to end (SIGTERM), five seconds later it is killed
-/// with all that it started. Throws InputError where it cannot be started, and where this program
-/// is interrupted, which takes the other with it.
+/// Runs the program and waits for its end. At the time-out it receives SIGTERM, five seconds later it
+/// is killed with its children. Throws InputError where it cannot be started, and where saccade
+/// itself is interrupted, after ending the program.
 [[nodiscard]] ExternalEnd run_external_program(const ExternalCall& call);
 
-/// The last lines of a log, for a reason of failure: at most three, without those of its begin.
-[[nodiscard]] std::string last_words(const std::filesystem::path& log);
+/// The last lines of a log as the reason of a failure: at most three, of the last repetition.
+[[nodiscard]] std::string log_tail(const std::filesystem::path& log);
 
 }  // namespace saccade

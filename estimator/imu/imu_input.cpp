@@ -7,17 +7,20 @@
 
 namespace saccade {
 
-ImuInput load_imu_input(const Dataset& dataset, const std::string& needs) {
-  const std::string place = dataset.folder().string();
-  if (!dataset.has_imu()) throw InputError(place, "holds no imu.txt, which " + needs + " needs");
+ImuInput load_imu_input(const Dataset& dataset, const std::string& consumer) {
+  const std::string folder = dataset.folder().string();
+  if (!dataset.has_imu())
+    throw InputError(folder, "holds no imu.txt, which " + consumer + " needs");
   ImuInput input;
   input.samples = dataset.load_imu();
   if (input.samples.empty())
-    throw InputError(place, "holds an imu.txt without readings; " + needs + " needs them");
-  const std::filesystem::path chain = dataset.folder() / "camera.yaml";
-  if (std::filesystem::exists(chain))
-    if (const auto camera_from_imu = read_camera_chain(chain).front().camera_from_imu)
+    throw InputError(folder, "holds an imu.txt without readings; " + consumer + " needs them");
+  const std::filesystem::path camera_chain = dataset.folder() / "camera.yaml";
+  if (std::filesystem::exists(camera_chain))
+    if (const auto camera_from_imu = read_camera_chain(camera_chain).front().camera_from_imu) {
       input.camera_from_imu = camera_from_imu->rotation_matrix();
+      input.imu_in_camera = camera_from_imu->translation();
+    }
   return input;
 }
 
@@ -35,18 +38,18 @@ ImuPoses camera_orientations(const ImuInput& imu, const OrientationOptions& opti
   return result;
 }
 
-Trajectory levelled(const Trajectory& world_from_camera, const ImuInput& imu) {
+Trajectory gravity_aligned(const Trajectory& world_from_camera, const ImuInput& imu) {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const ImuSample& sample : imu.samples)
     force += world_from_camera.at_clamped(seconds_from_ns(sample.t_ns)).rotation() *
              (imu.camera_from_imu * sample.specific_force);
-  // Without an accelerometer, or in free fall, nothing says what is level.
+  // Without an accelerometer, or in free fall, gravity is unknown.
   if (!(force.norm() > 0)) return world_from_camera;
-  const auto level = Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ());
+  const auto alignment = Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ());
   std::vector<StampedPose> poses(world_from_camera.poses().begin(),
                                  world_from_camera.poses().end());
   for (StampedPose& pose : poses)
-    pose.world_from_camera = Rigid3(level, Eigen::Vector3d::Zero()) * pose.world_from_camera;
+    pose.world_from_camera = Rigid3(alignment, Eigen::Vector3d::Zero()) * pose.world_from_camera;
   return Trajectory(std::move(poses));
 }
 

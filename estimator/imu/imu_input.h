@@ -12,25 +12,28 @@
 
 namespace saccade {
 
-/// The readings of a dataset's inertial sensor.
+/// A dataset's imu.txt, and where camera.yaml places the sensor (in the camera's frame, without a
+/// camera.yaml).
 struct ImuInput {
   std::vector<ImuSample> samples;  ///< at least one, in the sensor's frame
-  Eigen::Matrix3d camera_from_imu = Eigen::Matrix3d::Identity();  ///< camera.yaml's
+  Eigen::Matrix3d camera_from_imu = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d imu_in_camera = Eigen::Vector3d::Zero();  ///< position of the sensor [m]
 };
 
-/// Throws InputError where the dataset has no readings; `needs` is who needs them.
-[[nodiscard]] ImuInput load_imu_input(const Dataset& dataset, const std::string& needs);
+/// Throws InputError where the dataset has no samples; `consumer` says in the error who needs them.
+[[nodiscard]] ImuInput load_imu_input(const Dataset& dataset, const std::string& consumer);
 
-/// What a filter makes of them.
+/// Orientations of the camera, one per sample.
 struct ImuPoses {
-  Trajectory world_from_camera;        ///< at every reading, at the origin
+  Trajectory world_from_camera;        ///< at the origin
   std::vector<GyroBiasEstimate> gyro;  ///< as many
 };
 
-/// The orientations turned as one, so that the mean force over all readings points up: of a sensor
-/// that is not carried about it is gravity's. `world_from_camera` spans the readings' time.
-[[nodiscard]] Trajectory levelled(const Trajectory& world_from_camera, const ImuInput& imu);
-
 [[nodiscard]] ImuPoses camera_orientations(const ImuInput& imu, const OrientationOptions& options);
+
+/// The orientations after one rotation of the world that makes the mean specific force of all
+/// samples point up: over a motion that stays in place this is gravity. `world_from_camera` spans
+/// the samples' time.
+[[nodiscard]] Trajectory gravity_aligned(const Trajectory& world_from_camera, const ImuInput& imu);
 
 }  // namespace saccade

@@ -13,26 +13,26 @@ namespace saccade {
 namespace {
 
 constexpr int kRounds = 10;
-constexpr std::size_t kFewest = 8;  ///< intervals that say something
+constexpr std::size_t kMinIntervals = 8;
 
 using Chain = VelocityChain<6>;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
-/// Readings between two poses of the path.
+/// The preintegrated samples between two nodes of the path.
 struct Interval {
   std::size_t node;  ///< the first of the two
   Preintegration sum;
 };
 
-/// Two unit vectors across a third.
-Matrix32 across(const Eigen::Vector3d& direction) {
+/// Orthonormal basis of the tangent plane of a unit vector (B).
+Matrix32 tangent_basis(const Eigen::Vector3d& direction) {
   Matrix32 basis;
   basis.col(0) = direction.unitOrthogonal();
   basis.col(1) = direction.cross(basis.col(0));
   return basis;
 }
 
-/// The path at even times.
+/// Poses of the smoothed path at equal intervals.
 std::vector<StampedPose> nodes_of(const Trajectory& path, const InertialAlignmentOptions& options) {
   const Spline spline = Spline::smooth(path.poses(), options.smoothing_s);
   const double length_s = spline.end_s() - spline.start_s();
@@ -52,21 +52,21 @@ class Alignment {
 
   [[nodiscard]] InertialAlignment solve() {
     for (int round = 0; round < kRounds; ++round) {
-      sum_up();
-      if (intervals_.size() < kFewest) return result_;
-      match_turns();
+      preintegrate_all();
+      if (intervals_.size() < kMinIntervals) return result_;
+      solve_rotations();
     }
-    sum_up();
-    if (intervals_.size() < kFewest) return result_;
+    preintegrate_all();
+    if (intervals_.size() < kMinIntervals) return result_;
     weights_.assign(intervals_.size(), 1);
-    find_down();
-    const Eigen::Vector3d by_mean_force = result_.gravity;
-    for (int round = 0; round < kRounds; ++round) match_gravity();
+    initialise_gravity();
+    const Eigen::Vector3d mean_force_gravity = result_.gravity;
+    for (int round = 0; round < kRounds; ++round) solve_translations();
     result_.intervals = intervals_.size();
     result_.status = status();
-    // Where accelerations do not show, gravity and the accelerometer's bias are not told apart.
+    // Without enough acceleration, gravity and accelerometer bias cannot be separated.
     if (result_.status != InertialAlignment::Status::kOk) {
-      result_.gravity = by_mean_force;
+      result_.gravity = mean_force_gravity;
       result_.bias.accel.setZero();
     }
     return result_;
@@ -75,12 +75,12 @@ class Alignment {
  private:
   [[nodiscard]] InertialAlignment::Status status() const {
     using Status = InertialAlignment::Status;
-    if (result_.residual > options_.max_residual) return Status::kDisagrees;
+    if (result_.residual > options_.max_residual) return Status::kInconsistent;
     const bool is_known = result_.scale > 0 && result_.scale_sigma < options_.max_scale_sigma;
-    return is_known ? Status::kOk : Status::kEvenMotion;
+    return is_known ? Status::kOk : Status::kUnobservableScale;
   }
 
-  void sum_up() {
+  void preintegrate_all() {
     intervals_.clear();
     for (std::size_t j = 0; j + 1 < nodes_.size(); ++j) {
       const double from_s = nodes_[j].t_s - result_.time_offset_s;
@@ -90,23 +90,23 @@ class Alignment {
     }
   }
 
-  /// One Gauss-Newton step of gyroscope bias and time offset.
-  void match_turns() {
+  /// One Gauss-Newton step of gyroscope bias and time offset by (a).
+  void solve_rotations() {
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Interval& interval : intervals_) {
       const Preintegration& sum = interval.sum;
       const Eigen::Quaterniond& a = nodes_[interval.node].world_from_camera.rotation();
       const Eigen::Quaterniond& b = nodes_[interval.node + 1].world_from_camera.rotation();
-      const Eigen::Vector3d residual = so3_log(sum.turn.conjugate() * a.conjugate() * b);
-      Eigen::Matrix<double, 3, 4> by_unknowns;
-      by_unknowns.leftCols<3>() = sum.by_bias.topLeftCorner<3, 3>();
-      // A later camera's time means earlier readings.
-      by_unknowns.col(3) = sum.turn.conjugate() * sum.first_rate - sum.last_rate;
-      information += by_unknowns.transpose() * by_unknowns;
-      right += by_unknowns.transpose() * residual;
+      const Eigen::Vector3d residual = so3_log(sum.rotation.conjugate() * a.conjugate() * b);
+      Eigen::Matrix<double, 3, 4> jacobian;
+      jacobian.leftCols<3>() = sum.bias_jacobian.topLeftCorner<3, 3>();
+      // A larger offset means earlier samples.
+      jacobian.col(3) = sum.rotation.conjugate() * sum.first_rate - sum.last_rate;
+      information += jacobian.transpose() * jacobian;
+      right += jacobian.transpose() * residual;
     }
-    // A turn that is even says nothing of the offset, which then is none.
+    // A constant rate does not determine the offset, which then stays 0.
     information(3, 3) += 1e-6;
     const Eigen::Vector4d step = information.ldlt().solve(right);
     result_.bias.gyro += step.head<3>();
@@ -129,46 +129,46 @@ class Alignment {
     return chain.solve();
   }
 
-  /// Rows of an interval but for the head: what the path may be off by, and where it went.
+  /// Equations (b), (c) of an interval without the head: weights from the path's sigmas, and values.
   template <int kHead>
   [[nodiscard]] typename VelocityChain<kHead>::Rows rows_without_head(
       const Interval& interval) const {
     const double t_s = interval.sum.duration_s;
-    const double drift = options_.gravity * options_.tilt_sigma_rad * t_s / result_.scale;
-    const double position = std::hypot(options_.position_sigma, 0.5 * t_s * drift);
+    const double velocity_sigma = options_.gravity * options_.tilt_sigma_rad * t_s / result_.scale;
+    const double position_sigma = std::hypot(options_.position_sigma, 0.5 * t_s * velocity_sigma);
     typename VelocityChain<kHead>::Rows rows;
     rows.duration_s = t_s;
-    rows.weight.template head<3>().setConstant(1 / position);
-    rows.weight.template tail<3>().setConstant(1 / drift);
+    rows.weight.template head<3>().setConstant(1 / position_sigma);
+    rows.weight.template tail<3>().setConstant(1 / velocity_sigma);
     rows.value.setZero();
     rows.value.template head<3>() = nodes_[interval.node + 1].world_from_camera.translation() -
                                     nodes_[interval.node].world_from_camera.translation();
     return rows;
   }
 
-  /// What the sensor adds to position and velocity in the path's world, without gravity [m, m/s].
-  [[nodiscard]] Chain::Six felt(const Interval& interval) const {
+  /// Measured change of position and velocity in the path's world, without gravity [m, m/s].
+  [[nodiscard]] Chain::Six measured_change(const Interval& interval) const {
     const Rigid3& a = nodes_[interval.node].world_from_camera;
     const Rigid3& b = nodes_[interval.node + 1].world_from_camera;
     Chain::Six sum;
-    sum.head<3>() = a.rotation() * interval.sum.position -
-                    (b.rotation() * imu_.place - a.rotation() * imu_.place);
+    sum.head<3>() = a.rotation() * interval.sum.position - (b.rotation() * imu_.position_in_camera -
+                                                            a.rotation() * imu_.position_in_camera);
     sum.tail<3>() = a.rotation() * interval.sum.velocity;
     return sum;
   }
 
-  /// How that changes with the biases.
-  [[nodiscard]] Matrix6 rotated_bias(const Interval& interval) const {
+  /// Its Jacobian with respect to the biases (gyro, accel).
+  [[nodiscard]] Matrix6 change_by_bias(const Interval& interval) const {
     const Eigen::Matrix3d rotation = nodes_[interval.node].world_from_camera.rotation_matrix();
-    Matrix6 by_bias;
-    by_bias.topRows<3>() = rotation * interval.sum.by_bias.bottomRows<3>();
-    by_bias.bottomRows<3>() = rotation * interval.sum.by_bias.middleRows<3>(3);
-    return by_bias;
+    Matrix6 jacobian;
+    jacobian.topRows<3>() = rotation * interval.sum.bias_jacobian.bottomRows<3>();
+    jacobian.bottomRows<3>() = rotation * interval.sum.bias_jacobian.middleRows<3>(3);
+    return jacobian;
   }
 
-  /// Columns of position and velocity for an even acceleration along each of some directions.
+  /// Position and velocity after t_s of constant acceleration, a column for each.
   template <int kColumns>
-  static Eigen::Matrix<double, 6, kColumns> falling(
+  static Eigen::Matrix<double, 6, kColumns> constant_acceleration(
       double t_s, const Eigen::Matrix<double, 3, kColumns>& directions) {
     Eigen::Matrix<double, 6, kColumns> columns;
     columns.template topRows<3>() = 0.5 * t_s * t_s * directions;
@@ -176,35 +176,36 @@ class Alignment {
     return columns;
   }
 
-  /// Down by the mean force, as of a camera whose velocity hardly changes in all.
-  void find_down() {
+  /// Gravity from the mean specific force: over the whole path the velocity hardly changes.
+  void initialise_gravity() {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    for (const Interval& interval : intervals_) force += felt(interval).tail<3>();
+    for (const Interval& interval : intervals_) force += measured_change(interval).tail<3>();
     if (force.norm() > 0) direction_ = -force.normalized();
     result_.gravity = options_.gravity * direction_;
   }
 
-  /// (l, l t, l c) about the direction before.
-  void match_gravity() {
-    const Matrix32 basis = across(direction_);
+  /// Solves (b), (c) for (l, l t, l c), linearised about the previous direction d.
+  void solve_translations() {
+    const Matrix32 basis = tangent_basis(direction_);
     const auto rows_of = [&](const Interval& interval) {
-      const Matrix6 by_bias = rotated_bias(interval);
+      const Matrix6 jacobian = change_by_bias(interval);
       Chain::Rows rows = rows_without_head<6>(interval);
       rows.head.col(0) =
-          felt(interval) +
-          falling<1>(rows.duration_s, Eigen::Vector3d(options_.gravity * direction_));
-      rows.head.middleCols<2>(1) = falling<2>(rows.duration_s, options_.gravity * basis);
-      rows.head.rightCols<3>() = by_bias.rightCols<3>();
+          measured_change(interval) +
+          constant_acceleration<1>(rows.duration_s, Eigen::Vector3d(options_.gravity * direction_));
+      rows.head.middleCols<2>(1) =
+          constant_acceleration<2>(rows.duration_s, options_.gravity * basis);
+      rows.head.rightCols<3>() = jacobian.rightCols<3>();
       return rows;
     };
     Chain::Head precision = Chain::Head::Zero();
     precision.tail<3>().setConstant(std::pow(result_.scale / options_.accel_bias_sigma, 2));
     const Chain::Solution found = least_squares<6>(precision, rows_of);
-    take(found, basis);
-    judge(found, rows_of);
+    update(found, basis);
+    reweight(found, rows_of);
   }
 
-  void take(const Chain::Solution& found, const Matrix32& basis) {
+  void update(const Chain::Solution& found, const Matrix32& basis) {
     const double inverse = found.head[0];
     if (!(inverse > 0)) {
       result_.scale_sigma = std::numeric_limits<double>::infinity();
@@ -212,16 +213,16 @@ class Alignment {
     }
     result_.scale = 1 / inverse;
     result_.scale_sigma = std::sqrt(found.covariance(0, 0)) / inverse;
-    const Eigen::Vector2d turn = found.head.segment<2>(1) / inverse;
+    const Eigen::Vector2d t = found.head.segment<2>(1) / inverse;
     result_.tilt_sigma_rad = std::sqrt(found.covariance.block<2, 2>(1, 1).trace() / 2) / inverse;
-    direction_ = (direction_ + basis * turn).normalized();
+    direction_ = (direction_ + basis * t).normalized();
     result_.gravity = options_.gravity * direction_;
     result_.bias.accel = found.head.tail<3>() / inverse;
   }
 
-  /// Intervals that fit badly count less; deviations grow to what the rows are off by.
+  /// Cauchy weights of the intervals; the sigmas are inflated by the RMS residual.
   template <class MakeRows>
-  void judge(const Chain::Solution& found, const MakeRows& rows_of) {
+  void reweight(const Chain::Solution& found, const MakeRows& rows_of) {
     double squares = 0, weight_sum = 0;
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
       const Chain::Rows rows = rows_of(intervals_[k]);
@@ -235,25 +236,25 @@ class Alignment {
       weight_sum += weights_[k] * weights_[k];
       weights_[k] = 1 / std::sqrt(1 + square / (options_.outlier * options_.outlier));
     }
-    // Six rows and three unknowns for each interval.
+    // Six equations and three unknowns for each interval.
     result_.residual = std::sqrt(2 * squares / weight_sum);
-    const double grown = std::max(1.0, result_.residual);
-    result_.scale_sigma *= grown;
-    result_.tilt_sigma_rad *= grown;
+    const double inflation = std::max(1.0, result_.residual);
+    result_.scale_sigma *= inflation;
+    result_.tilt_sigma_rad *= inflation;
   }
 
   const MountedImu& imu_;
   const InertialAlignmentOptions& options_;
   std::vector<StampedPose> nodes_;
   std::vector<Interval> intervals_;
-  std::vector<double> weights_;  ///< of each interval
-  Eigen::Vector3d direction_ = -Eigen::Vector3d::UnitZ();
+  std::vector<double> weights_;                            ///< of each interval
+  Eigen::Vector3d direction_ = -Eigen::Vector3d::UnitZ();  ///< d
   InertialAlignment result_;
 };
 
 }  // namespace
 
-Eigen::Quaterniond InertialAlignment::level() const {
+Eigen::Quaterniond InertialAlignment::gravity_alignment() const {
   return Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
 }
 

@@ -11,50 +11,51 @@ namespace saccade {
 
 struct InertialAlignmentOptions {
   double gravity = 9.81;          ///< [m/s^2]
-  double interval_s = 0.1;        ///< readings are summed up over so long
-  double smoothing_s = 0.05;      ///< spacing of the knots of a spline through the path
-  double position_sigma = 5e-4;   ///< of a position of the path [its unit]
+  double interval_s = 0.1;        ///< between two poses of the path that samples connect
+  double smoothing_s = 0.05;      ///< knot spacing of the spline that smooths the path
+  double position_sigma = 5e-4;   ///< of a position of the path [unit of the path]
   double tilt_sigma_rad = 2e-3;   ///< of an orientation of the path
   double accel_bias_sigma = 0.2;  ///< [m/s^2]
-  double max_scale_sigma = 0.05;  ///< relative; a scale that is known less is not known
-  double max_residual = 2;        ///< of a path that the readings agree with
-  double outlier = 3;             ///< deviations beyond which an interval counts less (Cauchy)
+  double max_scale_sigma = 0.05;  ///< relative; a larger sigma is kUnobservableScale
+  double max_residual = 2;        ///< a larger residual is kInconsistent
+  double outlier = 3;             ///< scale of the Cauchy loss of an interval [sigma]
 };
 
-/// How a camera's path lies among what an inertial sensor felt.
+/// Scale, gravity and calibration that align a camera's path with inertial measurements.
 struct InertialAlignment {
   enum class Status {
     kOk,
-    kNoReadings,  ///< the readings do not cover enough of the path
-    kEvenMotion,  ///< accelerations are too small to say how long a metre is
-    kDisagrees    ///< the path is not the one that the sensor felt, to its stated deviations
+    kNoReadings,         ///< the samples cover too little of the path
+    kUnobservableScale,  ///< nearly constant velocity: accelerations are too small for the scale
+    kInconsistent        ///< path and samples contradict each other, by their stated sigmas
   };
 
   Status status = Status::kNoReadings;
   double scale = 1;                                   ///< metres in the path's unit
-  double scale_sigma = 0;                             ///< relative deviation
+  double scale_sigma = 0;                             ///< relative
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< in the path's world [m/s^2]
   double tilt_sigma_rad = 0;                          ///< of gravity's direction
   ImuBias bias;                                       ///< in the camera's axes
-  double time_offset_s = 0;  ///< a reading stamped t was taken at the path's time t + offset
+  double time_offset_s = 0;  ///< a sample with stamp t belongs to the path's time t + offset
   std::size_t intervals = 0;
-  double residual = 0;  ///< deviation of what the sensor says, over what was expected
+  double residual = 0;  ///< RMS of the whitened residuals; 1 is expected
 
-  /// Turns the path's world so that gravity points along -z, the shortest way.
-  [[nodiscard]] Eigen::Quaterniond level() const;
+  /// The shortest rotation of the path's world that makes gravity point along -z.
+  [[nodiscard]] Eigen::Quaterniond gravity_alignment() const;
 };
 
-/// Scale, gravity, biases and time offset of a path up to scale, by least squares over intervals
-/// j of its time. Turns first, nothing of which depends on scale,
-///   Log(Q(b, o)^T R_j^T R_(j+1)) = 0
-/// by gyroscope bias b and time offset o; then, with l = 1 / scale, in the path's unit, R, p its
-/// poses, x the sensor's place, c the accelerometer's bias, and g = l (G d + B t), d a unit vector
-/// and B across it,
-///   p_(j+1) - p_j = v_j T + g T^2 / 2 + l (R_j P(c) - (R_(j+1) - R_j) x)
-///   v_(j+1) - v_j = g T + l R_j V(c)
-/// which is linear in l, v_j, l t and l c, and repeated about the new d. The readings, which have
-/// the smaller errors, stand on the right, with the unknown l: the other way round noise of the
-/// path would make the scale too small. `path`: at least two poses. Deterministic.
+/// Scale, gravity, biases and time offset of a path up to scale, by least squares over intervals j
+/// (the visual-inertial alignment of Martinelli, and of Qin and Shen, with a time offset). First
+/// gyroscope bias b and time offset o from the rotations, which do not depend on the scale,
+///   Log(dR(b, o)^T R_j^T R_(j+1)) = 0;                                                      (a)
+/// then, with l = 1 / scale, R and p the path's poses, x the sensor's position in the camera, c the
+/// accelerometer's bias, g = l (G d + B t), d a unit vector and B a basis of its tangent plane,
+///   p_(j+1) - p_j = v_j T + g T^2 / 2 + l (R_j dP(c) - (R_(j+1) - R_j) x)                   (b)
+///   v_(j+1) - v_j = g T + l R_j dV(c)                                                       (c)
+/// which is linear in l, v_j, l t and l c, and repeated about the new d. The samples, which have
+/// the smaller errors, are multiplied by the unknown l: with the path multiplied by the scale
+/// instead, noise of the path would bias the scale towards zero. `path`: at least two poses.
+/// Deterministic.
 [[nodiscard]] InertialAlignment align_inertially(const Trajectory& path, const MountedImu& imu,
                                                  const InertialAlignmentOptions& options);
 

@@ -2,28 +2,24 @@
 
 #include <filesystem>
 
-#include "core/io/calibration_file.h"
 #include "core/io/imu_file.h"
 #include "estimator/imu/imu_input.h"
 
 namespace saccade {
 namespace {
 
-/// White noise of a sensor of a consumer's grade [rad/s/sqrt(Hz), m/s^2/sqrt(Hz)].
+/// Noise densities of a consumer sensor [rad/s/sqrt(Hz), m/s^2/sqrt(Hz)].
 constexpr double kGyroscopeDensity = 1e-3, kAccelerometerDensity = 1e-2;
 
 }  // namespace
 
-MountedImu load_mounted_imu(const Dataset& dataset, const std::string& needs) {
-  const ImuInput input = load_imu_input(dataset, needs);
+MountedImu load_mounted_imu(const Dataset& dataset, const std::string& consumer) {
+  const ImuInput input = load_imu_input(dataset, consumer);
   MountedImu imu;
   for (const ImuSample& sample : input.samples)
     imu.samples.push_back({sample.t_ns, input.camera_from_imu * sample.specific_force,
                            input.camera_from_imu * sample.angular_velocity});
-  const std::filesystem::path chain = dataset.folder() / "camera.yaml";
-  if (std::filesystem::exists(chain))
-    if (const auto camera_from_imu = read_camera_chain(chain).front().camera_from_imu)
-      imu.place = camera_from_imu->translation();
+  imu.position_in_camera = input.imu_in_camera;
   const std::filesystem::path noise = dataset.folder() / "imu.yaml";
   if (std::filesystem::exists(noise)) imu.noise = read_imu_yaml(noise);
   if (imu.noise.gyroscope.density == 0) imu.noise.gyroscope.density = kGyroscopeDensity;

@@ -10,16 +10,16 @@
 
 namespace saccade {
 
-/// An inertial sensor that is fixed to a camera.
+/// Samples of an inertial sensor that is fixed to a camera.
 struct MountedImu {
-  std::vector<ImuSample> samples;                   ///< in the camera's axes, in order of time
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the sensor in the camera's frame [m]
+  std::vector<ImuSample> samples;  ///< in the camera's axes, in order of time
+  Eigen::Vector3d position_in_camera = Eigen::Vector3d::Zero();  ///< of the sensor [m]
   ImuCalibration noise;
 };
 
-/// A dataset's imu.txt, turned into the camera's axes by camera.yaml, with the noise of imu.yaml
-/// or, where there is none or it states none, that of a sensor of a consumer's grade. Throws
-/// InputError where the dataset has no readings; `needs` is who needs them.
-[[nodiscard]] MountedImu load_mounted_imu(const Dataset& dataset, const std::string& needs);
+/// A dataset's imu.txt, rotated into the camera's axes by camera.yaml, with the noise of imu.yaml
+/// or, where it states none, that of a consumer sensor. Throws InputError where the dataset has no
+/// samples; `consumer` says in the error who needs them.
+[[nodiscard]] MountedImu load_mounted_imu(const Dataset& dataset, const std::string& consumer);
 
 }  // namespace saccade

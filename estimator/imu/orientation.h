@@ -16,24 +16,25 @@ struct OrientationOptions {
   enum class Method {
     kInertial,       ///< InertialFilter
     kComplementary,  ///< ComplementaryFilter
-    kGyroscope,      ///< the integral of what the gyroscope reads, from the first tilt on
+    kGyroscope,      ///< integral of the measured rate, from the tilt of the first sample
   };
 
   Method method = Method::kInertial;
-  InertialOptions inertial;
+  GyroscopeNoise gyroscope;
+  InertialFilterOptions inertial;
   ComplementaryOptions complementary;
 };
 
 void describe(config::Fields& fields, GyroscopeNoise& noise);
 void describe(config::Fields& fields, OrientationOptions& options);
 
-/// At one reading.
+/// Estimate after one sample.
 struct ImuOrientation {
   Eigen::Quaterniond world_from_imu;  ///< the world's z axis points up
   GyroBiasEstimate gyro;
 };
 
-/// After each of the readings, which are in order of time.
+/// One estimate per sample; `samples` are in order of time.
 [[nodiscard]] std::vector<ImuOrientation> estimate_orientations(std::span<const ImuSample> samples,
                                                                 const OrientationOptions& options);
 

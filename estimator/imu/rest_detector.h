@@ -8,44 +8,40 @@
 
 namespace saccade {
 
-struct RestOptions {
-  double window_s = 0.1;      ///< readings are judged by their mean over windows of this length
-  double accel = 0.2;         ///< at rest below this | |a| - g | [m/s^2]
-  double rate = 0.15;         ///< and below this |w - bias| [rad/s], while the bias is unknown
-  double rate_change = 0.03;  ///< and below this change of w from window to window [rad/s]
-};
+/// Magnitude of gravity that the orientation filters assume [m/s^2].
+constexpr double kGravity_m_s2 = 9.81;
+/// After a longer gap between samples the orientation filters read the tilt again.
+constexpr double kMaxImuGap_s = 0.1;
 
 /// A window in which the sensor did not move.
 struct RestWindow {
-  Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();  ///< as read [rad/s]
+  Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();  ///< as measured [rad/s]
   double length_s = 0;
 };
 
-/// Finds windows of readings in which the sensor was at rest: the accelerometer reads gravity, the
-/// rate is what the bias may be (at most `rate`, and within four deviations), and it is what it was
-/// in the window before. A sensor that turns slowly and evenly from the first moment on cannot be
-/// told from one at rest.
+/// Finds windows of 0.1 s in which the sensor was at rest (steady state of thesis 3.1.3): the mean
+/// specific force has the magnitude of gravity, the mean rate is a possible bias (below 0.15 rad/s
+/// and within four sigma), and it equals that of the window before. A slow rotation at a constant
+/// rate from the first moment on cannot be told from rest.
 class RestDetector {
  public:
-  /// `gyro_noise` [rad/s/sqrt(Hz)].
-  RestDetector(const RestOptions& options, double gravity, double gyro_noise);
+  /// `gyro_noise_density` [rad/s/sqrt(Hz)].
+  explicit RestDetector(double gyro_noise_density) : gyro_noise_density_(gyro_noise_density) {}
 
-  /// A reading that stood for `dt_s` > 0, with what is known of the gyroscope's bias: its value and
-  /// the deviation of a component [rad/s]. The window that the reading closed, if it was one of
-  /// rest.
+  /// Adds a sample that holds for `dt_s` > 0. `bias`, `bias_sigma`: what is known of the
+  /// gyroscope's bias, and the sigma of one component [rad/s]. Returns the window that this sample
+  /// completes, if the sensor was at rest in it.
   std::optional<RestWindow> add(const ImuSample& sample, double dt_s, const Eigen::Vector3d& bias,
                                 double bias_sigma);
 
-  /// Drops the window in work, as after a gap.
+  /// Discards the unfinished window, as after a gap.
   void interrupt();
 
   [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }  ///< in the last window
 
  private:
-  RestOptions options_;
-  double gravity_;
-  double gyro_noise_;
-  double length_s_ = 0;  ///< of the window in work
+  double gyro_noise_density_;
+  double length_s_ = 0;  ///< of the unfinished window
   Eigen::Vector3d force_sum_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> previous_rate_;

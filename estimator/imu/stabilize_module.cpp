@@ -2,8 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/stopwatch.h"
+#include "core/time_search.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_output.h"
@@ -24,76 +24,69 @@
 namespace saccade {
 namespace {
 
-/// Everything that stabilization starts from.
-struct StabilizeInput {
-  std::optional<ImuInput> imu;  ///< none where another run's poses are used
-  Trajectory poses;             ///< those
-  Events events;                ///< perhaps none
-};
-
-StabilizeInput load_input(const RunRequest& request, const Dataset& dataset) {
-  StabilizeInput input;
-  if (request.poses_from)
-    input.poses = load_poses(request, dataset);
-  else
-    input.imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
-  if (!dataset.events_file().empty()) input.events = load_events_if_any(request, dataset);
-  return input;
+/// Consecutive windows of `window_s` from the first event on; empty ones are left out.
+std::vector<std::span<const Event>> event_windows(std::span<const Event> events, double window_s) {
+  std::vector<std::span<const Event>> windows;
+  const TimeNs window_ns = ns_from_seconds(window_s);
+  while (!events.empty()) {
+    const TimeNs start_ns = windows.empty() ? events.front().t_ns : windows.front().front().t_ns;
+    const TimeNs begin_ns = start_ns + (events.front().t_ns - start_ns) / window_ns * window_ns;
+    windows.push_back(events.first(count_before(events, begin_ns + window_ns)));
+    events = events.subspan(windows.back().size());
+  }
+  return windows;
 }
 
+/// The time of a window of events and, in its middle, the rotation to the smoothed orientation.
+StabilizedWindow window_at(TimeNs begin_ns, TimeNs length_ns, const Trajectory& world_from_camera,
+                           const Trajectory& world_from_smoothed) {
+  StabilizedWindow window;
+  window.start_s = seconds_from_ns(begin_ns);
+  window.end_s = seconds_from_ns(begin_ns + length_ns);
+  window.at_s = seconds_from_ns(begin_ns + length_ns / 2);
+  window.steady_from_camera = world_from_smoothed.at_clamped(window.at_s).rotation().conjugate() *
+                              world_from_camera.at_clamped(window.at_s).rotation();
+  return window;
+}
+
+/// Result of one repetition.
 struct Stabilization {
   ImuPoses camera;  ///< without an inertial sensor its biases are empty
-  Trajectory world_from_steady;
-  std::vector<StabilizedStretch> stretches;
+  Trajectory world_from_smoothed;
+  std::vector<StabilizedWindow> windows;
+  std::vector<std::vector<StabilizedEvent>> events;  ///< of each window
 };
 
-/// Consecutive stretches of `window_s` from the first event on; those without events are left out.
-std::vector<StabilizedStretch> cut(std::span<const Event> events, double window_s) {
-  std::vector<StabilizedStretch> stretches;
-  if (events.empty()) return stretches;
-  const TimeNs window_ns = ns_from_seconds(window_s);
-  const TimeNs start_ns = events.front().t_ns;
-  while (!events.empty()) {
-    const TimeNs begin_ns = start_ns + (events.front().t_ns - start_ns) / window_ns * window_ns;
-    const TimeNs end_ns = begin_ns + window_ns;
-    const auto end = std::partition_point(events.begin(), events.end(),
-                                          [end_ns](const Event& e) { return e.t_ns < end_ns; });
-    const auto count = static_cast<std::size_t>(end - events.begin());
-    StabilizedStretch stretch;
-    stretch.window.start_s = seconds_from_ns(begin_ns);
-    stretch.window.end_s = seconds_from_ns(end_ns);
-    stretch.window.at_s = seconds_from_ns(begin_ns + window_ns / 2);
-    stretch.events = events.first(count);
-    stretches.push_back(std::move(stretch));
-    events = events.subspan(count);
-  }
-  return stretches;
-}
-
-void stabilize(const StabilizeInput& input, const StabilizeConfig& config,
-               const PinholeCamera& camera, Stabilization& result, RunTiming& timing) {
+Stabilization stabilize(const std::optional<ImuInput>& imu, const Trajectory& given_poses,
+                        std::span<const Event> events, const StabilizeConfig& config,
+                        const PinholeCamera& camera, RunTiming& timing) {
+  Stabilization result;
   double orientation_s = 0, events_s = 0;
   {
     const ScopedTimer clock(orientation_s);
-    result.camera =
-        input.imu ? camera_orientations(*input.imu, config.orientation) : ImuPoses{input.poses, {}};
-    result.world_from_steady = steady_poses(result.camera.world_from_camera, config.steady);
+    result.camera = imu ? camera_orientations(*imu, config.orientation) : ImuPoses{given_poses, {}};
+    result.world_from_smoothed =
+        smoothed_orientations(result.camera.world_from_camera, config.smoothing);
   }
   {
     const ScopedTimer clock(events_s);
     const Stabilizer stabilizer(camera, result.camera.world_from_camera);
-    result.stretches = cut(input.events, config.window_s);
-    parallel_for(result.stretches.size(), [&](std::size_t i) {
-      StabilizedStretch& stretch = result.stretches[i];
-      const double at_s = stretch.window.at_s;
-      const Eigen::Quaterniond steady = result.world_from_steady.at_clamped(at_s).rotation();
-      stretch.window.steady_from_camera =
-          steady.conjugate() * result.camera.world_from_camera.at_clamped(at_s).rotation();
-      stretch.stabilized = stabilizer.stabilize(stretch.events, steady);
+    const auto windows = event_windows(events, config.window_s);
+    const TimeNs length_ns = ns_from_seconds(config.window_s);
+    result.windows.resize(windows.size());
+    result.events.resize(windows.size());
+    parallel_for(windows.size(), [&](std::size_t i) {
+      const TimeNs start_ns = events.front().t_ns;
+      const TimeNs index = (windows[i].front().t_ns - start_ns) / length_ns;
+      result.windows[i] = window_at(start_ns + index * length_ns, length_ns,
+                                    result.camera.world_from_camera, result.world_from_smoothed);
+      const Rigid3 steady = result.world_from_smoothed.at_clamped(result.windows[i].at_s);
+      result.events[i] = stabilizer.stabilize(windows[i], steady.rotation());
     });
   }
   timing.wall_s.push_back(orientation_s + events_s);
   timing.stages_s = {{"orientation", orientation_s}, {"events", events_s}};
+  return result;
 }
 
 void write(const std::filesystem::path& folder, const Dataset& dataset,
@@ -101,12 +94,12 @@ void write(const std::filesystem::path& folder, const Dataset& dataset,
            const RunRecord::Window& window) {
   write_orientations(folder / "orientation.txt", result.camera.world_from_camera.poses());
   if (!result.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.camera.gyro);
-  if (!result.stretches.empty())
-    write_stabilized_events(folder / "stabilized", dataset.camera(), result.stretches);
+  if (!result.windows.empty())
+    write_stabilized_events(folder / "stabilized", dataset.camera(), result.windows, result.events);
   if (config.frames)
     write_stabilized_frames(folder / "stabilized", dataset, window,
                             Stabilizer(dataset.camera(), result.camera.world_from_camera),
-                            result.world_from_steady);
+                            result.world_from_smoothed);
 }
 
 }  // namespace
@@ -117,25 +110,30 @@ RunSummary run_stabilization(const RunRequest& request) {
 
   RunTiming timing;
   const Dataset dataset = Dataset::open(request.dataset);
-  StabilizeInput input;
+  std::optional<ImuInput> imu;
+  Trajectory given_poses;
+  Events events;
   {
     const ScopedTimer clock(timing.io_s);
-    input = load_input(request, dataset);
+    if (request.poses_from)
+      given_poses = load_poses(request, dataset);
+    else
+      imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
+    if (!dataset.events_file().empty()) events = load_events_if_any(request, dataset);
   }
-  timing.events = input.events.size();
+  timing.events = events.size();
   Stabilization result;
   Progress progress("stabilize", timing.events * static_cast<std::size_t>(request.repeat),
                     "events");
   for (int i = 0; i < request.repeat; ++i) {
-    stabilize(input, config, dataset.camera(), result, timing);
+    result = stabilize(imu, given_poses, events, config, dataset.camera(), timing);
     progress.add(timing.events);
   }
   const Trajectory& poses = result.camera.world_from_camera;
   timing.sequence_s = poses.end_s() - poses.start_s();
-  // A length alone counts from the first event on, as it did when these were loaded.
-  const bool is_from_events = request.duration_s && !input.events.empty();
-  const double first_s =
-      is_from_events ? seconds_from_ns(input.events.front().t_ns) : poses.start_s();
+  // --duration-s without --start-s counts from the first event, as it does when they are loaded.
+  const bool is_from_events = request.duration_s && !events.empty();
+  const double first_s = is_from_events ? seconds_from_ns(events.front().t_ns) : poses.start_s();
   const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
     const ScopedTimer clock(timing.io_s);
@@ -144,7 +142,7 @@ RunSummary run_stabilization(const RunRequest& request) {
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
   return summary_of(timing, fmt::format("{} orientations, {} windows of events", poses.size(),
-                                        result.stretches.size()));
+                                        result.windows.size()));
 }
 
 std::string print_stabilization_config(const config::Document& document) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "core/io/events_h5.h"
 #include "core/io/file_list.h"
@@ -15,48 +16,44 @@
 namespace saccade {
 namespace {
 
-/// Where an event ends up: the nearest pixel, and exactly.
-struct Placed {
-  Event event;
-  StabilizedEvent stabilized;
-};
+/// An event at its nearest pixel, and with its sub-pixel position.
+using PlacedEvent = std::pair<Event, StabilizedEvent>;
 
-std::vector<Placed> within_image(const StabilizedStretch& stretch, const PinholeCamera& camera) {
+std::vector<PlacedEvent> within_image(std::span<const StabilizedEvent> stabilized,
+                                      const PinholeCamera& camera) {
   const float right = static_cast<float>(camera.width) - 0.5F;
   const float bottom = static_cast<float>(camera.height) - 0.5F;
-  std::vector<Placed> placed;
-  for (const StabilizedEvent& one : stretch.stabilized) {
+  std::vector<PlacedEvent> inside;
+  for (const StabilizedEvent& one : stabilized) {
     if (!(one.x > -0.5F && one.y > -0.5F && one.x < right && one.y < bottom)) continue;
     Event event = one.source;
     event.x = static_cast<std::uint16_t>(std::max(std::lround(one.x), 0L));
     event.y = static_cast<std::uint16_t>(std::max(std::lround(one.y), 0L));
-    placed.push_back({event, one});
+    inside.emplace_back(event, one);
   }
-  // Readers put ties in this order; the places must be in the same.
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const Placed& a, const Placed& b) { return EventOrder{}(a.event, b.event); });
-  return placed;
+  // Readers of events.h5 sort ties in this order; places.h5 must be in the same.
+  std::ranges::stable_sort(inside, EventOrder{}, &PlacedEvent::first);
+  return inside;
 }
 
 }  // namespace
 
 void write_stabilized_events(const std::filesystem::path& folder, const PinholeCamera& camera,
-                             std::span<const StabilizedStretch> stretches) {
+                             std::span<const StabilizedWindow> windows,
+                             std::span<const std::vector<StabilizedEvent>> stabilized) {
   std::filesystem::create_directories(folder);
   EventH5Writer events(folder / "events.h5", TimestampUnit::kNanoseconds);
   StabilizedPlaces places;
-  std::vector<StabilizedWindow> windows;
-  for (const StabilizedStretch& stretch : stretches) {
+  for (const std::vector<StabilizedEvent>& window : stabilized) {
     Events batch;
-    for (const Placed& one : within_image(stretch, camera)) {
-      batch.push_back(one.event);
-      places.x.push_back(one.stabilized.x);
-      places.y.push_back(one.stabilized.y);
-      places.source_x.push_back(one.stabilized.source.x);
-      places.source_y.push_back(one.stabilized.source.y);
+    for (const auto& [event, exact] : within_image(window, camera)) {
+      batch.push_back(event);
+      places.x.push_back(exact.x);
+      places.y.push_back(exact.y);
+      places.source_x.push_back(exact.source.x);
+      places.source_y.push_back(exact.source.y);
     }
     events.append(batch);
-    windows.push_back(stretch.window);
   }
   events.close();
   write_stabilized_places(folder / "places.h5", places);
@@ -65,7 +62,7 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
 
 void write_stabilized_frames(const std::filesystem::path& folder, const Dataset& dataset,
                              const RunRecord::Window& window, const Stabilizer& stabilizer,
-                             const Trajectory& world_from_steady) {
+                             const Trajectory& world_from_smoothed) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < dataset.frames().size(); ++i)
     if (const double t_s = dataset.frames()[i].t_s; t_s >= window.start_s && t_s <= window.end_s)
@@ -77,7 +74,7 @@ void write_stabilized_frames(const std::filesystem::path& folder, const Dataset&
     const double t_s = dataset.frames()[frames[k]].t_s;
     files[k] = {t_s, folder / "frames" / fmt::format("frame_{:08}.png", frames[k])};
     const ImageF stabilized = stabilizer.stabilize(dataset.load_frame(frames[k]), t_s,
-                                                   world_from_steady.at_clamped(t_s).rotation());
+                                                   world_from_smoothed.at_clamped(t_s).rotation());
     write_png(files[k].file, srgb8_from_linear(stabilized));
   });
   write_file_list(folder / "images.txt", files);

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/event.h"
 #include "core/io/dataset.h"
 #include "core/io/run_record.h"
 #include "core/io/stabilized_events.h"
@@ -13,21 +12,16 @@
 
 namespace saccade {
 
-/// Events that were turned to one orientation.
-struct StabilizedStretch {
-  StabilizedWindow window;
-  std::span<const Event> events;
-  std::vector<StabilizedEvent> stabilized;  ///< as many
-};
-
-/// events.h5 with the events whose nearest pixel is in the image, places.h5 and windows.csv.
+/// Writes events.h5 with the events whose nearest pixel is in the image, places.h5 and windows.csv.
+/// `stabilized`: the events of each window.
 void write_stabilized_events(const std::filesystem::path& folder, const PinholeCamera& camera,
-                             std::span<const StabilizedStretch> stretches);
+                             std::span<const StabilizedWindow> windows,
+                             std::span<const std::vector<StabilizedEvent>> stabilized);
 
-/// frames/frame_*.png of the dataset's frames within the window, as 8-bit sRGB, and images.txt.
-/// Nothing where there are none.
+/// Writes frames/frame_*.png for the dataset's frames within the window, as 8-bit sRGB, and
+/// images.txt; nothing where there are none.
 void write_stabilized_frames(const std::filesystem::path& folder, const Dataset& dataset,
                              const RunRecord::Window& window, const Stabilizer& stabilizer,
-                             const Trajectory& world_from_steady);
+                             const Trajectory& world_from_smoothed);
 
 }  // namespace saccade

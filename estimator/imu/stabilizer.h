@@ -13,29 +13,29 @@
 
 namespace saccade {
 
-/// An event where a camera would have seen it that did not turn.
+/// An event where a camera of constant orientation would have seen it.
 struct StabilizedEvent {
   float x = 0, y = 0;  ///< undistorted, sub-pixel [px]; may lie outside the image
-  Event source;        ///< as the sensor fired it
+  Event source;        ///< as recorded
 };
 
-/// Turns what a camera saw at any time to where it would have seen it in another orientation,
+/// Warps events and images from the camera's orientation at their own time to another orientation,
 ///   u' = K R_(s,k) K^-1 u                                                                  (3.19)
-/// with the lens taken out. Exact for what is far away, or where the camera only turns.
+/// and removes the lens distortion. Exact for distant scenes and for purely rotating cameras.
 class Stabilizer {
  public:
-  /// `camera` with its lens; `world_from_camera` is not empty and outlives this, positions do not
-  /// matter.
+  /// `camera` with its lens; `world_from_camera` is not empty and outlives this; its positions are
+  /// ignored.
   Stabilizer(const PinholeCamera& camera, const Trajectory& world_from_camera);
 
-  /// Every event with the orientation at its own time (thesis 3.3), held beyond the trajectory's
-  /// ends. `world_from_steady`: the orientation that they are turned to.
+  /// Warps every event by the orientation at its own time (thesis 3.3); beyond the trajectory's
+  /// ends the orientation is held. `world_from_smoothed`: the orientation to warp to.
   [[nodiscard]] std::vector<StabilizedEvent> stabilize(
-      std::span<const Event> events, const Eigen::Quaterniond& world_from_steady) const;
+      std::span<const Event> events, const Eigen::Quaterniond& world_from_smoothed) const;
 
-  /// A picture that was taken at `t_s`; 0 where the camera did not look.
-  [[nodiscard]] ImageF stabilize(const ImageF& picture, double t_s,
-                                 const Eigen::Quaterniond& world_from_steady) const;
+  /// Warps an image that was taken at `t_s`; 0 outside the camera's view.
+  [[nodiscard]] ImageF stabilize(const ImageF& image, double t_s,
+                                 const Eigen::Quaterniond& world_from_smoothed) const;
 
  private:
   PinholeCamera camera_;

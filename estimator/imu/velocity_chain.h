@@ -8,9 +8,9 @@
 
 namespace saccade {
 
-/// Linear least squares over a head of kHead unknowns and a chain of velocities, of which each row
-/// touches two neighbours: v_j is eliminated as soon as all rows with it are there, so that time
-/// and memory grow with the chain's length alone.
+/// Linear least squares over kHead global unknowns ("head") and a chain of velocities v_j. A row
+/// involves the head and two neighbouring velocities: v_j is eliminated (Schur complement) as soon
+/// as all of its rows are known, so that time and memory are linear in the chain's length.
 template <int kHead>
 class VelocityChain {
  public:
@@ -18,22 +18,22 @@ class VelocityChain {
   using HeadMatrix = Eigen::Matrix<double, kHead, kHead>;
   using Six = Eigen::Matrix<double, 6, 1>;
 
-  /// Of one interval: position(head, v_j) and velocity (head, v_j, v_(j+1)) rows,
-  ///   value = head_rows * head + (T v_j; v_j - v_(j+1)).
+  /// The six equations of one interval, three for the position and three for the velocity,
+  ///   value = rows * head + (T v_j; v_j - v_(j+1)).
   struct Rows {
     Eigen::Matrix<double, 6, kHead> head;
     Six value;
     double duration_s = 0;  ///< T
-    Six weight;             ///< 1 / deviation
+    Six weight;             ///< 1 / sigma
   };
 
   struct Solution {
     Head head;
     HeadMatrix covariance;
-    std::vector<Eigen::Vector3d> velocities;  ///< one more than links
+    std::vector<Eigen::Vector3d> velocities;  ///< one more than intervals
   };
 
-  /// `precision`: of the head from zero, 1 / sigma^2.
+  /// `precision`: 1 / sigma^2 of a zero-mean prior of the head.
   explicit VelocityChain(const Head& precision) {
     information_.setZero();
     right_.setZero();
@@ -41,7 +41,7 @@ class VelocityChain {
     free_velocity();
   }
 
-  /// The next link of the chain.
+  /// Adds the equations of the next interval.
   void add(const Rows& rows) {
     Eigen::Matrix<double, 6, kHead + 6> full = Eigen::Matrix<double, 6, kHead + 6>::Zero();
     full.template block<3, 3>(0, 0) = rows.duration_s * Eigen::Matrix3d::Identity();
@@ -54,7 +54,7 @@ class VelocityChain {
     link(full.transpose() * weighted, weighted.transpose() * rows.value);
   }
 
-  /// A link of which nothing is known: the next velocity may be any.
+  /// Adds an interval without equations: the next velocity is independent.
   void skip() { link(Wide::Zero(), WideVector::Zero()); }
 
   [[nodiscard]] Solution solve() const {
@@ -85,7 +85,7 @@ class VelocityChain {
     Eigen::Vector3d value;
   };
 
-  /// A velocity that no row rules is zero.
+  /// A velocity without equations is zero.
   void free_velocity() { information_.template topLeftCorner<3, 3>().diagonal().array() += 1e-9; }
 
   /// Adds to the normal equations of (v_j, v_(j+1), head) and eliminates v_j.

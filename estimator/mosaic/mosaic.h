@@ -6,35 +6,38 @@
 #include "core/event.h"
 #include "core/panorama.h"
 #include "core/trajectory.h"
-#include "estimator/reconstruction/contrasts.h"
-#include "estimator/reconstruction/gradient_reconstruction.h"
-#include "estimator/reconstruction/level_equations.h"
+#include "estimator/reconstruction/contrast_thresholds.h"
+#include "estimator/reconstruction/image_methods.h"
 
 namespace saccade {
 
-struct MosaicOptions {
-  enum class Method {
-    kGradient,  ///< pixel-wise Kalman filter and Poisson's equation
-    kEquations  ///< one linear equation per event
-  };
-
-  Method method = Method::kEquations;
-  GradientOptions gradient;  ///< where the panorama wraps, its boundary is kWrapped
-  EquationOptions equations;
+/// The methods of reconstruction with the defaults of a panorama: a pixel of it is observed more often
+/// than one of a view, so that fewer and larger observations suffice.
+struct MosaicOptions : ImageMethodOptions {
+  MosaicOptions() {
+    method = kEquations;
+    gradient.observations.no_event_spacing_px = 3;
+    gradient.boundary = Boundary::kNeumann;
+    equations.observations.no_event_spacing_px = 0.8;
+    equations.observations.dense_events_per_px = 1e9;
+    equations.merge_radius_px = 1.1;
+    equations.bound_sigma = 0.2;
+  }
 };
 
-/// What a mosaic is made from.
+/// The input of a mosaic.
 struct MosaicInput {
   const PinholeCamera& camera;
   std::span<const Event> events;        ///< in order of time, within that of the orientations
   const Trajectory& world_from_camera;  ///< orientations
-  Contrasts contrasts;
+  ContrastThresholds thresholds;
 };
 
-/// The log intensity of what a camera that only turns sees, in all directions of the panorama: the
-/// rotation camera (thesis 3.4.1). It is image reconstruction with directions for places, which
-/// needs no depth. Few events give a poor image, never an error.
+/// The log intensity that a rotating camera observes, in all directions of the panorama: the rotation
+/// camera (thesis 3.4.1). It is image reconstruction with directions in place of reprojections by
+/// depth. Few events give a poor image, never an error.
 [[nodiscard]] Reconstruction make_mosaic(const MosaicInput& input, const Panorama& panorama,
-                                         const MosaicOptions& options, const ShareDone& done = {});
+                                         const MosaicOptions& options,
+                                         const ProgressCallback& progress = {});
 
 }  // namespace saccade

@@ -14,18 +14,18 @@ namespace saccade {
 /// The configuration of `saccade run mosaic`; describe() names the keys, ranges and defaults.
 struct MosaicConfig {
   enum class Extent {
-    kSwept,  ///< what the camera saw
+    kSwept,  ///< the directions that the camera covered
     kSphere  ///< all directions
   };
 
   OrientationOptions orientation;
   RateOffsetOptions rate_offset;
   MosaicOptions mosaic;
-  std::optional<double> pixels_per_radian;  ///< nullopt: as fine as the middle of the sensor
+  std::optional<double> pixels_per_radian;  ///< nullopt: that of the sensor's middle
   Extent extent = Extent::kSwept;
   std::optional<double> contrast_on;  ///< nullopt: the dataset's
   std::optional<double> contrast_off;
-  std::vector<std::int64_t> growth;  ///< numbers of events after which a picture is kept
+  std::vector<std::int64_t> snapshot_events;
   std::uint64_t seed = 1;
 };
 

@@ -19,9 +19,8 @@
 #include "estimator/imu/imu_input.h"
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/rate_offset.h"
-#include "estimator/mosaic/swept.h"
-#include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/reconstruction_output.h"
+#include "estimator/reconstruction/snapshots.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_windows.h"
@@ -29,10 +28,10 @@
 namespace saccade {
 namespace {
 
-/// What the run starts from.
+/// The input of a run.
 struct MosaicSource {
-  std::optional<ImuInput> imu;  ///< none where another run's poses are used
-  Trajectory poses;             ///< those
+  std::optional<ImuInput> imu;  ///< without one, another run's poses are used
+  Trajectory poses;             ///< of that run
   Events events;
 };
 
@@ -53,33 +52,34 @@ struct MosaicRun {
   Reconstruction mosaic;
 };
 
-double fineness_of(const PinholeCamera& camera, const MosaicConfig& config) {
+double resolution_of(const PinholeCamera& camera, const MosaicConfig& config) {
   return config.pixels_per_radian.value_or(std::max(camera.fx, camera.fy));
 }
 
 Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
                      std::span<const Event> events, const MosaicConfig& config) {
-  const double fineness = fineness_of(camera, config);
+  const double resolution = resolution_of(camera, config);
   if (config.extent == MosaicConfig::Extent::kSphere)
-    return Panorama::sphere(pixels_around(fineness));
-  return panorama_around(FieldOfView(camera), turns_of(poses, events), fineness);
+    return Panorama::sphere(pixels_around(resolution));
+  return panorama_around(FieldOfView(camera), orientations_of(poses, events), resolution);
 }
 
-/// Without what the events say they turn too fast; then level again, where there is a sensor that
-/// feels gravity.
-Trajectory sharpened(const Trajectory& world_from_camera, std::span<const Event> events,
+/// The orientations without the rate offset that the events imply; then levelled again with the
+/// accelerometer, if there is one.
+Trajectory corrected(const Trajectory& world_from_camera, std::span<const Event> events,
                      const MosaicSource& source, const PinholeCamera& camera,
                      const MosaicConfig& config) {
   const Eigen::Vector3d rate = sharpest_rate_offset(
-      events, camera, world_from_camera, fineness_of(camera, config), config.rate_offset);
-  const Trajectory corrected =
+      events, camera, world_from_camera, resolution_of(camera, config), config.rate_offset);
+  const Trajectory without_offset =
       without_rate(world_from_camera, rate, seconds_from_ns(events.front().t_ns));
-  return source.imu ? levelled(corrected, *source.imu) : corrected;
+  return source.imu ? levelled(without_offset, *source.imu) : without_offset;
 }
 
 /// Everything but reading and writing.
-MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Contrasts& thresholds,
-                   const MosaicConfig& config, RunTiming& timing, const ShareDone& done) {
+MosaicRun run_once(const MosaicSource& source, const Dataset& dataset,
+                   const ContrastThresholds& thresholds, const MosaicConfig& config,
+                   RunTiming& timing, const ProgressCallback& progress) {
   double orientation_s = 0, offset_s = 0, wall_s = 0;
   MosaicRun run;
   {
@@ -96,11 +96,11 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Con
                        "holds no events within the time of the orientations");
     if (config.rate_offset.estimate) {
       const ScopedTimer clock(offset_s);
-      poses = sharpened(poses, run.events, source, dataset.camera(), config);
+      poses = corrected(poses, run.events, source, dataset.camera(), config);
     }
     run.panorama = panorama_of(dataset.camera(), poses, run.events, config);
     run.mosaic = make_mosaic({dataset.camera(), run.events, poses, thresholds}, run.panorama,
-                             config.mosaic, done);
+                             config.mosaic, progress);
   }
   timing.wall_s.push_back(wall_s);
   timing.stages_s = {{"orientation", orientation_s}, {"rate_offset", offset_s}};
@@ -109,7 +109,7 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset, const Con
   return run;
 }
 
-/// Unobserved pixels at half their brightness.
+/// The picture, with unobserved pixels at half their brightness.
 ImageU8 marked_picture(const Reconstruction& mosaic) {
   ImageU8 picture = grey_picture(mosaic.log_image, mosaic.observed);
   for (std::size_t i = 0; i < picture.size(); ++i)
@@ -118,13 +118,13 @@ ImageU8 marked_picture(const Reconstruction& mosaic) {
 }
 
 void write(const std::filesystem::path& folder, const MosaicRun& run,
-           std::span<const GrowthPicture> growth) {
+           std::span<const Snapshot> snapshots) {
   write_log_image(folder / "mosaic.exr", run.mosaic.log_image, run.mosaic.observed);
   write_png(folder / "mosaic.png", marked_picture(run.mosaic));
   write_panorama(folder / "mosaic.yaml", run.panorama);
   write_orientations(folder / "orientation.txt", run.camera.world_from_camera.poses());
   if (!run.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", run.camera.gyro);
-  write_growth(folder, growth);
+  write_snapshots(folder, snapshots);
 }
 
 }  // namespace
@@ -140,7 +140,8 @@ RunSummary run_mosaic(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     source = load_source(request, dataset);
   }
-  const Contrasts thresholds = contrasts(config.contrast_on, config.contrast_off, dataset);
+  const ContrastThresholds thresholds =
+      contrast_thresholds(config.contrast_on, config.contrast_off, dataset);
   const RunRecord::Window window = window_of(request, seconds_from_ns(source.events.front().t_ns),
                                              seconds_from_ns(source.events.back().t_ns));
   MosaicRun run;
@@ -148,22 +149,24 @@ RunSummary run_mosaic(const RunRequest& request) {
                     "events");
   for (int i = 0; i < request.repeat; ++i) {
     std::size_t before = 0;
-    run = run_once(source, dataset, thresholds, config, timing, [&](double share) {
-      const auto now = static_cast<std::size_t>(share * static_cast<double>(source.events.size()));
+    run = run_once(source, dataset, thresholds, config, timing, [&](double fraction) {
+      const auto now =
+          static_cast<std::size_t>(fraction * static_cast<double>(source.events.size()));
       progress.add(now - std::exchange(before, now));
     });
   }
   const std::span<const Event> events = run.events;
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
-  const auto growth = grow(events, config.growth, [&](std::span<const Event> first) {
-    return make_mosaic({dataset.camera(), first, run.camera.world_from_camera, thresholds},
-                       run.panorama, config.mosaic)
-        .log_image;
-  });
+  const auto snapshots =
+      take_snapshots(events, config.snapshot_events, [&](std::span<const Event> first) {
+        return make_mosaic({dataset.camera(), first, run.camera.world_from_camera, thresholds},
+                           run.panorama, config.mosaic)
+            .log_image;
+      });
   {
     const ScopedTimer clock(timing.io_s);
-    write(writer.path(), run, growth);
+    write(writer.path(), run, snapshots);
   }
   writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);
 

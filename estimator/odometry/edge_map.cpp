@@ -7,15 +7,15 @@ namespace saccade {
 
 void EdgeMap::add(Keyframe keyframe, const Rigid3& world_from_camera) {
   keyframes_.push_back(std::move(keyframe));
-  look_from(keyframes_.size() - 1, world_from_camera);
+  activate_around(keyframes_.size() - 1, world_from_camera);
 }
 
-void EdgeMap::look_from(std::size_t keyframe, const Rigid3& world_from_camera) {
+void EdgeMap::activate_around(std::size_t keyframe, const Rigid3& world_from_camera) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < keyframes_.size(); ++i)
     if (i != keyframe) others.push_back(i);
   std::vector<std::size_t> chosen = most_visible(std::move(others), world_from_camera);
-  if (chosen.size() >= static_cast<std::size_t>(options_.active)) chosen.pop_back();
+  if (chosen.size() >= max_active_) chosen.pop_back();
   chosen.push_back(keyframe);
   std::sort(chosen.begin(), chosen.end());
   activate(std::move(chosen));
@@ -23,15 +23,15 @@ void EdgeMap::look_from(std::size_t keyframe, const Rigid3& world_from_camera) {
 
 std::vector<std::size_t> EdgeMap::most_visible(std::vector<std::size_t> keyframes,
                                                const Rigid3& world_from_camera) const {
-  std::vector<std::pair<double, std::size_t>> shares;
+  std::vector<std::pair<double, std::size_t>> fractions;
   for (const std::size_t i : keyframes)
-    if (const double share = visible_share(keyframes_[i], world_from_camera); share > 0)
-      shares.emplace_back(share, i);
-  std::stable_sort(shares.begin(), shares.end(),
+    if (const double fraction = visible_fraction(keyframes_[i], world_from_camera); fraction > 0)
+      fractions.emplace_back(fraction, i);
+  std::stable_sort(fractions.begin(), fractions.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  shares.resize(std::min(shares.size(), static_cast<std::size_t>(options_.active)));
+  fractions.resize(std::min(fractions.size(), max_active_));
   keyframes.clear();
-  for (const auto& [share, i] : shares) keyframes.push_back(i);
+  for (const auto& [fraction, i] : fractions) keyframes.push_back(i);
   return keyframes;
 }
 
@@ -58,7 +58,7 @@ void EdgeMap::activate(std::vector<std::size_t> keyframes) {
   for (const std::size_t i : active_) append(points_, keyframes_[i].edges);
 }
 
-double EdgeMap::visible_share(const Keyframe& keyframe, const Rigid3& world_from_camera) const {
+double EdgeMap::visible_fraction(const Keyframe& keyframe, const Rigid3& world_from_camera) const {
   constexpr std::size_t kProbes = 400;
   const MapPoints& edges = keyframe.edges;
   const std::size_t step = std::max<std::size_t>(1, edges.size() / kProbes);

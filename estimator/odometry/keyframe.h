@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
+#include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/depth/depth_estimator.h"
@@ -10,8 +12,8 @@
 
 namespace saccade {
 
-/// What is known of the scene from one view: a depth map and the edges that the camera is tracked
-/// by, and where it was made for people, too, an image.
+/// The scene as of one view: a depth map, the edges that the camera is tracked by and, where it was
+/// asked for, an image.
 struct Keyframe {
   double t_s = 0;  ///< of the view
   Rigid3 world_from_camera;
@@ -22,5 +24,11 @@ struct Keyframe {
   MapPoints edges;             ///< in the world [m]
   double typical_depth_m = 1;  ///< median of the depths
 };
+
+/// The points of a depth map whose relative sigma is below `max_sigma`, in the world of its view's
+/// pose. `camera` is undistorted.
+[[nodiscard]] MapPoints points_in_world(const DepthResult& depth, const PinholeCamera& camera,
+                                        const Rigid3& world_from_camera,
+                                        double max_sigma = std::numeric_limits<double>::infinity());
 
 }  // namespace saccade

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/spline.h"
+#include "core/time_search.h"
 #include "estimator/depth/sweep_depth.h"
 #include "estimator/reconstruction/point_surface.h"
 
@@ -48,23 +49,21 @@ ImageF observed(ImageF component, const ImageU8& observed) {
 ViewWindow window_of(std::span<const Event> events, const Trajectory& poses,
                      const Keyframe& keyframe) {
   ViewWindow window{within(events, poses), &poses, keyframe.t_s};
-  const auto first = std::partition_point(
-      window.events.begin(), window.events.end(),
-      [&](const Event& e) { return seconds_from_ns(e.t_ns) < keyframe.start_s; });
-  window.events = window.events.subspan(static_cast<std::size_t>(first - window.events.begin()));
+  window.events = window.events.subspan(count_before(
+      window.events, keyframe.start_s, [](const Event& e) { return seconds_from_ns(e.t_ns); }));
   window.events = window.events.first(std::min(window.events.size(), keyframe.events));
   return window;
 }
 
-/// The events of a share of the pixels, so that about `most` are left. All events of a pixel or
-/// none: which step of its brightness an event is shows in those before it.
-std::vector<Event> thinned(std::span<const Event> events, std::size_t most,
-                           const PinholeCamera& camera) {
+/// The events of a random part of the pixels, so that about `most` are left. All events of a pixel or
+/// none: the position of an event in its run follows from those before it.
+std::vector<Event> of_some_pixels(std::span<const Event> events, std::size_t most,
+                                  const PinholeCamera& camera) {
   const Random random(0);
-  const double share = static_cast<double>(most) / static_cast<double>(events.size());
+  const double fraction = static_cast<double>(most) / static_cast<double>(events.size());
   ImageU8 is_kept(camera.width, camera.height);
   for (std::size_t i = 0; i < is_kept.size(); ++i)
-    is_kept.pixels()[i] = random.uniform(i, 0) < share ? 1 : 0;
+    is_kept.pixels()[i] = random.uniform(i, 0) < fraction ? 1 : 0;
   std::vector<Event> kept;
   kept.reserve(most + most / 8);
   for (const Event& event : events)
@@ -72,20 +71,14 @@ std::vector<Event> thinned(std::span<const Event> events, std::size_t most,
   return kept;
 }
 
-/// Of edges that may be off by `slack` times as much.
-MappingOptions loosened(MappingOptions options, double slack) {
-  options.max_sigma *= slack;
+/// Edges of `factor` times the sigma count, too.
+MappingOptions relaxed(MappingOptions options, double factor) {
+  options.max_sigma *= factor;
   RayDepthOptions& rays = options.depth.rays;
-  rays.refiner.max_sigma *= slack;
-  rays.propagation.max_sigma *= slack;
-  rays.fusion.max_sigma *= slack;
+  rays.refiner.max_sigma *= factor;
+  rays.propagation.max_sigma *= factor;
+  rays.fusion.max_sigma *= factor;
   return options;
-}
-
-void append(MapPoints& points, const Eigen::Vector3d& point) {
-  points.x.push_back(static_cast<float>(point.x()));
-  points.y.push_back(static_cast<float>(point.y()));
-  points.z.push_back(static_cast<float>(point.z()));
 }
 
 }  // namespace
@@ -95,10 +88,10 @@ Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
 
 Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const {
   Mapping mapping = map_once(events, path);
-  for (const double slack : {3.0, 9.0}) {
+  for (const double factor : {3.0, 9.0}) {
     if (mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges)) break;
-    Mapping looser = Mapper(loosened(options_, slack), camera_).map_once(events, path);
-    if (looser.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(looser);
+    Mapping more = Mapper(relaxed(options_, factor), camera_).map_once(events, path);
+    if (more.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(more);
   }
   return mapping;
 }
@@ -115,10 +108,10 @@ Mapping Mapper::map_once(std::span<const Event> events, const KnownPath& path) c
   keyframe.start_s = seconds_from_ns(window.events.front().t_ns);
   keyframe.end_s = seconds_from_ns(window.events.back().t_ns);
   keyframe.events = window.events.size();
-  const auto most = static_cast<std::size_t>(options_.thinned_to);
+  const auto most = static_cast<std::size_t>(options_.depth_events);
   std::vector<Event> some;
   if (options_.edges == MappingOptions::Edges::kDepth && window.events.size() > most)
-    window.events = some = thinned(window.events, most, camera_);
+    window.events = some = of_some_pixels(window.events, most, camera_);
   if (window.events.empty()) return mapping;
   window.reference_s = options_.view == MappingOptions::View::kEnd
                            ? keyframe.end_s
@@ -151,7 +144,6 @@ void Mapper::renew(std::span<const Event> events, const Trajectory& poses,
   keyframe.world_from_camera = poses.at_clamped(keyframe.t_s);
   keyframe.depth = rays().estimate(window_of(events, poses, keyframe));
   keyframe.typical_depth_m = median_depth(keyframe.depth, keyframe.typical_depth_m);
-  keyframe.edges = {};
   add_points(keyframe);
 }
 
@@ -171,10 +163,10 @@ std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path
   const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
     edges = depth.find_edges(window);
-    Adjustment adjustment =
-        adjust(window, *edges, camera_,
-               {known.settled_until_s, known.given_until_s, typical_depth_m, known.landmarks},
-               options_.adjustment);
+    WindowAdjustment adjustment =
+        adjust_window(window, *edges, camera_,
+                      {known.fixed_until_s, known.given_until_s, typical_depth_m, known.landmarks},
+                      options_.adjustment);
     if (!adjustment.ok) break;
     path = std::move(adjustment.trajectory);
     edges = std::move(adjustment.edges);
@@ -185,14 +177,12 @@ std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path
 std::span<const Event> Mapper::newest(std::span<const Event> events) const {
   events = events.last(std::min(events.size(), static_cast<std::size_t>(options_.events)));
   if (events.empty()) return events;
-  const TimeNs from_ns = events.back().t_ns - ns_from_seconds(options_.duration_s);
-  const auto first = std::partition_point(events.begin(), events.end(),
-                                          [from_ns](const Event& e) { return e.t_ns < from_ns; });
-  return events.subspan(static_cast<std::size_t>(first - events.begin()));
+  return events.subspan(
+      count_before(events, events.back().t_ns - ns_from_seconds(options_.duration_s)));
 }
 
 Trajectory Mapper::smoothed(const Trajectory& poses, std::span<const Event> events) const {
-  // Poses beside the window hold the spline's ends.
+  // Poses beside the window constrain the spline's ends.
   constexpr double kMargin_s = 0.05;
   const double from_s = seconds_from_ns(events.front().t_ns) - kMargin_s;
   // With the pose before, so that the part spans all of the events.
@@ -232,19 +222,18 @@ void Mapper::add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const {
   const MapPoints steep = lift_edges(observed(image.gradient_x, image.observed),
                                      observed(image.gradient_y, image.observed), depth,
                                      camera_.undistorted(), options_.steep);
-  for (std::size_t i = 0; i < steep.size(); ++i)
-    append(keyframe.edges,
-           keyframe.world_from_camera * Eigen::Vector3d(steep.x[i], steep.y[i], steep.z[i]));
+  for (std::size_t i = 0; i < steep.size(); ++i) {
+    const Eigen::Vector3d point =
+        keyframe.world_from_camera * Eigen::Vector3d(steep.x[i], steep.y[i], steep.z[i]);
+    keyframe.edges.x.push_back(static_cast<float>(point.x()));
+    keyframe.edges.y.push_back(static_cast<float>(point.y()));
+    keyframe.edges.z.push_back(static_cast<float>(point.z()));
+  }
 }
 
 void Mapper::add_points(Keyframe& keyframe) const {
-  const PinholeCamera camera = camera_.undistorted();
-  const auto max_sigma = static_cast<float>(options_.max_sigma);
-  for (const EdgeDepth& point : keyframe.depth.points)
-    if (point.sigma < max_sigma * point.inverse_depth)
-      append(keyframe.edges,
-             keyframe.world_from_camera *
-                 (camera.ray({point.x_px, point.y_px}) / static_cast<double>(point.inverse_depth)));
+  keyframe.edges = points_in_world(keyframe.depth, camera_.undistorted(),
+                                   keyframe.world_from_camera, options_.max_sigma);
 }
 
 }  // namespace saccade

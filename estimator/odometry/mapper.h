@@ -8,9 +8,9 @@
 #include "core/event.h"
 #include "core/trajectory.h"
 #include "estimator/depth/depth_config.h"
+#include "estimator/edges/window/window_adjustment.h"
 #include "estimator/odometry/keyframe.h"
 #include "estimator/reconstruction/reconstruction_config.h"
-#include "estimator/refinement/edge_adjustment.h"
 
 namespace saccade {
 
@@ -19,28 +19,24 @@ struct MappingOptions {
   enum class Edges { kGradient, kDepth };
   enum class View { kMiddle, kEnd };
 
-  int events = 200000;      ///< N_map: at most so many, the newest
-  double duration_s = 0.4;  ///< ... and of at most so long
-  /// Of kDepth: depth is found from so many of them, about, those of some of the pixels; from all
-  /// of them what is made after the last event, the image and, after an adjustment of the whole,
-  /// the depth anew.
-  int thinned_to = 1000000000;
-  View view = View::kEnd;       ///< where in its events the view lies
-  Edges edges = Edges::kDepth;  ///< steep pixels of the reconstruction, or the points with depth
-  bool image = true;  ///< made for people where the edges do not need it, after the last event
-  double max_sigma = 0.05;  ///< of a point's inverse depth that becomes an edge, relative
-  /// Of kDepth: with fewer edges, less certain ones are tracked, too, of 3 and 9 times the
-  /// deviation: those that hardly move sideways need no better depth. Renewed depths are the
-  /// certain ones alone.
+  int events = 200000;            ///< N_map: at most so many, the newest
+  double duration_s = 0.4;        ///< ... and of at most so long
+  int depth_events = 1000000000;  ///< of kDepth: depth is found from about so many of them
+  View view = View::kEnd;         ///< where in its events the view lies
+  Edges edges = Edges::kDepth;    ///< steep pixels of the reconstruction, or the points with depth
+  bool image = true;              ///< made after the last event, where the edges do not need it
+  double max_sigma = 0.05;        ///< of a point's inverse depth that becomes an edge, relative
+  /// Of kDepth: with fewer edges, those of 3 and 9 times the sigma are tracked, too: edges that
+  /// hardly move sideways need no better depth. Renewed depths are the certain ones alone.
   int min_edges = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
-  /// So many times edges are found and adjusted together with the poses; 0: the poses are taken as
+  /// Rounds of finding edges and adjusting them together with the poses; 0: the poses are taken as
   /// they are. Of depth.method: rays.
   int adjust_rounds = 0;
-  AdjustmentOptions adjustment;
+  WindowAdjustmentOptions adjustment;
   MapOptions steep;  ///< of kGradient
   DepthConfig depth;
-  /// Contrasts are stated: they matter for the image alone, and nothing comes from the dataset.
+  /// With contrasts of 0.2: they matter for the image alone, and nothing comes from the dataset.
   ReconstructionConfig reconstruction = with_contrast(0.2);
 
  private:
@@ -54,8 +50,8 @@ struct MappingOptions {
 /// What is known of the camera's path.
 struct KnownPath {
   Trajectory poses;
-  double settled_until_s = 0;             ///< poses until then do not change any more
-  double given_until_s = kNothingGiven;   ///< those until then were given, and tell the scale
+  double fixed_until_s = 0;               ///< poses until then do not change any more
+  double given_until_s = kNoGivenPoses;   ///< those until then were given: they fix the scale
   std::optional<double> typical_depth_m;  ///< of the scene; nullopt: a space sweep finds it
   std::vector<Landmark> landmarks;        ///< edges known from events before those of the window
 };
@@ -64,7 +60,7 @@ struct KnownPath {
 struct Mapping {
   Keyframe keyframe;
   std::vector<StampedPose> poses;  ///< of its events, adjusted; in order of time
-  /// Takes a pose at its last event, and those after it, to where it is now.
+  /// Transforms a pose at its last event, and those after it, as the adjustment did.
   Rigid3 world_from_before;
 };
 
@@ -78,13 +74,13 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
 
-  /// Depth and edges of a keyframe anew, by poses that have become better; `events` hold its own.
+  /// Depth and edges of a keyframe anew, by better poses; `events` contain its own.
   /// Of depth.method: rays and Edges::kDepth.
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
   [[nodiscard]] RayDepth rays() const;
 
-  /// The image of a keyframe that was tracked without one; `events` hold its own.
+  /// The image of a keyframe that was tracked without one; `events` contain its own.
   void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
  private:

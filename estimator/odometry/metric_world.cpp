@@ -43,8 +43,9 @@ void describe(config::Fields& fields, InertialRecord& record) {
 }  // namespace
 
 InertialAlignment align_odometry(std::span<const TrackedPose> poses,
-                                 std::span<const Keyframe> keyframes, const MountedImu& imu,
-                                 const MetricWorldOptions& options) {
+                                 std::span<const Keyframe> keyframes, const MountedImu& imu) {
+  /// Sigma of a pose from one interval of readings to the next, relative to the typical depth.
+  constexpr double kPositionSigma = 1e-3;
   std::vector<StampedPose> path;
   for (const TrackedPose& pose : poses)
     if (pose.status == TrackStatus::kOk)
@@ -53,21 +54,23 @@ InertialAlignment align_odometry(std::span<const TrackedPose> poses,
   if (path.size() < 2 || keyframes.empty()) return {};
   std::vector<double> depths;
   for (const Keyframe& keyframe : keyframes) depths.push_back(keyframe.typical_depth_m);
-  InertialAlignmentOptions alignment = options.alignment;
-  alignment.position_sigma = options.position_sigma * median(std::move(depths));
+  InertialAlignmentOptions alignment;
+  alignment.position_sigma = kPositionSigma * median(std::move(depths));
   return align_inertially(Trajectory(std::move(path)), imu, alignment);
 }
 
-void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPose> poses,
-                            std::span<Keyframe> keyframes,
-                            std::span<StampedCovariance> covariances) {
-  SACCADE_CHECK(found.status == InertialAlignment::Status::kOk);
+Rigid3 in_metric_world(const InertialAlignment& found, const Rigid3& world_from_camera) {
   const Eigen::Quaterniond level = found.level();
-  const auto moved = [&](const Rigid3& pose) {
-    return Rigid3(level * pose.rotation(), level * (found.scale * pose.translation()));
-  };
+  return {level * world_from_camera.rotation(),
+          level * (found.scale * world_from_camera.translation())};
+}
+
+void transform_to_metric_world(const InertialAlignment& found, std::span<TrackedPose> poses,
+                               std::span<Keyframe> keyframes,
+                               std::span<StampedCovariance> covariances) {
+  SACCADE_CHECK(found.status == InertialAlignment::Status::kOk);
   for (TrackedPose& pose : poses) {
-    pose.world_from_camera = moved(pose.world_from_camera);
+    pose.world_from_camera = in_metric_world(found, pose.world_from_camera);
     pose.position_sigma_m *= found.scale;
   }
   // Of (v, w) in the camera's axes: v alone is a length.
@@ -76,9 +79,9 @@ void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPos
     one.covariance.leftCols<3>() *= found.scale;
   }
   const auto scale = static_cast<float>(found.scale);
-  const Eigen::Matrix3f metres = scale * level.toRotationMatrix().cast<float>();
+  const Eigen::Matrix3f metres = scale * found.level().toRotationMatrix().cast<float>();
   for (Keyframe& keyframe : keyframes) {
-    keyframe.world_from_camera = moved(keyframe.world_from_camera);
+    keyframe.world_from_camera = in_metric_world(found, keyframe.world_from_camera);
     keyframe.typical_depth_m *= found.scale;
     for (EdgeDepth& point : keyframe.depth.points) {
       point.inverse_depth /= scale;

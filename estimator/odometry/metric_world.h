@@ -11,24 +11,20 @@
 
 namespace saccade {
 
-/// Whether the accelerometer says how long a metre is and where down is (group `imu`).
-struct MetricWorldOptions {
-  bool align = false;
-  double position_sigma = 1e-3;  ///< of a pose, from one interval to the next, over typical depth
-  InertialAlignmentOptions alignment;
-};
-
 /// Aligns the poses that are not lost with the readings. The typical depth is the keyframes'.
 [[nodiscard]] InertialAlignment align_odometry(std::span<const TrackedPose> poses,
                                                std::span<const Keyframe> keyframes,
-                                               const MountedImu& imu,
-                                               const MetricWorldOptions& options);
+                                               const MountedImu& imu);
 
-/// Brings what odometry found into metres and a world whose z axis points up, turned the shortest
-/// way about the world's origin. `found` is kOk (contract).
-void take_into_metric_world(const InertialAlignment& found, std::span<TrackedPose> poses,
-                            std::span<Keyframe> keyframes,
-                            std::span<StampedCovariance> covariances);
+/// A pose in metres and a world whose z axis points up, rotated the shortest way about the world's
+/// origin: R_level (s t, R).
+[[nodiscard]] Rigid3 in_metric_world(const InertialAlignment& found,
+                                     const Rigid3& world_from_camera);
+
+/// Transforms what odometry found by in_metric_world(). `found` is kOk (contract).
+void transform_to_metric_world(const InertialAlignment& found, std::span<TrackedPose> poses,
+                               std::span<Keyframe> keyframes,
+                               std::span<StampedCovariance> covariances);
 
 /// Writes inertial.yaml: what the readings say of a run's path, and whether the run was brought
 /// into that world.

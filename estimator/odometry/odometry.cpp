@@ -9,23 +9,24 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "estimator/refinement/joint_poses.h"
+#include "core/time_search.h"
+#include "estimator/edges/least_squares/path_covariance.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {
 namespace {
 
-/// Fewer edges track nothing.
-constexpr std::size_t kLeastEdges = 50;
+constexpr std::size_t kMinEdges = 50;  ///< of a keyframe: fewer track nothing
+/// The camera is searched for so often, in the events' time, and first where it was kLookBack_s
+/// before, ahead of the frames that diverged.
+constexpr double kSearchInterval_s = 0.01, kLookBack_s = 0.05;
 
-std::size_t count_until(std::span<const Event> events, double t_s) {
-  const TimeNs t_ns = ns_from_seconds(t_s);
-  const auto at = std::partition_point(events.begin(), events.end(),
-                                       [t_ns](const Event& e) { return e.t_ns <= t_ns; });
-  return static_cast<std::size_t>(at - events.begin());
+/// Number of leading events until `t_s`.
+std::size_t count_until_s(std::span<const Event> events, double t_s) {
+  return count_until(events, ns_from_seconds(t_s));
 }
 
-bool is_settled(const KnownPath& start) { return start.settled_until_s >= start.poses.end_s(); }
+bool is_fixed(const KnownPath& start) { return start.fixed_until_s >= start.poses.end_s(); }
 
 /// The poses of a start that are an output: those that were not given.
 std::vector<TrackedPose> found_poses(const KnownPath& start) {
@@ -53,8 +54,9 @@ Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, 
     : options_(options),
       camera_(camera),
       mapper_(options.mapping, camera),
-      map_(options.map, camera),
+      map_(options.keyframe.active, camera),
       tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {
+  batch_.use_imu = options.batch_adjustment == BatchMode::kEventsAndImu;
   start_.min_edges = static_cast<std::size_t>(options.mapping.min_edges);
   start_.refinement.limits = options.mapping.depth.limits;
 }
@@ -73,7 +75,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
     const ScopedTimer clock(result.mapping_s);
     start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
   }
-  Stream stream{events, count_until(events, known_.back().t_s)};
+  Stream stream{events, count_until_s(events, known_.back().t_s)};
   if (progress) progress(stream.done);
   tracker_.start(stream.rest());
   const EventClock clock(stream.rest().empty() ? 0 : stream.rest().front().t_ns);
@@ -87,11 +89,11 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
     }
     if (!pose) break;
     const double now_s = seconds_from_ns(pose->last_ns);
-    stream.done += count_until(stream.rest(), now_s);
+    stream.done += count_until_s(stream.rest(), now_s);
     if (options_.mode == OdometryMode::kOnline)
       result.latency_ms.push_back(clock.age_ms(pose->last_ns));
     if (progress) progress(stream.done - before);
-    take_pose(*pose, result);
+    add_pose(*pose, result);
     if (!job_ && !is_lost_ && wants_keyframe()) begin_mapping(events.first(stream.done), now_s);
     if (job_ && is_due(now_s)) end_mapping(now_s, result);
   }
@@ -105,8 +107,8 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
     const std::size_t count = std::min(tracker_.next_frame_events(), stream.rest().size());
     return count == 0 ? stream.all.back().t_ns : stream.rest()[count - 1].t_ns;
   };
-  if (clock.age_ms(last_of_frame()) > options_.online.max_age_ms) {
-    const std::size_t late = count_until(stream.rest(), seconds_from_ns(clock.now_ns()));
+  if (clock.age_ms(last_of_frame()) > options_.max_age_ms) {
+    const std::size_t late = count_until_s(stream.rest(), seconds_from_ns(clock.now_ns()));
     result.dropped_events += late;
     stream.done += late;
     tracker_.start(stream.rest());
@@ -114,16 +116,16 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
   clock.wait_for(last_of_frame());
 }
 
-void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
+void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
-  const bool may_be_lost =
-      pose.status == TrackStatus::kLost || (options_.relocation.when_unlike && !tracker_.fits());
-  if (may_be_lost && options_.relocation.every_s > 0 &&
-      now_s >= last_search_s_ + options_.relocation.every_s) {
+  const bool may_be_lost = pose.status == TrackStatus::kLost ||
+                           (options_.relocation == Relocation::kInconsistent && !tracker_.fits());
+  if (may_be_lost && options_.relocation != Relocation::kNever &&
+      now_s >= last_search_s_ + kSearchInterval_s) {
     last_search_s_ = now_s;
-    pose = find_again().value_or(pose);
+    pose = relocate().value_or(pose);
   }
-  if (pose.status == TrackStatus::kRelocalised) forget_astray(pose, result);
+  if (pose.status == TrackStatus::kRelocalised) discard_diverged_poses(pose, result);
   result.poses.push_back(pose);
   is_lost_ = pose.status == TrackStatus::kLost;
   if (is_lost_) return;
@@ -131,27 +133,27 @@ void Odometry::take_pose(TrackedPose pose, OdometryResult& result) {
     known_.push_back({t_s, pose.world_from_camera});
 }
 
-void Odometry::forget_astray(const TrackedPose& found, OdometryResult& result) {
+void Odometry::discard_diverged_poses(const TrackedPose& found, OdometryResult& result) {
   const double t_s = seconds_from_ns(found.t_ns);
-  // What is being mapped was seen on the way astray, and poses at the same time were of that way.
+  // The keyframe in the making rests on diverged poses, and so do poses at the same time.
   job_.reset();
   while (!result.poses.empty() && result.poses.back().t_ns >= found.t_ns) result.poses.pop_back();
   while (known_.size() > 1 && known_.back().t_s >= t_s) known_.pop_back();
   mapped_from_s_ = seconds_from_ns(found.last_ns);
-  settled_until_s_ = std::max(settled_until_s_, t_s);
+  fixed_until_s_ = std::max(fixed_until_s_, t_s);
 }
 
-std::optional<TrackedPose> Odometry::find_again() {
-  // Where it was before it went astray, then at every keyframe, the newest first.
+std::optional<TrackedPose> Odometry::relocate() {
+  // Where it was before it diverged, then at every keyframe, the newest first.
   const Trajectory known(known_);
-  const double before_s = known.end_s() - options_.relocation.looks_back_s;
+  const double before_s = known.end_s() - kLookBack_s;
   const std::array<Rigid3, 2> recent = {known.poses().back().world_from_camera,
                                         known.at_clamped(before_s)};
   if (auto pose = tracker_.relocate(recent)) return pose;
   const std::vector<std::size_t> active = map_.active();
   for (std::size_t i = map_.keyframes().size(); i-- > 0;) {
     const Rigid3 place = map_.keyframes()[i].world_from_camera;
-    map_.look_from(i, place);
+    map_.activate_around(i, place);
     tracker_.set_map(map_.points());
     if (auto pose = tracker_.relocate({&place, 1})) return pose;
   }
@@ -168,17 +170,17 @@ bool Odometry::is_due(double now_s) const {
 
 void Odometry::start_from(FirstMap first, OdometryResult& result) {
   Keyframe& keyframe = first.mapping.keyframe;
-  if (keyframe.edges.size() < kLeastEdges)
+  if (keyframe.edges.size() < kMinEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
   known_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
-  settled_until_s_ = first.path.settled_until_s;
+  fixed_until_s_ = first.path.fixed_until_s;
   given_until_s_ = first.path.given_until_s;
   result.poses = found_poses(first.path);
-  if (given_until_s_ != kNothingGiven) result.carried_s = known_.back().t_s - given_until_s_;
+  if (given_until_s_ != kNoGivenPoses) result.extrapolated_s = known_.back().t_s - given_until_s_;
   typical_depth_m_ = keyframe.typical_depth_m;
-  if (!is_settled(first.path)) take_mapped_poses(first.mapping);
+  if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
   last_keyframe_ = known_.back();
   map_.add(std::move(keyframe), last_keyframe_.world_from_camera);
   tracker_.set_map(map_.points());
@@ -188,12 +190,9 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
 bool Odometry::wants_keyframe() const {
   if (known_.back().t_s < last_keyframe_.t_s + options_.keyframe.interval_s) return false;
   const Rigid3& world_from_camera = known_.back().world_from_camera;
-  const double way =
+  const double baseline_m =
       (world_from_camera.translation() - last_keyframe_.world_from_camera.translation()).norm();
-  if (way >= options_.keyframe.distance * typical_depth_m_) return true;
-  return options_.keyframe.min_visible > 0 &&
-         map_.visible_share(map_.keyframes().back(), world_from_camera) <
-             options_.keyframe.min_visible;
+  return baseline_m >= options_.keyframe.distance * typical_depth_m_;  // d_kf
 }
 
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
@@ -201,12 +200,12 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_->made_s = now_s;
   last_keyframe_ = known_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
-  const std::span<const Event> mapped = events.subspan(count_until(events, mapped_from_s_));
+  const std::span<const Event> mapped = events.subspan(count_until_s(events, mapped_from_s_));
   job_->mapping = std::async(
       policy,
       [this, mapped, seconds = &job_->seconds,
        path = KnownPath{
-           Trajectory(known_), settled_until_s_, given_until_s_, typical_depth_m_,
+           Trajectory(known_), fixed_until_s_, given_until_s_, typical_depth_m_,
            map_.landmarks(now_s - options_.mapping.duration_s, known_.back().world_from_camera)}] {
         const ScopedTimer clock(*seconds);
         return mapper_.map(mapped, path);
@@ -218,17 +217,17 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   Mapping mapping = job->mapping.get();
   Keyframe& keyframe = mapping.keyframe;
   result.mapping_s += job->seconds;
-  // A keyframe that shows little is none: the map before goes on.
-  if (keyframe.edges.size() < kLeastEdges) return;
+  // Too few edges make no keyframe: the map of before goes on.
+  if (keyframe.edges.size() < kMinEdges) return;
   typical_depth_m_ = keyframe.typical_depth_m;
-  settled_until_s_ = std::max(settled_until_s_, keyframe.end_s - options_.keyframe.unsettled_s);
-  take_mapped_poses(mapping);
+  fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
+  apply_adjusted_poses(mapping);
   map_.add(std::move(keyframe), known_.back().world_from_camera);
   tracker_.set_map(map_.points());
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
 
-void Odometry::take_mapped_poses(const Mapping& mapping) {
+void Odometry::apply_adjusted_poses(const Mapping& mapping) {
   const Trajectory adjusted(mapping.poses);
   for (StampedPose& pose : known_) {
     if (pose.t_s < adjusted.start_s()) continue;
@@ -239,31 +238,33 @@ void Odometry::take_mapped_poses(const Mapping& mapping) {
   tracker_.correct(mapping.world_from_before);
 }
 
-bool Odometry::wants_refinement(const OdometryResult& result) const {
-  return options_.last.use && options_.mode == OdometryMode::kOffline &&
+bool Odometry::wants_batch_adjustment(const OdometryResult& result) const {
+  return options_.batch_adjustment != BatchMode::kNone && options_.mode == OdometryMode::kOffline &&
          count_lost(result.poses) == 0;
 }
 
-void Odometry::refine(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
+void Odometry::adjust(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
                       const std::function<void(std::size_t)>& progress) {
-  const ScopedTimer clock(result.refinement_s);
-  JointStart joint;
-  joint.path = known_;
+  const ScopedTimer clock(result.batch_s);
+  BatchInput batch;
+  batch.path = known_;
   for (const StampedPose& pose : start.poses.poses())
-    if (pose.t_s <= start.settled_until_s) joint.known.push_back(pose);
-  for (const Keyframe& keyframe : map_.keyframes()) joint.keyframe_s.push_back(keyframe.t_s);
-  joint.typical_depth_m = typical_depth_m_;
-  joint.imu = imu_;
-  joint.is_metric = start.given_until_s != kNothingGiven;
-  const JointResult refined = refine_jointly(within(events, Trajectory(known_)), joint, camera_,
-                                             mapper_.rays(), options_.last.joint, progress);
-  for (StampedPose& pose : known_) pose.world_from_camera = refined.path.at_clamped(pose.t_s);
+    if (pose.t_s <= start.fixed_until_s) batch.given.push_back(pose);
+  for (const Keyframe& keyframe : map_.keyframes()) batch.keyframe_s.push_back(keyframe.t_s);
+  batch.typical_depth_m = typical_depth_m_;
+  batch.imu = imu_;
+  batch.is_metric = start.given_until_s != kNoGivenPoses;
+  const BatchAdjustment adjusted = adjust_batch(within(events, Trajectory(known_)), batch, camera_,
+                                                mapper_.rays(), batch_, progress);
+  for (StampedPose& pose : known_) pose.world_from_camera = adjusted.path.at_clamped(pose.t_s);
   std::vector<Keyframe>& keyframes = map_.keyframes();
   parallel_for(keyframes.size(),
-               [&](std::size_t i) { mapper_.renew(events, refined.path, keyframes[i]); });
+               [&](std::size_t i) { mapper_.renew(events, adjusted.path, keyframes[i]); });
   output(result);
-  result.covariances = take_sigmas(refined, result.poses);
-  result.inertial = refined.inertial;
+  if (adjusted.covariance.size() > 0)
+    result.covariances =
+        set_sigmas(result.poses, [&](double t_s) { return adjusted.covariance_at(t_s); });
+  result.inertial = adjusted.inertial;
 }
 
 void Odometry::add_images(std::span<const Event> events,

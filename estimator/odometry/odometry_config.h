@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/config/fields.h"
-#include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry.h"
 #include "estimator/odometry/start/bootstrap.h"
 #include "estimator/run/camera_correction.h"
@@ -12,11 +12,10 @@ namespace saccade {
 
 /// What is known of the camera at the start.
 struct StartOptions {
-  /// The ground truth is given for so long from the first event on; 0: nothing is known.
-  double truth_s = 0.2;
-  double truth_share = 0.1;  ///< ... but for no more than this share of the events' time
-  double time_offset_s = 0;  ///< a given pose is that of so long after its time stamp
-  BootstrapOptions found;    ///< of truth_s: 0
+  double truth_s = 0.2;         ///< 0: nothing is known
+  double truth_fraction = 0.1;  ///< of the events' time, at most
+  double time_offset_s = 0;     ///< of the time stamps of the given poses
+  BootstrapOptions found;       ///< of truth_s: 0
 };
 
 /// The configuration of `saccade run odometry`; describe() names the keys, ranges and defaults.
@@ -25,8 +24,9 @@ struct StartOptions {
 struct OdometryConfig {
   CameraCorrection camera;
   StartOptions start;
-  OdometryOptions odometry;
-  MetricWorldOptions metric;
+  std::string method = "edges";  ///< a row of odometry_methods()
+  OdometryOptions odometry;      ///< the method's preset where no key says otherwise
+  bool align_imu = false;        ///< metric_world.h
   std::uint64_t seed = 1;
 };
 

@@ -22,12 +22,12 @@
 namespace saccade {
 namespace {
 
-/// The poses of the start. None beyond is looked at.
+/// The given poses of the start. None beyond is read.
 Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
                        const StartOptions& options) {
   const double from_s = seconds_from_ns(events.front().t_ns);
   const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
-  const double truth_s = std::min(options.truth_s, options.truth_share * whole_s);
+  const double truth_s = std::min(options.truth_s, options.truth_fraction * whole_s);
   std::vector<StampedPose> start;
   std::optional<StampedPose> before;
   for (StampedPose pose : dataset.groundtruth().poses()) {
@@ -59,7 +59,7 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
   if (start.status == Bootstrap::Status::kNoParallax)
     throw InputError(dataset.folder().string(),
                      "the events show no parallax that odometry could start from: the camera must "
-                     "move sideways; of a camera that only turns see saccade run rotation");
+                     "move sideways; of a camera that only rotates see saccade run rotation");
   return start;
 }
 
@@ -77,7 +77,7 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
   if (options.truth_s > 0) {
     start.path.poses = start_poses(dataset, events, options);
     start.from_s = start.path.poses.end_s();
-    start.path.settled_until_s = start.path.given_until_s = start.from_s;
+    start.path.fixed_until_s = start.path.given_until_s = start.from_s;
     return start;
   }
   const ScopedTimer clock(start.seconds);
@@ -85,7 +85,7 @@ Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<co
   start.from_s = start.found->path.start_s();
   // All but the first pose may change.
   start.path.poses = start.found->path;
-  start.path.settled_until_s = start.from_s;
+  start.path.fixed_until_s = start.from_s;
   start.path.typical_depth_m = options.found.depth_m;
   return start;
 }
@@ -105,8 +105,8 @@ OdometryInput load(const RunRequest& request, const OdometryConfig& config) {
   OdometryInput input{std::move(dataset), camera, {}, {}, {}};
   input.events = load_events(request, input.dataset);
   input.gyroscope = load_gyroscope(config.odometry.tracker.motion, input.dataset);
-  if (config.metric.align || config.odometry.last.joint.imu.use)
-    input.imu = load_mounted_imu(input.dataset, "imu.align or last.imu.use");
+  if (config.align_imu || config.odometry.batch_adjustment == BatchMode::kEventsAndImu)
+    input.imu = load_mounted_imu(input.dataset, "imu.align or batch_adjustment");
   return input;
 }
 
@@ -131,10 +131,9 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
     wall_s.push_back(start.seconds);
     const ScopedTimer clock(wall_s.back());
     found.result = odometry->run(input.events, start.path, [&](std::size_t n) { progress.add(n); });
-    if (!odometry->wants_refinement(found.result)) continue;
-    Progress refinement("refine", config.odometry.last.joint.steps(), "steps");
-    odometry->refine(input.events, start.path, found.result,
-                     [&](std::size_t n) { refinement.add(n); });
+    if (!odometry->wants_batch_adjustment(found.result)) continue;
+    Progress steps("batch", BatchAdjustmentOptions().steps(), "steps");
+    odometry->adjust(input.events, start.path, found.result, [&](std::size_t n) { steps.add(n); });
   }
   if (config.odometry.mapping.image) {
     const ScopedTimer clock(found.images_s);
@@ -146,13 +145,12 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
 }
 
 /// Scale and gravity by the readings. Given poses have a world and metres of their own.
-void align(OdometryFound& found, const OdometryInput& input, const MetricWorldOptions& options,
-           bool has_given_poses) {
+void align(OdometryFound& found, const OdometryInput& input, bool has_given_poses) {
   OdometryResult& result = found.result;
-  result.inertial = align_odometry(result.poses, found.keyframes, *input.imu, options);
+  result.inertial = align_odometry(result.poses, found.keyframes, *input.imu);
   found.is_metric = !has_given_poses && result.inertial->status == InertialAlignment::Status::kOk;
   if (found.is_metric)
-    take_into_metric_world(*result.inertial, result.poses, found.keyframes, result.covariances);
+    transform_to_metric_world(*result.inertial, result.poses, found.keyframes, result.covariances);
 }
 
 void write(const std::filesystem::path& folder, const OdometryInput& input, const Start& start,
@@ -171,7 +169,7 @@ void take_timing(const OdometryFound& found, const Start& start, bool is_online,
   timing.stages_s = {{"start", start.seconds},
                      {"tracking", result.tracking_s},
                      {"mapping", result.mapping_s},
-                     {"refinement", result.refinement_s},
+                     {"refinement", result.batch_s},
                      {"images", found.images_s}};
   timing.poses = result.poses.size();
   timing.latency_ms = result.latency_ms;
@@ -183,9 +181,10 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
   const std::size_t lost = count_lost(found.result.poses);
   std::string text = fmt::format("{} poses ({} lost) by {} keyframes", found.result.poses.size(),
                                  lost, found.keyframes.size());
-  if (const double carried_s = found.result.carried_s; carried_s > 0)
-    text += fmt::format(", the start carried on for {:.2f} s", carried_s);
-  if (config.odometry.last.use && lost > 0) text += ", not adjusted as a whole";
+  if (const double extrapolated_s = found.result.extrapolated_s; extrapolated_s > 0)
+    text += fmt::format(", the start extrapolated for {:.2f} s", extrapolated_s);
+  if (config.odometry.batch_adjustment != BatchMode::kNone && lost > 0)
+    text += ", not adjusted as a whole";
   if (const auto& inertial = found.result.inertial)
     text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);
   RunSummary summary = summary_of(timing, text);
@@ -215,7 +214,7 @@ RunSummary run_odometry(const RunRequest& request) {
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
   OdometryFound found = run_stages(input, start, config, request.repeat, timing.wall_s);
-  if (config.metric.align) align(found, input, config.metric, !start.found);
+  if (config.align_imu) align(found, input, !start.found);
   take_timing(found, start, config.odometry.mode == OdometryMode::kOnline, timing);
 
   io.emplace(timing.io_s);

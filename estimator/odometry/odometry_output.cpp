@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "core/io/keyframe_list.h"
 #include "core/io/view_list.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/reconstruction/reconstruction_output.h"
@@ -41,35 +40,35 @@ KeyframeEntry entry_of(const Keyframe& keyframe) {
   return entry;
 }
 
-MapPoints all_edges(std::span<const Keyframe> keyframes) {
-  MapPoints all;
-  for (const Keyframe& keyframe : keyframes) append(all, keyframe.edges);
-  return all;
-}
-
 }  // namespace
+
+void write_keyframes(const std::filesystem::path& folder, const PinholeCamera& camera,
+                     std::span<const Keyframe> keyframes, std::span<const KeyframeEntry> entries) {
+  std::filesystem::create_directories(folder / "depth");
+  std::vector<RunView> views;
+  MapPoints map;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    views.push_back(write_view(folder, i, camera, keyframes[i]));
+    append(map, keyframes[i].edges);
+  }
+  write_view_list(folder / "views.yaml", views);
+  write_keyframe_list(folder / "keyframes.yaml", entries);
+  write_map(folder / "map.ply", map, Rigid3());
+}
 
 void write_odometry(const std::filesystem::path& folder, const PinholeCamera& camera,
                     const OdometryResult& result, std::span<const Keyframe> keyframes) {
-  const PinholeCamera undistorted = camera.undistorted();
-  for (const char* name : {"depth", "gradient", "image"})
-    std::filesystem::create_directories(folder / name);
-  std::vector<RunView> views;
+  for (const char* name : {"gradient", "image"}) std::filesystem::create_directories(folder / name);
   std::vector<KeyframeEntry> entries;
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    views.push_back(write_view(folder, i, undistorted, keyframes[i]));
-    entries.push_back(entry_of(keyframes[i]));
-  }
+  for (const Keyframe& keyframe : keyframes) entries.push_back(entry_of(keyframe));
   entries.front().active = {0};
   for (const KeyframeChange& change : result.changes) {
     entries[change.keyframe].made_s = change.made_s;
     entries[change.keyframe].taken_s = change.taken_s;
     entries[change.keyframe].active.assign(change.active.begin(), change.active.end());
   }
-  write_view_list(folder / "views.yaml", views);
-  write_keyframe_list(folder / "keyframes.yaml", entries);
+  write_keyframes(folder, camera.undistorted(), keyframes, entries);
   write_poses(folder, result.poses);
-  write_map(folder / "map.ply", all_edges(keyframes), Rigid3());
 }
 
 }  // namespace saccade

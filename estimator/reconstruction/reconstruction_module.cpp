@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "estimator/reconstruction/contrasts.h"
-#include "estimator/reconstruction/depth_source.h"
-#include "estimator/reconstruction/growth.h"
+#include "estimator/reconstruction/contrast_thresholds.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_output.h"
-#include "estimator/reconstruction/step_figures.h"
+#include "estimator/reconstruction/snapshots.h"
+#include "estimator/reconstruction/surface/depth_source.h"
+#include "estimator/reconstruction/thesis_figures.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_run.h"
@@ -22,11 +22,12 @@ namespace {
 std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dataset& dataset,
                                                const DepthSource& depth,
                                                const ReconstructionConfig& config) {
-  const auto [on, off] = contrasts(config.contrast_on, config.contrast_off, dataset);
+  const ContrastThresholds thresholds =
+      contrast_thresholds(config.contrast_on, config.contrast_off, dataset);
   std::vector<ReconstructionWindow> windows;
   for (const ViewWindow& part :
        cut_windows(input.events(), input.trajectory, config.window, dataset.frames()))
-    windows.push_back({part, depth.scene_at(part.reference_s), on, off});
+    windows.push_back({part, depth.scene_at(part.reference_s), thresholds});
   return windows;
 }
 
@@ -49,16 +50,16 @@ RunSummary run_reconstruction(const RunRequest& request) {
   const auto results = estimate_views<Reconstruction>(
       "reconstruction", windows, request.repeat, timing,
       [&](const ReconstructionWindow& window) { return estimator->reconstruct(window); });
-  const auto growth =
-      grow(windows.front().events, config.growth, [&](std::span<const Event> events) {
-        ReconstructionWindow part = windows.front();
-        part.events = events;
-        return estimator->reconstruct(part).log_image;
-      });
+  const auto snapshots = take_snapshots(windows.front().events, config.snapshot_events,
+                                        [&](std::span<const Event> events) {
+                                          ReconstructionWindow part = windows.front();
+                                          part.events = events;
+                                          return estimator->reconstruct(part).log_image;
+                                        });
   {
     const ScopedTimer clock(timing.io_s);
-    write_reconstruction(writer.path(), windows, results, growth);
-    if (config.figures) write_step_figures(writer.path(), dataset, windows.front());
+    write_reconstruction(writer.path(), windows, results, snapshots);
+    if (config.figures) write_thesis_figures(writer.path(), dataset, windows.front());
   }
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),
                 timing);

@@ -27,8 +27,8 @@ ImageU8 grey_picture(const ImageF& log_image, const ImageU8& observed) {
   for (std::size_t i = 0; i < log_image.size(); ++i)
     if (observed.empty() || observed.pixels()[i] != 0) values.push_back(log_image.pixels()[i]);
   if (values.empty()) values.assign(log_image.pixels().begin(), log_image.pixels().end());
-  const auto at = [&values](double share) {
-    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at = [&values](double ratio) {
+    const auto k = static_cast<std::ptrdiff_t>(ratio * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + k, values.end());
     return values[static_cast<std::size_t>(k)];
   };
@@ -62,7 +62,7 @@ void write_image_view(const Reconstruction& result, const RunView& view) {
 void write_reconstruction(const std::filesystem::path& folder,
                           std::span<const ReconstructionWindow> windows,
                           std::span<const Reconstruction> results,
-                          std::span<const GrowthPicture> growth) {
+                          std::span<const Snapshot> snapshots) {
   std::filesystem::create_directories(folder / "gradient");
   std::filesystem::create_directories(folder / "image");
   std::vector<RunView> views;
@@ -78,7 +78,7 @@ void write_reconstruction(const std::filesystem::path& folder,
     views.push_back(view);
   }
   write_view_list(folder / "views.yaml", views);
-  write_growth(folder, growth);
+  write_snapshots(folder, snapshots);
 }
 
 }  // namespace saccade

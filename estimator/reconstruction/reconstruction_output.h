@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/io/view_list.h"
-#include "estimator/reconstruction/growth.h"
 #include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/snapshots.h"
 
 namespace saccade {
 
@@ -24,7 +24,7 @@ void write_log_image(const std::filesystem::path& file, const ImageF& log_image,
 void write_reconstruction(const std::filesystem::path& folder,
                           std::span<const ReconstructionWindow> windows,
                           std::span<const Reconstruction> results,
-                          std::span<const GrowthPicture> growth);
+                          std::span<const Snapshot> snapshots);
 
 /// The gradient and the image of one view, to the files that `view` names, whose folders exist.
 void write_image_view(const Reconstruction& result, const RunView& view);

@@ -1,116 +1,132 @@
 #include "estimator/refinement/refinement_config.h"
 
-#include "estimator/refinement/joint_config.h"
+#include "core/config/method_table.h"
+#include "estimator/refinement/depth/refine_depth.h"
+#include "estimator/refinement/joint/refine_joint.h"
+#include "estimator/refinement/poses/refine_poses.h"
 
 namespace saccade {
 namespace {
 
-void describe_map(config::Fields& fields, RefinementConfig& config) {
-  fields
-      .value("turn_deg", config.turn_deg,
-             "a further frame joins the map where the view has turned so far from all others; ~: "
-             "as in the run")
-      .range(1, 180);
-  fields.value("edge_step", config.map.edge_step, "steps between pixels that are smoothed [log]")
-      .above(0);
-  fields.value("blur_px", config.map.blur_px, "deviation of the Gaussian there; 0: none")
-      .range(0, 5);
-  fields
-      .value("contrast", config.contrast,
-             "threshold [log units]; ~: the run's, else that of the dataset")
-      .range(1e-3, 10);
-}
-
-void describe_poses(config::Fields& fields, PoseRefinementOptions& options) {
+void describe_poses(config::Fields& fields, RefinementConfig& config) {
   using Residual = PoseRefinementOptions::Residual;
+  PoseRefinementOptions& options = config.poses;
   fields.choice("residual", options.residual,
                 {{"events", Residual::kEvents}, {"frames", Residual::kFrames}},
-                "what is compared with the map: the level at each event, or how much brighter "
-                "pixels became over windows of events");
-  fields.value("knot_spacing_s", options.knot_spacing_s, "of the cubic spline").range(1e-3, 10);
+                "What is compared with the map: the log intensity at each event, or the brightness "
+                "increments of images of many events. Events leave a third to a quarter of the "
+                "error.");
+  fields
+      .value("knot_spacing_s", options.knot_spacing_s,
+             "Spacing of the knots of the path's cubic spline, in seconds. Smaller follows faster "
+             "motion and leaves fewer events for each control pose.")
+      .range(1e-3, 10);
   if (options.residual == Residual::kEvents) {
-    fields.value("events", options.chains.events, "at most so many, all of evenly spread pixels")
+    fields
+        .value("events", options.events,
+               "The most events that are used, about: all events of evenly spread pixels. More "
+               "average the errors of the map's picture and take longer.")
         .range(1000, 1e9);
     fields
-        .value("chain", options.chains.length,
-               "events of a pixel that are compared with each other; 2: neighbours alone")
+        .value("chain_events", options.chain_events,
+               "The most events of a pixel that share one unknown offset of the log intensity; 2 "
+               "compares neighbouring events alone. Longer chains say more; with a sensor whose "
+               "thresholds differ between pixels they drift.")
         .range(2, 1e9);
   } else {
-    fields.value("window_events", options.images.window_events, "in a window").range(100, 1e9);
     fields
-        .value("increments", options.images.increments,
-               "at most so many, all of evenly spread pixels")
+        .value("window_events", options.window_events,
+               "Events of the window over which the brightness increments of an image are summed. "
+               "Larger windows make fewer images.")
+        .range(100, 1e9);
+    fields
+        .value("increments", options.increments,
+               "The most brightness increments that are used, about: all of evenly spread pixels. "
+               "More reduce the error and take longer.")
         .range(1000, 1e9);
   }
-  fields.value("noise", options.noise, "deviation of a level from the map [log units]").above(0);
-  fields.value("place_px", options.place_px, "of the place where the map shows it").at_least(0);
   fields
-      .value("outlier",
-             options.residual == Residual::kEvents ? options.outlier : options.images.outlier,
-             "deviations beyond which a residual counts less")
-      .range(0.1, 1e6);
-  fields.value("hold_px", options.hold_px, "of the control poses from the run's, as image motion")
-      .above(0);
-  fields.value("rounds", options.rounds, "of finding what each event saw, and adjusting")
+      .value("contrast", config.contrast,
+             "Contrast threshold of the events, in units of log intensity; ~ takes the run's, or "
+             "else the dataset's.")
+      .range(1e-3, 10);
+  fields
+      .value(
+          "rounds", options.rounds,
+          "How often the surface that each event samples is found anew on the refined path. More "
+          "rounds help a run that is farther from the optimum and take longer.")
       .range(1, 100);
-  fields.value("iterations", options.iterations, "of Levenberg-Marquardt in a round, at most")
-      .range(1, 1000);
-  fields.value("redraw_px", options.redraw_px, "the map is drawn anew after so much motion")
-      .range(0.01, 100);
-  fields
-      .value("information", options.information,
-             "of that of independent residuals: neighbouring ones err alike")
-      .above(0)
-      .at_most(1);
 }
 
-void describe_depth(config::Fields& fields, DepthRefinementOptions& options) {
-  fields.value("reach_px", options.reach_px, "events so near to an edge, across it, are looked at")
-      .range(0.5, 10);
-  fields.value("half_length_px", options.half_length_px, "... and along it").range(0.5, 10);
-  fields.value("near_px", options.near_px, "of an edge from the run's point where it begins")
-      .range(0.1, 10);
-  fields.value("same_depth", options.same_depth, "... and of its inverse depth, relative")
-      .range(1e-3, 1);
-  fields.value("noise_px", options.noise_px, "least deviation of an event from its edge")
-      .range(1e-3, 10);
-  fields.value("outlier", options.outlier, "deviations beyond which an event counts less")
-      .range(0.1, 1e6);
-  fields.value("iterations", options.iterations, "of Levenberg-Marquardt, at most").range(1, 1000);
+void describe_joint(config::Fields& fields, RefinementConfig& config) {
+  BatchAdjustmentOptions& options = config.joint;
   fields
-      .value("information", options.information,
-             "of that of independent residuals: neighbouring ones err alike")
-      .above(0)
-      .at_most(1);
+      .value("smoothing_s", options.smoothing_s,
+             "Spacing of the knots of the spline that smooths the given path, in seconds. Smaller "
+             "follows faster motion; larger removes more of the path's jitter.")
+      .range(1e-3, 10);
+  fields
+      .value("window_s", options.window_s,
+             "Length of the window of events around each keyframe in which its edges are found, in "
+             "seconds. Longer windows overlap more and so reduce drift.")
+      .range(1e-3, 100);
+  fields
+      .value("edges", options.edges,
+             "The most edges of a keyframe that are adjusted. More reduce drift and take longer.")
+      .range(30, 1e7);
+  fields
+      .value("given_events_per_edge", options.given_events_per_edge,
+             "The most events of an edge that are used while the poses are given, beside 30 later "
+             "ones. They determine the scale of the path.")
+      .range(5, 1e6);
+  fields
+      .value("reobserved_keyframes", options.reobserved_keyframes,
+             "The most later keyframes whose events join the edges that they observe again; 0 "
+             "leaves every keyframe to its own window. It bounds the drift of a camera that comes "
+             "back and triples the time.")
+      .range(0, 1000);
+  fields
+      .value("rounds", options.rounds,
+             "How often edges are found on the refined path and adjusted together with it.")
+      .range(1, 100);
+  fields.value("use_imu", options.use_imu,
+               "Whether the readings of gyroscope and accelerometer join in, with gravity, biases "
+               "and time offset as further unknowns. Of a run without given poses they determine "
+               "the scale, too, and the refined run is in metres and upright.");
 }
+
+constexpr RefinementMethod kMethods[] = {
+    {.name = "of_run",
+     .help = "The kind that fits the run's module.",
+     .describe = nullptr,
+     .module = "",
+     .run = nullptr},
+    {.name = "poses",
+     .help = "All poses of a run of track, against the map that it was tracked by.",
+     .describe = describe_poses,
+     .module = "track",
+     .run = refine_poses},
+    {.name = "depth",
+     .help = "Every edge of a run of depth, over all events near it.",
+     .describe = nullptr,
+     .module = "depth",
+     .run = refine_depth},
+    {.name = "joint",
+     .help = "Path and edges of a run of odometry, together.",
+     .describe = describe_joint,
+     .module = "odometry",
+     .run = refine_joint},
+};
 
 }  // namespace
 
+std::span<const RefinementMethod> refinement_methods() { return kMethods; }
+
 void describe(config::Fields& fields, RefinementConfig& config) {
-  using config::Fields;
-  using Kind = RefinementConfig::Kind;
-  fields.choice(
-      "kind", config.kind,
-      {{"of_run", Kind::kOfRun},
-       {"poses", Kind::kPoses},
-       {"depth", Kind::kDepth},
-       {"joint", Kind::kJoint}},
-      "what is refined; of_run: poses of track, points of depth, both together of odometry");
-  const bool is_open = config.kind == Kind::kOfRun;
-  if (is_open || config.kind == Kind::kPoses) {
-    fields.group(
-        "map", [&](Fields& f) { describe_map(f, config); }, "that poses are refined before");
-    fields.group(
-        "poses", [&](Fields& f) { describe_poses(f, config.poses); }, "of a run of track");
-  }
-  if (is_open || config.kind == Kind::kDepth)
-    fields.group(
-        "depth", [&](Fields& f) { describe_depth(f, config.depth); }, "of a run of depth");
-  if (is_open || config.kind == Kind::kJoint)
-    fields.group(
-        "joint", [&](Fields& f) { describe(f, config.joint); },
-        "path and edges of a run of odometry");
-  fields.value("seed", config.seed, "unused: nothing is drawn at random");
+  config::describe_method(
+      fields, "kind", config.kind, refinement_methods(), config,
+      "What is refined: poses of a run of track, depth of a run of depth, path and map of a run of "
+      "odometry (joint), or of_run, which takes the kind that fits the run with its defaults.");
 }
 
 }  // namespace saccade

@@ -2,29 +2,40 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 
 #include "core/config/fields.h"
-#include "estimator/refinement/depth_refinement.h"
-#include "estimator/refinement/joint_refinement.h"
-#include "estimator/refinement/pose_refinement.h"
+#include "core/io/dataset.h"
+#include "estimator/edges/batch/batch_adjustment.h"
+#include "estimator/refinement/poses/pose_refinement.h"
+#include "estimator/refinement/source_run.h"
+#include "estimator/run/run_writer.h"
 
 namespace saccade {
 
 /// The configuration of `saccade run refine`; describe() names the keys, ranges and defaults.
 struct RefinementConfig {
-  /// What is refined: kOfRun follows the run's module.
-  enum class Kind { kOfRun, kPoses, kDepth, kJoint };
-
-  Kind kind = Kind::kOfRun;
+  std::string kind = "of_run";  ///< a row of refinement_methods()
   PoseRefinementOptions poses;
-  DepthRefinementOptions depth;
-  JointRefinementOptions joint;
-  IntensityMapOptions map;
-  std::optional<double> turn_deg;  ///< further views of the map; default: those of the run
-  std::optional<double> contrast;  ///< [log units]; default: the run's, else the dataset's
+  std::optional<double> contrast;  ///< C [log units]; default: the run's, else the dataset's
+  BatchAdjustmentOptions joint;
   std::uint64_t seed = 1;
 };
 
 void describe(config::Fields& fields, RefinementConfig& config);
+
+/// One way to refine a run, as a row of core/config/method_table.h.
+struct RefinementMethod {
+  std::string_view name;  ///< value of `kind`, and name of the section of its options
+  std::string_view help;
+  void (*describe)(config::Fields&, RefinementConfig&);
+  std::string_view module;  ///< whose runs it refines
+  RunSummary (*run)(const RunRequest&, const RefinementConfig&, const Dataset&, const SourceRun&,
+                    RunWriter&);
+};
+
+[[nodiscard]] std::span<const RefinementMethod> refinement_methods();
 
 }  // namespace saccade

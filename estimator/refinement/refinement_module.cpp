@@ -2,11 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "core/config/config.h"
 #include "core/error.h"
-#include "estimator/refinement/refine_depth.h"
-#include "estimator/refinement/refine_joint.h"
-#include "estimator/refinement/refine_poses.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/source_run.h"
 #include "estimator/run/run_input.h"
@@ -15,16 +14,19 @@
 namespace saccade {
 namespace {
 
-using Kind = RefinementConfig::Kind;
-
-Kind kind_of(const RefinementConfig& config, const SourceRun& run) {
-  if (config.kind != Kind::kOfRun) return config.kind;
-  if (run.record.module == "track") return Kind::kPoses;
-  if (run.record.module == "depth") return Kind::kDepth;
-  if (run.record.module == "odometry") return Kind::kJoint;
-  throw InputError(run.folder.string(),
-                   fmt::format("is a run of {}; track, depth and odometry can be refined (--from)",
-                               run.record.module));
+/// The method that the configuration names, or that fits the run.
+const RefinementMethod& method_of(const RefinementConfig& config, const SourceRun& run) {
+  const auto fits = [&](const RefinementMethod& method) {
+    return config.kind == "of_run" ? method.module == run.record.module
+                                   : method.name == config.kind;
+  };
+  const auto methods = refinement_methods();
+  const auto found = std::find_if(methods.begin(), methods.end(), fits);
+  if (found == methods.end())
+    throw InputError(run.folder.string(), fmt::format("is a run of {}; track, depth and odometry "
+                                                      "can be refined (--from)",
+                                                      run.record.module));
+  return *found;
 }
 
 }  // namespace
@@ -36,12 +38,11 @@ RunSummary run_refinement(const RunRequest& request) {
   RunWriter writer(request);
   const Dataset dataset = Dataset::open(request.dataset);
   const SourceRun run = SourceRun::open(request, dataset);
-  config.kind = kind_of(config, run);
-  if (config.kind != Kind::kDepth && request.poses_from)
+  const RefinementMethod& method = method_of(config, run);
+  config.kind = method.name;
+  if (config.kind != "depth" && request.poses_from)
     throw InputError("--poses-from", "poses are refined here; it is of a run of depth");
-  if (config.kind == Kind::kDepth) return refine_depth(request, config, dataset, run, writer);
-  if (config.kind == Kind::kJoint) return refine_joint(request, config, dataset, run, writer);
-  return refine_poses(request, config, dataset, run, writer);
+  return method.run(request, config, dataset, run, writer);
 }
 
 std::string print_refinement_config(const config::Document& document) {

@@ -38,7 +38,7 @@ struct SourceRun {
   [[nodiscard]] config::Document document() const;
 };
 
-/// The poses that are not lost, held at both ends until `start_s` and `end_s`. Throws InputError
+/// The poses that are not lost, the first and last repeated at `start_s` and `end_s`. Throws InputError
 /// naming `place` where fewer than four are left.
 [[nodiscard]] std::vector<StampedPose> known_path(std::span<const TrackedPose> poses,
                                                   double start_s, double end_s,

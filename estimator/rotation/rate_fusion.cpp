@@ -8,43 +8,42 @@
 namespace saccade {
 namespace {
 
-constexpr int kPriorWindows = 10;     ///< which the error stated at the start is worth
-constexpr int kMemoryWindows = 100;   ///< over which the error is learned
-constexpr double kOutlier = 5;        ///< deviations
-constexpr double kLeastShare = 0.01;  ///< of the stated variance, which no luck falls below
+constexpr double kEventsSigma_px = 0.05;  ///< s at the start
+constexpr int kPriorWindows = 10;         ///< number of windows that this value counts for
+constexpr int kMemoryWindows = 100;       ///< over which s is averaged
+constexpr double kOutlierSigmas = 5;
+constexpr double kMinVarianceRatio = 0.01;  ///< of s^2 to its start, a guard against luck
 
 }  // namespace
 
-RateFusion::RateFusion(const RateFusionOptions& options)
-    : options_(options),
-      bias_variance_(
-          Eigen::Vector3d::Constant(options.gyroscope.bias_sigma * options.gyroscope.bias_sigma)),
-      events_variance_(
-          Eigen::Vector3d::Constant(options.events_sigma_px * options.events_sigma_px)) {}
+RateFusion::RateFusion(const GyroscopeNoise& gyroscope)
+    : noise_(gyroscope),
+      bias_variance_(Eigen::Vector3d::Constant(gyroscope.bias_sigma * gyroscope.bias_sigma)),
+      events_variance_(Eigen::Vector3d::Constant(kEventsSigma_px * kEventsSigma_px)) {}
 
-Eigen::Vector3d RateFusion::fuse(const RatePair& pair) {
-  SACCADE_CHECK(pair.averaged_s > 0 && pair.px_per_rate > 0);
-  const double walk = options_.gyroscope.random_walk;
-  if (last_s_) bias_variance_.array() += walk * walk * (pair.t_s - *last_s_);
-  last_s_ = pair.t_s;
-  const double density = options_.gyroscope.density;
-  const double gyro_variance = density * density / pair.averaged_s;
-  const double px2 = pair.px_per_rate * pair.px_per_rate;
+Eigen::Vector3d RateFusion::fuse(const RateMeasurements& measured) {
+  SACCADE_CHECK(measured.averaged_s > 0 && measured.px_per_rate > 0);
+  const double walk = noise_.random_walk;
+  if (last_s_) bias_variance_.array() += walk * walk * (measured.t_s - *last_s_);
+  last_s_ = measured.t_s;
+  const double density = noise_.density;
+  const double gyro_variance = density * density / measured.averaged_s;
+  const double px2 = measured.px_per_rate * measured.px_per_rate;
   windows_ = std::min(windows_ + 1, kMemoryWindows);
-  const double least = kLeastShare * options_.events_sigma_px * options_.events_sigma_px;
+  const double min_variance = kMinVarianceRatio * kEventsSigma_px * kEventsSigma_px;
   Eigen::Vector3d rate;
   for (int k = 0; k < 3; ++k) {
-    const double of_gyroscope = bias_variance_[k] + gyro_variance;
-    const double of_events = events_variance_[k] / px2;
-    const double sum = of_gyroscope + of_events;
-    const double difference = pair.gyroscope[k] - pair.events[k] - bias_[k];
-    const double square = std::min(difference * difference, kOutlier * kOutlier * sum);
-    const double learned = std::max((square - of_gyroscope) * px2, -events_variance_[k]);
-    events_variance_[k] += (learned - events_variance_[k]) / (kPriorWindows + windows_);
-    events_variance_[k] = std::max(events_variance_[k], least);
-    rate[k] = pair.gyroscope[k] - bias_[k];
-    if (std::abs(difference) > kOutlier * std::sqrt(sum)) continue;
-    rate[k] -= of_gyroscope / sum * difference;
+    const double gyro_rate_variance = bias_variance_[k] + gyro_variance;
+    const double events_rate_variance = events_variance_[k] / px2;
+    const double sum = gyro_rate_variance + events_rate_variance;
+    const double difference = measured.gyroscope[k] - measured.events[k] - bias_[k];
+    const double square = std::min(difference * difference, kOutlierSigmas * kOutlierSigmas * sum);
+    const double excess = std::max((square - gyro_rate_variance) * px2, -events_variance_[k]);
+    events_variance_[k] += (excess - events_variance_[k]) / (kPriorWindows + windows_);
+    events_variance_[k] = std::max(events_variance_[k], min_variance);
+    rate[k] = measured.gyroscope[k] - bias_[k];
+    if (std::abs(difference) > kOutlierSigmas * std::sqrt(sum)) continue;
+    rate[k] -= gyro_rate_variance / sum * difference;
     const double gain = bias_variance_[k] / sum;
     bias_[k] += gain * difference;
     bias_variance_[k] *= 1 - gain;

@@ -4,7 +4,6 @@
 
 #include "core/config/fields.h"
 #include "estimator/imu/orientation.h"
-#include "estimator/rotation/rate_fusion.h"
 #include "estimator/rotation/rotation_estimator.h"
 
 namespace saccade {
@@ -13,15 +12,15 @@ namespace saccade {
 struct RotationConfig {
   enum class Source {
     kEvents,  ///< RotationEstimator
-    kImu,     ///< the gyroscope without the bias that the orientation filter finds
+    kImu,     ///< the gyroscope without the bias that the orientation filter estimates
     kBoth,    ///< RateFusion of both
   };
 
   Source source = Source::kEvents;
   RotationOptions events;
   OrientationOptions orientation;  ///< of kImu
-  double average_s = 0;            ///< of kImu: over which the readings are averaged
-  RateFusionOptions fusion;        ///< of kBoth
+  double averaging_s = 0;          ///< of kImu
+  GyroscopeNoise gyroscope;        ///< of kBoth
   std::uint64_t seed = 1;
 };
 

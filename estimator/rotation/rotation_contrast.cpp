@@ -4,10 +4,11 @@
 #include <cmath>
 
 namespace saccade {
-RotationContrast::RotationContrast(const PinholeCamera& camera, double blur_px, double burst_share,
-                                   std::size_t max_events)
+
+RotationContrast::RotationContrast(const PinholeCamera& camera, double blur_px,
+                                   double burst_fraction, std::size_t max_events)
     : camera_(camera.undistorted()),
-      filter_(camera, burst_share, max_events),
+      filter_(camera, burst_fraction, max_events),
       image_(camera, blur_px) {}
 
 void RotationContrast::load(std::span<const Event> events) {
@@ -32,7 +33,7 @@ void RotationContrast::set_times() {
   double squares = 0;
   for (const float time : rays_.t) {
     const auto t = static_cast<double>(time);
-    const double s = t * t / 2 - rate_per_acceleration_ * t - offset;
+    const double s = t * t / 2 - rate_per_acceleration_ * t - offset;  // (d)
     s_.push_back(static_cast<float>(s));
     squares += s * s;
   }
@@ -40,13 +41,13 @@ void RotationContrast::set_times() {
   px_per_acceleration_ = camera_.fx * std::sqrt(squares / count);
 }
 
-auto RotationContrast::parameters_of(const Turning& turning) const -> Parameters {
+auto RotationContrast::to_parameters(const AngularMotion& motion) const -> Parameters {
   Parameters parameters;
-  parameters << turning.rate + rate_per_acceleration_ * turning.acceleration, turning.acceleration;
+  parameters << motion.rate + rate_per_acceleration_ * motion.acceleration, motion.acceleration;
   return parameters;
 }
 
-Turning RotationContrast::turning_of(const Parameters& parameters) const {
+AngularMotion RotationContrast::to_motion(const Parameters& parameters) const {
   const Eigen::Vector3d acceleration = parameters.tail<3>();
   return {parameters.head<3>() - rate_per_acceleration_ * acceleration, acceleration};
 }
@@ -58,14 +59,14 @@ void RotationContrast::warp(const Parameters& parameters) {
   const Eigen::Matrix<float, 6, 1> p = parameters.cast<float>();
   for (std::size_t i = 0; i < rays_.x.size(); ++i) {
     const float a = rays_.x[i], b = rays_.y[i], t = rays_.t[i], s = s_[i];
-    // exp() to second order: within 2e-4 px at 0.1 rad.
+    // (a), with exp() to second order: within 2e-4 px at 0.1 rad.
     const float tx = t * p[0] + s * p[3], ty = t * p[1] + s * p[4], tz = t * p[2] + s * p[5];
     const float cross_x = ty - tz * b, cross_y = tz * a - tx, cross_z = tx * b - ty * a;
     const float x = a + cross_x + 0.5F * (ty * cross_z - tz * cross_y);
     const float y = b + cross_y + 0.5F * (tz * cross_x - tx * cross_z);
     const float z = 1 + cross_z + 0.5F * (tx * cross_y - ty * cross_x);
     const float u = fx * x / z + cx, v = fy * y / z + cy;
-    x_[i] = image_.reaches(u, v) ? u : -1;
+    x_[i] = image_.contains(u, v) ? u : -1;
     y_[i] = v;
   }
 }
@@ -76,7 +77,7 @@ auto RotationContrast::evaluate(const Parameters& parameters) -> Value {
   image_.smooth();
   const double norm = 1 / (static_cast<double>(x_.size()) * static_cast<double>(x_.size()));
   Value value;
-  value.contrast = norm * image_.sum_of_squares();
+  value.contrast = norm * image_.sum_of_squares();  // (b)
   image_.smooth();
   const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);
   const auto cx = static_cast<float>(camera_.cx + image_.margin());
@@ -86,9 +87,9 @@ auto RotationContrast::evaluate(const Parameters& parameters) -> Value {
   constexpr std::size_t kBlock = 256;  // summed in single precision
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (x_[i] >= 0) {
-      const auto slope = sample_with_gradient(image_.pixels(), x_[i], y_[i]);
-      const float gx = fx * slope.dx, gy = fy * slope.dy;
-      // At the warped place, to first order in the turn: the motion field of a rotation,
+      const auto gradient = sample_with_gradient(image_.pixels(), x_[i], y_[i]);
+      const float gx = fx * gradient.dx, gy = fy * gradient.dy;
+      // dx_k/dp to first order in the rotation: the motion field of a rotation at the warped point,
       // [-a b, 1 + a^2, -b; -1 - b^2, a b, a] with the sign of x' = x + angle cross x.
       const float a = (x_[i] - cx) / fx, b = (y_[i] - cy) / fy;
       const Eigen::Vector3f by_angle(-a * b * gx - (1 + b * b) * gy, (1 + a * a) * gx + a * b * gy,
@@ -101,7 +102,7 @@ auto RotationContrast::evaluate(const Parameters& parameters) -> Value {
       sum.setZero();
     }
   }
-  value.gradient = 2 * norm * total;
+  value.gradient = 2 * norm * total;  // (c)
   return value;
 }
 

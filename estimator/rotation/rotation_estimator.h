@@ -11,46 +11,45 @@
 namespace saccade {
 
 struct RotationOptions {
-  int events = 80000;          ///< per window
-  int min_events = 2000;       ///< fewer say nothing
-  double max_window_s = 0.05;  ///< a slow window is cut here
-  int samples = 20000;         ///< at most so many of them are used
-  double blur_px = 1;          ///< of the image of events
-  double burst_share = 0.15;   ///< of the window's length, see RotationContrast
-  int iterations = 30;         ///< of quasi-Newton steps, at most
-  double tolerance_px = 0.01;  ///< a step that moves events by less is the last
+  int window_events = 80000;
+  int min_events = 2000;  ///< a window with fewer has no estimate
+  double max_window_s = 0.05;
+  int samples = 20000;           ///< events of a window that are used, at most
+  double blur_px = 1;            ///< sigma of K
+  double burst_fraction = 0.15;  ///< of the window's length, see BurstFilter
 };
 
-/// What one window says.
+/// Result of one window.
 struct RotationEstimate {
   double t_s = 0;          ///< middle of the window
-  Turning turning;         ///< then
-  double contrast = 0;     ///< reached
-  double px_per_rate = 0;  ///< by how much the events move at 1 rad/s, RMS [px]
+  AngularMotion turning;   ///< there
+  double contrast = 0;     ///< at the maximum
+  double px_per_rate = 0;  ///< RMS displacement of the events at 1 rad/s [px]
   int iterations = 0;
   bool is_valid = false;
 };
 
-/// Angular velocity from events alone, window by window, by the contrast of the turned events
-/// (rotation_contrast.h), with BFGS from the rate of the window before. Deterministic.
+/// Angular velocity from events alone, window by window, by contrast maximisation
+/// (rotation_contrast.h) with BFGS, from the motion of the previous window. Deterministic.
 class RotationEstimator {
  public:
   RotationEstimator(const PinholeCamera& camera, const RotationOptions& options);
 
-  /// `events`: a window, in order of time, at least one. `guess`: where the search starts.
-  [[nodiscard]] RotationEstimate estimate(std::span<const Event> events, const Turning& guess);
+  /// `events`: a window, in order of time, at least one. `guess`: initial motion.
+  [[nodiscard]] RotationEstimate estimate(std::span<const Event> events,
+                                          const AngularMotion& guess);
 
-  /// Where the search begins at `t_s`, if `last` came before it.
-  [[nodiscard]] static Turning predict(const RotationEstimate& last, double t_s);
+  /// The motion of the previous window, extrapolated to `t_s`.
+  [[nodiscard]] static AngularMotion predict(const RotationEstimate& last, double t_s);
 
  private:
   RotationOptions options_;
   RotationContrast contrast_;
 };
 
-/// The events of the next window: `options.events`, or fewer where they take too long; all that are
-/// left where these are not half as many more.
-[[nodiscard]] std::size_t next_window(std::span<const Event> events,
-                                      const RotationOptions& options);
+/// Number of events of the next window: `options.window_events`, or fewer where they last longer than
+/// `options.max_window_s`; all that are left if these are fewer than one and a half windows.
+[[nodiscard]] std::size_t next_window_size(std::span<const Event> events,
+                                           const RotationOptions& options);
 
 }  // namespace saccade

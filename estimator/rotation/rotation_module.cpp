@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
+#include "estimator/rotation/rate_fusion.h"
 #include "estimator/rotation/rotation_config.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
@@ -29,14 +30,14 @@ double middle_of(std::span<const Event> window) {
   return seconds_from_ns((window.front().t_ns + window.back().t_ns) / 2);
 }
 
-/// Window by window, from events alone.
+/// From events alone, window by window.
 Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
                const RotationOptions& options, Progress& progress) {
   Rates rates;
   RotationEstimator estimator(camera, options);
   RotationEstimate last;
   while (!events.empty()) {
-    const std::span<const Event> window = events.first(next_window(events, options));
+    const std::span<const Event> window = events.first(next_window_size(events, options));
     last = estimator.estimate(window, RotationEstimator::predict(last, middle_of(window)));
     if (last.is_valid) rates.push_back(rate_at(last.t_s, last.turning.rate));
     events = events.subspan(window.size());
@@ -45,51 +46,51 @@ Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
   return rates;
 }
 
-/// The gyroscope in the middle of a window. The mean over a window of length T is w + w'' T^2 / 24,
-/// that over its inner half w + w'' T^2 / 96; without w'' the variance is that of a mean over
-/// kMiddleShare of the window.
-constexpr double kMiddleShare = 0.36;
-Turning turning_of(const Gyroscope& gyroscope, TimeNs start_ns, TimeNs end_ns) {
+/// Motion by the gyroscope in the middle of a window. The mean over a window of length T is
+/// w + w'' T^2 / 24, that over its inner half w + w'' T^2 / 96; eliminating w'' leaves the variance of
+/// a mean over kAveragedFraction of the window.
+constexpr double kAveragedFraction = 0.36;
+AngularMotion motion_of(const Gyroscope& gyroscope, TimeNs start_ns, TimeNs end_ns) {
   const TimeNs length_ns = end_ns - start_ns, middle_ns = start_ns + length_ns / 2;
-  Turning turning;
-  turning.rate = (4 * gyroscope.mean_rate(start_ns + length_ns / 4, end_ns - length_ns / 4) -
-                  gyroscope.mean_rate(start_ns, end_ns)) /
-                 3;
+  AngularMotion motion;
+  motion.rate = (4 * gyroscope.mean_rate(start_ns + length_ns / 4, end_ns - length_ns / 4) -
+                 gyroscope.mean_rate(start_ns, end_ns)) /
+                3;
   if (length_ns > 0)
-    turning.acceleration =
+    motion.acceleration =
         (gyroscope.mean_rate(middle_ns, end_ns) - gyroscope.mean_rate(start_ns, middle_ns)) /
         seconds_from_ns(length_ns / 2);
-  return turning;
+  return motion;
 }
 
-/// Likewise, from both; the search begins where the gyroscope says.
+/// From both, window by window; the search starts at the motion by the gyroscope.
 Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
                const RotationConfig& config, const Gyroscope& gyroscope, Progress& progress) {
   Rates rates;
   RotationEstimator estimator(camera, config.events);
-  RateFusion fusion(config.fusion);
+  RateFusion fusion(config.gyroscope);
   while (!events.empty()) {
-    const std::span<const Event> window = events.first(next_window(events, config.events));
+    const std::span<const Event> window = events.first(next_window_size(events, config.events));
     const TimeNs start_ns = window.front().t_ns, end_ns = window.back().t_ns;
-    const Turning read = turning_of(gyroscope, start_ns, end_ns);
+    const AngularMotion measured = motion_of(gyroscope, start_ns, end_ns);
     const RotationEstimate found =
-        estimator.estimate(window, {read.rate - fusion.bias(), read.acceleration});
-    const double averaged_s = kMiddleShare * seconds_from_ns(end_ns - start_ns);
-    // Before the first events nothing is known of the bias.
+        estimator.estimate(window, {measured.rate - fusion.bias(), measured.acceleration});
+    const double averaged_s = kAveragedFraction * seconds_from_ns(end_ns - start_ns);
+    // Before the first estimate from events the bias is unknown.
     if (found.is_valid)
       rates.push_back(rate_at(found.t_s, fusion.fuse({found.t_s, averaged_s, found.px_per_rate,
-                                                      read.rate, found.turning.rate})));
+                                                      measured.rate, found.turning.rate})));
     else if (!rates.empty())
-      rates.push_back(rate_at(found.t_s, fusion.without_events(read.rate)));
+      rates.push_back(rate_at(found.t_s, fusion.without_events(measured.rate)));
     events = events.subspan(window.size());
     progress.add(window.size());
   }
   return rates;
 }
 
-/// The readings without the bias that the orientation filter knows of by then, means over
-/// `average_s`, or each.
-Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double average_s) {
+/// The gyroscope less the bias that the orientation filter has estimated by then, averaged over
+/// `averaging_s`.
+Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double averaging_s) {
   Rates rates;
   const auto orientations = estimate_orientations(imu.samples, options);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -97,7 +98,7 @@ Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double av
   for (std::size_t i = 0; i < imu.samples.size(); ++i) {
     sum += imu.samples[i].angular_velocity - orientations[i].gyro.bias;
     const TimeNs first_ns = imu.samples[begin].t_ns, t_ns = imu.samples[i].t_ns;
-    if (seconds_from_ns(t_ns - first_ns) < average_s) continue;
+    if (seconds_from_ns(t_ns - first_ns) < averaging_s) continue;
     rates.push_back(rate_at(seconds_from_ns(first_ns + (t_ns - first_ns) / 2),
                             imu.camera_from_imu * sum / static_cast<double>(i - begin + 1)));
     sum.setZero();
@@ -113,7 +114,7 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
     case Source::kEvents:
       return rates_of(events, camera, config.events, progress);
     case Source::kImu:
-      return rates_of(*imu, config.orientation, config.average_s);
+      return rates_of(*imu, config.orientation, config.averaging_s);
     case Source::kBoth:
       break;
   }

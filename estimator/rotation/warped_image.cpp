@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kMargin = 16;  // [px]
 
-/// Somewhere within a pixel, evenly: an additive recurrence by the plastic number (Roberts, 2018).
-Eigen::Vector2f within_pixel(std::size_t k) {
+/// Low-discrepancy offset within a pixel: R2 sequence of the plastic number (Roberts, 2018).
+Eigen::Vector2f pixel_offset(std::size_t k) {
   const double i = static_cast<double>(k) + 0.5;
   constexpr double kPlastic = 1.32471795724474602596;
   const double x = i / kPlastic, y = i / (kPlastic * kPlastic);
@@ -41,9 +41,9 @@ WarpedImage::WarpedImage(const PinholeCamera& camera, double blur_px)
       margin_(kMargin + static_cast<int>(kernel_.size())),
       image_(camera.width + 2 * margin_, camera.height + 2 * margin_),
       row_sums_(image_.width(), image_.height()),
-      least_(static_cast<float>(margin_ - kMargin)),
-      right_(static_cast<float>(image_.width() - margin_ + kMargin)),
-      bottom_(static_cast<float>(image_.height() - margin_ + kMargin)) {}
+      min_(static_cast<float>(margin_ - kMargin)),
+      max_x_(static_cast<float>(image_.width() - margin_ + kMargin)),
+      max_y_(static_cast<float>(image_.height() - margin_ + kMargin)) {}
 
 void WarpedImage::draw(std::span<const float> x, std::span<const float> y) {
   image_.fill(0);
@@ -83,48 +83,48 @@ double WarpedImage::sum_of_squares() const {
   return sum;
 }
 
-BurstFilter::BurstFilter(const PinholeCamera& camera, double burst_share, std::size_t max_events)
+BurstFilter::BurstFilter(const PinholeCamera& camera, double burst_fraction, std::size_t max_events)
     : camera_(camera.undistorted()),
       undistortion_(camera),
-      burst_share_(burst_share),
+      burst_fraction_(burst_fraction),
       max_events_(max_events),
       last_ns_(2 * static_cast<std::size_t>(camera.width) *
                static_cast<std::size_t>(camera.height)) {
-  SACCADE_CHECK(max_events > 0 && burst_share >= 0);
+  SACCADE_CHECK(max_events > 0 && burst_fraction >= 0);
 }
 
-void BurstFilter::choose(std::span<const Event> events) {
+void BurstFilter::select(std::span<const Event> events) {
   const auto window_ns = static_cast<double>(events.back().t_ns - events.front().t_ns);
-  const auto burst_ns = static_cast<TimeNs>(burst_share_ * window_ns);
+  const auto burst_ns = static_cast<TimeNs>(burst_fraction_ * window_ns);
   last_ns_.assign(last_ns_.size(), std::numeric_limits<TimeNs>::min() / 2);
-  chosen_.clear();
+  selected_.clear();
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     const std::size_t pixel =
         static_cast<std::size_t>(event.y) * static_cast<std::size_t>(camera_.width) +
         static_cast<std::size_t>(event.x);
     TimeNs& last_ns = last_ns_[2 * pixel + (event.polarity > 0 ? 1 : 0)];
-    if (event.t_ns - last_ns >= burst_ns) chosen_.push_back(i);
+    if (event.t_ns - last_ns >= burst_ns) selected_.push_back(i);
     last_ns = event.t_ns;
   }
 }
 
 WindowRays BurstFilter::rays_of(std::span<const Event> events) {
   SACCADE_CHECK(!events.empty());
-  choose(events);
+  select(events);
   WindowRays rays;
   const TimeNs middle_ns = (events.front().t_ns + events.back().t_ns) / 2;
   rays.middle_s = seconds_from_ns(middle_ns);
-  const std::size_t every = (chosen_.size() + max_events_ - 1) / max_events_;
+  const std::size_t stride = (selected_.size() + max_events_ - 1) / max_events_;
   const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);
   const auto cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
-  for (std::size_t k = 0; k < chosen_.size(); k += every) {
-    const Event& event = events[chosen_[k]];
-    // As fired, all events lie in the middles of pixels, where bilinear drawing is sharpest: every
-    // motion would seem to blur them.
-    const Eigen::Vector2f place = undistortion_(event.x, event.y) + within_pixel(rays.x.size());
-    rays.x.push_back((place.x() - cx) / fx);
-    rays.y.push_back((place.y() - cy) / fy);
+  for (std::size_t k = 0; k < selected_.size(); k += stride) {
+    const Event& event = events[selected_[k]];
+    // At the pixel centres, where all events lie, bilinear drawing is sharpest: any motion would
+    // blur them.
+    const Eigen::Vector2f pixel = undistortion_(event.x, event.y) + pixel_offset(rays.x.size());
+    rays.x.push_back((pixel.x() - cx) / fx);
+    rays.y.push_back((pixel.y() - cy) / fy);
     rays.t.push_back(static_cast<float>(seconds_from_ns(event.t_ns - middle_ns)));
   }
   return rays;

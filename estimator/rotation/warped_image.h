@@ -9,61 +9,62 @@
 
 namespace saccade {
 
-/// The image of warped events: drawn bilinearly, smoothed by a Gaussian. Around the sensor's pixels
-/// it has a margin for events that are warped out of it.
+/// Image of warped events (IWE): drawn bilinearly, smoothed by a Gaussian. A margin around the
+/// sensor's pixels holds events that are warped out of them.
 class WarpedImage {
  public:
   WarpedImage(const PinholeCamera& camera, double blur_px);
 
-  /// Of the image's pixels from the sensor's [px].
+  /// Offset of the image's pixels from the sensor's [px].
   [[nodiscard]] int margin() const { return margin_; }
-  /// Whether an event there, in the image's pixels, can be drawn.
-  [[nodiscard]] bool reaches(float x, float y) const {
-    return (x >= least_) & (y >= least_) & (x < right_) & (y < bottom_);
+  /// Whether an event at (x, y), in the image's pixels, can be drawn.
+  [[nodiscard]] bool contains(float x, float y) const {
+    return (x >= min_) & (y >= min_) & (x < max_x_) & (y < max_y_);
   }
-  /// Draws events at (x, y), each within reach or its x < 0, on nothing.
+  /// Clears the image and draws events at (x, y); those with x < 0 are left out, the others lie within
+  /// the image (contract).
   void draw(std::span<const float> x, std::span<const float> y);
-  /// Smooths it, once more at every call.
+  /// Smooths the image, once more at every call.
   void smooth();
   [[nodiscard]] double sum_of_squares() const;
   [[nodiscard]] const ImageF& pixels() const { return image_; }
 
  private:
-  std::vector<float> kernel_;  ///< one half of it, the middle first
+  std::vector<float> kernel_;  ///< right half, the middle first
   int margin_;
   ImageF image_, row_sums_;
-  float least_, right_, bottom_;
+  float min_, max_x_, max_y_;
 };
 
-/// A window's events for an image of them: rays and times.
+/// Bearings and times of selected events of a window.
 struct WindowRays {
-  std::vector<float> x, y;  ///< of the ray (x, y, 1), undistorted
+  std::vector<float> x, y;  ///< of the bearing (x, y, 1), undistorted
   std::vector<float> t;     ///< since the middle of the window [s]
   double middle_s = 0;
 };
 
-/// Chooses the events of a window that an image of them is made of. An edge that passes a pixel
-/// fires several times before it has left it. These events lie on each other when nothing is
-/// warped, and would pull any motion towards none, so that only the first of such a burst is taken.
+/// Selects the events of a window for an image of warped events. An edge that passes a pixel fires
+/// a burst of events there. Without any warp these lie on one another, which biases every motion
+/// towards zero: only the first event of a burst is used.
 class BurstFilter {
  public:
-  /// `camera` with its lens. An event belongs to the burst of the one before at its pixel, of its
-  /// polarity, within `burst_share` >= 0 of the window's length. `max_events` > 0 of those that are
-  /// left are used, evenly spread.
-  BurstFilter(const PinholeCamera& camera, double burst_share, std::size_t max_events);
+  /// `camera` with its lens. An event continues the burst of the previous event of its pixel and
+  /// polarity if it follows within `burst_fraction` >= 0 of the window's length. Of the remaining
+  /// events at most about `max_events` > 0 are used, evenly spread.
+  BurstFilter(const PinholeCamera& camera, double burst_fraction, std::size_t max_events);
 
   /// `events` in order of time, at least one.
   [[nodiscard]] WindowRays rays_of(std::span<const Event> events);
 
  private:
-  void choose(std::span<const Event> events);
+  void select(std::span<const Event> events);
 
   PinholeCamera camera_;  ///< undistorted
   UndistortionTable undistortion_;
-  double burst_share_;
+  double burst_fraction_;
   std::size_t max_events_;
-  std::vector<TimeNs> last_ns_;      ///< of the last event, by pixel and polarity
-  std::vector<std::size_t> chosen_;  ///< the first events of bursts
+  std::vector<TimeNs> last_ns_;        ///< of the last event, by pixel and polarity
+  std::vector<std::size_t> selected_;  ///< the first events of bursts
 };
 
 }  // namespace saccade

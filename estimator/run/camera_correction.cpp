@@ -12,7 +12,9 @@ PinholeCamera CameraCorrection::of(const PinholeCamera& calibrated) const {
 void describe(config::Fields& fields, CameraCorrection& correction) {
   fields
       .value("focal_scale", correction.focal_scale,
-             "fx and fy are taken to be so many times those of the calibration")
+             "Factor on fx and fy of the calibration: a known error of the lens, or one whose "
+             "effect is "
+             "to be measured. 1 keeps the calibration.")
       .range(0.1, 10);
 }
 

@@ -5,10 +5,10 @@
 
 namespace saccade {
 
-/// What a run takes the camera for, as against the dataset's calibration: a correction that is
-/// known, or an error whose effect is to be measured.
+/// A correction of the dataset's calibration: a known error of it, or one whose effect is to be
+/// measured.
 struct CameraCorrection {
-  double focal_scale = 1;  ///< fx and fy are so many times those of the calibration
+  double focal_scale = 1;
 
   /// The camera, with the calibration's centre and lens.
   [[nodiscard]] PinholeCamera of(const PinholeCamera& calibrated) const;

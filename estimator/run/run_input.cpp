@@ -1,12 +1,13 @@
 #include "estimator/run/run_input.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
+#include "core/time_search.h"
 
 namespace saccade {
+
 void check(const RunRequest& request) {
   if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
   if (request.duration_s && !(*request.duration_s > 0))
@@ -22,9 +23,7 @@ Events load_events_if_any(const RunRequest& request, const Dataset& dataset) {
   Events events = dataset.load_events();
   if (events.empty()) return events;
   const TimeNs end_ns = events.front().t_ns + ns_from_seconds(*request.duration_s);
-  const auto end = std::find_if(events.begin(), events.end(),
-                                [end_ns](const Event& e) { return e.t_ns >= end_ns; });
-  events.erase(end, events.end());
+  events.resize(count_before(events, end_ns));
   return events;
 }
 
@@ -46,10 +45,10 @@ Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
   if (request.poses_from) {
     const std::filesystem::path& from = *request.poses_from;
     if (!std::filesystem::is_directory(from)) return read_trajectory(from);
-    const bool turns_only = !std::filesystem::exists(from / "trajectory.txt") &&
-                            std::filesystem::exists(from / "orientation.txt");
-    return turns_only ? read_orientations(from / "orientation.txt")
-                      : read_trajectory(from / "trajectory.txt");
+    const bool has_orientations_only = !std::filesystem::exists(from / "trajectory.txt") &&
+                                       std::filesystem::exists(from / "orientation.txt");
+    return has_orientations_only ? read_orientations(from / "orientation.txt")
+                                 : read_trajectory(from / "trajectory.txt");
   }
   if (dataset.groundtruth().empty())
     throw InputError(dataset.folder().string(),

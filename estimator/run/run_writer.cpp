@@ -48,8 +48,8 @@ std::string rate(std::string_view key, double numerator, const std::vector<doubl
 /// Median, 99 % and most.
 std::string latency(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
-  const auto at = [&](double share) {
-    return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))];
+  const auto at = [&](double quantile) {
+    return ms[static_cast<std::size_t>(quantile * static_cast<double>(ms.size() - 1))];
   };
   return fmt::format("  \"latency_ms\": {{\"median\": {}, \"p99\": {}, \"max\": {}}},\n", at(0.5),
                      at(0.99), ms.back());

@@ -13,6 +13,7 @@
 #include "core/progress.h"
 #include "core/stopwatch.h"
 #include "core/trajectory.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_request.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_windows.h"
@@ -48,17 +49,12 @@ template <typename Result, typename Window, typename Estimate>
                                                  RunTiming& timing, const Estimate& estimate) {
   std::vector<Result> results(windows.size());
   Progress progress(name, timing.events * static_cast<std::size_t>(repeat), "events");
-  for (int i = 0; i < repeat; ++i) {
-    double wall_s = 0;
-    {
-      const ScopedTimer clock(wall_s);
-      parallel_for(windows.size(), [&](std::size_t k) {
-        results[k] = estimate(windows[k]);
-        progress.add(windows[k].events.size());
-      });
-    }
-    timing.wall_s.push_back(wall_s);
-  }
+  repeat_timed(repeat, timing.wall_s, [&] {
+    parallel_for(windows.size(), [&](std::size_t k) {
+      results[k] = estimate(windows[k]);
+      progress.add(windows[k].events.size());
+    });
+  });
   timing.stages_s.clear();
   for (const Result& result : results) add_stages(timing.stages_s, result.stages_s);
   return results;

@@ -5,17 +5,13 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/time_search.h"
+
 namespace saccade {
 namespace {
 
 using By = ViewWindowOptions::By;
 using Reference = ViewWindowOptions::Reference;
-
-std::size_t first_at(std::span<const Event> events, TimeNs t_ns) {
-  const auto at = std::partition_point(events.begin(), events.end(),
-                                       [t_ns](const Event& e) { return e.t_ns < t_ns; });
-  return static_cast<std::size_t>(at - events.begin());
-}
 
 /// Of the frame nearest to the middle and within; the middle without one.
 double time_of_frame(const std::vector<StampedFile>& frames, double start_s, double end_s) {
@@ -48,12 +44,16 @@ double reference_time(Reference reference, const std::vector<StampedFile>& frame
 
 void describe(config::Fields& fields, ViewWindowOptions& options) {
   fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
-                "what the windows share alike");
+                "Quantity that is equal in all windows: their duration or their number of events.");
   if (options.by == By::kTime)
-    fields.value("duration_s", options.duration_s, "longest window; all are equally long")
+    fields
+        .value("duration_s", options.duration_s,
+               "Longest duration of a window, in seconds; all windows are equally long.")
         .range(1e-4, 1e5);
   if (options.by == By::kEvents)
-    fields.value("events", options.events, "most events of a window; all hold equally many")
+    fields
+        .value("events", options.events,
+               "Largest number of events of a window; all windows hold equally many.")
         .range(100, 1e9);
   fields.choice(
       "reference", options.reference,
@@ -61,14 +61,14 @@ void describe(config::Fields& fields, ViewWindowOptions& options) {
        {"middle", Reference::kMiddle},
        {"end", Reference::kEnd},
        {"frame", Reference::kFrame}},
-      "where in its window the view lies; frame: at the grey frame nearest to the middle");
+      "Time of the view within its window; frame is the time of the grey frame nearest to the "
+      "middle, so that the two can be compared.");
 }
 
 std::span<const Event> within(std::span<const Event> events, const Trajectory& trajectory) {
   if (trajectory.empty()) return {};
-  const std::size_t begin = first_at(events, ns_from_seconds(trajectory.start_s()));
-  const std::size_t end = first_at(events, ns_from_seconds(trajectory.end_s()) + 1);
-  return events.subspan(begin, end - begin);
+  return events_within(events, ns_from_seconds(trajectory.start_s()),
+                       ns_from_seconds(trajectory.end_s()));
 }
 
 std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Trajectory& trajectory,
@@ -84,11 +84,11 @@ std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Traject
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(pieces - 1e-9)));
   std::size_t begin = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double end_share = static_cast<double>(i + 1) / static_cast<double>(count);
+    const double end_fraction = static_cast<double>(i + 1) / static_cast<double>(count);
     std::size_t end = events.size();
     if (i + 1 < count)
-      end = by_time ? first_at(events, ns_from_seconds(start_s + end_share * length_s))
-                    : static_cast<std::size_t>(end_share * size);
+      end = by_time ? count_before(events, ns_from_seconds(start_s + end_fraction * length_s))
+                    : static_cast<std::size_t>(end_fraction * size);
     if (end > begin) {
       const auto part = events.subspan(begin, end - begin);
       const double from_s = seconds_from_ns(part.front().t_ns);

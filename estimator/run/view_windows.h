@@ -17,10 +17,9 @@ struct ViewWindowOptions {
   enum class Reference { kStart, kMiddle, kEnd, kFrame };
 
   By by = By::kTime;
-  double duration_s = 0.4;  ///< of kTime: longest; the windows are equally long
-  int events = 200000;      ///< of kEvents: most; the windows hold equally many
-  /// Where in its window the view lies. kFrame: at the grey frame nearest to the middle and within
-  /// the window, so that the two can be compared; the middle where there is none.
+  double duration_s = 0.4;  ///< of kTime
+  int events = 200000;      ///< of kEvents
+  /// kFrame: the middle where no frame lies within the window.
   Reference reference = Reference::kStart;
 };
 
@@ -39,8 +38,8 @@ struct ViewWindow {
 [[nodiscard]] std::span<const Event> within(std::span<const Event> events,
                                             const Trajectory& trajectory);
 
-/// Cuts the stream into consecutive windows that together hold all of it, as few and as even as the
-/// longest allowed. Windows without events, where the camera stood still, are left out.
+/// Cuts the stream into consecutive windows that together hold all of it, as few and as equal as
+/// the options allow. Windows without events, where the camera stood still, are left out.
 /// `trajectory` spans the events and outlives the windows; `frames` are those of kFrame.
 [[nodiscard]] std::vector<ViewWindow> cut_windows(std::span<const Event> events,
                                                   const Trajectory& trajectory,

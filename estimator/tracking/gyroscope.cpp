@@ -1,8 +1,10 @@
 #include "estimator/tracking/gyroscope.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "core/check.h"
+#include "core/time_search.h"
 
 namespace saccade {
 
@@ -23,16 +25,14 @@ Gyroscope::Gyroscope(std::span<const ImuSample> samples, const Eigen::Matrix3d& 
 Eigen::Vector3d Gyroscope::rate_at(TimeNs t_ns) const {
   if (t_ns <= times_ns_.front()) return rates_.front();
   if (t_ns >= times_ns_.back()) return rates_.back();
-  const auto next = std::upper_bound(times_ns_.begin(), times_ns_.end(), t_ns);
-  const auto i = static_cast<std::size_t>(next - times_ns_.begin());
-  const double share = static_cast<double>(t_ns - times_ns_[i - 1]) /
-                       static_cast<double>(times_ns_[i] - times_ns_[i - 1]);
-  return rates_[i - 1] + share * (rates_[i] - rates_[i - 1]);
+  const std::size_t i = count_until(times_ns_, t_ns, std::identity{});
+  const double fraction = static_cast<double>(t_ns - times_ns_[i - 1]) /
+                          static_cast<double>(times_ns_[i] - times_ns_[i - 1]);
+  return rates_[i - 1] + fraction * (rates_[i] - rates_[i - 1]);
 }
 
 Eigen::Vector3d Gyroscope::angle_at(TimeNs t_ns) const {
-  const auto next = std::upper_bound(times_ns_.begin(), times_ns_.end(), t_ns);
-  const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - times_ns_.begin(), 1));
+  const std::size_t i = std::max<std::size_t>(count_until(times_ns_, t_ns, std::identity{}), 1);
   const double dt_s = seconds_from_ns(t_ns - times_ns_[i - 1]);
   return angles_[i - 1] + dt_s * (rates_[i - 1] + rate_at(t_ns)) / 2;
 }

@@ -9,19 +9,19 @@
 namespace saccade {
 namespace {
 
-/// Neighbours whose inverse depths differ by more than this share belong to two surfaces, unless
+/// Neighbours whose inverse depths differ by more than this fraction belong to two surfaces, unless
 /// the next ones go on in the same way.
-constexpr float kDepthStep = 0.03F;
+constexpr float kDepthDiscontinuity = 0.03F;
 
 /// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
 bool is_joined(float before, float b, float c, float after) {
   if (!(b > 0 && c > 0)) return false;
   const float step = std::abs(c - b);
-  if (step <= kDepthStep * std::max(b, c)) return true;
-  const auto goes_on = [&](float difference) {
+  if (step <= kDepthDiscontinuity * std::max(b, c)) return true;
+  const auto continues = [&](float difference) {
     return std::abs(difference - (c - b)) < 0.3F * step;
   };
-  return before > 0 && after > 0 && goes_on(b - before) && goes_on(after - c);
+  return before > 0 && after > 0 && continues(b - before) && continues(after - c);
 }
 
 /// Of every pixel, whether the square with its neighbours to the right and below is one surface.
@@ -90,7 +90,7 @@ ImageF smoothed(const ImageF& image, double blur_px) {
   return pass(pass(image, 1, 0), 0, 1);
 }
 
-/// The greatest step between neighbours within two pixels.
+/// The largest difference between neighbours within two pixels.
 ImageF steepness(const ImageF& image) {
   constexpr int kReach = 2;
   ImageF steepest(image.width(), image.height());
@@ -116,8 +116,8 @@ ImageF smoothed_at_edges(const ImageF& image, double blur_px, double step) {
   ImageF result = image;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
-      const float share = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
-      result(x, y) += share * (blurred(x, y) - image(x, y));
+      const float fraction = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
+      result(x, y) += fraction * (blurred(x, y) - image(x, y));
     }
   return result;
 }

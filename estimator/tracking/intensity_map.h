@@ -14,16 +14,16 @@
 
 namespace saccade {
 
-/// A picture of point samples does not say where between two of them an edge stands. Where
-/// neighbours differ by more than an edge's step it is smoothed, fully from twice that on, so that
-/// edges attract from further away; elsewhere it stays as it is.
+/// A picture of point samples leaves open where between two of them an edge is. Where neighbours
+/// differ by more than the contrast step it is smoothed, fully from twice that on, so that edges
+/// attract from further away; elsewhere it stays as it is.
 struct IntensityMapOptions {
   double edge_step = 0.9;  ///< [log units]
-  double blur_px = 0.8;    ///< deviation of the Gaussian; 0: nothing is smoothed
+  double blur_px = 0.8;    ///< sigma of the Gaussian; 0: nothing is smoothed
 };
 
 /// The known world of the intensity tracker: what one or more views show, as points with a log
-/// intensity. The pictures lie one below the other in an atlas, so that a place in any of them is
+/// intensity. The pictures lie one below the other in an atlas, so that a pixel of any of them is
 /// one pair of coordinates.
 class IntensityMap {
  public:

@@ -9,22 +9,18 @@
 namespace saccade {
 namespace {
 
-/// By central differences [1/px]; 0 on the border and beside NaN pixels.
-struct Gradient {
-  ImageF x, y;
-
-  Gradient(int width, int height) : x(width, height), y(width, height) {}
-  explicit Gradient(const ImageF& image) : Gradient(image.width(), image.height()) {
-    for (int v = 1; v + 1 < image.height(); ++v)
-      for (int u = 1; u + 1 < image.width(); ++u) {
-        const float gx = (image(u + 1, v) - image(u - 1, v)) / 2;
-        const float gy = (image(u, v + 1) - image(u, v - 1)) / 2;
-        if (!std::isfinite(gx) || !std::isfinite(gy)) continue;
-        x(u, v) = gx;
-        y(u, v) = gy;
-      }
-  }
-};
+/// Central differences [1/px]; 0 on the border and beside NaN pixels.
+void differentiate(const ImageF& image, ImageF& gradient_x, ImageF& gradient_y) {
+  gradient_x = gradient_y = ImageF(image.width(), image.height());
+  for (int v = 1; v + 1 < image.height(); ++v)
+    for (int u = 1; u + 1 < image.width(); ++u) {
+      const float gx = (image(u + 1, v) - image(u - 1, v)) / 2;
+      const float gy = (image(u, v + 1) - image(u, v - 1)) / 2;
+      if (!std::isfinite(gx) || !std::isfinite(gy)) continue;
+      gradient_x(u, v) = gx;
+      gradient_y(u, v) = gy;
+    }
+}
 
 ImageF magnitude_of(const ImageF& gradient_x, const ImageF& gradient_y) {
   ImageF magnitude(gradient_x.width(), gradient_x.height());
@@ -62,12 +58,12 @@ float foreground_depth(const ImageF& depth, int x, int y) {
   return own > 0 && nearest > kStep * own ? own : nearest;
 }
 
-/// g_min as a gradient [1/px]: raised, where it must be, until `max_share` of the pixels lie above
-/// it.
+/// g_min as a gradient [1/px]: raised, where it must be, until `max_fraction` of the pixels lie
+/// above it.
 float gradient_threshold(const ImageF& magnitude, float largest, const MapOptions& options) {
   const float threshold = static_cast<float>(options.min_gradient) * largest;
   const auto most =
-      static_cast<std::size_t>(options.max_share * static_cast<double>(magnitude.size()));
+      static_cast<std::size_t>(options.max_fraction * static_cast<double>(magnitude.size()));
   if (most >= magnitude.size()) return threshold;
   std::vector<float> sorted(magnitude.pixels().begin(), magnitude.pixels().end());
   const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most);
@@ -84,14 +80,16 @@ void append(MapPoints& all, const MapPoints& more) {
 }
 
 ImageF gradient_magnitude(const ImageF& image) {
-  const Gradient gradient(image);
-  return magnitude_of(gradient.x, gradient.y);
+  ImageF gradient_x, gradient_y;
+  differentiate(image, gradient_x, gradient_y);
+  return magnitude_of(gradient_x, gradient_y);
 }
 
 MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const PinholeCamera& camera,
                       const MapOptions& options) {
-  const Gradient gradient(log_intensity);
-  return lift_edges(gradient.x, gradient.y, depth, camera, options);
+  ImageF gradient_x, gradient_y;
+  differentiate(log_intensity, gradient_x, gradient_y);
+  return lift_edges(gradient_x, gradient_y, depth, camera, options);
 }
 
 MapPoints lift_edges(const ImageF& gradient_x, const ImageF& gradient_y, const ImageF& depth,

@@ -8,14 +8,16 @@
 
 namespace saccade {
 
-/// Which pixels of the reference frame become map points (thesis 4.4).
+/// Which pixels of the reference frame become map points (thesis section 4.4).
 struct MapOptions {
-  double min_gradient = 0.1;  ///< g_min, share of the largest gradient magnitude, 0..1
-  /// At most this share of the pixels, the steepest ones: a map that covers the whole view leaves
-  /// no contrast between edge and surface, and its template costs more than the alignment. 1: all.
-  double max_share = 0.12;
-  bool thin = false;             ///< keep only maxima across the edge (non-maximum suppression)
-  bool foreground_depth = true;  ///< an edge between two depths belongs to the nearer one
+  double min_gradient = 0.1;  ///< g_min
+  /// 0.12: the template of a denser map costs more than the alignment.
+  double max_fraction = 0.12;
+  /// Keep only maxima across the edge (non-maximum suppression), for maps of estimated gradients.
+  bool thin = false;
+  /// An edge at a depth discontinuity moves with the nearer surface; the thesis takes the pixel's
+  /// own depth.
+  bool foreground_depth = true;
 };
 
 /// Map points in the camera frame of the reference view, structure of arrays [m].

@@ -10,20 +10,20 @@
 namespace saccade {
 namespace {
 
-/// What two views show of one surface differs by less than this in inverse depth: the first one
-/// drawn remains.
+/// Two views of one surface differ by less than this factor in inverse depth: the first one drawn
+/// remains.
 constexpr float kNearer = 1.01F;
 
 }  // namespace
 
-MapView::MapView(const IntensityMap& map, int margin, int step_px)
+MapView::MapView(const IntensityMap& map, int margin, int spacing_px)
     : map_(map),
       margin_(margin),
-      step_(step_px),
-      columns_((map.camera().width - 1) / step_px + 1),
-      rows_((map.camera().height - 1) / step_px + 1),
-      places_(columns_ + 2 * margin, rows_ + 2 * margin) {
-  SACCADE_CHECK(step_px >= 1 && margin >= 0);
+      spacing_(spacing_px),
+      columns_((map.camera().width - 1) / spacing_px + 1),
+      rows_((map.camera().height - 1) / spacing_px + 1),
+      samples_(columns_ + 2 * margin, rows_ + 2 * margin) {
+  SACCADE_CHECK(spacing_px >= 1 && margin >= 0);
   for (const IntensityMap::View& view : map.views()) {
     std::vector<std::uint8_t>& joined = is_joined_.emplace_back();
     for (int y = 0; y < rows_; ++y)
@@ -33,15 +33,15 @@ MapView::MapView(const IntensityMap& map, int margin, int step_px)
 
 bool MapView::is_one_surface(const IntensityMap::View& view, int x, int y) const {
   if (x + 1 >= columns_ || y + 1 >= rows_) return false;
-  for (int v = y * step_; v < (y + 1) * step_; ++v)
-    for (int u = x * step_; u < (x + 1) * step_; ++u)
+  for (int v = y * spacing_; v < (y + 1) * spacing_; ++v)
+    for (int u = x * spacing_; u < (x + 1) * spacing_; ++u)
       if (view.is_joined[static_cast<std::size_t>(v * map_.camera().width + u)] == 0) return false;
   return true;
 }
 
 void MapView::draw(const Rigid3& map_from_camera) {
   map_from_camera_ = map_from_camera;
-  for (SeenPlace& place : places_.pixels()) place.inverse_depth = 0;
+  for (MapSample& sample : samples_.pixels()) sample.inverse_depth = 0;
   for (const std::size_t i : nearest_views()) {
     project(map_.views()[i]);
     draw_view(map_.views()[i], is_joined_[i]);
@@ -55,11 +55,11 @@ double MapView::moved_px(const Rigid3& map_from_camera) const {
   double furthest = 0;
   for (int y = kEvery / 2; y < rows_; y += kEvery)
     for (int x = kEvery / 2; x < columns_; x += kEvery) {
-      const SeenPlace& seen = (*this)(x, y);
+      const MapSample& seen = (*this)(x, y);
       if (!(seen.inverse_depth > 0)) continue;
       const Eigen::Vector3d point = camera_from_map * seen.point.cast<double>();
       if (point.z() <= 0) return std::numeric_limits<double>::infinity();
-      const Eigen::Vector2d drawn_at(x * step_, y * step_);
+      const Eigen::Vector2d drawn_at(x * spacing_, y * spacing_);
       furthest = std::max(furthest, (map_.camera().project(point) - drawn_at).norm());
     }
   return furthest;
@@ -84,10 +84,10 @@ void MapView::project(const IntensityMap::View& view) {
   const Eigen::Matrix3f r = camera_from_map.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = camera_from_map.translation().cast<float>();
   const PinholeCamera& camera = map_.camera();
-  const auto fx = static_cast<float>(camera.fx / step_);
-  const auto fy = static_cast<float>(camera.fy / step_);
-  const auto cx = static_cast<float>(camera.cx / step_);
-  const auto cy = static_cast<float>(camera.cy / step_);
+  const auto fx = static_cast<float>(camera.fx / spacing_);
+  const auto fy = static_cast<float>(camera.fy / spacing_);
+  const auto cx = static_cast<float>(camera.cx / spacing_);
+  const auto cy = static_cast<float>(camera.cy / spacing_);
   vertices_.clear();
   for (int y = 0; y < rows_; ++y)
     for (int x = 0; x < columns_; ++x) {
@@ -104,7 +104,7 @@ void MapView::draw_view(const IntensityMap::View& view,
   const auto corner = [&](std::size_t node, int x, int y) -> Corner {
     return {vertices_[node],
             view.points[pixel_of(x, y)],
-            {static_cast<float>(x * step_), static_cast<float>(view.first_row + y * step_)}};
+            {static_cast<float>(x * spacing_), static_cast<float>(view.first_row + y * spacing_)}};
   };
   const auto row = static_cast<std::size_t>(columns_);
   for (int y = 0; y + 1 < rows_; ++y)
@@ -131,12 +131,12 @@ MapView::Nodes MapView::nodes_between(const Vertex& a, const Vertex& b, const Ve
   const float bottom = std::max(std::max(a.y, b.y), std::max(c.y, d.y));
   const auto edge = static_cast<float>(margin_);
   if (!(nearest > 0 && right >= -edge && bottom >= -edge &&
-        left < static_cast<float>(places_.width()) && top < static_cast<float>(places_.height())))
+        left < static_cast<float>(samples_.width()) && top < static_cast<float>(samples_.height())))
     return {};
   return {std::max(static_cast<int>(std::ceil(left)), -margin_),
           std::max(static_cast<int>(std::ceil(top)), -margin_),
-          std::min(static_cast<int>(std::floor(right)), places_.width() - margin_ - 1),
-          std::min(static_cast<int>(std::floor(bottom)), places_.height() - margin_ - 1)};
+          std::min(static_cast<int>(std::floor(right)), samples_.width() - margin_ - 1),
+          std::min(static_cast<int>(std::floor(bottom)), samples_.height() - margin_ - 1)};
 }
 
 void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c, const Nodes& nodes) {
@@ -149,7 +149,7 @@ void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c, c
   const float area = bx * cy - by * cx;
   if (!(area > kSmallest)) return;
   const float scale = 1 / area;
-  const float per_pixel = 1 / static_cast<float>(step_);
+  const float per_pixel = 1 / static_cast<float>(spacing_);
   Eigen::Matrix2f from_image;
   from_image << cy, -cx, -by, bx;
   from_image *= scale;
@@ -162,13 +162,13 @@ void MapView::draw_triangle(const Corner& a, const Corner& b, const Corner& c, c
       const float inverse_depth = p.inverse_depth +
                                   weights.x() * (b.vertex.inverse_depth - p.inverse_depth) +
                                   weights.y() * (c.vertex.inverse_depth - p.inverse_depth);
-      SeenPlace& seen = places_(x + margin_, y + margin_);
+      MapSample& seen = samples_(x + margin_, y + margin_);
       if (inverse_depth <= kNearer * seen.inverse_depth) continue;
-      Eigen::Matrix2f places;
-      places << b.place - a.place, c.place - a.place;
-      const Eigen::Matrix2f slope = places * from_image;
+      Eigen::Matrix2f atlas_edges;
+      atlas_edges << b.atlas_px - a.atlas_px, c.atlas_px - a.atlas_px;
+      const Eigen::Matrix2f slope = atlas_edges * from_image;
       seen = {a.point + weights.x() * (b.point - a.point) + weights.y() * (c.point - a.point),
-              inverse_depth, a.place + slope * offset, slope * per_pixel};
+              inverse_depth, a.atlas_px + slope * offset, slope * per_pixel};
     }
 }
 

@@ -12,21 +12,21 @@
 
 namespace saccade {
 
-/// A place of the map as a pixel of a camera sees it.
-struct SeenPlace {
-  Eigen::Vector3f point;  ///< in the map's frame [m]
-  float inverse_depth;    ///< in the camera's frame [1/m]; 0: nothing known is seen
-  Eigen::Vector2f place;  ///< in the atlas [px]
-  Eigen::Matrix2f scale;  ///< how it moves with the pixel [px/px]
+/// The point of the map that a pixel of a camera sees.
+struct MapSample {
+  Eigen::Vector3f point;            ///< in the map's frame [m]
+  float inverse_depth;              ///< in the camera's frame [1/m]; 0: nothing known is visible
+  Eigen::Vector2f atlas_px;         ///< its reprojection into the map's atlas [px]
+  Eigen::Matrix2f atlas_per_pixel;  ///< d atlas_px / d pixel
 };
 
-/// Which places of a map a camera sees: the map's pictures as meshes of small triangles, drawn with
-/// a depth test. Between neighbours that are not joined nothing is known.
+/// The map rendered into a camera: its pictures as meshes of small triangles, drawn with a depth
+/// test. Between neighbours that are not joined nothing is known.
 class MapView {
  public:
-  /// `map` outlives the view. The view has a node at every `step_px`-th pixel, of the image as of
-  /// the map's pictures, and `margin` nodes more on all sides.
-  MapView(const IntensityMap& map, int margin, int step_px = 1);
+  /// `map` outlives the view. The view has a node at every `spacing_px`-th pixel, of the image as
+  /// of the map's pictures, and `margin` nodes more on all sides.
+  MapView(const IntensityMap& map, int margin, int spacing_px = 1);
 
   void draw(const Rigid3& map_from_camera);
 
@@ -35,23 +35,23 @@ class MapView {
   [[nodiscard]] double moved_px(const Rigid3& map_from_camera) const;
 
   [[nodiscard]] const Rigid3& map_from_camera() const { return map_from_camera_; }
-  /// Node (x, y) is pixel (step x, step y).
-  [[nodiscard]] int step_px() const { return step_; }
+  /// Node (x, y) is pixel (spacing x, spacing y).
+  [[nodiscard]] int spacing_px() const { return spacing_; }
   [[nodiscard]] Eigen::Vector2i node_at(const Eigen::Vector2f& pixel) const {
-    const float scale = 1 / static_cast<float>(step_);
+    const float scale = 1 / static_cast<float>(spacing_);
     return {static_cast<int>(std::floor(pixel.x() * scale + 0.5F)),
             static_cast<int>(std::floor(pixel.y() * scale + 0.5F))};
   }
   /// Whether a node belongs to the view, with its margin.
   [[nodiscard]] bool contains(int x, int y) const {
-    return x >= -margin_ && y >= -margin_ && x < places_.width() - margin_ &&
-           y < places_.height() - margin_;
+    return x >= -margin_ && y >= -margin_ && x < samples_.width() - margin_ &&
+           y < samples_.height() - margin_;
   }
-  /// What a node that the view contains sees.
-  [[nodiscard]] const SeenPlace& operator()(int x, int y) const {
-    return places_(x + margin_, y + margin_);
+  /// The map at a node that the view contains.
+  [[nodiscard]] const MapSample& operator()(int x, int y) const {
+    return samples_(x + margin_, y + margin_);
   }
-  /// Share of the image's nodes that see a known place.
+  /// Fraction of the image's nodes at which the map is visible.
   [[nodiscard]] double coverage() const { return coverage_; }
   /// Harmonic mean of the depths [m]; 1 where nothing is known.
   [[nodiscard]] double typical_depth_m() const { return typical_depth_m_; }
@@ -65,7 +65,7 @@ class MapView {
   struct Corner {
     const Vertex& vertex;
     const Eigen::Vector3f& point;
-    Eigen::Vector2f place;
+    Eigen::Vector2f atlas_px;
   };
 
   /// Nodes that may lie between some vertices; most often one, as the map's squares are about as
@@ -75,13 +75,13 @@ class MapView {
     [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
   };
 
-  /// The few that look most nearly the same way, the nearest first.
+  /// The few with the most similar orientation, the nearest first.
   [[nodiscard]] std::vector<std::size_t> nearest_views() const;
   [[nodiscard]] bool is_one_surface(const IntensityMap::View& view, int x, int y) const;
   /// Index of a node's pixel in a picture of the map.
   [[nodiscard]] std::size_t pixel_of(int x, int y) const {
-    return static_cast<std::size_t>(y * step_) * static_cast<std::size_t>(map_.camera().width) +
-           static_cast<std::size_t>(x * step_);
+    return static_cast<std::size_t>(y * spacing_) * static_cast<std::size_t>(map_.camera().width) +
+           static_cast<std::size_t>(x * spacing_);
   }
   void project(const IntensityMap::View& view);
   void draw_view(const IntensityMap::View& view, const std::vector<std::uint8_t>& is_joined);
@@ -92,12 +92,12 @@ class MapView {
 
   const IntensityMap& map_;
   int margin_;
-  int step_;
+  int spacing_;
   int columns_, rows_;  ///< of nodes in the image
   /// For each of the map's views, 1 where the square from a node to the next ones is one surface.
   std::vector<std::vector<std::uint8_t>> is_joined_;
   Rigid3 map_from_camera_;
-  Image<SeenPlace> places_;
+  Image<MapSample> samples_;
   std::vector<Vertex> vertices_;
   double coverage_ = 0;
   double typical_depth_m_ = 1;

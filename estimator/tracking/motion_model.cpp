@@ -10,11 +10,11 @@ constexpr double kInitialVelocity_px_s = 300;
 
 }  // namespace
 
-MotionModel::MotionModel(const PredictionOptions& options, double focal_px)
+MotionModel::MotionModel(const MotionModelOptions& options, double focal_px)
     : options_(options), focal_px_(focal_px) {}
 
-void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera, double deviation_px) {
-  initial_px_ = deviation_px;
+void MotionModel::reset(TimeNs t_ns, const Rigid3& map_from_camera, double sigma_px) {
+  initial_px_ = sigma_px;
   t_ns_ = t_ns;
   map_from_camera_ = map_from_camera;
   stop();
@@ -33,7 +33,7 @@ Eigen::Array<double, 6, 1> MotionModel::twist_of_px(double px, double depth_m) c
 }
 
 bool MotionModel::has_gyroscope() const {
-  return options_.prediction == PredictionOptions::Prediction::kImu && !gyroscope_.is_empty();
+  return options_.prediction == MotionModelOptions::Prediction::kImu && !gyroscope_.is_empty();
 }
 
 void MotionModel::turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns) {
@@ -50,7 +50,7 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
   const double dt = seconds_from_ns(t_ns - t_ns_);
   const TimeNs last_ns = t_ns_;
   t_ns_ = t_ns;
-  if (options_.prediction == PredictionOptions::Prediction::kNone)
+  if (options_.prediction == MotionModelOptions::Prediction::kNone)
     return {map_from_camera_, Matrix6::Zero()};
   if (!velocity_known_) {
     velocity_known_ = true;
@@ -59,8 +59,9 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
         twist_of_px(kInitialVelocity_px_s, depth_m).square().matrix().asDiagonal();
     cross_covariance_.setZero();
   }
-  const double agility_px = options_.agility_px + options_.agility_share * speed_px(depth_m);
-  Twist drift = twist_of_px(agility_px, depth_m).square();
+  const double acceleration_px =
+      options_.acceleration_sigma_px + options_.acceleration_per_speed * speed_px(depth_m);
+  Twist drift = twist_of_px(acceleration_px, depth_m).square();
   if (has_gyroscope()) {
     turn_by_gyroscope(last_ns, t_ns);
     drift.tail<3>().setZero();
@@ -77,12 +78,12 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
 }
 
 void MotionModel::update(const Rigid3& map_from_camera, const Matrix6& information) {
-  if (options_.prediction != PredictionOptions::Prediction::kNone) {
+  if (options_.prediction != MotionModelOptions::Prediction::kNone) {
     // Given the pose, the velocity is independent of the measurement: it follows the pose by
     // regression.
     const Matrix6 regression = cross_covariance_ * pose_precision_;
-    const Twist deviation = (map_from_camera_.inverse() * map_from_camera).log();
-    velocity_ += regression * deviation;
+    const Twist error = (map_from_camera_.inverse() * map_from_camera).log();
+    velocity_ += regression * error;
     const Matrix6 posterior = inverse_symmetric<6>(pose_precision_ + information);
     velocity_covariance_ -= regression * (pose_covariance_ - posterior) * regression.transpose();
     cross_covariance_ = regression * posterior;

@@ -10,20 +10,19 @@
 
 namespace saccade {
 
-/// What is expected of the motion between two frames.
-struct PredictionOptions {
+/// What is expected of the motion between two poses.
+struct MotionModelOptions {
   enum class Prediction { kNone, kConstantVelocity, kImu };
 
   Prediction prediction = Prediction::kNone;
-  /// How fast the velocity drifts, as image motion: px/s of change within a second (a random walk).
-  double agility_px = 500;
-  /// The same per image speed [1/s]: what moves fast is about to turn back.
-  double agility_share = 0;
-  /// Of kImu, which turns by the gyroscope and else goes on with constant velocity: what its
-  /// readings are off by [rad/s], and a bias to be taken from them [rad/s, sensor frame].
-  double gyro_sigma = 0.05;
-  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
-  double gyro_offset_s = 0;  ///< a reading is of so long after its time stamp
+  /// The velocity is a random walk (white noise on the acceleration; Barfoot, State Estimation for
+  /// Robotics, 3.4): standard deviation of its change within a second, as image motion [px/s].
+  double acceleration_sigma_px = 500;
+  /// The same per image speed [1/s], added: what moves fast is about to turn back.
+  double acceleration_per_speed = 0;
+  double gyro_sigma = 0.05;                             ///< of a reading, its bias included [rad/s]
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< sensor frame [rad/s]
+  double gyro_offset_s = 0;
 };
 
 /// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).
@@ -33,18 +32,18 @@ struct PosePrediction {
 };
 
 /// Kalman filter on SE(3) with constant velocity: the error of pose and velocity is Gaussian in the
-/// camera frame, the velocity does a random walk. The measurement is a pose that the aligner has
+/// camera frame, the velocity a random walk. The measurement is a pose that the aligner has
 /// already pulled towards the prediction by its precision (a maximum a posteriori estimate).
 class MotionModel {
  public:
   /// `focal_px` turns image motion into angles.
-  MotionModel(const PredictionOptions& options, double focal_px);
+  MotionModel(const MotionModelOptions& options, double focal_px);
 
   /// What kImu turns by; without it, it is constant velocity.
   void set_gyroscope(Gyroscope gyroscope) { gyroscope_ = std::move(gyroscope); }
 
-  /// `deviation_px`: of the pose, as image motion.
-  void reset(TimeNs t_ns, const Rigid3& map_from_camera, double deviation_px = 0.2);
+  /// `sigma_px`: standard deviation of the pose, as image motion.
+  void reset(TimeNs t_ns, const Rigid3& map_from_camera, double sigma_px = 0.2);
 
   /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the
   /// filter to `t_ns`, not before its last time.
@@ -59,12 +58,11 @@ class MotionModel {
     map_from_camera_ = map_from_before * map_from_camera_;
   }
 
-  /// Keeps the pose, forgets the velocity: after a frame that told nothing.
+  /// Keeps the pose, forgets the velocity: after a frame without information.
   void stop();
 
   [[nodiscard]] const Rigid3& pose() const { return map_from_camera_; }
-  /// Of the pose after the last update(), in the camera's frame (v, w) [m, rad]: what the residuals
-  /// and the expected motion let expect.
+  /// Of the pose after the last update(), in the camera's frame (v, w) [m, rad].
   [[nodiscard]] const Matrix6& covariance() const { return pose_covariance_; }
   /// In the camera's frame [m/s, rad/s].
   [[nodiscard]] const Twist& velocity() const { return velocity_; }
@@ -78,7 +76,7 @@ class MotionModel {
   void turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns);
   [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;
 
-  PredictionOptions options_;
+  MotionModelOptions options_;
   Gyroscope gyroscope_;
   double focal_px_;
   TimeNs t_ns_ = 0;

@@ -112,16 +112,16 @@ std::vector<ReferenceView> load_references(const Dataset& dataset, const Pinhole
                                            double end_s) {
   const std::size_t first = reference_index(dataset, options, start_s);
   std::vector<ReferenceView> views{load_view(dataset, camera, options, first)};
-  if (!options.turn_deg) return views;
+  if (!options.new_view_deg) return views;
   if (dataset.groundtruth().empty())
-    throw InputError("reference.turn_deg",
+    throw InputError("reference.new_view_deg",
                      dataset.folder().string() + " holds no groundtruth.txt for further views");
-  const double turn = *options.turn_deg * std::numbers::pi / 180;
+  const double new_view = *options.new_view_deg * std::numbers::pi / 180;
   const auto& frames = dataset.frames();
   for (std::size_t i = first + 1; i < frames.size() && frames[i].t_s <= end_s; ++i) {
     const Rigid3 pose = dataset.groundtruth().at_clamped(frames[i].t_s + options.time_offset_s);
     const bool is_new = std::all_of(views.begin(), views.end(), [&](const ReferenceView& view) {
-      return angle_between(view.world_from_reference.rotation(), pose.rotation()) > turn;
+      return angle_between(view.world_from_reference.rotation(), pose.rotation()) > new_view;
     });
     if (is_new) views.push_back(load_view(dataset, camera, options, i));
   }

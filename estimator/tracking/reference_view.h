@@ -11,18 +11,13 @@
 
 namespace saccade {
 
-/// Where the map comes from.
+/// Which reference views the map is made from.
 struct ReferenceOptions {
-  std::optional<int> frame;  ///< index in images.txt; default: the first at or after the start
-  std::optional<double>
-      planar_depth_m;  ///< the map is a plane at this z of the reference view; else the depth map
-  /// Left, top, right, bottom [px] of the part of the undistorted frame that becomes the map; a
-  /// plane rarely fills the view. Default: all of it.
-  std::optional<std::array<double, 4>> region_px;
-  /// A further frame belongs to the map where the view has turned by more than this from all
-  /// others; default: one frame.
-  std::optional<double> turn_deg;
-  double time_offset_s = 0;  ///< the frame shows the scene this long after its stamp
+  std::optional<int> frame;
+  std::optional<double> planar_depth_m;
+  std::optional<std::array<double, 4>> region_px;  ///< on the undistorted sensor
+  std::optional<double> new_view_deg;
+  double time_offset_s = 0;
 };
 
 /// The view that the map is taken from, on the undistorted sensor.
@@ -34,9 +29,9 @@ struct ReferenceView {
 
 /// Loads the reference frame, as `camera` with its lens took it, with its depth and its true pose
 /// (identity where the dataset has no ground truth: the reference view is the world then), and with
-/// `turn_deg` the later frames that the map needs. `start_s` chooses the first frame by default,
-/// `end_s` is the end of what is tracked. Throws InputError naming the dataset when a frame, a
-/// depth map at its time, or a pose is missing.
+/// `new_view_deg` the later frames that the map needs. `start_s` chooses the first frame by
+/// default, `end_s` is the end of what is tracked. Throws InputError naming the dataset when a
+/// frame, a depth map at its time, or a pose is missing.
 [[nodiscard]] std::vector<ReferenceView> load_references(const Dataset& dataset,
                                                          const PinholeCamera& camera,
                                                          const ReferenceOptions& options,

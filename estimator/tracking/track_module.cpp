@@ -2,35 +2,26 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/median.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
-#include "estimator/tracking/frame_tracker.h"
-#include "estimator/tracking/grey_frames.h"
+#include "estimator/tracking/frames/grey_frames.h"
 #include "estimator/tracking/gyroscope_input.h"
-#include "estimator/tracking/intensity_map.h"
-#include "estimator/tracking/intensity_tracker.h"
 #include "estimator/tracking/pose_output.h"
-#include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
 
 namespace saccade {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Everything that tracking needs, read from the dataset.
 struct TrackInput {
@@ -40,6 +31,7 @@ struct TrackInput {
   RunRecord::Window window;
   std::vector<ReferenceView> references;
   Rigid3 initial_world_from_camera;
+  EventContrast contrast;
   Gyroscope gyroscope;  ///< empty unless it is needed
 };
 
@@ -74,11 +66,21 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
                           request.duration_s ? start_s + *request.duration_s : infinity);
 }
 
+EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
+  if (config.method != "intensity") return {};
+  if (config.contrast) return {*config.contrast, *config.contrast};
+  const DatasetFacts& facts = dataset.facts();
+  if (!facts.contrast_on || !facts.contrast_off)
+    throw InputError(dataset.folder().string(),
+                     "does not state its contrast thresholds; state intensity.contrast");
+  return {*facts.contrast_on, *facts.contrast_off};
+}
+
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,
                       const Dataset& dataset) {
   TrackInput input;
   input.camera = config.camera.of(dataset.camera());
-  if (config.method == TrackConfig::Method::kFrames) {
+  if (config.method == "frames") {
     input.frames = load_frame_window(request, dataset, input.camera);
     input.window = window_over(request, input.frames);
   } else {
@@ -88,15 +90,10 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
   input.references = load_references(dataset, input.camera, config.reference, input.window.start_s,
                                      input.window.end_s);
   input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
-  input.gyroscope = load_gyroscope(config.tracker.motion, dataset);
+  input.gyroscope = load_gyroscope(config.motion, dataset);
+  input.contrast = contrast_of(config, dataset);
   return input;
 }
-
-struct TrackOutput {
-  MapPoints map;
-  std::vector<TrackedPose> poses;
-  RunTiming timing;
-};
 
 /// The map points of all views, in the frame of the first.
 MapPoints map_of(const TrackConfig& config, const PinholeCamera& camera,
@@ -117,70 +114,34 @@ MapPoints map_of(const TrackConfig& config, const PinholeCamera& camera,
   return all;
 }
 
-EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
-  if (config.contrast) return {*config.contrast, *config.contrast};
-  const DatasetFacts& facts = dataset.facts();
-  if (!facts.contrast_on || !facts.contrast_off)
-    throw InputError(dataset.folder().string(),
-                     "does not state its contrast thresholds; state intensity.contrast");
-  return {*facts.contrast_on, *facts.contrast_off};
+TrackWorld world_of(const TrackConfig& config, const TrackInput& input) {
+  const PinholeCamera undistorted = input.camera.undistorted();
+  return {input.camera, map_of(config, undistorted, input.references),
+          IntensityMap(undistorted, input.references, smoothing_of(config)), input.contrast,
+          input.gyroscope};
 }
 
-/// Any tracker over all of its measurements, events or frames, `repeat` times.
-template <class AnyTracker, class Measurements>
-void track_repeatedly(AnyTracker& tracker, const Measurements& measurements, const char* unit,
-                      const Rigid3& initial_world_from_camera, int repeat, TrackOutput& output) {
-  Progress progress("track", measurements.size() * static_cast<std::size_t>(repeat), unit);
-  for (int i = 0; i < repeat; ++i) {
-    tracker.reset(measurements.front().t_ns, initial_world_from_camera);
-    const auto start = Clock::now();
-    output.poses = tracker.track(measurements, [&](std::size_t n) { progress.add(n); });
-    output.timing.wall_s.push_back(seconds_since(start));
-  }
-  const TrackTiming& stages = tracker.timing();
-  output.timing.stages_s.insert(output.timing.stages_s.end(),
-                                {{"template", stages.template_s},
-                                 {"event_frame", stages.event_frame_s},
-                                 {"align", stages.align_s}});
-}
-
-/// How the map's picture is smoothed for the method.
-const IntensityMapOptions& smoothing_of(const TrackConfig& config) {
-  if (config.method == TrackConfig::Method::kFrames) return config.frames_map;
-  if (config.method == TrackConfig::Method::kPolarity) return config.polarity.map;
-  return config.intensity.map;
-}
-
-TrackOutput track(const TrackConfig& config, const Dataset& dataset, const TrackInput& input,
-                  int repeat) {
-  const PinholeCamera& camera = input.camera;
-  const Rigid3& start = input.initial_world_from_camera;
-  TrackOutput output;
-  const auto map_start = Clock::now();
-  output.map = map_of(config, camera.undistorted(), input.references);
-  const IntensityMap map(camera.undistorted(), input.references, smoothing_of(config));
-  output.timing.stages_s = {{"map", seconds_since(map_start)}};
-  Tracker edges(config.tracker, camera, output.map, map.world_from_map(), config.seed);
-  edges.set_gyroscope(input.gyroscope);
-  if (config.method == TrackConfig::Method::kIntensity) {
-    IntensityTracker tracker(config.intensity, config.tracker.motion, contrast_of(config, dataset),
-                             camera, map, edges);
-    tracker.set_gyroscope(input.gyroscope);
-    track_repeatedly(tracker, input.events, "events", start, repeat, output);
-  } else if (config.method == TrackConfig::Method::kPolarity) {
-    PolarityTracker tracker(config.polarity, config.tracker.motion, camera, map, edges);
-    tracker.set_gyroscope(input.gyroscope);
-    track_repeatedly(tracker, input.events, "events", start, repeat, output);
-  } else if (config.method == TrackConfig::Method::kFrames) {
-    FrameTracker tracker(config.frames, config.tracker.motion, map);
-    track_repeatedly(tracker, input.frames, "frames", start, repeat, output);
-  } else {
-    track_repeatedly(edges, input.events, "events", start, repeat, output);
-  }
-  output.timing.events = input.events.size();
-  output.timing.poses = output.poses.size();
-  output.timing.sequence_s = input.window.end_s - input.window.start_s;
-  return output;
+/// The tracker over the whole recording, `repeat` times.
+std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, int repeat,
+                               RunTiming& timing) {
+  const Recording recording{input.events, input.frames};
+  const bool has_frames = !input.frames.empty();
+  const std::size_t count = has_frames ? input.frames.size() : input.events.size();
+  const TimeNs start_ns = has_frames ? input.frames.front().t_ns : input.events.front().t_ns;
+  Progress progress("track", count * static_cast<std::size_t>(repeat),
+                    has_frames ? "frames" : "events");
+  std::vector<TrackedPose> poses;
+  repeat_timed(repeat, timing.wall_s, [&] {
+    tracker.reset(start_ns, input.initial_world_from_camera);
+    poses = tracker.track(recording, [&](std::size_t n) { progress.add(n); });
+  });
+  timing.stages_s.insert(timing.stages_s.end(), {{"template", tracker.timing().template_s},
+                                                 {"event_frame", tracker.timing().event_frame_s},
+                                                 {"align", tracker.timing().align_s}});
+  timing.events = input.events.size();
+  timing.poses = poses.size();
+  timing.sequence_s = input.window.end_s - input.window.start_s;
+  return poses;
 }
 
 }  // namespace
@@ -189,26 +150,30 @@ RunSummary run_track(const RunRequest& request) {
   const auto config = read_config<TrackConfig>(request);
   RunWriter writer(request);
 
-  const auto read_start = Clock::now();
+  RunTiming timing;
+  const Stopwatch reading;
   const Dataset dataset = Dataset::open(request.dataset);
   const TrackInput input = load_input(request, config, dataset);
-  const double read_s = seconds_since(read_start);
+  timing.io_s = reading.seconds();
 
-  TrackOutput output = track(config, dataset, input, request.repeat);
+  const Stopwatch mapping;
+  const TrackWorld world = world_of(config, input);
+  timing.stages_s = {{"map", mapping.seconds()}};
+  const std::unique_ptr<Tracker> tracker =
+      config::find_method(track_methods(), config.method).make(config, world);
+  const std::vector<TrackedPose> poses = track(*tracker, input, request.repeat, timing);
 
-  const auto write_start = Clock::now();
-  write_poses(writer.path(), output.poses);
-  write_map(writer.path() / "map.ply", output.map, input.references.front().world_from_reference);
-  output.timing.io_s = read_s + seconds_since(write_start);
+  {
+    const ScopedTimer writing(timing.io_s);
+    write_poses(writer.path(), poses);
+    write_map(writer.path() / "map.ply", world.edges, world.map.world_from_map());
+  }
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
-                output.timing);
+                timing);
 
-  RunSummary summary;
-  summary.events = input.events.size();
-  summary.poses = output.poses.size();
-  summary.lost_poses = count_lost(output.poses);
-  summary.found = fmt::format("{} poses ({} lost)", summary.poses, summary.lost_poses);
-  summary.wall_s = median(output.timing.wall_s);
+  const std::size_t lost = count_lost(poses);
+  RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));
+  summary.lost_poses = lost;
   return summary;
 }
 

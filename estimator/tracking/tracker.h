@@ -2,56 +2,36 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <optional>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/event.h"
+#include "core/image.h"
 #include "core/rigid3.h"
-#include "estimator/tracking/coarse_levels.h"
-#include "estimator/tracking/edge_template.h"
-#include "estimator/tracking/event_frame.h"
-#include "estimator/tracking/event_window.h"
-#include "estimator/tracking/map_extraction.h"
 #include "estimator/tracking/motion_model.h"
-#include "estimator/tracking/template_aligner.h"
 
 namespace saccade {
-
-/// When a pose is called lost.
-struct LostOptions {
-  double min_inlier_ratio = 0.55;  ///< 0.5 is what an unrelated template reaches
-  int frames = 3;                  ///< that many frames in a row below it
-};
-
-/// Everything of the tracker that does not depend on where its input comes from.
-struct TrackerOptions {
-  TemplateOptions templates;
-  EventFrameOptions event_frame;
-  AlignOptions align;
-  PredictionOptions motion;
-  LostOptions lost;
-};
 
 /// kRelocalised: the first pose after having been lost.
 enum class TrackStatus { kOk, kLost, kRelocalised };
 
 /// One pose with its evidence.
 struct TrackedPose {
-  TimeNs t_ns = 0;      ///< mean time of the frame's events
+  TimeNs t_ns = 0;      ///< mean time of the pose's events
   TimeNs first_ns = 0;  ///< its first event
   TimeNs last_ns = 0;   ///< its last event
   Rigid3 world_from_camera;
   TrackStatus status = TrackStatus::kOk;
   int iterations = 0;
-  double inlier_ratio = 0;  ///< see AlignResult
-  double residual = 0;
-  double position_sigma_m = 0;    ///< standard deviation as the residuals let expect it
-  double rotation_sigma_rad = 0;  ///< the same
+  double inlier_ratio = 0;  ///< measurements that agree with the map, 0..1
+  double residual = 0;      ///< root mean square, in the method's unit
+  double position_sigma_m = 0;
+  double rotation_sigma_rad = 0;
 
-  /// Takes both from a covariance (v, w) [m, rad].
+  /// Takes both standard deviations from a covariance (v, w) [m, rad].
   void set_sigmas(const Matrix6& covariance) {
     position_sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
     rotation_sigma_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
@@ -63,104 +43,62 @@ struct TrackTiming {
   double template_s = 0;
   double event_frame_s = 0;
   double align_s = 0;
-
-  TrackTiming& operator+=(const TrackTiming& other) {
-    template_s += other.template_s;
-    event_frame_s += other.event_frame_s;
-    align_s += other.align_s;
-    return *this;
-  }
 };
 
-/// 6-DoF pose of an event camera against a known map (thesis chapter 4): a pose for every
-/// ratio * template pixels events. Deterministic in `seed`; one thread.
+/// Log intensity of a pixel that shows nothing.
+inline constexpr float kUnknownLogIntensity = std::numeric_limits<float>::quiet_NaN();
+
+/// What a frame camera delivered at one time, on the undistorted sensor.
+struct GreyFrame {
+  TimeNs t_ns = 0;       ///< the middle of the exposure
+  ImageF log_intensity;  ///< ln(eps + I); kUnknownLogIntensity where the pixel shows nothing
+};
+
+/// What is tracked, in order of time: events, or the frames of `method: frames`.
+struct Recording {
+  std::span<const Event> events = {};
+  std::span<const GreyFrame> frames = {};
+};
+
+/// Called with the number of measurements done since its last call.
+using TrackProgress = std::function<void(std::size_t)>;
+
+/// 6-DoF pose of a camera against a known map (thesis chapter 4): what the four methods share. All
+/// are deterministic and use one thread. Lost tracking is a status of the pose, never an error.
 class Tracker {
  public:
-  /// `camera` may be distorted: events are moved to the undistorted sensor, on which all else runs.
-  /// `map` lives in the frame of the reference view and outlives the tracker.
-  Tracker(const TrackerOptions& options, const PinholeCamera& camera, const MapPoints& map,
-          const Rigid3& world_from_map, std::uint64_t seed);
+  /// `focal_px` turns image motion into angles; the map's frame stands in the world.
+  Tracker(const MotionModelOptions& motion, double focal_px, const Rigid3& world_from_map)
+      : world_from_map_(world_from_map), motion_(motion, focal_px) {}
+  virtual ~Tracker() = default;
 
-  /// For motion.prediction: imu.
+  /// The camera's gyroscope, for motion.prediction: imu.
   void set_gyroscope(Gyroscope gyroscope) { motion_.set_gyroscope(std::move(gyroscope)); }
 
-  /// Starts anew from a pose that is known to `deviation_px`, as image motion.
-  void reset(TimeNs t_ns, const Rigid3& world_from_camera, double deviation_px = 0.2);
+  /// Starts anew from a known pose.
+  virtual void reset(TimeNs t_ns, const Rigid3& world_from_camera) = 0;
 
-  /// Takes another map from the next frame on, in the frame of the first; `map` outlives the
-  /// tracker. Pose and motion go on.
-  void set_map(const MapPoints& map);
+  /// The poses of a recording that begins at the time of reset(); too few events at its end give
+  /// none.
+  [[nodiscard]] virtual std::vector<TrackedPose> track(const Recording& recording,
+                                                       const TrackProgress& progress = {}) = 0;
 
-  /// Moves pose and motion within the map: what was tracked so far stands elsewhere.
-  void correct(const Rigid3& map_from_before) { motion_.correct(map_from_before); }
-
-  /// Whether the map explains of the last frames as much as it usually does. Where it does not, the
-  /// camera may be elsewhere, at a place that looks a little like this one, or the map at its end.
-  [[nodiscard]] bool fits() const { return unlike_frames_ < options_.lost.frames; }
-
-  /// Looks for the camera where it may be, with the newest events before the end of the last
-  /// next(): starts anew from the place at which map and frame agree best, if they agree there
-  /// nearly as well as usual and much better than where it was tracked. nullopt, and nothing is
-  /// changed, where they do not.
-  [[nodiscard]] std::optional<TrackedPose> relocate(std::span<const Rigid3> world_from_camera);
-
-  /// Begins with a stream in order of time, which outlives its poses.
-  void start(std::span<const Event> events);
-  /// The pose of the next frame of the stream; nullopt where too few events are left for one.
-  [[nodiscard]] std::optional<TrackedPose> next();
-
-  /// Tracks through `events` in order of time; a rest too short for a frame gives no pose.
-  /// `progress` is called with the number of events done since its last call.
-  [[nodiscard]] std::vector<TrackedPose> track(
-      std::span<const Event> events, const std::function<void(std::size_t)>& progress = {});
-
-  /// That the next frame takes.
-  [[nodiscard]] std::size_t next_frame_events();
-  /// Below it a frame is suspicious.
-  [[nodiscard]] double least_inlier_ratio() const { return options_.lost.min_inlier_ratio; }
   /// Where the camera is, how it moves, and how well that is known; in the map's frame.
   [[nodiscard]] const MotionModel& motion() const { return motion_; }
-  /// Of what is seen of the map [m].
-  [[nodiscard]] double typical_depth_m() const { return typical_depth_m_; }
-  /// Pixels that the map lights in the last template.
-  [[nodiscard]] std::size_t lit_pixels() const { return drawer_.lit_pixels(); }
-  [[nodiscard]] std::size_t templates_drawn() const { return templates_drawn_; }
   [[nodiscard]] const TrackTiming& timing() const { return timing_; }
 
- private:
-  void prepare_template(const Rigid3& map_from_camera);
-  [[nodiscard]] bool template_fits(const Rigid3& map_from_camera) const;
-  [[nodiscard]] std::size_t events_per_frame() const;
-  void draw_frame(TrackedPose& pose);
-  [[nodiscard]] AlignResult align(TimeNs t_ns);
-  [[nodiscard]] TrackStatus judge(const AlignResult& aligned);
-  [[nodiscard]] TrackedPose track_frame();
-  void take(const AlignResult& aligned);
-  void compare_to_usual(const AlignResult& aligned);
-  void write_evidence(const AlignResult& aligned, TrackedPose& pose) const;
+ protected:
+  Tracker(const Tracker&) = default;
+  Tracker& operator=(const Tracker&) = default;
 
-  TrackerOptions options_;
-  PinholeCamera camera_;  ///< undistorted
+  /// Writes the motion model's pose and its standard deviations.
+  void write_pose(TrackedPose& pose) const {
+    pose.world_from_camera = world_from_map_ * motion_.pose();
+    pose.set_sigmas(motion_.covariance());
+  }
+
   Rigid3 world_from_map_;
-  std::uint64_t seed_;
-  TemplateDrawer drawer_;
-  TemplateAligner aligner_;
-  CoarseLevels coarse_;
-  EventWindow window_;
-  EventFrame frame_;
   MotionModel motion_;
-  Rigid3 map_from_template_;
-  std::span<const TemplatePoint> points_;
-  double typical_depth_m_ = 1;
-  BrightnessModel brightness_;  ///< running mean over the frames, which resemble each other
-  bool is_brightness_known_ = false;
-  std::uint64_t frame_index_ = 0;
-  std::size_t templates_drawn_ = 0;
-  int suspicious_frames_ = 0;
-  double last_agreement_ = 0;   ///< of the last next()
-  double usual_agreement_ = 0;  ///< running mean
-  int unlike_frames_ = 0;       ///< in a row, with much less than the usual
-  TrackedPose last_;            ///< of the last next()
   TrackTiming timing_;
 };
 

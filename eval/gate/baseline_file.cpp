@@ -16,8 +16,10 @@ struct Baseline {
 };
 
 void describe(config::Fields& fields, Baseline& baseline) {
-  fields.value("format_version", baseline.format_version, "of this file").required().range(1, 1);
-  fields.list("runs", baseline.runs, "scored runs").required();
+  fields.value("format_version", baseline.format_version, "Version of the format of this file.")
+      .required()
+      .range(1, 1);
+  fields.list("runs", baseline.runs, "The scored runs, sorted by key.").required();
 }
 
 void sort_by_key(std::vector<GateRun>& runs) {
@@ -28,14 +30,16 @@ void sort_by_key(std::vector<GateRun>& runs) {
 }  // namespace
 
 void describe(config::Fields& fields, GateRun& run) {
-  fields.value("dataset", run.key.dataset, "name of its folder").required();
-  fields.value("module", run.key.module, "estimator").required();
-  fields.value("config", run.key.config, "its file's name and what was --set").required();
-  fields.value("seed", run.key.seed, "of every random number").required();
-  fields.value("machine", run.machine, "kind that it ran on");
-  fields.value("threads", run.threads, "it ran on; 0 is not stated").at_least(0);
-  fields.value("tool_version", run.tool_version, "that made the run");
-  fields.value("metrics", run.metrics, "scores").required();
+  fields.value("dataset", run.key.dataset, "Name of the dataset's folder.").required();
+  fields.value("module", run.key.module, "Module of `saccade run`.").required();
+  fields
+      .value("config", run.key.config, "Name of the configuration file and the overrides of --set.")
+      .required();
+  fields.value("seed", run.key.seed, "Seed of the run.").required();
+  fields.value("machine", run.machine, "Processor and operating system.");
+  fields.value("threads", run.threads, "Number of threads; 0 where it is not stated.").at_least(0);
+  fields.value("tool_version", run.tool_version, "Version of saccade that made the run.");
+  fields.value("metrics", run.metrics, "Metrics by dotted key.").required();
 }
 
 std::vector<GateRun> read_baseline(const std::filesystem::path& file) {

@@ -10,11 +10,12 @@ namespace saccade {
 
 void describe(config::Fields& fields, GateRun& run);
 
-/// Reads a baseline (docs/gate.md), in the order of the keys. InputError with file:line for unknown
-/// keys, wrong types, another version of the format, two runs with one key, or none at all.
+/// Reads a baseline (docs/gate.md); the runs come sorted by their keys. InputError with file:line
+/// for unknown keys, wrong types, another format version, two runs with the same key, and no runs.
 [[nodiscard]] std::vector<GateRun> read_baseline(const std::filesystem::path& file);
 
-/// Writes it sorted, one number a line, doubles exact: equal runs give equal bytes.
+/// Writes a baseline sorted by key, one number per line, with exact doubles: equal runs give equal
+/// bytes.
 void write_baseline(const std::filesystem::path& file, std::vector<GateRun> runs);
 
 }  // namespace saccade

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/check.h"
@@ -13,8 +14,8 @@
 namespace saccade {
 namespace {
 
-/// The draws of one resample with replacement: `number` says which, so that it depends on neither
-/// order nor thread.
+/// Draws one resample with replacement. `number` identifies it, so that it depends neither on the
+/// order of the calls nor on the thread.
 void resample(const Random& random, std::uint64_t number, std::span<const double> values,
               std::vector<double>& drawn) {
   const std::uint64_t size = values.size();
@@ -26,13 +27,8 @@ void resample(const Random& random, std::uint64_t number, std::span<const double
   }
 }
 
-/// Mean and standard error of the mean.
-struct Estimate {
-  double mean;
-  double error;
-};
-
-Estimate estimate(std::span<const double> values) {
+/// The mean and its standard error.
+std::pair<double, double> mean_and_error(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   double sum = 0;
   for (const double value : values) sum += value;
@@ -42,30 +38,30 @@ Estimate estimate(std::span<const double> values) {
   return {mean, std::sqrt(squares / (n - 1) / n)};
 }
 
-/// The sorted value with a share `tail` of all at it or above.
+/// The quantile 1 - tail.
 double upper_quantile(const std::vector<double>& sorted, double tail) {
   const auto beyond = static_cast<std::size_t>(tail * static_cast<double>(sorted.size() + 1));
   return sorted[sorted.size() - std::max<std::size_t>(beyond, 1)];
 }
 
-/// The one with such a share at it or below.
+/// The quantile `tail`.
 double lower_quantile(const std::vector<double>& sorted, double tail) {
   const auto beyond = static_cast<std::size_t>(tail * static_cast<double>(sorted.size() + 1));
   return sorted[std::max<std::size_t>(beyond, 1) - 1];
 }
 
-/// t* of all resamples, sorted. Sums are of what is off from the mean, so that one pass is exact
-/// enough for them.
+/// t* of all resamples, sorted. The sums are of differences from the mean, so that a single pass is
+/// accurate enough.
 std::vector<double> studentised(std::span<const double> values, double mean,
                                 const ResampleOptions& options) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Random random(options.seed);
   const auto n = static_cast<double>(values.size());
-  std::vector<double> off(values.begin(), values.end()), drawn, t;
-  for (double& value : off) value -= mean;
+  std::vector<double> centred(values.begin(), values.end()), drawn, t;
+  for (double& value : centred) value -= mean;
   t.reserve(static_cast<std::size_t>(options.resamples));
   for (int i = 0; i < options.resamples; ++i) {
-    resample(random, static_cast<std::uint64_t>(i), off, drawn);
+    resample(random, static_cast<std::uint64_t>(i), centred, drawn);
     double sum = 0, squares = 0;
     for (const double value : drawn) {
       sum += value;
@@ -88,15 +84,15 @@ BootstrapMean bootstrap_mean(std::span<const double> values, const ResampleOptio
   check_options(options);
   SACCADE_CHECK(values.size() >= kLeastForBootstrap);
   for (const double value : values) SACCADE_CHECK(std::isfinite(value));
-  const auto [mean, error] = estimate(values);
+  const auto [mean, error] = mean_and_error(values);
   const double least = 1.0 / (options.resamples + 1.0);
-  // What rounding alone makes of equal values.
+  // Equal values differ by rounding alone.
   if (error <= 1e-12 * std::abs(mean))
     return {mean, mean, mean, mean > 0 ? least : 1, mean < 0 ? least : 1};
   const std::vector<double> t = studentised(values, mean, options);
-  const double at = mean / error;
-  const auto above = t.end() - std::lower_bound(t.begin(), t.end(), at);
-  const auto below = std::upper_bound(t.begin(), t.end(), at) - t.begin();
+  const double observed = mean / error;
+  const auto above = t.end() - std::lower_bound(t.begin(), t.end(), observed);
+  const auto below = std::upper_bound(t.begin(), t.end(), observed) - t.begin();
   return {mean, mean - error * upper_quantile(t, options.tail),
           mean - error * lower_quantile(t, options.tail), (1 + static_cast<double>(above)) * least,
           (1 + static_cast<double>(below)) * least};

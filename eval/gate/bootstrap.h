@@ -13,17 +13,17 @@ struct ResampleOptions {
   std::uint64_t seed = 1;  ///< of the resamples; equal input gives equal output
 };
 
-/// The fewest values from which bootstrap_mean() says anything: of n values, n^(1 - n) of the
-/// resamples hold a single one and have no spread, 0.0001 of them at six but 0.016 at four.
+/// The smallest sample size of bootstrap_mean(). Of n values, n^(1 - n) of the resamples consist of
+/// a single value and have no spread: 0.0001 of them at six, but 0.016 at four.
 inline constexpr std::size_t kLeastForBootstrap = 6;
 
-/// A mean with its interval and the evidence for its sign.
+/// A mean with its confidence interval and the evidence for its sign.
 struct BootstrapMean {
   double mean = 0;
   double low = 0;
   double high = 0;
-  double p_above = 1;  ///< of a mean this high, were the true one 0; one-sided, in (0, 1]
-  double p_below = 1;  ///< of one this low
+  double p_above = 1;  ///< one-sided p-value of a mean this high if the true mean is 0, in (0, 1]
+  double p_below = 1;  ///< the same for a mean this low
 };
 
 /// Studentised bootstrap (bootstrap-t; Efron and Tibshirani 1993, 12.5) of the mean m of n values
@@ -31,22 +31,23 @@ struct BootstrapMean {
 ///   t* = (m* - m) / se*,   low = m - se q(1 - tail),   high = m - se q(tail),
 ///   p_above = (1 + #{t* >= m / se}) / (1 + resamples)
 /// with q the quantiles of t*. A resample without spread counts as infinitely far on its side.
-/// Where all values are equal the interval is that value, and p is the least that the resamples can
-/// show (1 for 0). Contract: at least kLeastForBootstrap finite values.
+/// Where all values are equal the interval is that value, and p is the smallest value that the
+/// number of resamples permits (1 for a mean of 0). Contract: at least kLeastForBootstrap finite
+/// values.
 [[nodiscard]] BootstrapMean bootstrap_mean(std::span<const double> values,
                                            const ResampleOptions& options = {});
 
-/// A ratio with its interval.
+/// A ratio with its confidence interval.
 struct BootstrapRatio {
   double ratio = 1;
   double low = 1;
   double high = 1;
 };
 
-/// The median of of[i] / to[i] and its percentile interval, where of[i] and to[i] were measured one
-/// after the other: what slows a machine for a while slows both, and a change of its speed spoils
-/// the pair that it falls into, not a side. Contract: as many of each, at least one; all are finite
-/// and above 0.
+/// The median of of[i] / to[i] and its percentile bootstrap interval, where of[i] and to[i] were
+/// measured directly after each other: a slow phase of the machine affects both values of a pair,
+/// and a change of its speed affects one pair only. Contract: equally many of each, at least one;
+/// all are finite and above 0.
 [[nodiscard]] BootstrapRatio bootstrap_paired_ratio(std::span<const double> of,
                                                     std::span<const double> to,
                                                     const ResampleOptions& options = {});

@@ -21,17 +21,19 @@ double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-bool is_tested(const Effect& effect) { return effect.worsenings.size() >= kLeastForBootstrap; }
+bool has_enough_pairs(const Effect& effect) {
+  return effect.log_ratios.size() >= kLeastForBootstrap;
+}
 
 GateRow row_of(const Effect& effect) {
-  const auto n = static_cast<double>(effect.worsenings.size());
+  const auto n = static_cast<double>(effect.log_ratios.size());
   GateRow row;
   row.metric = effect.metric.key;
   row.scope = effect.scope;
-  row.pairs = effect.worsenings.size();
+  row.pairs = effect.log_ratios.size();
   row.before = effect.before_sum / n;
   row.after = effect.after_sum / n;
-  row.change = relative_change(effect.metric, mean_of(effect.worsenings));
+  row.change = relative_change(effect.metric, mean_of(effect.log_ratios));
   return row;
 }
 
@@ -40,12 +42,12 @@ Verdict verdict_of(double worse, double threshold, bool sure_worse, bool sure_be
   return sure_better && worse < -threshold ? Verdict::kImproved : Verdict::kSame;
 }
 
-/// Too few pairs for statistics: only a gross change counts, of the time one that its repetitions
-/// confirm.
-GateRow judge_gross(const Effect& effect, const GateOptions& options) {
-  const double worse = mean_of(effect.worsenings);
+/// For fewer pairs than the bootstrap needs: a metric changes beyond `options.gross`, a time beyond
+/// `options.slower` where the repetitions of both sides do not overlap.
+GateRow judge_few_pairs(const Effect& effect, const GateOptions& options) {
+  const double worse = mean_of(effect.log_ratios);
   const double threshold = effect.is_time() ? std::log(options.slower) : std::log1p(options.gross);
-  const bool sure = !effect.is_time() || effect.apart;
+  const bool sure = !effect.is_time() || effect.times_separated;
   GateRow row = row_of(effect);
   row.verdict = verdict_of(worse, threshold, sure, !effect.is_time());
   row.note = effect.is_time()
@@ -54,8 +56,7 @@ GateRow judge_gross(const Effect& effect, const GateOptions& options) {
   return row;
 }
 
-/// So many resamples that a few of them lie beyond the corrected level, and at least as many as
-/// asked for.
+/// At least `options.resamples`, and enough that kBeyond of them lie beyond the corrected level.
 ResampleOptions bootstrap_options(std::size_t tests, const GateOptions& options) {
   constexpr double kBeyond = 5;
   ResampleOptions bootstrap;
@@ -65,15 +66,15 @@ ResampleOptions bootstrap_options(std::size_t tests, const GateOptions& options)
   return bootstrap;
 }
 
-/// Adds the rows of the effects with enough pairs, corrected for their number.
-void judge_tested(std::span<const Effect* const> effects, const GateOptions& options,
-                  GateResult& result) {
+/// Adds the rows of the effects with enough pairs, their p-values corrected for their number.
+void judge_by_bootstrap(std::span<const Effect* const> effects, const GateOptions& options,
+                        GateResult& result) {
   const double alpha = 1 - options.confidence;
   const ResampleOptions bootstrap = bootstrap_options(effects.size(), options);
   std::vector<BootstrapMean> means;
   std::vector<double> above, below;
   for (const Effect* effect : effects) {
-    means.push_back(bootstrap_mean(effect->worsenings, bootstrap));
+    means.push_back(bootstrap_mean(effect->log_ratios, bootstrap));
     above.push_back(means.back().p_above);
     below.push_back(means.back().p_below);
   }
@@ -118,10 +119,10 @@ std::vector<double> holm(std::span<const double> p) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
   std::vector<double> corrected(p.size());
-  double most = 0;
+  double largest = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    most = std::max(most, static_cast<double>(p.size() - i) * p[order[i]]);
-    corrected[order[i]] = std::min(1.0, most);
+    largest = std::max(largest, static_cast<double>(p.size() - i) * p[order[i]]);
+    corrected[order[i]] = std::min(1.0, largest);
   }
   return corrected;
 }
@@ -136,14 +137,14 @@ GateResult compare_runs(std::span<const GateRun> baseline, std::span<const GateR
   add_missing_metrics(pairs, options.speed, result);
   add_changed_signs(pairs, result);
   const std::vector<Effect> effects = collect_effects(pairs, options, result);
-  std::vector<const Effect*> tested;
+  std::vector<const Effect*> bootstrapped;
   for (const Effect& effect : effects) {
-    if (is_tested(effect))
-      tested.push_back(&effect);
+    if (has_enough_pairs(effect))
+      bootstrapped.push_back(&effect);
     else if (!effect.pooled)
-      result.rows.push_back(judge_gross(effect, options));
+      result.rows.push_back(judge_few_pairs(effect, options));
   }
-  if (!tested.empty()) judge_tested(tested, options, result);
+  if (!bootstrapped.empty()) judge_by_bootstrap(bootstrapped, options, result);
   std::stable_sort(result.rows.begin(), result.rows.end(),
                    [](const GateRow& a, const GateRow& b) { return a.verdict < b.verdict; });
   return result;
@@ -169,8 +170,9 @@ GateResult compare_times(std::span<const double> first_s, std::span<const double
   GateResult result{{row}, {}};
   if (!result.tripped() && found.high > options.slower)
     result.notes.push_back(
-        "the times scatter too much to rule out what counts as slower; more --repeats, or an idle "
-        "machine, narrow the interval");
+        "the times scatter too much to exclude a change that counts as slower; more --repeats or "
+        "an "
+        "idle machine narrow the interval");
   return result;
 }
 

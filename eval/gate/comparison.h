@@ -12,21 +12,22 @@
 namespace saccade {
 
 struct GateOptions {
-  double tolerance = 0.03;  ///< smallest relative change that counts, > 0; some metrics have theirs
-  double gross = 0.25;      ///< change of a sequence with few pairs that needs no statistics, > 0
-  double slower = 1.1;      ///< smallest factor of the time that counts, > 1
+  double tolerance =
+      0.03;             ///< smallest relative change that counts, > 0; some metrics have their own
+  double gross = 0.25;  ///< relative change that counts where there are fewer than six pairs, > 0
+  double slower = 1.1;  ///< smallest ratio of the times that counts, > 1
   double confidence = 0.99;  ///< of all comparisons together, in (0.5, 1)
   int resamples = 10000;     ///< of the bootstrap, >= 100; more are drawn for many comparisons
   std::uint64_t seed = 1;    ///< of the resamples
-  bool speed = true;         ///< judge the time, too
+  bool speed = true;         ///< also judge the time
   bool partial = false;      ///< runs of the baseline may be left out
-  std::vector<std::string> metrics;  ///< judged besides gate_metrics()
+  std::vector<std::string> metrics;  ///< judged in addition to gate_metrics()
 
-  /// Throws InputError whose place is the option of the command.
+  /// Throws InputError that names the option of the command that is out of range.
   void check() const;
 };
 
-/// One comparison.
+/// The result of one comparison.
 struct GateRow {
   enum class Verdict { kRegressed, kImproved, kSame };
 
@@ -40,7 +41,7 @@ struct GateRow {
   std::optional<double> low;     ///< the simultaneous interval of `change`
   std::optional<double> high;
   std::optional<double> p;  ///< one-sided, in the direction of the change, corrected (Holm)
-  std::string note;         ///< what is behind the verdict where it is not the interval
+  std::string note;         ///< the reason of the verdict where it is not the interval
 };
 
 struct GateResult {
@@ -51,13 +52,13 @@ struct GateResult {
   [[nodiscard]] bool tripped() const { return count(GateRow::Verdict::kRegressed) > 0; }
 };
 
-/// Holds runs against those of the baseline with the same keys, by the rules of docs/gate.md. Equal
-/// input gives an equal result. Throws InputError where no run has a partner.
+/// Compares runs with the runs of the baseline that have the same keys (docs/gate.md). Equal input
+/// gives an equal result. Throws InputError where no run has a partner.
 [[nodiscard]] GateResult compare_runs(std::span<const GateRun> baseline,
                                       std::span<const GateRun> runs, const GateOptions& options);
 
-/// Holds the times of a second build against those of a first, [s], > 0, as many of each and at
-/// least one; first_s[i] and second_s[i] were measured one after the other.
+/// Compares the times of two builds [s], > 0, equally many and at least one of each; first_s[i] and
+/// second_s[i] were measured directly after each other.
 [[nodiscard]] GateResult compare_times(std::span<const double> first_s,
                                        std::span<const double> second_s,
                                        const GateOptions& options);

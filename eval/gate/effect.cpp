@@ -12,14 +12,15 @@
 namespace saccade {
 namespace {
 
-/// Fewer repetitions say nothing of how much the times scatter.
-constexpr double kLeastRepetitions = 5;
+/// With fewer repetitions the scatter of the times is unknown.
+constexpr double kMinRepetitions = 5;
 
 std::vector<GateMetric> judged_metrics(const GateOptions& options) {
   std::vector<GateMetric> metrics(gate_metrics().begin(), gate_metrics().end());
   for (const std::string& key : options.metrics) {
     if (metric_info(key).better == MetricInfo::Better::kNeither)
-      throw InputError("--metric", "'" + key + "' is better neither high nor low");
+      throw InputError("--metric",
+                       "'" + key + "' cannot be judged: neither lower nor higher is better");
     if (std::none_of(metrics.begin(), metrics.end(),
                      [&](const GateMetric& metric) { return metric.key == key; }))
       metrics.push_back(gate_metric(key));
@@ -32,26 +33,26 @@ bool same_machine(const GatePair& pair) {
   return pair.before->machine == pair.after->machine && pair.before->threads == pair.after->threads;
 }
 
-/// Whether the slowest repetition before was faster than the fastest after.
-bool times_apart(const GatePair& pair) {
+/// Whether the slowest repetition of the baseline is faster than the fastest of the run.
+bool have_separated_times(const GatePair& pair) {
   const auto enough = [](const GateRun& run) {
-    return run.get("speed.repetitions").value_or(0) >= kLeastRepetitions;
+    return run.get("speed.repetitions").value_or(0) >= kMinRepetitions;
   };
   const std::optional<double> slowest = pair.before->get("speed.wall_s.max");
   const std::optional<double> fastest = pair.after->get("speed.wall_s.min");
   return enough(*pair.before) && enough(*pair.after) && slowest && fastest && *fastest > *slowest;
 }
 
-/// Adds a pair to an effect; false where it has no ratio.
+/// Adds the log ratio of a pair; false where it is undefined.
 bool add_pair(Effect& effect, const GatePair& pair) {
   const std::optional<double> before = pair.before->get(effect.metric.key);
   const std::optional<double> after = pair.after->get(effect.metric.key);
   const std::optional<double> worse = worsening(effect.metric, *before, *after);
   if (!worse) return false;
-  effect.worsenings.push_back(*worse);
+  effect.log_ratios.push_back(*worse);
   effect.before_sum += *before;
   effect.after_sum += *after;
-  effect.apart = effect.apart && times_apart(pair);
+  effect.times_separated = effect.times_separated && have_separated_times(pair);
   return true;
 }
 
@@ -59,21 +60,21 @@ void add_sign_row(const std::string& metric, const GatePair& pair, GateResult& r
   GateRow row;
   row.before = pair.before->get(metric);
   row.after = pair.after->get(metric);
-  if (*row.before <= *row.after) return;  // it was out of the domain before
+  if (*row.before <= *row.after) return;  // the baseline was outside the domain already
   row.verdict = GateRow::Verdict::kRegressed;
   row.metric = metric;
   row.scope = pair.after->key.text();
   row.pairs = 1;
-  row.note = "other sign";
+  row.note = "changed sign";
   result.rows.push_back(row);
 }
 
-/// The sequences of a module by name.
+/// The effects of a module by the name of the sequence.
 using Sequences = std::map<std::string, Effect>;
 
 void append(Effect& pool, const Effect& sequence) {
-  pool.worsenings.insert(pool.worsenings.end(), sequence.worsenings.begin(),
-                         sequence.worsenings.end());
+  pool.log_ratios.insert(pool.log_ratios.end(), sequence.log_ratios.begin(),
+                         sequence.log_ratios.end());
   pool.before_sum += sequence.before_sum;
   pool.after_sum += sequence.after_sum;
 }

@@ -11,8 +11,8 @@
 namespace saccade {
 namespace {
 
-/// Where something went wrong: how many pairs, and the first of them.
-struct Found {
+/// The pairs with one fault: their number, and the first of them.
+struct AffectedPairs {
   std::size_t count = 0;
   const GatePair* first = nullptr;
 
@@ -31,7 +31,7 @@ const GateRun* find(std::span<const GateRun> runs, const GateKey& key) {
   return found == runs.end() ? nullptr : &*found;
 }
 
-GateRow regressed(const std::string& metric, const Found& found, std::string note) {
+GateRow regressed(const std::string& metric, const AffectedPairs& found, std::string note) {
   GateRow row;
   row.verdict = GateRow::Verdict::kRegressed;
   row.metric = metric;
@@ -71,7 +71,7 @@ std::vector<GatePair> match_runs(std::span<const GateRun> baseline, std::span<co
 }
 
 void add_missing_metrics(std::span<const GatePair> pairs, bool speed, GateResult& result) {
-  std::map<std::string, Found> missing;
+  std::map<std::string, AffectedPairs> missing;
   for (const GatePair& pair : pairs)
     for (const auto& [metric, value] : pair.before->metrics)
       if (value && !pair.after->get(metric) && (speed || !metric.starts_with("speed.")))
@@ -81,7 +81,7 @@ void add_missing_metrics(std::span<const GatePair> pairs, bool speed, GateResult
 }
 
 void add_changed_signs(std::span<const GatePair> pairs, GateResult& result) {
-  std::map<std::string, Found> changed;
+  std::map<std::string, AffectedPairs> changed;
   for (const GatePair& pair : pairs)
     for (const auto& [metric, before] : pair.before->metrics) {
       const std::optional<double> after = pair.after->get(metric);
@@ -89,7 +89,7 @@ void add_changed_signs(std::span<const GatePair> pairs, GateResult& result) {
         changed[metric].add(pair);
     }
   for (const auto& [metric, found] : changed)
-    result.rows.push_back(regressed(metric, found, "other sign"));
+    result.rows.push_back(regressed(metric, found, "changed sign"));
 }
 
 void note_other_data(std::span<const GatePair> pairs, GateResult& result) {

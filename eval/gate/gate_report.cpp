@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "eval/number_text.h"
 #include "eval/report/html.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
@@ -25,7 +25,7 @@ const char* name_of(Verdict verdict) {
   return "unchanged";
 }
 
-/// "+5.2 %"; nothing that rounds to 0 has a sign.
+/// "+5.2 %"; a change that rounds to 0 has no sign.
 std::string percent(double change) {
   return std::abs(change) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", 100 * change);
 }
@@ -37,7 +37,7 @@ std::string change_text(const GateRow& row) {
   return text;
 }
 
-/// How sure it is.
+/// The p-value and the number of pairs.
 std::string evidence_text(const GateRow& row) {
   if (row.p) return fmt::format("p {:.2g}, {} pairs", *row.p, row.pairs);
   if (row.pairs == 0) return "";
@@ -55,46 +55,25 @@ std::string count_text(const GateResult& result) {
                      result.count(Verdict::kImproved), result.count(Verdict::kSame));
 }
 
-/// The width that a column of the rows needs; a dash of three bytes is one column wide.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 std::vector<std::string> cells_of(const GateRow& row) {
   return {name_of(row.verdict), row.metric,       row.scope,
           values_text(row),     change_text(row), evidence_text(row)};
 }
 
-std::string aligned(const std::vector<std::vector<std::string>>& table) {
-  std::vector<std::size_t> widths(table.empty() ? 0 : table.front().size());
-  for (const auto& cells : table)
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      widths[i] = std::max(widths[i], width_of(cells[i]));
-  std::string text;
-  for (const auto& cells : table) {
-    std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      line += cells[i] + std::string(widths[i] - width_of(cells[i]) + 2, ' ');
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
-/// '|' would end a cell.
-std::string markdown_cell(const std::string& text) {
-  std::string cell;
-  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
-  return cell;
+Table table_of(const GateResult& result, bool all) {
+  Table table{
+      .columns = {{""}, {"metric"}, {"scope"}, {"before -> after"}, {"change"}, {"evidence"}}};
+  for (const GateRow& row : result.rows)
+    if (all || row.verdict != Verdict::kSame) table.add(cells_of(row));
+  return table;
 }
 
 }  // namespace
 
 std::string gate_text(const GateResult& result, bool all) {
-  std::vector<std::vector<std::string>> table;
-  for (const GateRow& row : result.rows)
-    if (all || row.verdict != Verdict::kSame) table.push_back(cells_of(row));
-  std::string text = aligned(table);
+  Table table = table_of(result, all);
+  for (Table::Column& column : table.columns) column.title.clear();
+  std::string text = table_text(table);
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
   return text + count_text(result) + "\n";
 }
@@ -103,14 +82,7 @@ std::string gate_markdown(const GateResult& result) {
   std::string text = fmt::format("**saccade gate: {}.** {}\n",
                                  result.tripped() ? "tripped" : "passed", count_text(result));
   if (result.count(Verdict::kSame) < result.rows.size())
-    text +=
-        "\n| | metric | where | before -> after | change | how sure |\n|---|---|---|---|---|---|\n";
-  for (const GateRow& row : result.rows) {
-    if (row.verdict == Verdict::kSame) continue;
-    text += "|";
-    for (const std::string& cell : cells_of(row)) text += " " + markdown_cell(cell) + " |";
-    text += "\n";
-  }
+    text += "\n" + table_markdown(table_of(result, false));
   for (const std::string& note : result.notes) text += "\nNote: " + note + "\n";
   return text;
 }

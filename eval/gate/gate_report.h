@@ -6,15 +6,14 @@
 
 namespace saccade {
 
-/// For a terminal: what regressed and what improved (with `all` also what did neither), by how much
-/// and how sure, notes, and a line that counts.
+/// The result for a terminal: the rows that regressed or improved (with `all` every row), the
+/// notes, and the numbers of rows.
 [[nodiscard]] std::string gate_text(const GateResult& result, bool all);
 
-/// The same as a Markdown table of all rows that regressed or improved, for a comment or a job's
-/// summary.
+/// The same as a Markdown table, for a comment or a job summary.
 [[nodiscard]] std::string gate_markdown(const GateResult& result);
 
-/// JUnit XML: a test case for each comparison, a failure for each that regressed.
+/// JUnit XML: one test case per comparison, with a failure where it regressed.
 [[nodiscard]] std::string gate_junit(const GateResult& result);
 
 }  // namespace saccade

@@ -19,7 +19,7 @@ std::string machine_kind(const std::string& machine) {
   return machine.substr(0, machine.find(' ', system + 2));
 }
 
-/// Of the speed what one run can be compared by; the rest changes with every run.
+/// The other speed metrics change with every run.
 bool is_kept(const std::string& key) {
   return !key.starts_with("speed.") || key.starts_with("speed.wall_s") || key == "speed.events" ||
          key == "speed.repetitions";
@@ -68,7 +68,7 @@ std::vector<GateRun> read_gate_runs(const std::vector<fs::path>& folders) {
     if (!is_new)
       throw InputError(
           folder.string(),
-          "is the same work as " + first->second.string() + " (" + runs.back().key.text() +
+          "has the same key as " + first->second.string() + " (" + runs.back().key.text() +
               "); runs of one comparison differ in dataset, module, -c, --set or seed");
   }
   return runs;

@@ -77,7 +77,7 @@ std::optional<double> mean(std::span<const DepthError> errors,
   return sum / static_cast<double>(errors.size());
 }
 
-std::optional<double> share_within(std::span<const DepthError> errors, double sigmas) {
+std::optional<double> fraction_within(std::span<const DepthError> errors, double sigmas) {
   std::size_t known = 0, within = 0;
   for (const DepthError& error : errors) {
     if (!error.sigma_m) continue;
@@ -107,8 +107,8 @@ void set_errors(Metrics& metrics, const std::string& prefix, std::span<const Dep
               }));
   metrics.set(prefix + "outlier_5_percent",
               mean(errors, [](const DepthError& e) { return e.relative > kOutlier ? 1 : 0; }));
-  metrics.set(prefix + "within_1_sigma", share_within(errors, 1));
-  metrics.set(prefix + "within_2_sigma", share_within(errors, 2));
+  metrics.set(prefix + "within_1_sigma", fraction_within(errors, 1));
+  metrics.set(prefix + "within_2_sigma", fraction_within(errors, 2));
 }
 
 void set_counts(Metrics& metrics, const std::string& prefix, const DepthErrors& errors) {

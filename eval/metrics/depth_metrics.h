@@ -18,7 +18,7 @@ struct DepthPoint {
   std::optional<double> sigma_m;
 };
 
-/// How far one point is off.
+/// The error of one point.
 struct DepthError {
   double depth_m = 0;       ///< as estimated
   double difference_m = 0;  ///< estimate - truth
@@ -46,7 +46,7 @@ struct DepthErrors {
 ///   depth.{rel_mean,rel_median,rmse_m,delta_1_25,outlier_5_percent,within_1_sigma,within_2_sigma},
 /// the same below depth.strict, depth.points (a number), depth.completeness (over all edge pixels);
 /// depth.views.count; and of the views' own figures depth.views.{rel_mean,rel_median,
-/// outlier_5_percent,completeness,points}.{median,worst}. Shares and relative errors are fractions.
+/// outlier_5_percent,completeness,points}.{median,worst}. Fractions of points and relative errors are fractions.
 /// null where there is nothing to score, or no sigma.
 void set_depth_scores(Metrics& metrics, std::span<const DepthErrors> views);
 

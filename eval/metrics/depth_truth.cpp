@@ -11,7 +11,8 @@ namespace saccade {
 namespace {
 
 constexpr double kEdgeStrength = 0.1;  ///< |grad L| of an edge [1/px]
-constexpr float kHidden = 0.1F;        ///< relative depth behind what is seen, of what is hidden
+constexpr float kHidden =
+    0.1F;  ///< relative depth behind the visible surface from which a point is hidden
 constexpr double kSameTimeS = 1e-4;
 
 /// Index of the file nearest in time, not `except`; nullopt where there is none.

@@ -16,8 +16,8 @@ constexpr std::size_t kFewest = 100;  ///< pixels of a view that is scored
 constexpr int kRadius = 5;
 constexpr double kSigma = 1.5;
 
-/// First and second moments of two series, summed from the place of a first pair: what is constant
-/// has a variance of 0, and little is lost where the mean is large against the deviation.
+/// First and second moments of two series, about the values of a first pair: what is constant
+/// has a variance of 0, and little is lost where the mean is large against the standard deviation.
 class SeriesMoments {
  public:
   SeriesMoments(double first_a, double first_b) : first_a_(first_a), first_b_(first_b) {}

@@ -14,7 +14,7 @@ struct ImageComparison {
   ImageF estimate;                ///< log intensity, or anything in proportion to it
   ImageF truth;                   ///< log intensity
   ImageU8 mask;                   ///< 1 where the estimate is observed and the truth is known
-  double observed = 0;            ///< share of the image that the estimate observed
+  double observed = 0;            ///< fraction of the image that the estimate observed
   ImageF gradient_x, gradient_y;  ///< as estimated; empty: those of `estimate` are taken
 };
 

@@ -44,6 +44,22 @@ Json number(double value) {
   return value;
 }
 
+Json parse_object(std::string_view text, const std::string& source) {
+  try {
+    Json root = Json::parse(text);
+    if (!root.is_object()) throw InputError(source, "must be a JSON object");
+    return root;
+  } catch (const Json::parse_error& error) {
+    throw InputError(source, "byte " + std::to_string(error.byte) + " is no valid JSON");
+  }
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read");
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
 }  // namespace
 
 void Metrics::set(std::string key, std::optional<double> value) {
@@ -56,8 +72,9 @@ std::optional<double> Metrics::get(std::string_view key) const {
   return found == values_.end() ? std::nullopt : found->second;
 }
 
-std::string to_json(const Metrics& metrics) {
+std::string to_json(const Metrics& metrics, const std::map<std::string, std::string>& inputs) {
   Json root = Json::object();
+  if (!inputs.empty()) root["inputs"] = inputs;
   for (const auto& [key, value] : metrics.values()) {
     Json& leaf = child(root, key);
     SACCADE_CHECK(leaf.is_null());
@@ -66,23 +83,24 @@ std::string to_json(const Metrics& metrics) {
   return root.dump(2) + "\n";
 }
 
-Metrics parse_json_metrics(std::string_view text, const std::string& place) {
+Metrics parse_json_metrics(std::string_view text, const std::string& source) {
   Metrics metrics;
-  try {
-    const Json root = Json::parse(text);
-    if (!root.is_object()) throw InputError(place, "must be a JSON object");
-    flatten(root, "", metrics);
-  } catch (const Json::parse_error& error) {
-    throw InputError(place, "byte " + std::to_string(error.byte) + " is no valid JSON");
-  }
+  flatten(parse_object(text, source), "", metrics);
   return metrics;
 }
 
 Metrics read_json_metrics(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string(), "cannot be read");
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  return parse_json_metrics(text, file.string());
+  return parse_json_metrics(text_of(file), file.string());
+}
+
+std::map<std::string, std::string> read_json_texts(const std::filesystem::path& file,
+                                                   const std::string& name) {
+  const Json root = parse_object(text_of(file), file.string());
+  std::map<std::string, std::string> texts;
+  if (const auto object = root.find(name); object != root.end() && object->is_object())
+    for (const auto& [key, value] : object->items())
+      if (value.is_string()) texts[key] = value.get<std::string>();
+  return texts;
 }
 
 }  // namespace saccade

@@ -29,15 +29,21 @@ class Metrics {
 };
 
 /// Nested JSON, keys sorted, doubles in their shortest exact form, a newline at the end: equal
-/// metrics give equal bytes. No key may be a prefix of another ("a" beside "a.b").
-[[nodiscard]] std::string to_json(const Metrics& metrics);
+/// metrics give equal bytes. No key may be a prefix of another ("a" beside "a.b"). `inputs`: texts
+/// that stand beside them as the object "inputs", where there are any.
+[[nodiscard]] std::string to_json(const Metrics& metrics,
+                                  const std::map<std::string, std::string>& inputs = {});
 
 /// Reads what to_json() wrote. Numbers become values, null becomes nullopt, and every other leaf
-/// (text, truth values, lists) is skipped. `place` names the text in errors. Throws InputError
+/// (text, truth values, lists) is skipped. `source` names the text in errors. Throws InputError
 /// where the text is no JSON object.
-[[nodiscard]] Metrics parse_json_metrics(std::string_view text, const std::string& place);
+[[nodiscard]] Metrics parse_json_metrics(std::string_view text, const std::string& source);
 
 /// The same from a file.
 [[nodiscard]] Metrics read_json_metrics(const std::filesystem::path& file);
+
+/// The texts of the object `name` of such a file; empty where it holds none.
+[[nodiscard]] std::map<std::string, std::string> read_json_texts(const std::filesystem::path& file,
+                                                                 const std::string& name);
 
 }  // namespace saccade

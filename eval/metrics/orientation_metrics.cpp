@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/time_search.h"
+
 namespace saccade {
 namespace {
 
@@ -38,11 +40,10 @@ std::optional<double> heading_slope(std::span<const OrientationError> errors) {
 void score_bias(const GyroBiasEstimate& estimate, const std::vector<ImuTruth>& truth,
                 Metrics& metrics) {
   metrics.set("orientation.bias_sigma_rad_s", estimate.sigma);
-  const auto after = std::partition_point(truth.begin(), truth.end(), [&](const ImuTruth& one) {
-    return one.ideal.t_ns <= estimate.t_ns;
-  });
-  if (after == truth.begin()) return;
-  const Eigen::Vector3d error = estimate.bias - (after - 1)->gyro_bias;
+  const std::size_t until =
+      count_until(truth, estimate.t_ns, [](const ImuTruth& one) { return one.ideal.t_ns; });
+  if (until == 0) return;
+  const Eigen::Vector3d error = estimate.bias - truth[until - 1].gyro_bias;
   metrics.set("orientation.bias_error_rad_s", error.norm() / std::sqrt(3));
 }
 
@@ -96,13 +97,12 @@ Metrics score_rates(std::span<const StampedTwist> estimate, std::span<const Stam
   Metrics metrics;
   double squares = 0, peak = 0, count = 0;
   for (const StampedTwist& one : estimate) {
-    const auto after = std::partition_point(
-        truth.begin(), truth.end(), [&](const StampedTwist& t) { return t.t_s <= one.t_s; });
-    if (after == truth.begin() || after == truth.end()) continue;
-    const StampedTwist& a = *(after - 1);
-    const double share = (one.t_s - a.t_s) / (after->t_s - a.t_s);
+    const std::size_t after = count_until(truth, one.t_s, &StampedTwist::t_s);
+    if (after == 0 || after == truth.size()) continue;
+    const StampedTwist &a = truth[after - 1], &b = truth[after];
+    const double weight = (one.t_s - a.t_s) / (b.t_s - a.t_s);
     const Eigen::Vector3d rate =
-        a.angular_velocity + share * (after->angular_velocity - a.angular_velocity);
+        a.angular_velocity + weight * (b.angular_velocity - a.angular_velocity);
     squares += (one.angular_velocity - rate).squaredNorm();
     peak = std::max(peak, rate.norm());
     ++count;

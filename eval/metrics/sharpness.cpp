@@ -1,28 +1,17 @@
 #include "eval/metrics/sharpness.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/camera.h"
 #include "core/io/event_file.h"
 #include "core/parallel.h"
+#include "core/time_search.h"
 
 namespace saccade {
 namespace {
 
-void draw(ImageF& image, const Eigen::Vector2d& place) {
-  if (is_inside(image, place.x(), place.y())) splat(image, place.x(), place.y(), 1.0F);
-}
-
-/// First and one past the last event of a window.
-std::pair<std::size_t, std::size_t> range_of(const Events& events, const StabilizedWindow& window) {
-  const auto first_at = [&](double t_s) {
-    const TimeNs t_ns = ns_from_seconds(t_s);
-    const auto at = std::partition_point(events.begin(), events.end(),
-                                         [t_ns](const Event& e) { return e.t_ns < t_ns; });
-    return static_cast<std::size_t>(at - events.begin());
-  };
-  return {first_at(window.start_s), first_at(window.end_s)};
+void draw(ImageF& image, const Eigen::Vector2d& pixel) {
+  if (is_inside(image, pixel.x(), pixel.y())) splat(image, pixel.x(), pixel.y(), 1.0F);
 }
 
 }  // namespace
@@ -48,7 +37,8 @@ WindowImages images_of(const StabilizedRun& run, std::size_t index, const Datase
   if (has_truth)
     steady_from_world =
         window.steady_from_camera * truth.at_clamped(window.at_s).rotation().conjugate();
-  const auto [begin, end] = range_of(run.events, window);
+  const std::size_t begin = count_before(run.events, ns_from_seconds(window.start_s));
+  const std::size_t end = count_before(run.events, ns_from_seconds(window.end_s));
   for (std::size_t i = begin; i < end; ++i) {
     const Eigen::Vector2d from =
         undistorted(run.places.source_x[i], run.places.source_y[i]).cast<double>();
@@ -57,9 +47,9 @@ WindowImages images_of(const StabilizedRun& run, std::size_t index, const Datase
     draw(images.stabilized, to);
     ++images.events;
     if (!has_truth) continue;
-    const Eigen::Quaterniond turn =
+    const Eigen::Quaterniond steady_from_camera =
         steady_from_world * truth.at_clamped(seconds_from_ns(run.events[i].t_ns)).rotation();
-    const Eigen::Vector2d expected = camera.project(turn * camera.ray(from));
+    const Eigen::Vector2d expected = camera.project(steady_from_camera * camera.ray(from));
     draw(images.truth, expected);
     if ((to - expected).norm() <= 1) ++images.within_1px;
   }

@@ -23,14 +23,14 @@ struct StabilizedRun {
 
 /// One window in pictures: bilinear counts of the same events.
 struct WindowImages {
-  ImageF raw;         ///< where the sensor saw them, without the lens
+  ImageF raw;         ///< where they fired, without the lens
   ImageF stabilized;  ///< where the run put them
   ImageF truth;       ///< where the true rotation puts them; empty without ground truth
   std::size_t events = 0;
   std::size_t within_1px = 0;  ///< of the truth
 };
 
-/// The events of window `index`. The true place of an event of time t is
+/// The events of window `index`. The true position of an event of time t is
 ///   K R_(steady,camera) R(at)^T R(t) K^-1 u, R the true world_from_camera,
 /// so that the heading of the run's world does not matter.
 [[nodiscard]] WindowImages images_of(const StabilizedRun& run, std::size_t index,
@@ -40,7 +40,7 @@ struct WindowImages {
 [[nodiscard]] double sharpness(const ImageF& image);
 
 /// sharpness.{raw,stabilized,truth}, means over the windows, and stabilization.within_1px, the
-/// share of the events that lie within a pixel of their true place.
+/// fraction of the events within a pixel of their true position.
 [[nodiscard]] Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset);
 
 }  // namespace saccade

@@ -8,14 +8,14 @@
 #include "core/error.h"
 #include "core/io/image_file.h"
 #include "eval/metrics/scored_samples.h"
-#include "eval/picture/film.h"
-#include "eval/picture/mosaic_picture.h"
-#include "eval/picture/odometry_view.h"
-#include "eval/picture/sensor_view.h"
-#include "eval/picture/sheet.h"
-#include "eval/picture/stabilized_view.h"
-#include "eval/picture/trajectory_picture.h"
-#include "eval/picture/view_render.h"
+#include "eval/picture/canvas/contact_sheet.h"
+#include "eval/picture/image/trajectory_picture.h"
+#include "eval/picture/view/mosaic_picture.h"
+#include "eval/picture/view/odometry_view.h"
+#include "eval/picture/view/sensor_view.h"
+#include "eval/picture/view/stabilized_view.h"
+#include "eval/picture/view/view_render.h"
+#include "eval/picture/write_video.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
@@ -37,7 +37,7 @@ void check_options(const RenderOptions& options) {
         "must be above 0 m");
 }
 
-/// What is drawn: a dataset, or a run with its dataset.
+/// A dataset, or a run with its dataset.
 struct Subject {
   std::optional<RunFolder> run;
   Dataset dataset;
@@ -69,7 +69,7 @@ TimeSpan span_of(const Subject& subject, const RenderOptions& options) {
     throw InputError("time", fmt::format("{} s is not within {:.3f} .. {:.3f} s", *options.time_s,
                                          span.start_s, span.end_s));
   if (span.end_s < span.start_s)
-    throw InputError(subject.dataset.folder().string(), "there is nothing in that time");
+    throw InputError(subject.dataset.folder().string(), "holds no data in that time span");
   return span;
 }
 
@@ -80,7 +80,7 @@ std::optional<Overlay> overlay_for(const Subject& subject, const TimeSpan& span,
                  subject.map, span.start_s);
 }
 
-/// What is drawn and how.
+/// The subject with its view and overlay.
 struct Scene {
   const Subject& subject;
   SensorView view;
@@ -88,7 +88,7 @@ struct Scene {
   int upscale;
 };
 
-/// Events and frame with the picture that hangs in the world.
+/// Events and frame with the overlaid picture.
 std::vector<CaptionedPicture> overlaid_pictures_at(const Scene& scene, double t_s) {
   const auto over = [&](std::string caption, ImageRgb8 image, double drawn_s) {
     return scene.overlay->over({std::move(caption), std::move(image)}, drawn_s, scene.upscale,
@@ -97,12 +97,12 @@ std::vector<CaptionedPicture> overlaid_pictures_at(const Scene& scene, double t_
   std::vector<CaptionedPicture> pictures;
   pictures.push_back(over("events", scene.view.undistorted_events(t_s), t_s));
   if (auto frame = scene.view.undistorted_frame(t_s))
-    pictures.push_back(
-        over(fmt::format("frame of {:.3f} s", frame->t_s), std::move(frame->image), frame->t_s));
+    pictures.push_back(over(fmt::format("frame of {:.3f} s", frame->first),
+                            std::move(frame->second), frame->first));
   return pictures;
 }
 
-/// The pictures of one moment, left to right.
+/// The pictures at one time, left to right.
 std::vector<CaptionedPicture> pictures_at(const Scene& scene, double t_s) {
   if (scene.overlay) return overlaid_pictures_at(scene, t_s);
   const Subject& subject = scene.subject;
@@ -138,9 +138,9 @@ std::string title_of(const Subject& subject) {
 ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
   const Subject& subject = scene.subject;
   const SensorView& view = scene.view;
-  Sheet sheet(title_of(subject), view.theme());
-  for (const double share : kSheetMoments) {
-    const double t_s = span.start_s + share * (span.end_s - span.start_s);
+  ContactSheet sheet(title_of(subject), view.theme());
+  for (const double fraction : kSheetTimes) {
+    const double t_s = span.start_s + fraction * (span.end_s - span.start_s);
     sheet.add_row(fmt::format("{:.3f} s", t_s), pictures_at(scene, t_s));
   }
   const std::vector<Eigen::Vector3d> truth = positions(subject.dataset.groundtruth(), span);
@@ -153,8 +153,8 @@ ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
   return sheet.draw();
 }
 
-ImageRgb8 moment(const Scene& scene, double t_s) {
-  Sheet sheet(title_of(scene.subject), scene.view.theme());
+ImageRgb8 sheet_at(const Scene& scene, double t_s) {
+  ContactSheet sheet(title_of(scene.subject), scene.view.theme());
   sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(scene, t_s));
   return sheet.draw();
 }
@@ -186,7 +186,7 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
                              options);
   const bool single = ending == ".png" && options.time_s.has_value();
   const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
-  // Before the events are loaded, which takes longer than to say what is wrong with the overlay.
+  // Before the events are loaded, so that errors in the overlay's options are reported at once.
   std::optional<Overlay> overlay = overlay_for(subject, span, options);
   const Scene scene{subject,
                     SensorView(subject.dataset, loaded.start_s, loaded.end_s,
@@ -194,8 +194,9 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
                                 options.dark ? kDarkTheme : kLightTheme}),
                     std::move(overlay), options.upscale};
   if (ending == ".mp4")
-    return write_slow_film(output, span, options, [&](double t_s) { return moment(scene, t_s); });
-  write_png(output, single ? moment(scene, *options.time_s) : contact_sheet(scene, span));
+    return write_slow_motion_video(output, span, options,
+                                   [&](double t_s) { return sheet_at(scene, t_s); });
+  write_png(output, single ? sheet_at(scene, *options.time_s) : contact_sheet(scene, span));
 }
 
 }  // namespace saccade

@@ -9,37 +9,15 @@
 #include "core/check.h"
 #include "eval/evaluate.h"
 #include "eval/gate/bootstrap.h"
-#include "eval/metrics/consistency.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/metrics/statistics.h"
-#include "eval/number_text.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/trajectory/consistency.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {
 
 constexpr const char* kNees = "trajectory.nees";
-
-struct BoardMetric {
-  const char* key;
-  const char* label;
-};
-
-/// The main scores of every kind of run: a recording without depth has ATE alone.
-constexpr std::array<BoardMetric, 13> kBoardMetrics{{
-    {"trajectory.dt_rel_percent.mean", "dt_rel, mean [%]"},
-    {"trajectory.dtheta_deg.mean", "dtheta, mean [deg]"},
-    {"trajectory.se3.ate_rmse_m", "ATE after SE(3), RMSE [m]"},
-    {"trajectory.se3_5s.mean_percent", "error after SE(3) by the first 5 s, mean [% of the path]"},
-    {kNees, "poses' covariance, factor that NEES is off"},
-    {"depth.rel_median", "depth, median relative error"},
-    {"depth.completeness", "depth, completeness"},
-    {"reconstruction.ssim", "images, SSIM"},
-    {"mosaic.ssim", "mosaic, SSIM"},
-    {"orientation.rate_rmse_rad_s", "angular velocity, RMSE [rad/s]"},
-    {"orientation.roll_pitch_rmse_deg", "roll and pitch, RMSE [deg]"},
-    {"sharpness.stabilized", "sharpness of the steady view"},
-    {"speed.realtime_factor", "speed [x real time]"},
-}};
 
 std::optional<double> score_of(const Metrics& metrics, const std::string& key) {
   if (key.starts_with("speed.")) return speed_value(metrics, key);
@@ -129,7 +107,7 @@ std::string board_caption(const Leaderboard& board) {
                      board.sequences.size() > 1 ? ", over sequences for the overall score" : "");
 }
 
-ReportTable::Cell score_cell(const LeaderboardScore& score) {
+Table::Cell score_cell(const LeaderboardScore& score) {
   if (!score.value) return {score.failed > 0 ? score.problem : "–", {}};
   if (score.failed == 0) return {"", score.value, score.note};
   return {"", score.value,
@@ -137,12 +115,12 @@ ReportTable::Cell score_cell(const LeaderboardScore& score) {
 }
 
 /// The best mean of every column; of the overall scores only a ranked one counts.
-void mark_best(ReportTable& table, const Leaderboard& board) {
+void mark_best(Table& table, const Leaderboard& board) {
   for (std::size_t column = 2; column < table.columns.size(); ++column) {
-    ReportTable::Cell* best = nullptr;
+    Table::Cell* best = nullptr;
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      ReportTable::Cell& cell = table.rows[i][column];
-      const bool counts = table.columns[column] != "overall" || board.rows[i].rank > 0;
+      Table::Cell& cell = table.rows[i][column];
+      const bool counts = table.columns[column].title != "overall" || board.rows[i].rank > 0;
       if (!cell.value || !counts) continue;
       if (best == nullptr || (board.higher_is_better ? cell.value->mean > best->value->mean
                                                      : cell.value->mean < best->value->mean))
@@ -174,11 +152,12 @@ PooledValue pooled(std::span<const double> values) {
 
 std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries) {
   std::vector<Leaderboard> boards;
-  for (const BoardMetric& metric : kBoardMetrics) {
+  for (const MetricInfo& metric : metric_catalogue()) {
+    if (metric.board.empty()) continue;
     Leaderboard board;
     board.key = metric.key;
-    board.label = metric.label;
-    board.higher_is_better = metric_info(metric.key).better == MetricInfo::Better::kHigher;
+    board.label = metric.board;
+    board.higher_is_better = metric.higher_is_better();
     std::vector<std::string> methods;
     for (const LeaderboardEntry& entry : entries) {
       const bool scored = score_of(entry.metrics, board.key).has_value();
@@ -194,14 +173,14 @@ std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries)
   return boards;
 }
 
-ReportTable leaderboard_table(const Leaderboard& board) {
+Table leaderboard_table(const Leaderboard& board) {
   const bool several = board.sequences.size() > 1;
-  ReportTable table{"leaderboard_" + board.key, board_caption(board), {"method", "rank"}, {}};
+  Table table{"leaderboard_" + board.key, board_caption(board), {{"method"}, {"rank", true}}};
   std::replace(table.name.begin(), table.name.end(), '.', '_');
-  if (several) table.columns.emplace_back("overall");
-  table.columns.insert(table.columns.end(), board.sequences.begin(), board.sequences.end());
+  if (several) table.columns.push_back({"overall", true});
+  for (const std::string& sequence : board.sequences) table.columns.push_back({sequence, true});
   for (const LeaderboardRow& row : board.rows) {
-    std::vector<ReportTable::Cell> cells{{row.method, {}, row.source}};
+    std::vector<Table::Cell> cells{{row.method, {}, row.source}};
     if (row.rank > 0)
       cells.push_back(
           {std::to_string(row.rank), PooledValue{static_cast<double>(row.rank), {}, {}, 1}});

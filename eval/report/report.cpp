@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -14,14 +15,14 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/version.h"
-#include "eval/report/against_section.h"
 #include "eval/report/assets.h"
-#include "eval/report/compared_section.h"
+#include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
-#include "eval/report/leaderboard_section.h"
-#include "eval/report/page_data.h"
 #include "eval/report/run_data.h"
-#include "eval/report/run_section.h"
+#include "eval/report/sections/against_section.h"
+#include "eval/report/sections/compared_section.h"
+#include "eval/report/sections/leaderboard_section.h"
+#include "eval/report/sections/run_section.h"
 #include "eval/report/tables.h"
 
 namespace saccade {
@@ -81,6 +82,18 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
   return html;
 }
 
+/// One line for all runs that were scored again.
+void tell_of_stale(std::span<const RunData> runs) {
+  const auto is_stale = [](const RunData& data) { return !data.stale.empty(); };
+  const auto first = std::find_if(runs.begin(), runs.end(), is_stale);
+  if (first == runs.end()) return;
+  show_notice(
+      fmt::format("scored again: {} of {} runs, since their scores were missing or stale "
+                  "({}: {})",
+                  std::count_if(runs.begin(), runs.end(), is_stale), runs.size(), first->run.name(),
+                  first->stale));
+}
+
 /// A run that patterns of a shell name twice is one run, not two of a kind.
 std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders) {
   std::vector<std::filesystem::path> once;
@@ -96,6 +109,7 @@ std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders)
   });
   if (progress) progress->finish();
   compare_with_refined(runs);
+  tell_of_stale(runs);
   return runs;
 }
 
@@ -130,17 +144,17 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   std::optional<Sides> sides;
   if (!before.empty()) sides = compare_sides(before, runs);
   const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
-  std::vector<ReportTable> exported;
+  std::vector<Table> exported;
   for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));
-  ChartSection compared = compared_section(runs, boards);
-  std::vector<std::string> parts{runs.size() > 1 ? leaderboard_section(exported) : "",
-                                 compared.html};
+  std::vector<PageChart> charts;
+  std::vector<std::string> parts;
   if (sides) {
-    const ChartSection against = against_section(*sides);
-    parts.insert(parts.begin(), against.html);
-    compared.charts.insert(compared.charts.end(), against.charts.begin(), against.charts.end());
+    parts.push_back(against_section(*sides, charts));
     exported.push_back(against_table(*sides));
   }
+  if (runs.size() > 1)
+    parts.push_back(leaderboard_section(std::span(exported).first(boards.size())));
+  parts.push_back(compared_section(runs, boards, charts));
   for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
     parts.push_back(table(runs));
   const std::string tables = with_repeat(parts, options.command);
@@ -151,7 +165,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
        {"contents", contents(runs, tables)},
        {"style", std::string(assets::report_css)},
        {"body", tables + sections(runs, options.film)},
-       {"charts", charts_data(compared.charts)},
+       {"charts", charts_data(charts)},
        {"script", std::string(assets::report_js)},
        {"footer",
         fmt::format("Written by saccade {} ({}). Definitions of all scores: docs/metrics.md.",

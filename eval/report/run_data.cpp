@@ -15,21 +15,27 @@
 #include "eval/configuration_name.h"
 #include "eval/evaluate.h"
 #include "eval/refined_ratio.h"
+#include "eval/score_inputs.h"
 
 namespace saccade {
 namespace {
 
-void score(RunData& data) {
+/// Takes the scores that `eval` wrote, or scores the run where they are stale.
+void set_scores(RunData& data) {
+  data.stale = staleness(data.run.folder, *data.data);
   data.input = score_input(data.run, *data.data);
-  // Where the dataset states no depth, the one that `eval` was given holds here as well.
-  if (!data.input.mean_depth_m)
-    data.input.mean_depth_m = data.run.metrics.get("trajectory.mean_depth_m");
+  // The errors over time are relative to the depth that the scores are relative to; `eval` may have
+  // been given another one than the dataset's.
+  const std::optional<double> scored_m = data.run.metrics.get("trajectory.mean_depth_m");
+  if (scored_m && (data.stale.empty() || !data.input.mean_depth_m))
+    data.input.mean_depth_m = scored_m;
   data.samples = scored_samples(data.input);
   data.errors = errors_over_time(data.input);
   data.map = data.run.load_map().positions;
   data.keyframes = KeyframeHistory::load(data.run);
   data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
-  data.metrics = score_run(data.run, *data.data, data.input.mean_depth_m);
+  data.metrics = data.stale.empty() ? data.run.metrics
+                                    : score_run(data.run, *data.data, data.input.mean_depth_m);
 }
 
 /// The run's configuration but for the seed, which every run has of its own.
@@ -49,21 +55,21 @@ std::string short_hash(const std::string& text) {
 
 }  // namespace
 
-DatasetNumbers numbers_of(const Dataset& dataset) {
-  DatasetNumbers numbers;
+Metrics facts_of(const Dataset& dataset) {
+  Metrics facts;
   if (!dataset.events_file().empty()) {
     const EventFileInfo info = read_event_file_info(dataset.events_file());
-    numbers.events = static_cast<double>(info.count);
-    numbers.duration_s = seconds_from_ns(info.last_ns - info.first_ns);
+    facts.set("dataset.events", static_cast<double>(info.count));
+    facts.set("dataset.duration_s", seconds_from_ns(info.last_ns - info.first_ns));
   }
-  numbers.mean_depth_m = dataset.facts().mean_depth_m;
-  if (!dataset.groundtruth().empty()) {
-    numbers.path_m = dataset.groundtruth().path_length();
-    // The last event of a simulation comes a little before its end.
-    if (dataset.record())
-      numbers.duration_s = dataset.groundtruth().end_s() - dataset.groundtruth().start_s();
-  }
-  return numbers;
+  facts.set("dataset.mean_scene_depth_m", dataset.facts().mean_depth_m);
+  if (dataset.groundtruth().empty()) return facts;
+  facts.set("dataset.path_length_m", dataset.groundtruth().path_length());
+  // The last event of a simulation comes a little before its end.
+  if (dataset.record())
+    facts.set("dataset.duration_s",
+              dataset.groundtruth().end_s() - dataset.groundtruth().start_s());
+  return facts;
 }
 
 RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
@@ -73,7 +79,6 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   const RunRecord& record = data.run.record;
   data.method =
       record.external ? record.external->name : record.module + " " + configuration_name(record);
-  data.fast = data.run.name().find("fast") != std::string::npos;
   data.metrics = data.run.metrics;
   data.dataset = record.dataset.filename().string();
   if (!std::filesystem::is_directory(record.dataset)) {
@@ -82,8 +87,8 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   }
   data.data = data.run.open_dataset();
   data.dataset = data.data->facts().name;
-  data.numbers = numbers_of(*data.data);
-  score(data);
+  data.facts = facts_of(*data.data);
+  set_scores(data);
   return data;
 }
 

@@ -6,31 +6,24 @@
 
 #include "core/io/dataset.h"
 #include "eval/keyframe_history.h"
-#include "eval/metrics/reprojection.h"
+#include "eval/metrics/trajectory/reprojection.h"
 #include "eval/run_folder.h"
 
 namespace saccade {
 
-/// What table 8.1 says about a dataset.
-struct DatasetNumbers {
-  std::optional<double> events;
-  std::optional<double> duration_s;
-  std::optional<double> mean_depth_m;
-  std::optional<double> path_m;
-};
-
-/// A run with everything that the page says about it, scored anew where its dataset is there.
+/// A run with everything that the page says about it, with the scores that `eval` wrote, or
+/// scored again where those are stale and its dataset is there.
 struct RunData {
   std::string id;       ///< unique on the page, an HTML id
   std::string dataset;  ///< name
   /// Module with its configuration's name, or what an external estimator is called; with what tells
   /// it from another of that name (tell_methods_apart).
   std::string method;
-  bool fast = false;  ///< its name says it used the thesis's fast setting
   RunFolder run;
   std::optional<Dataset> data;  ///< nullopt: the folder is gone, `missing` says why
   std::string missing;
-  DatasetNumbers numbers;
+  std::string stale;  ///< why it was scored again; empty: the scores are those of metrics.json
+  Metrics facts;      ///< of the dataset: those of thesis table 8.1, as dataset.*
   Metrics metrics;
   TrajectoryScoreInput input;
   ScoredSamples samples;
@@ -40,7 +33,7 @@ struct RunData {
   std::optional<KeyframeHistory> keyframes;  ///< of an odometry run
 };
 
-/// Reads and scores the run folder; `index` is its place on the page.
+/// Reads the run folder and scores it where its scores are stale; `index` is its place on the page.
 [[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
 
 /// refined_ratio.* of every run that has a run of refine beside it.
@@ -51,6 +44,7 @@ void compare_with_refined(std::vector<RunData>& runs);
 /// file, of equal values the first; where folders do not tell them apart, by a hash of the values.
 void tell_methods_apart(std::vector<RunData>& runs);
 
-[[nodiscard]] DatasetNumbers numbers_of(const Dataset& dataset);
+/// dataset.{events,duration_s,mean_scene_depth_m,path_length_m}, as far as they are known.
+[[nodiscard]] Metrics facts_of(const Dataset& dataset);
 
 }  // namespace saccade

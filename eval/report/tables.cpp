@@ -2,259 +2,228 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <set>
+#include <utility>
 
 #include "eval/evaluate.h"
-#include "eval/number_text.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/report/html.h"
-#include "eval/report/thesis.h"
+#include "eval/report/reference/thesis.h"
+#include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
 
-/// Ours above the thesis's, which is left out where there is none.
-std::string cell(const std::string& ours, const std::string& theirs, bool starts_group = false) {
-  if (theirs == fixed(std::nullopt, 0))
-    return fmt::format("<td{}>{}</td>", starts_group ? " class=\"space\"" : "", ours);
-  return fmt::format("<td{}>{}<span class=\"ref\">{}</span></td>",
-                     starts_group ? " class=\"space\"" : "", ours, theirs);
+using Cell = Table::Cell;
+using Row = std::vector<Cell>;
+using Number = std::optional<double>;
+
+/// The thesis's number as it is printed there; nothing where it has none.
+std::string printed(const Number& thesis) {
+  return thesis ? fmt::format("{:.{}f}", *thesis, *thesis < 10 ? 1 : 0) : "";
 }
 
-std::string printed(const std::optional<double>& thesis) {
-  return thesis ? fmt::format("{:.{}f}", *thesis, *thesis < 10 ? 1 : 0) : "–";
-}
-
-/// "3.4×", green above 1 and red below.
-std::string factor_cell(const std::optional<double>& factor) {
-  if (!factor) return "<td class=\"space\">–</td>";
-  return fmt::format("<td class=\"space\"><span class=\"{}\">{}×</span></td>",
-                     *factor >= 1 ? "better" : "worse", significant(factor, 2));
-}
-
-std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
+Number ratio(const Number& a, const Number& b) {
   if (!a || !b || *b == 0) return std::nullopt;
   return *a / *b;
 }
 
-std::string name_cell(const RunData& data) {
-  return fmt::format("<td class=\"name\"><a href=\"#{}\">{}</a><span class=\"ref\">{}</span></td>",
-                     data.id, escape_html(data.run.name()),
-                     escape_html(data.run.record.module + " on " + data.dataset));
+Number scaled(Number value, double scale) {
+  if (value) *value *= scale;
+  return value;
 }
 
-std::string error_cells(const Metrics& metrics, const std::string& key, int decimals,
-                        const thesis::Errors* thesis) {
-  std::string cells;
-  const auto add = [&](const char* name, double thesis::Errors::*member) {
-    std::optional<double> theirs;
-    if (thesis != nullptr) theirs = thesis->*member;
-    cells += cell(fixed(metrics.get(key + "." + name), decimals), printed(theirs),
-                  std::string_view(name) == "mean");
-  };
-  add("mean", &thesis::Errors::mean);
-  add("sigma", &thesis::Errors::sigma);
-  add("max", &thesis::Errors::max);
-  add("rmse", &thesis::Errors::rmse);
-  std::optional<double> theirs;
-  if (thesis != nullptr) theirs = thesis->mean;
-  return cells + factor_cell(ratio(theirs, metrics.get(key + ".mean")));
+/// "3.4×", in the colour of better above 1 and of worse below.
+Cell factor_cell(const Number& factor) {
+  if (!factor) return {"–"};
+  Cell cell = number_cell(factor, significant(factor, 2) + "×");
+  cell.mark = *factor >= 1 ? Table::Mark::kBetter : Table::Mark::kWorse;
+  return cell;
 }
 
-/// How many times the refined optimum's errors are, where a run is compared with one.
-std::string refined_cell(const RunData& data, std::initializer_list<const char*> keys) {
+Cell run_cell(const RunData& data) {
+  Cell cell{data.run.name(), {}, data.run.record.module + " on " + data.dataset};
+  cell.link = "#" + data.id;
+  return cell;
+}
+
+/// How many times the refined optimum's errors are.
+Cell refined_cell(const RunData& data, std::initializer_list<const char*> keys) {
   std::string text;
   for (const char* key : keys)
     text += (text.empty() ? "" : " / ") +
             significant(data.metrics.get(std::string("refined_ratio.") + key), 2);
-  return fmt::format("<td class=\"space\">{}</td>", text);
+  return {text};
 }
 
-constexpr const char* kRefinedHead = "<th class=\"space\">&times; refined optimum</th>";
+constexpr const char* kRefined = "× refined optimum";
 
-std::string accuracy_row(const RunData& data, bool with_refined) {
-  const thesis::Tracking* thesis = thesis::find_tracking(data.dataset, data.fast);
-  const auto errors = [&](const char* key, thesis::Errors thesis::Tracking::*member) {
-    return error_cells(data.metrics, std::string("trajectory.") + key, 2,
-                       thesis == nullptr ? nullptr : &(thesis->*member));
+void add_errors(Row& row, const RunData& data, const std::string& key) {
+  const auto ours = [&](const char* name) { return data.metrics.get(key + name); };
+  const auto theirs = [&](const char* name) {
+    return thesis_value(key + name, data.dataset, data.run.record);
   };
-  std::optional<double> coverage = data.metrics.get("trajectory.coverage");
-  if (coverage) *coverage *= 100;
-  return "<tr>" + name_cell(data) + errors("dt_rel_percent", &thesis::Tracking::dt_rel_percent) +
-         errors("dtheta_deg", &thesis::Tracking::dtheta_deg) +
-         fmt::format("<td class=\"space\">{} %</td>", fixed(coverage, 1)) +
-         (with_refined
-              ? refined_cell(data, {"trajectory.dt_rel_percent.mean", "trajectory.dtheta_deg.mean"})
-              : "") +
-         "</tr>\n";
-}
-
-std::string depth_row(const RunData& data, bool with_refined) {
-  const auto percent = [&](const std::string& key, int decimals) {
-    std::optional<double> value = data.metrics.get("depth." + key);
-    if (value) *value *= 100;
-    return fixed(value, decimals);
-  };
-  const auto with_worst = [&](const std::string& key, int decimals, bool starts_group) {
-    return cell(percent(key, decimals), percent("views." + key + ".worst", decimals), starts_group);
-  };
-  const auto alone = [&](const std::string& key, int decimals, bool starts_group) {
-    return cell(percent(key, decimals), fixed(std::nullopt, 0), starts_group);
-  };
-  return "<tr>" + name_cell(data) + with_worst("rel_median", 2, true) +
-         with_worst("rel_mean", 2, false) + with_worst("outlier_5_percent", 2, false) +
-         alone("strict.rel_median", 2, true) + alone("strict.rel_mean", 2, false) +
-         with_worst("completeness", 1, true) +
-         cell(grouped(data.metrics.get("depth.views.points.median")),
-              grouped(data.metrics.get("depth.views.points.worst"))) +
-         alone("within_1_sigma", 1, true) + alone("within_2_sigma", 1, false) +
-         (with_refined ? refined_cell(data, {"depth.rel_median", "depth.rel_mean"}) : "") +
-         "</tr>\n";
-}
-
-std::string deviation_cell(const std::optional<double>& ours, const std::optional<double>& theirs,
-                           const std::string& shown) {
-  std::string reference = printed(theirs);
-  if (const std::optional<double> share = ratio(ours, theirs))
-    reference += fmt::format(" ({:+.0f} %)", std::round(100 * (*share - 1)) + 0.0);
-  return cell(shown, reference);
-}
-
-std::string dataset_row(const RunData& data) {
-  const thesis::Sequence* thesis = thesis::find_sequence(data.dataset);
-  const auto theirs = [&](double thesis::Sequence::*member) -> std::optional<double> {
-    if (thesis == nullptr) return std::nullopt;
-    return thesis->*member;
-  };
-  const DatasetNumbers& n = data.numbers;
-  std::optional<double> millions = n.events;
-  if (millions) *millions /= 1e6;
-  const std::optional<double> thesis_ratio =
-      ratio(theirs(&thesis::Sequence::path_m), theirs(&thesis::Sequence::mean_depth_m));
-  const auto row_cell = [&](const std::optional<double>& ours, double thesis::Sequence::*member) {
-    return deviation_cell(ours, theirs(member), significant(ours));
-  };
-  return fmt::format("<tr><td>{}</td>", escape_html(data.dataset)) +
-         row_cell(millions, &thesis::Sequence::events_millions) +
-         row_cell(n.duration_s, &thesis::Sequence::duration_s) +
-         row_cell(n.mean_depth_m, &thesis::Sequence::mean_depth_m) +
-         row_cell(n.path_m, &thesis::Sequence::path_m) +
-         cell(fixed(ratio(n.path_m, n.mean_depth_m), 2), fixed(thesis_ratio, 2)) + "</tr>\n";
-}
-
-/// Table 8.3 is about tracking; other modules have nothing to be compared with.
-const thesis::Tracking* thesis_speed(const RunData& data) {
-  if (data.run.record.module != "track") return nullptr;
-  return thesis::find_tracking(data.dataset, data.fast);
-}
-
-std::string speed_row(const RunData& data) {
-  const thesis::Tracking* thesis = thesis_speed(data);
-  const auto value = [&](const char* key, double scale) {
-    std::optional<double> v = speed_value(data.metrics, std::string("speed.") + key);
-    if (v) *v *= scale;
-    return v;
-  };
-  const auto theirs = [&](double thesis::Tracking::*member) -> std::optional<double> {
-    if (thesis == nullptr) return std::nullopt;
-    return thesis->*member;
-  };
-  const std::optional<double> rate = value("events_per_s", 1e-6);
-  std::optional<double> poses = value("poses_per_s", 1);
-  if (data.metrics.get("depth.points") && !data.metrics.get("trajectory.poses")) poses.reset();
-  return "<tr>" + name_cell(data) +
-         cell(significant(value("wall_s", 1e3)), printed(theirs(&thesis::Tracking::time_ms)),
-              true) +
-         cell(significant(rate), printed(theirs(&thesis::Tracking::events_per_s_millions)), true) +
-         factor_cell(ratio(rate, theirs(&thesis::Tracking::events_per_s_millions))) +
-         cell(grouped(poses), grouped(theirs(&thesis::Tracking::poses_per_s)), true) +
-         factor_cell(ratio(poses, theirs(&thesis::Tracking::poses_per_s))) +
-         fmt::format("<td class=\"space\">{}</td><td class=\"space\">{}</td></tr>\n",
-                     significant(value("realtime_factor", 1)),
-                     data.run.record.threads > 0 ? std::to_string(data.run.record.threads) : "–");
+  for (const char* name : {".mean", ".sigma", ".max", ".rmse"})
+    row.push_back(number_cell(ours(name), fixed(ours(name), 2), printed(theirs(name))));
+  row.push_back(factor_cell(ratio(theirs(".mean"), ours(".mean"))));
 }
 
 bool has_any(std::span<const RunData> runs, std::string_view prefix) {
-  for (const RunData& data : runs)
-    for (const auto& [key, value] : data.metrics.values())
-      if (key.starts_with(prefix) && value) return true;
-  return false;
+  return std::any_of(runs.begin(), runs.end(), [&](const RunData& data) {
+    const auto& values = data.metrics.values();
+    return std::any_of(values.begin(), values.end(), [&](const auto& metric) {
+      return metric.first.starts_with(prefix) && metric.second;
+    });
+  });
+}
+
+std::string section(const char* id, const char* heading, const std::string& text,
+                    const Table& table, const std::string& note = "") {
+  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n<p>{}</p>\n{}{}</section>\n", id, heading,
+                     text, table_html(table),
+                     note.empty() ? "" : "<p class=\"note\">" + escape_html(note) + "</p>");
+}
+
+Row depth_row(const RunData& data, bool with_refined) {
+  Row row{run_cell(data)};
+  // Fractions stand in percent.
+  const auto add = [&](const std::string& key, int decimals, bool with_worst) {
+    const Number value = shown_value(data.metrics, "depth." + key);
+    const Number worst = shown_value(data.metrics, "depth.views." + key + ".worst");
+    row.push_back(number_cell(value, fixed(value, decimals),
+                              with_worst && worst ? fixed(worst, decimals) : ""));
+  };
+  for (const char* key : {"rel_median", "rel_mean", "outlier_5_percent"}) add(key, 2, true);
+  for (const char* key : {"strict.rel_median", "strict.rel_mean"}) add(key, 2, false);
+  add("completeness", 1, true);
+  const Number points = data.metrics.get("depth.views.points.median");
+  const Number fewest = data.metrics.get("depth.views.points.worst");
+  row.push_back(number_cell(points, grouped(points), fewest ? grouped(fewest) : ""));
+  for (const char* key : {"within_1_sigma", "within_2_sigma"}) add(key, 1, false);
+  if (with_refined) row.push_back(refined_cell(data, {"depth.rel_median", "depth.rel_mean"}));
+  return row;
+}
+
+Row dataset_row(const RunData& data) {
+  Row row{{data.dataset}};
+  const auto theirs = [&](const char* key) {
+    return thesis_value(key, data.dataset, data.run.record);
+  };
+  const auto add = [&](const char* key, double scale) {
+    const Number ours = scaled(data.facts.get(key), scale), thesis = scaled(theirs(key), scale);
+    std::string note = printed(thesis);
+    if (const Number quotient = ratio(ours, thesis))
+      note += fmt::format(" ({:+.0f} %)", std::round(100 * (*quotient - 1)) + 0.0);
+    row.push_back(number_cell(ours, significant(ours), note));
+  };
+  constexpr const char* kDepth = "dataset.mean_scene_depth_m";
+  constexpr const char* kPath = "dataset.path_length_m";
+  add("dataset.events", 1e-6);
+  for (const char* key : {"dataset.duration_s", kDepth, kPath}) add(key, 1);
+  const Number ours = ratio(data.facts.get(kPath), data.facts.get(kDepth));
+  const Number thesis = ratio(theirs(kPath), theirs(kDepth));
+  row.push_back(number_cell(ours, fixed(ours, 2), thesis ? fixed(thesis, 2) : ""));
+  return row;
+}
+
+Row speed_row(const RunData& data) {
+  const auto ours = [&](const char* key, double scale) {
+    return scaled(speed_value(data.metrics, std::string("speed.") + key), scale);
+  };
+  // Table 8.3 is about tracking; other modules have nothing to be compared with.
+  const auto theirs = [&](const char* key, double scale) -> Number {
+    if (data.run.record.module != "track") return std::nullopt;
+    return scaled(thesis_value(std::string("speed.") + key, data.dataset, data.run.record), scale);
+  };
+  Row row{run_cell(data)};
+  const Number wall_ms = ours("wall_s", 1e3), rate = ours("events_per_s", 1e-6);
+  row.push_back(number_cell(wall_ms, significant(wall_ms), printed(theirs("wall_s", 1e3))));
+  row.push_back(number_cell(rate, significant(rate), printed(theirs("events_per_s", 1e-6))));
+  row.push_back(factor_cell(ratio(rate, theirs("events_per_s", 1e-6))));
+  Number poses = ours("poses_per_s", 1);
+  if (data.metrics.get("depth.points") && !data.metrics.get("trajectory.poses")) poses.reset();
+  const Number thesis_poses = theirs("poses_per_s", 1);
+  row.push_back(number_cell(poses, grouped(poses), thesis_poses ? grouped(thesis_poses) : ""));
+  row.push_back(factor_cell(ratio(poses, thesis_poses)));
+  const Number realtime = ours("realtime_factor", 1);
+  row.push_back(number_cell(realtime, significant(realtime)));
+  const int threads = data.run.record.threads;
+  row.push_back(threads > 0 ? number_cell(threads, std::to_string(threads)) : Cell{"–"});
+  return row;
 }
 
 }  // namespace
 
 std::string accuracy_table(std::span<const RunData> runs) {
   if (!has_any(runs, "trajectory.")) return "";
-  std::string html =
-      "<section id=\"accuracy\"><h2>Tracking accuracy</h2>\n"
-      "<p>Without alignment, over a uniform 1 ms grid. &Delta;t<sub>rel</sub> is the position "
-      "error "
-      "relative to the mean scene depth. The smaller number below is the thesis's (table 8.2); the "
-      "factor compares the means.</p>\n<div class=\"scroll\"><table class=\"wide\"><thead>\n"
-      "<tr><th></th><th class=\"group space\" colspan=\"5\">&Delta;t<sub>rel</sub> [%]</th>"
-      "<th class=\"group space\" colspan=\"5\">&Delta;&theta; [deg]</th><th></th></tr>\n"
-      "<tr><th>run</th>";
-  for (int i = 0; i < 2; ++i)
-    html +=
-        "<th class=\"space\">mean</th><th>&sigma;</th><th>max</th><th>RMSE</th>"
-        "<th class=\"space\">better by</th>";
+  Table table{"accuracy", "Errors of the poses, without alignment", {{"run"}}};
   const bool with_refined = has_any(runs, "refined_ratio.trajectory.");
-  html += "<th class=\"space\">coverage</th>";
-  if (with_refined) html += kRefinedHead;
-  html += "</tr></thead><tbody>\n";
-  for (const RunData& data : runs)
-    if (data.metrics.get("trajectory.poses")) html += accuracy_row(data, with_refined);
-  return html + "</tbody></table></div></section>\n";
+  table.add_numeric({"dt_rel [%]: mean", "σ", "max", "RMSE", "better by", "dtheta [deg]: mean", "σ",
+                     "max", "RMSE", "better by", "coverage [%]"});
+  if (with_refined) table.add_numeric({kRefined});
+  for (const RunData& data : runs) {
+    if (!data.metrics.get("trajectory.poses")) continue;
+    Row& row = table.rows.emplace_back();
+    row.push_back(run_cell(data));
+    add_errors(row, data, "trajectory.dt_rel_percent");
+    add_errors(row, data, "trajectory.dtheta_deg");
+    const Number coverage = shown_value(data.metrics, "trajectory.coverage");
+    row.push_back(number_cell(coverage, fixed(coverage, 1)));
+    if (with_refined)
+      row.push_back(
+          refined_cell(data, {"trajectory.dt_rel_percent.mean", "trajectory.dtheta_deg.mean"}));
+  }
+  return section(
+      "accuracy", "Tracking accuracy",
+      "Over a uniform 1 ms grid. dt_rel is the position error relative to the mean scene "
+      "depth, dtheta the rotation error. The smaller number below is the thesis's (table "
+      "8.2); the factor compares the means.",
+      table);
 }
 
 std::string depth_table(std::span<const RunData> runs) {
   if (!has_any(runs, "depth.")) return "";
-  std::string html =
-      "<section id=\"depth\"><h2>Depth</h2>\n<p>Relative errors |d - d<sub>truth</sub>| / "
-      "d<sub>truth</sub> against the best pixel of the 3 x 3 around a point, over all views; "
-      "strict: "
-      "at its exact position. The smaller number below is that of the worst view.</p>\n"
-      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>run</th>"
-      "<th class=\"space\">median [%]</th><th>mean [%]</th><th>over 5 % [%]</th>"
-      "<th class=\"space\">strict median [%]</th><th>strict mean [%]</th>"
-      "<th class=\"space\">complete [%]</th><th>points per view</th>"
-      "<th class=\"space\">within 1 &sigma; [%]</th><th>2 &sigma; [%]</th>";
+  Table table{"depth", "Relative errors of depth, over all views", {{"run"}}};
   const bool with_refined = has_any(runs, "refined_ratio.depth.");
-  if (with_refined) html += kRefinedHead;
-  html += "</tr></thead><tbody>\n";
+  table.add_numeric({"median [%]", "mean [%]", "over 5 % [%]", "strict median [%]",
+                     "strict mean [%]", "complete [%]", "points per view", "within 1 σ [%]",
+                     "within 2 σ [%]"});
+  if (with_refined) table.add_numeric({kRefined});
   for (const RunData& data : runs)
-    if (data.metrics.get("depth.points")) html += depth_row(data, with_refined);
-  return html + "</tbody></table></div></section>\n";
+    if (data.metrics.get("depth.points")) table.rows.push_back(depth_row(data, with_refined));
+  return section("depth", "Depth",
+                 "Relative errors |d - d<sub>truth</sub>| / d<sub>truth</sub> against the best "
+                 "pixel of the 3 x 3 around a point; strict: at its exact position. The smaller "
+                 "number below is that of the worst view.",
+                 table);
 }
 
 std::string dataset_table(std::span<const RunData> runs) {
-  std::string html =
-      "<section id=\"datasets\"><h2>Datasets</h2>\n<p>Below each number the thesis's (table 8.1) "
-      "and "
-      "the deviation from it.</p>\n<div class=\"scroll\"><table class=\"wide\"><thead><tr>"
-      "<th>dataset</th><th>events [M]</th><th>duration [s]</th><th>mean depth [m]</th>"
-      "<th>path length [m]</th>"
-      "<th>path / depth</th></tr></thead><tbody>\n";
+  Table table{"datasets", "Length and content of the datasets", {{"dataset"}}};
+  table.add_numeric(
+      {"events [M]", "duration [s]", "mean depth [m]", "path length [m]", "path / depth"});
   std::set<std::string> shown;
   for (const RunData& data : runs)
-    if (shown.insert(data.dataset).second) html += dataset_row(data);
-  return html + "</tbody></table></div></section>\n";
+    if (shown.insert(data.dataset).second) table.rows.push_back(dataset_row(data));
+  return section("datasets", "Datasets",
+                 "Below each number the thesis's (table 8.1) and the difference from it.", table);
 }
 
 std::string speed_table(std::span<const RunData> runs) {
   if (!has_any(runs, "speed.")) return "";
-  std::string html =
-      "<section id=\"speed\"><h2>Speed</h2>\n<p>Without reading and writing files; medians where a "
-      "run was repeated. The smaller number below is the thesis's (table 8.3).</p>\n"
-      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>run</th>"
-      "<th class=\"space\">time [ms]</th><th class=\"space\">events/s [M]</th>"
-      "<th class=\"space\">faster by</th><th class=\"space\">poses/s</th>"
-      "<th class=\"space\">faster by</th><th class=\"space\">&times; real time</th>"
-      "<th class=\"space\">threads</th></tr></thead><tbody>\n";
+  Table table{"speed", "Time without reading and writing files", {{"run"}}};
+  table.add_numeric(
+      {"time [ms]", "events/s [M]", "faster by", "poses/s", "faster by", "× real time", "threads"});
   for (const RunData& data : runs)
-    if (speed_value(data.metrics, "speed.wall_s")) html += speed_row(data);
-  return html + "</tbody></table></div>\n<p class=\"note\">" + escape_html(thesis::kSpeedErratum) +
-         "</p></section>\n";
+    if (speed_value(data.metrics, "speed.wall_s")) table.rows.push_back(speed_row(data));
+  return section("speed", "Speed",
+                 "Medians where a run was repeated. The smaller number below is the thesis's "
+                 "(table 8.3).",
+                 table, thesis_protocol("speed.events_per_s"));
 }
 
 }  // namespace saccade

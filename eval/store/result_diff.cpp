@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/config/suggest.h"
 #include "core/error.h"
 #include "core/median.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
 
 namespace saccade {
 namespace {
@@ -31,28 +31,22 @@ bool begins_commit(const ResultRow& row, const std::string& name) {
   return name.size() >= kShortest && row.commit.starts_with(name);
 }
 
-struct Naming {
-  const char* by;
-  std::function<bool(const ResultRow&, const std::string&)> matches;
-};
+/// What a name may be of, and whether a row is named by it.
+using Naming = std::pair<const char*, bool (*)(const ResultRow&, const std::string&)>;
 
-const std::array<Naming, 5>& namings() {
-  static const std::array<Naming, 5> all{{
-      {"run", [](const ResultRow& row, const std::string& name) { return row.run == name; }},
-      {"commit", is_commit},
-      {"commit", begins_commit},
-      {"version",
-       [](const ResultRow& row, const std::string& name) { return row.version == name; }},
-      {"config", [](const ResultRow& row, const std::string& name) { return row.config == name; }},
-  }};
-  return all;
-}
+constexpr std::array<Naming, 5> kNamings{{
+    {"run", [](const ResultRow& row, const std::string& name) { return row.run == name; }},
+    {"commit", is_commit},
+    {"commit", begins_commit},
+    {"version", [](const ResultRow& row, const std::string& name) { return row.version == name; }},
+    {"config", [](const ResultRow& row, const std::string& name) { return row.config == name; }},
+}};
 
 /// Which of the rows a name means.
 Indices named(const Rows& rows, const Naming& naming, const std::string& name) {
   Indices chosen;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (naming.matches(rows[i], name)) chosen.push_back(i);
+    if (naming.second(rows[i], name)) chosen.push_back(i);
   return chosen;
 }
 
@@ -62,7 +56,7 @@ Indices named(const Rows& rows, const Naming& naming, const std::string& name) {
     for (const std::string& name : {row.run, row.commit, row.version, row.config})
       if (!name.empty()) names.insert(name);
   for (const std::string& name : {a, b}) {
-    const bool known = std::any_of(namings().begin(), namings().end(), [&](const Naming& naming) {
+    const bool known = std::any_of(kNamings.begin(), kNamings.end(), [&](const Naming& naming) {
       return !named(rows, naming, name).empty();
     });
     if (known) continue;
@@ -174,18 +168,18 @@ double MetricChange::percent() const {
 ResultDiff diff_results(ResultReader& reader, const std::string& a, const std::string& b,
                         std::string_view where) {
   const Rows rows = reader.select(where);
-  for (const Naming& naming : namings()) {
+  for (const Naming& naming : kNamings) {
     const Indices runs_a = named(rows, naming, a);
     const Indices runs_b = named(rows, naming, b);
     if (runs_a.empty() || runs_b.empty()) continue;
-    ResultDiff diff{a, b, naming.by, reader.metric_names(), {}, {}};
+    ResultDiff diff{a, b, naming.first, reader.metric_names(), {}, {}};
     const MetricTable table = reader.metrics(rows, diff.metrics);
     add_pairs(rows, table, by_key(rows, runs_a, diff.by), by_key(rows, runs_b, diff.by), diff);
     if (!diff.pairs.empty()) return diff;
     throw InputError("--diff",
                      fmt::format("no run of {0} '{1}' has a partner of {0} '{2}': the same "
                                  "dataset, module, window, configuration and seed",
-                                 naming.by, a, b));
+                                 naming.first, a, b));
   }
   fail_names(rows, a, b);
 }

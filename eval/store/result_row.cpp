@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "core/error.h"
@@ -38,15 +39,19 @@ Metrics scores_or_speed(const fs::path& folder) {
 }  // namespace
 
 CsvTable::Cell ResultColumn::of(const ResultRow& row) const {
-  struct Shown {
-    CsvTable::Cell operator()(const std::string& text) const { return text; }
-    CsvTable::Cell operator()(std::uint64_t value) const { return std::to_string(value); }
-    CsvTable::Cell operator()(int value) const { return static_cast<long long>(value); }
-    CsvTable::Cell operator()(const std::optional<double>& value) const {
+  const auto cell = [&](auto pointer) -> CsvTable::Cell {
+    const auto& value = row.*pointer;
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
       return value.value_or(std::numeric_limits<double>::quiet_NaN());
-    }
+    else if constexpr (std::is_same_v<Value, int>)
+      return static_cast<long long>(value);
+    else if constexpr (std::is_same_v<Value, std::uint64_t>)
+      return std::to_string(value);
+    else
+      return value;
   };
-  return std::visit([&](auto pointer) { return Shown{}(row.*pointer); }, member);
+  return std::visit(cell, member);
 }
 
 std::span<const ResultColumn> result_columns() {

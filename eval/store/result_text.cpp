@@ -13,9 +13,9 @@
 #include "core/config/suggest.h"
 #include "core/error.h"
 #include "core/io/csv_file.h"
-#include "eval/number_text.h"
-#include "eval/store/text_grid.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
+#include "eval/table/number_text.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 namespace {
@@ -79,22 +79,21 @@ std::optional<double> measured(double value) {
 
 std::string results_table(std::span<const ResultRow> rows, const MetricTable& metrics,
                           std::span<const ResultColumn> columns) {
-  std::vector<std::string> titles;
+  Table table;
   std::vector<std::size_t> shown;
-  for (const ResultColumn& column : columns) titles.push_back(column.name);
+  for (const ResultColumn& column : columns) table.columns.push_back({column.name});
   for (std::size_t i = 0; i < metrics.names().size(); ++i) {
     if (!metrics.any_has(i)) continue;
     shown.push_back(i);
-    titles.push_back(metric_label(metrics.names()[i]));
+    table.columns.push_back({metric_label(metrics.names()[i]), true});
   }
-  TextGrid grid(titles, columns.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     std::vector<std::string> cells;
     for (const ResultColumn& column : columns) cells.push_back(cell_text(column.of(rows[row])));
     for (const std::size_t i : shown) cells.push_back(rounded(measured(metrics.at(row, i))));
-    grid.add(std::move(cells));
+    table.add(cells);
   }
-  return grid.text() + fmt::format("{} {}\n", rows.size(), rows.size() == 1 ? "run" : "runs");
+  return table_text(table) + fmt::format("{} {}\n", rows.size(), rows.size() == 1 ? "run" : "runs");
 }
 
 std::string results_csv(std::span<const ResultRow> rows, const MetricTable& metrics,
@@ -122,15 +121,17 @@ std::string json_number(double value) {
 }
 
 std::string json_member(const ResultRow& row, const ResultColumn& column) {
-  struct Value {
-    std::string operator()(const std::string& text) const { return json_text(text); }
-    std::string operator()(std::uint64_t value) const { return std::to_string(value); }
-    std::string operator()(int value) const { return std::to_string(value); }
-    std::string operator()(const std::optional<double>& value) const {
+  const auto json = [&](auto pointer) -> std::string {
+    const auto& value = row.*pointer;
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
       return json_number(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-    }
+    else if constexpr (std::is_same_v<Value, std::string>)
+      return json_text(value);
+    else
+      return std::to_string(value);
   };
-  return std::visit([&](auto member) { return Value{}(row.*member); }, column.member);
+  return std::visit(json, column.member);
 }
 
 /// Written piece by piece: a tree of ten thousand runs would take longer than reading them.
@@ -156,12 +157,18 @@ std::string signed_percent(double percent) {
 }
 
 std::string diff_table(const ResultDiff& diff) {
-  TextGrid grid({"metric", "pairs", diff.a, diff.b, "change", "better", "worse"}, 1);
+  Table table{.columns = {{"metric"},
+                          {"pairs", true},
+                          {diff.a, true},
+                          {diff.b, true},
+                          {"change", true},
+                          {"better", true},
+                          {"worse", true}}};
   for (const ChangeSummary& change : summarise_changes(diff))
-    grid.add({change.metric, std::to_string(change.pairs), rounded(change.a), rounded(change.b),
-              signed_percent(change.median_percent), std::to_string(change.better),
-              std::to_string(change.worse)});
-  std::string text = grid.text();
+    table.add({change.metric, std::to_string(change.pairs), rounded(change.a), rounded(change.b),
+               signed_percent(change.median_percent), std::to_string(change.better),
+               std::to_string(change.worse)});
+  std::string text = table_text(table);
   text += fmt::format("{} {} by {}; values: means, change: median over the pairs\n",
                       diff.pairs.size(), diff.pairs.size() == 1 ? "pair" : "pairs", diff.by);
   if (!diff.alone.empty())
@@ -223,7 +230,7 @@ ResultSelection select_columns(const ResultReader& reader, const std::vector<std
   if (format == ResultFormat::kTable) {
     for (const std::string_view name : kTableColumns)
       selection.columns.push_back(*find_column(name));
-    for (const MetricInfo& metric : usual_metrics())
+    for (const MetricInfo& metric : default_metrics())
       if (std::string stored = reader.stored_metric(metric.key); !stored.empty())
         selection.metrics.push_back(std::move(stored));
     return selection;

@@ -16,18 +16,18 @@
 #include "core/progress.h"
 #include "core/shell.h"
 #include "eval/sweep/folder_lock.h"
-#include "eval/sweep/job_record.h"
-#include "eval/sweep/manifest.h"
-#include "eval/sweep/pilot.h"
-#include "eval/sweep/plan.h"
-#include "eval/sweep/results.h"
+#include "eval/sweep/plan/calibration_run.h"
+#include "eval/sweep/plan/job_record.h"
+#include "eval/sweep/plan/plan.h"
+#include "eval/sweep/result/manifest.h"
+#include "eval/sweep/result/results.h"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLogLines = 12;
+constexpr std::size_t kShownLogLines = 12;
 
 std::string command_text(const std::vector<std::string>& arguments) {
   std::vector<std::string> words{"saccade"};
@@ -35,29 +35,29 @@ std::string command_text(const std::vector<std::string>& arguments) {
   return shell_line(words);
 }
 
-/// The end of a log, without the titles of its calls.
+/// The end of a log, without the command lines.
 std::string last_lines(const fs::path& file) {
   std::ifstream stream(file);
   std::deque<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
     if (!line.starts_with("$ saccade ")) lines.push_back(line);
-    if (lines.size() > kLogLines) lines.pop_front();
+    if (lines.size() > kShownLogLines) lines.pop_front();
   }
   std::string text;
   for (const std::string& line : lines) text += "    " + line + "\n";
   return text;
 }
 
-/// A folder that somebody filled with something else is left alone.
+/// A folder with other contents is left alone.
 void check_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder");
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is not a folder");
   if (!fs::is_empty(folder) && !fs::exists(folder / "sweep.yaml"))
     throw InputError(folder.string(),
-                     "holds something that is no sweep (no sweep.yaml); choose another folder");
+                     "is not empty and not a sweep (no sweep.yaml); choose another folder");
 }
 
-/// What killed estimators left beside the run folders.
+/// Removes what killed estimators left beside the run folders.
 void remove_half_written(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> partial;
@@ -69,24 +69,21 @@ void remove_half_written(const fs::path& folder) {
   for (const fs::path& path : partial) fs::remove_all(path, ignored);
 }
 
-/// Runs the jobs of one kind that are due.
+/// Runs the jobs of one stage that are due.
 class Phase {
  public:
-  /// Of `jobs` those of a wave. `states`: one for each of them.
-  Phase(const std::vector<SweepJob>& jobs, int wave, const fs::path& folder,
-        std::vector<JobState>& states)
-      : jobs_(jobs), wave_(wave), folder_(folder), states_(states) {}
+  Phase(std::vector<SweepJob>& jobs, int stage, const fs::path& folder)
+      : jobs_(jobs), stage_(stage), folder_(folder) {}
 
-  /// Jobs whose dataset or whose source could not be made fail with it.
-  void fail_without_inputs(const std::vector<JobState>& simulations) {
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      const SweepJob& job = jobs_[i];
-      if (job.wave != wave_) continue;
-      const bool no_dataset = job.made_by && simulations[*job.made_by] == JobState::kFailed;
-      const bool no_source =
-          std::any_of(job.sources.begin(), job.sources.end(),
-                      [&](std::size_t run) { return states_[run] == JobState::kFailed; });
-      if (no_dataset || no_source) states_[i] = JobState::kFailed;
+  /// A job fails whose dataset or source failed.
+  void fail_without_inputs(const std::vector<SweepJob>& simulations) {
+    const auto has_failed = [](const SweepJob& job) { return job.state == JobState::kFailed; };
+    for (SweepJob& job : jobs_) {
+      if (job.stage != stage_) continue;
+      const bool no_dataset = job.made_by && has_failed(simulations[*job.made_by]);
+      const bool no_source = std::any_of(job.sources.begin(), job.sources.end(),
+                                         [&](std::size_t run) { return has_failed(jobs_[run]); });
+      if (no_dataset || no_source) job.state = JobState::kFailed;
     }
   }
 
@@ -95,7 +92,7 @@ class Phase {
     select_due();
     if (due_.empty()) return true;
     const auto all = static_cast<std::size_t>(std::count_if(
-        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.wave == wave_; }));
+        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.stage == stage_; }));
     Progress progress(label, all, "jobs", all - due_.size());
     const auto on_end = [&](std::size_t i, const LaunchResult& result) {
       finish(i, result, progress);
@@ -110,12 +107,12 @@ class Phase {
   void select_due() {
     JobInputs inputs;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      if (jobs_[i].wave != wave_ || states_[i] == JobState::kFailed) continue;
-      const SweepJob& job = jobs_[i];
+      SweepJob& job = jobs_[i];
+      if (job.stage != stage_ || job.state == JobState::kFailed) continue;
       const fs::path job_folder = folder_ / "jobs" / job.name;
       Fingerprint job_inputs = inputs.of(job);
       if (why_to_run(job, job_folder / "job.yaml", job_inputs).empty()) {
-        states_[i] = JobState::kSkipped;
+        job.state = JobState::kSkipped;
         continue;
       }
       fs::remove(job_folder / "job.yaml");
@@ -129,7 +126,7 @@ class Phase {
   void finish(std::size_t launch, const LaunchResult& result, Progress& progress) {
     const std::size_t i = due_[launch];
     const fs::path& log = launches_[launch].log;
-    states_[i] = result.succeeded ? JobState::kDone : JobState::kFailed;
+    jobs_[i].state = result.succeeded ? JobState::kDone : JobState::kFailed;
     if (result.succeeded) {
       write_job_record(log.parent_path() / "job.yaml", jobs_[i], inputs_[launch], result.wall_s);
       return;
@@ -137,7 +134,7 @@ class Phase {
     report(jobs_[i].name, result, log, progress);
   }
 
-  /// What many jobs print alike is shown once.
+  /// An output that several jobs share is shown once.
   void report(const std::string& name, const LaunchResult& result, const fs::path& log,
               Progress& progress) {
     const std::string end = last_lines(log);
@@ -151,23 +148,21 @@ class Phase {
                                   first->second));
   }
 
-  const std::vector<SweepJob>& jobs_;
-  int wave_;
+  std::vector<SweepJob>& jobs_;
+  int stage_;
   fs::path folder_;
-  std::vector<JobState>& states_;
   std::map<std::string, std::string>
-      reported_;  ///< ends of logs and the job that printed them first
+      reported_;  ///< the end of a log -> the first job that printed it
   std::vector<std::size_t> due_;
   std::vector<Fingerprint> inputs_;  ///< of the due jobs
   std::vector<LaunchJob> launches_;  ///< of the due jobs
 };
 
-/// Each with all cores of its machine; the many of a sweep that generates are better off side by
-/// side.
+/// A simulation uses all cores of its machine; the many small ones of `generate` run in parallel.
 LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions& options,
                                    const Launcher& launcher) {
   const int threads = sweep.generate ? sweep.threads : 0;
-  const int usual = launcher.usual_at_once(threads);
+  const int usual = launcher.default_parallel_jobs(threads);
   if (sweep.generate && options.jobs > 0) return {options.jobs, threads};
   return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, threads};
 }
@@ -175,18 +170,20 @@ LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions&
 LaunchLimits limits_of_runs(const SweepConfig& sweep, const SweepOptions& options,
                             const Launcher& launcher) {
   if (sweep.timing) return {1, 0};
-  const int at_once = options.jobs > 0 ? options.jobs : launcher.usual_at_once(sweep.threads);
-  return {at_once, sweep.threads};
+  const int parallel_jobs =
+      options.jobs > 0 ? options.jobs : launcher.default_parallel_jobs(sweep.threads);
+  return {parallel_jobs, sweep.threads};
 }
 
-std::size_t count(const SweepStates& states, JobState state) {
-  const auto in = [&](const std::vector<JobState>& jobs) {
-    return static_cast<std::size_t>(std::count(jobs.begin(), jobs.end(), state));
+std::size_t count(const SweepPlan& plan, JobState state) {
+  const auto in = [&](const std::vector<SweepJob>& jobs) {
+    return static_cast<std::size_t>(std::count_if(
+        jobs.begin(), jobs.end(), [&](const SweepJob& job) { return job.state == state; }));
   };
-  return in(states.simulations) + in(states.runs);
+  return in(plan.simulations) + in(plan.runs);
 }
 
-/// Why a job would run, as far as that can be told before its dataset is made.
+/// Why a job would run, as far as it is known before its dataset exists.
 std::string preview(const SweepJob& job, const fs::path& folder, JobInputs& inputs,
                     const std::set<fs::path>& to_be_made) {
   if (to_be_made.contains(job.dataset)) return "its dataset is to be simulated";
@@ -195,8 +192,8 @@ std::string preview(const SweepJob& job, const fs::path& folder, JobInputs& inpu
   return why_to_run(job, folder / "jobs" / job.name / "job.yaml", inputs.of(job));
 }
 
-/// A key that no simulation knows is better told now than by a thousand jobs.
-void check_some(const std::vector<SweepJob>& simulations) {
+/// Reports an unknown key before a thousand jobs do.
+void check_generated(const std::vector<SweepJob>& simulations) {
   std::vector<const SweepJob*> jobs;
   for (const SweepJob& job : simulations) jobs.push_back(&job);
   check_configurations(jobs, *make_launcher("local"));
@@ -207,29 +204,27 @@ void check_some(const std::vector<SweepJob>& simulations) {
 SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launcher& launcher,
                        const SweepOptions& options) {
   check_folder(folder);
-  const SweepPlan plan = plan_sweep(sweep, folder);
+  SweepPlan plan = plan_sweep(sweep, folder);
   fs::create_directories(folder);
   const FolderLock lock(folder);
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
-  if (sweep.generate) check_some(plan.simulations);
-  SweepStates states{std::vector(plan.simulations.size(), JobState::kUnknown),
-                     std::vector(plan.runs.size(), JobState::kUnknown)};
-  Phase simulations(plan.simulations, 0, folder, states.simulations);
+  if (sweep.generate) check_generated(plan.simulations);
+  Phase simulations(plan.simulations, 0, folder);
   bool complete =
       simulations.run(launcher, limits_of_simulations(sweep, options, launcher), "simulating");
-  for (int wave = 0; complete && wave < plan.waves(); ++wave) {
-    Phase runs(plan.runs, wave, folder, states.runs);
-    runs.fail_without_inputs(states.simulations);
+  for (int stage = 0; complete && stage < plan.stages(); ++stage) {
+    Phase runs(plan.runs, stage, folder);
+    runs.fail_without_inputs(plan.simulations);
     complete = runs.run(launcher, limits_of_runs(sweep, options, launcher),
-                        wave == 0 ? "running" : "running on");
+                        stage == 0 ? "running" : "running on");
   }
-  SweepSummary summary{count(states, JobState::kDone), count(states, JobState::kSkipped),
-                       count(states, JobState::kFailed), 0, !complete};
+  SweepSummary summary{count(plan, JobState::kDone), count(plan, JobState::kSkipped),
+                       count(plan, JobState::kFailed), 0, !complete};
   if (sweep.generate)
-    write_manifest(sweep, plan, states.simulations, folder);
+    write_manifest(sweep, plan, folder);
   else if (complete)
-    summary.missed = write_sweep_results(sweep, plan, states, folder);
+    summary.missed = write_sweep_results(sweep, plan, folder);
   return summary;
 }
 
@@ -247,8 +242,8 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
   if (due.empty()) return text;
   text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
   const std::unique_ptr<Launcher> here = make_launcher("local");
-  const int at_once = limits_of_simulations(sweep, options, *here).at_once;
-  return text + pilot_text(run_pilot(due, *here), due.size(), at_once);
+  const int parallel_jobs = limits_of_simulations(sweep, options, *here).parallel_jobs;
+  return text + calibration_text(run_calibration(due, *here), due.size(), parallel_jobs);
 }
 
 std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {

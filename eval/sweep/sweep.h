@@ -3,43 +3,43 @@
 #include <filesystem>
 #include <string>
 
-#include "eval/sweep/launcher.h"
-#include "eval/sweep/sweep_config.h"
+#include "eval/sweep/launch/launcher.h"
+#include "eval/sweep/plan/sweep_config.h"
 
 namespace saccade {
 
-/// How a sweep is run, beside what its file says.
+/// Options of the command line.
 struct SweepOptions {
-  int jobs = 0;  ///< runs at a time; 0: one per core. With `timing` always one
+  int jobs = 0;  ///< runs in parallel; 0: one per core. With `timing` always one
 };
 
-/// What became of a sweep.
+/// The outcome of a sweep, in numbers of jobs.
 struct SweepSummary {
-  std::size_t done = 0;     ///< now
-  std::size_t skipped = 0;  ///< done before, of the same inputs
+  std::size_t done = 0;     ///< by this call
+  std::size_t skipped = 0;  ///< done before, with the same inputs
   std::size_t failed = 0;
-  std::size_t missed = 0;  ///< expected figures
+  std::size_t missed = 0;  ///< expected metrics
   bool interrupted = false;
 };
 
-/// Where the sweep generates: makes its datasets, each with `threads` threads, and a manifest
-/// (write_manifest), which is written when it was interrupted, too. Else:
-/// Makes all datasets, runs and scores that are not there yet, then writes the table over all of
+/// Makes all datasets, runs and scores that do not exist yet, then writes the tables over all of
 /// them (write_sweep_results). `folder` holds sweep.yaml, data/NAME, runs/NAME,
-/// jobs/NAME/{job.yaml, log.txt}. Simulations go first and one at a time, because each of them uses
-/// all cores. A job that fails is reported on stderr with its command and the end of its log, and
-/// the others go on. InputError when `folder` holds something that is no sweep, or another program
-/// is at work in it.
+/// jobs/NAME/{job.yaml, log.txt}. Simulations run first and one at a time, because each uses all
+/// cores. A job that fails is reported on stderr with its command and the end of its log; the
+/// others continue. A sweep with `generate` makes its datasets, each with `threads` threads, and
+/// their manifest (write_manifest), which is also written after an interrupt. Throws InputError
+/// when `folder` holds anything but a sweep, or another program is writing to it.
 SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& folder,
                        Launcher& launcher, const SweepOptions& options = {});
 
-/// What a sweep that generates would still make: how many datasets, the first of their command
-/// lines, and what they take, from a pilot on this machine (run_pilot). Writes nothing but that.
+/// Estimates the cost of the datasets that a sweep with `generate` has still to make: their number,
+/// the first command line, and the events, disk space and time from a calibration run on this
+/// machine (run_calibration). Writes nothing.
 [[nodiscard]] std::string estimate_generation(const SweepConfig& sweep,
                                               const std::filesystem::path& folder,
                                               const SweepOptions& options = {});
 
-/// What run_sweep() would do: for each job its name, whether and why it would run, and its command
+/// What run_sweep() would do: of each job the name, whether and why it would run, and its command
 /// lines. Writes nothing.
 [[nodiscard]] std::string describe_sweep(const SweepConfig& sweep,
                                          const std::filesystem::path& folder);

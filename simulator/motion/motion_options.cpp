@@ -10,79 +10,132 @@ namespace saccade {
 namespace {
 
 constexpr double kUnitTolerance = 1e-3;
+/// Ranges that only mistakes leave.
+constexpr double kFarthest_m = 1e6;
+constexpr double kLargest_deg = 36000;
 
 /// The keys stand beside those of the position, not in a section of their own.
 void describe_orientation(config::Fields& fields, PresetOrientation& options) {
   const bool looks =
       fields.reading() ? fields.has("look_at") || fields.has("up") : options.look_at.has_value();
   if (looks) {
-    fields.value("look_at", options.look_at, "point in the middle of the picture [m]").required();
-    fields.value("up", options.up, "direction that is up in the picture");
+    fields
+        .value("look_at", options.look_at,
+               "Point in the world that stays at the principal point, in metres.")
+        .range(-kFarthest_m, kFarthest_m)
+        .required();
+    fields.value("up", options.up, "Direction in the world that points upwards in the image.")
+        .range(-kFarthest_m, kFarthest_m);
     fields.expect(options.up.norm() > 0, "up", "must not be zero");
     fields.expect(!fields.has("rotation_deg"), "rotation_deg", "cannot be combined with look_at");
   } else {
-    fields.value("rotation_deg", options.rotation_deg,
-                 "of the camera (z forward, y down): R = Rz Ry Rx");
+    fields
+        .value("rotation_deg", options.rotation_deg,
+               "Rotation of the camera (z forward, y down) about x, then y, then z, in degrees: R "
+               "= Rz Ry Rx.")
+        .range(-kLargest_deg, kLargest_deg);
   }
 }
 
 void describe_slider(config::Fields& fields, SliderOptions& options) {
-  fields.value("from", options.from, "position at the start [m]");
-  fields.value("direction", options.direction, "of the motion; its length does not matter");
+  fields.value("from", options.from, "Position at the start, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields
+      .value("direction", options.direction, "Direction of the motion; its length does not matter.")
+      .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.direction.norm() > 0, "direction", "must not be zero");
-  fields.value("distance_m", options.distance_m, "length of the way").at_least(0);
+  fields.value("distance_m", options.distance_m, "Length of the path, in metres.").at_least(0);
   fields.choice("profile", options.profile,
                 {{"constant", SpeedProfile::kConstant}, {"smooth", SpeedProfile::kSmooth}},
-                "speed over time; smooth starts and ends at rest");
+                "Speed over time: constant, or smooth, which starts and ends at rest.");
   describe_orientation(fields, options.orientation);
 }
 
 void describe_circle(config::Fields& fields, CircleOptions& options) {
-  fields.value("centre", options.centre, "centre of the circle [m]");
-  fields.value("normal", options.normal, "across the circle's plane");
-  fields.value("start", options.start, "direction from the centre to the first position");
+  fields.value("centre", options.centre, "Centre of the circle, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields.value("normal", options.normal, "Normal of the plane of the circle.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields.value("start", options.start, "Direction from the centre to the first position.")
+      .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.normal.norm() > 0, "normal", "must not be zero");
   fields.expect(options.normal.cross(options.start).norm() >
                     1e-6 * options.normal.norm() * options.start.norm(),
                 "start", "must not be parallel to the normal");
-  fields.value("radius_m", options.radius_m, "radius").above(0);
-  fields.value("revolutions", options.revolutions,
-               "turns within duration_s, counter-clockwise seen from the normal's tip");
+  fields.value("radius_m", options.radius_m, "Radius of the circle, in metres.").above(0);
+  fields
+      .value("revolutions", options.revolutions,
+             "Number of revolutions within duration_s, counter-clockwise as seen against the "
+             "normal; negative values are clockwise.")
+      .range(-1e6, 1e6);
   describe_orientation(fields, options.orientation);
 }
 
 void describe_lissajous(config::Fields& fields, LissajousOptions& options) {
-  fields.value("centre", options.centre, "mean position [m]");
-  fields.value("amplitude_m", options.position.amplitude, "of the position along x, y, z");
-  fields.value("frequency_hz", options.position.frequency_hz, "along x, y, z").range(0, 1000);
-  fields.value("phase_deg", options.position.phase_deg, "along x, y, z");
-  fields.value("rotation_amplitude_deg", options.rotation.amplitude, "about the camera's axes");
-  fields.value("rotation_frequency_hz", options.rotation.frequency_hz, "about the camera's axes")
+  fields.value("centre", options.centre, "Mean position, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields
+      .value("amplitude_m", options.position.amplitude,
+             "Amplitudes of the position along x, y and z, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields
+      .value("frequency_hz", options.position.frequency_hz,
+             "Frequencies of the position along x, y and z, in hertz.")
       .range(0, 1000);
-  fields.value("rotation_phase_deg", options.rotation.phase_deg, "about the camera's axes");
+  fields
+      .value("phase_deg", options.position.phase_deg,
+             "Phases of the position along x, y and z at time 0, in degrees.")
+      .range(-kLargest_deg, kLargest_deg);
+  fields
+      .value("rotation_amplitude_deg", options.rotation.amplitude,
+             "Amplitudes of the rotation about the axes of the camera, in degrees.")
+      .range(-kLargest_deg, kLargest_deg);
+  fields
+      .value("rotation_frequency_hz", options.rotation.frequency_hz,
+             "Frequencies of the rotation about the axes of the camera, in hertz.")
+      .range(0, 1000);
+  fields
+      .value("rotation_phase_deg", options.rotation.phase_deg,
+             "Phases of the rotation about the axes of the camera at time 0, in degrees.")
+      .range(-kLargest_deg, kLargest_deg);
   describe_orientation(fields, options.orientation);
 }
 
 void describe_shake(config::Fields& fields, ShakeOptions& options) {
-  fields.value("position", options.position, "mean position [m]");
-  fields.value("rotation_amplitude_deg", options.rotation_amplitude_deg, "about the camera's axes")
+  fields.value("position", options.position, "Mean position, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields
+      .value("rotation_amplitude_deg", options.rotation_amplitude_deg,
+             "Amplitudes of the rotation about the axes of the camera, in degrees.")
       .at_least(0);
-  fields.value("peak_rate_rad_s", options.peak_rate_rad_s, "greatest rate about the camera's axes")
+  fields
+      .value("peak_rate_rad_s", options.peak_rate_rad_s,
+             "Largest angular velocities about the axes of the camera, in rad/s; with the "
+             "amplitudes they fix the frequencies.")
       .above(0);
-  fields.value("translation_amplitude_m", options.translation_amplitude_m, "along x, y, z")
+  fields
+      .value("translation_amplitude_m", options.translation_amplitude_m,
+             "Amplitudes of the translation along x, y and z, in metres.")
       .at_least(0);
-  fields.value("translation_frequency_hz", options.translation_frequency_hz, "along x, y, z")
-      .range(0, 1000);
   describe_orientation(fields, options.orientation);
 }
 
 void describe_random(config::Fields& fields, RandomMotionOptions& options) {
-  fields.value("seed", options.seed, "of the motion");
-  fields.value("position", options.position, "mean position [m]");
-  fields.value("position_rms_m", options.position_rms_m, "strength along x, y, z").at_least(0);
-  fields.value("rotation_rms_deg", options.rotation_rms_deg, "strength about the camera's axes")
+  fields.value("seed", options.seed,
+               "Seed of the random motion; another seed gives another motion.");
+  fields.value("position", options.position, "Mean position, in metres.")
+      .range(-kFarthest_m, kFarthest_m);
+  fields
+      .value("position_rms_m", options.position_rms_m,
+             "Root mean square of the translation along x, y and z, in metres.")
+      .at_least(0);
+  fields
+      .value("rotation_rms_deg", options.rotation_rms_deg,
+             "Root mean square of the rotation about the axes of the camera, in degrees.")
       .range(0, 60);
-  fields.value("frequency_hz", options.frequency_hz, "lowest and highest frequency")
+  fields
+      .value("frequency_hz", options.frequency_hz,
+             "Lowest and highest frequency of the motion, in hertz.")
       .range(0.001, 1000);
   fields.expect(options.frequency_hz[0] <= options.frequency_hz[1], "frequency_hz",
                 "must be [lowest, highest]");
@@ -118,7 +171,8 @@ void expect_none(config::Fields& fields, const char* key, const std::string& pro
 void describe_control_poses(config::Fields& fields, MotionOptions& options) {
   fields
       .value("control_poses", options.control_poses,
-             "each tx ty tz qx qy qz qw, or t and these at even times")
+             "Control poses of the spline, each tx ty tz qx qy qz qw, or t before these at evenly "
+             "spaced times.")
       .required()
       .length(4, config::Rule::kAnyLength)
       .item_length(7, 8);
@@ -130,7 +184,10 @@ void describe_control_poses(config::Fields& fields, MotionOptions& options) {
   }
   const bool timed = !poses.empty() && poses[0].size() == 8;
   if (!timed) {
-    fields.value("knot_spacing_s", options.knot_spacing_s, "time between control poses").above(0);
+    fields
+        .value("knot_spacing_s", options.knot_spacing_s,
+               "Time between two control poses, in seconds.")
+        .above(0);
     return;
   }
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -142,14 +199,18 @@ void describe_control_poses(config::Fields& fields, MotionOptions& options) {
 void describe_waypoints(config::Fields& fields, MotionOptions& options) {
   const bool views = fields.reading() ? fields.has("views") : !options.views.empty();
   if (views) {
-    fields.list("views", options.views, "waypoints, each with t_s, position and orientation")
+    fields
+        .list("views", options.views,
+              "Waypoints by hand, each with its time, position and orientation.")
         .length(2, config::Rule::kAnyLength);
     for (std::size_t i = 1; i < options.views.size(); ++i)
       expect_none(fields, "views",
                   order_problem(options.views[i - 1].t_s, options.views[i].t_s, i));
     return;
   }
-  fields.value("waypoints", options.waypoints, "each t tx ty tz qx qy qz qw [s, m]")
+  fields
+      .value("waypoints", options.waypoints,
+             "Waypoints, each t tx ty tz qx qy qz qw, in seconds and metres.")
       .required()
       .length(2, config::Rule::kAnyLength)
       .item_length(8, 8);
@@ -161,14 +222,19 @@ void describe_waypoints(config::Fields& fields, MotionOptions& options) {
 }
 
 void describe_fit(config::Fields& fields, MotionOptions& options) {
-  fields.choice("fit", options.fit, {{"interpolate", Fit::kInterpolate}, {"smooth", Fit::kSmooth}},
-                "through every pose, or least squares for recorded motion");
+  fields.choice(
+      "fit", options.fit, {{"interpolate", Fit::kInterpolate}, {"smooth", Fit::kSmooth}},
+      "Whether the spline passes through every pose, or fits recorded motion in least squares.");
   if (options.fit == Fit::kSmooth)
-    fields.value("knot_spacing_s", options.knot_spacing_s, "knots of the smooth spline").above(0);
+    fields
+        .value(
+            "knot_spacing_s", options.knot_spacing_s,
+            "Time between two knots of the smooth spline, in seconds; larger values smooth more.")
+        .above(0);
 }
 
 void describe_preset(config::Fields& fields, MotionOptions& options) {
-  fields.value("duration_s", options.duration_s, "how long the motion lasts")
+  fields.value("duration_s", options.duration_s, "Duration of the motion, in seconds.")
       .above(0)
       .at_most(3600);
   switch (options.source) {
@@ -188,8 +254,10 @@ void describe_preset(config::Fields& fields, MotionOptions& options) {
 }  // namespace
 
 void describe(config::Fields& fields, ViewOptions& options) {
-  fields.value("t_s", options.t_s, "time of the waypoint").required();
-  fields.value("position", options.position, "of the camera [m]").required();
+  fields.value("t_s", options.t_s, "Time of the waypoint, in seconds.").range(-1e9, 1e9).required();
+  fields.value("position", options.position, "Position of the camera, in metres.")
+      .range(-kFarthest_m, kFarthest_m)
+      .required();
   describe_orientation(fields, options.orientation);
 }
 
@@ -204,7 +272,7 @@ void describe(config::Fields& fields, MotionOptions& options) {
                {"lissajous", MotionSource::kLissajous},
                {"shake", MotionSource::kShake},
                {"random_6dof", MotionSource::kRandom6Dof}},
-              "where the motion comes from")
+              "Source of the motion.")
       .required();
   switch (options.source) {
     case MotionSource::kControlPoses:
@@ -215,17 +283,21 @@ void describe(config::Fields& fields, MotionOptions& options) {
       describe_fit(fields, options);
       break;
     case MotionSource::kFile:
-      fields.path("file", options.file, "TUM or ECD text in s, or rpg_esim's CSV in ns")
+      fields
+          .path("file", options.file,
+                "File of poses: TUM or ECD text in seconds, or the CSV of rpg_esim in nanoseconds.")
           .required()
           .must_exist();
-      fields.value("rest_s", options.rest_s, "the camera stands at the first pose before it moves")
+      fields
+          .value("rest_s", options.rest_s,
+                 "Time for which the camera rests at the first pose before it moves, in seconds.")
           .range(0, 3600);
       describe_fit(fields, options);
       break;
     default:
       describe_preset(fields, options);
   }
-  fields.section("transform", options.transform, "places the motion in the scene");
+  fields.section("transform", options.transform, "Transform of the trajectory into the scene.");
   const Eigen::Vector3d& scale = options.transform.scale;
   fields.expect((scale.array() == scale.x()).all(), "transform",
                 "a trajectory's scale is one number");

@@ -12,9 +12,9 @@
 
 namespace saccade {
 
-/// Where the camera (x right, y down, z forward) looks: a fixed rotation world_from_camera = Rz Ry
-/// Rx, or towards a point with `up` upwards in the picture. [-90, 0, 0] degrees looks level along
-/// +y.
+/// Orientation of the camera (x right, y down, z forward): a fixed rotation
+///   world_from_camera = Rz Ry Rx
+/// or towards a point with `up` upwards in the image. [-90, 0, 0] degrees looks level along +y.
 struct PresetOrientation {
   Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> look_at;  ///< [m], instead of rotation_deg
@@ -47,16 +47,16 @@ struct SliderOptions {
 struct CircleOptions {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d start = Eigen::Vector3d::UnitX();  ///< its part in the plane counts
+  Eigen::Vector3d start = Eigen::Vector3d::UnitX();
   double radius_m = 1;
-  double revolutions = 1;  ///< negative: clockwise
+  double revolutions = 1;
   PresetOrientation orientation;
 };
 
 /// amplitude * sin(2 pi frequency t + phase) along each axis.
 struct Oscillation {
-  Eigen::Vector3d amplitude = Eigen::Vector3d::Zero();     ///< [m] or [deg]
-  Eigen::Vector3d frequency_hz = Eigen::Vector3d::Ones();  ///< >= 0
+  Eigen::Vector3d amplitude = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d frequency_hz = Eigen::Vector3d::Ones();
   Eigen::Vector3d phase_deg = Eigen::Vector3d::Zero();
 };
 
@@ -85,8 +85,8 @@ struct RandomMotionOptions {
   std::uint64_t seed = 1;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   PresetOrientation orientation;
-  Eigen::Vector3d position_rms_m{0.2, 0.2, 0.2};  ///< over a long time, along world axes
-  Eigen::Vector3d rotation_rms_deg{8, 8, 8};      ///< of the rotation vector, camera axes
+  Eigen::Vector3d position_rms_m{0.2, 0.2, 0.2};
+  Eigen::Vector3d rotation_rms_deg{8, 8, 8};
   std::array<double, 2> frequency_hz{0.2, 1.0};
 };
 
@@ -109,15 +109,15 @@ struct MotionOptions {
   MotionSource source = MotionSource::kFile;
   TransformOptions transform;  ///< world from trajectory; one scale factor, which scales positions
 
-  std::vector<std::vector<double>> control_poses;  ///< tx ty tz qx qy qz qw, or t before them
-  std::vector<std::vector<double>> waypoints;      ///< t tx ty tz qx qy qz qw
-  std::vector<ViewOptions> views;                  ///< instead of waypoints
+  std::vector<std::vector<double>> control_poses;
+  std::vector<std::vector<double>> waypoints;
+  std::vector<ViewOptions> views;  ///< instead of waypoints
   std::filesystem::path file;
   Fit fit = Fit::kInterpolate;
-  double knot_spacing_s = 0.04;  ///< of control poses without times and of Fit::kSmooth
-  double rest_s = 0;             ///< of kFile: the camera stands at the first pose before it moves
+  double knot_spacing_s = 0.04;
+  double rest_s = 0;
 
-  double duration_s = 1;  ///< of the presets
+  double duration_s = 1;
   SliderOptions slider;
   CircleOptions circle;
   LissajousOptions lissajous;

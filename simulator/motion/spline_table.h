@@ -17,7 +17,7 @@ struct CameraFrame {
   Eigen::Vector3d position;
 };
 
-/// A stretch of a spline as cubic Hermite pieces of all twelve entries of [R | p], ten times faster
+/// An interval of a spline as cubic Hermite pieces of all twelve entries of [R | p], ten times faster
 /// to evaluate. Pieces are halved until, at the middle of every one, no entry is off the spline by
 /// more than 1e-9 (or a piece is shorter than 5 us), which is 2e-7 px for a focal length of 200 px.
 class SplineTable {
@@ -27,7 +27,7 @@ class SplineTable {
 
   [[nodiscard]] double to_s() const { return from_s_ + length_s_; }
 
-  /// `t_s` within the stretch.
+  /// `t_s` within the interval.
   [[nodiscard]] CameraFrame at(double t_s) const {
     const double position = (t_s - from_s_) * pieces_per_s_;
     const std::size_t index =

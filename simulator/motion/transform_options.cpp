@@ -9,9 +9,11 @@
 namespace saccade {
 
 void describe(config::Fields& fields, TransformOptions& options) {
-  fields.value("translation", options.translation, "position [m]");
-  fields.value("rotation_deg", options.rotation_deg, "about x, then y, then z");
-  const char* const help = "one factor, or one for each of x, y, z; before the rotation";
+  fields.value("translation", options.translation, "Translation, in metres.").range(-1e6, 1e6);
+  fields
+      .value("rotation_deg", options.rotation_deg, "Rotation about x, then y, then z, in degrees.")
+      .range(-36000, 36000);
+  const char* const help = "Scale before the rotation: one factor, or one each for x, y and z.";
   const Eigen::Vector3d& scale = options.scale;
   const bool one_number = fields.reading() ? fields.form("scale") != config::Form::kList
                                            : scale.x() == scale.y() && scale.x() == scale.z();

@@ -10,9 +10,9 @@ class Fields;
 
 /// Scale, then rotation R = Rz Ry Rx, then translation.
 struct TransformOptions {
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< [m]
-  Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();  ///< about x, y and z
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();         ///< > 0; one number or three
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< > 0; one number or three
 };
 
 void describe(config::Fields& fields, TransformOptions& options);

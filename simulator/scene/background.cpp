@@ -5,7 +5,7 @@
 
 namespace saccade {
 
-SurfaceLook Background::map_look(const Eigen::Vector3d& direction) const {
+SurfaceSample Background::sample_map(const Eigen::Vector3d& direction) const {
   const double azimuth = std::atan2(direction.y(), direction.x());
   const double elevation = std::atan2(direction.z(), direction.head<2>().norm());
   const double u = 0.5 - azimuth / (2 * std::numbers::pi);

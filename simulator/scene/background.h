@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/scene.h"
-#include "simulator/scene/texture.h"
+#include "simulator/scene/texture/texture.h"
 
 namespace saccade {
 
@@ -18,12 +18,12 @@ class Background {
       : map_(std::make_shared<Texture>(std::move(map), Wrap::kRepeat, Wrap::kClamp)) {}
 
   /// What is seen along `direction` (not zero, of any length).
-  [[nodiscard]] SurfaceLook look(const Eigen::Vector3d& direction) const {
-    return map_ ? map_look(direction) : SurfaceLook{.x = radiance_};
+  [[nodiscard]] SurfaceSample sample(const Eigen::Vector3d& direction) const {
+    return map_ ? sample_map(direction) : SurfaceSample{.x = radiance_};
   }
 
  private:
-  [[nodiscard]] SurfaceLook map_look(const Eigen::Vector3d& direction) const;
+  [[nodiscard]] SurfaceSample sample_map(const Eigen::Vector3d& direction) const;
 
   double radiance_ = 0;
   std::shared_ptr<const Texture> map_;

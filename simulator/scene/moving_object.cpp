@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// Each stretch has pieces as short as its own motion asks for.
+/// Each interval has pieces as short as its own motion asks for.
 constexpr double kStretch_s = 0.05;
 
 }  // namespace

@@ -39,7 +39,7 @@ class MovingObject {
   Spline world_from_object_;
   Eigen::AlignedBox3d box_;
   double tables_per_s_;
-  std::vector<SplineTable> tables_;  ///< of equal stretches of the spline
+  std::vector<SplineTable> tables_;  ///< of equal intervals of the spline
 };
 
 }  // namespace saccade

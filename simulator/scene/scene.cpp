@@ -17,30 +17,30 @@ constexpr double kFarthest = 1e12;
 /// Rays through a shared edge must meet at least one of its triangles, whatever the rounding.
 constexpr double kEdgeTolerance = 1e-10;
 
-/// Triangles this share of the scene's size before a plane count as lying in it: what single
+/// Triangles this fraction of the scene's size before a plane count as lying in it: what single
 /// precision leaves of neighbours in one plane.
-constexpr double kSamePlane = 3e-7;
+constexpr double kCoplanar = 3e-7;
 
-/// As Scene::look() has it; everything in the surface's frame.
+/// As Scene::sample_surface() has it; everything in the surface's frame.
 double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction, double distance,
-                const RaySpread& spread) {
+                const RayDifferential& differential) {
   const Eigen::Vector3d& normal = surface.plane.gradient;
   const auto texels = [&](const Eigen::Vector3d& change) {
     const Eigen::Vector3d shift =
         distance * (change - normal.dot(change) / normal.dot(direction) * direction);
     return std::hypot(surface.x.gradient.dot(shift), surface.y.gradient.dot(shift));
   };
-  return std::max(0.0, std::log2(std::max(texels(spread.right), texels(spread.down))));
+  return std::max(0.0, std::log2(std::max(texels(differential.right), texels(differential.down))));
 }
 
-/// What is nearer than `farthest_m` of z depth. Such pyramids are narrow and move little, so that a
-/// plane before the first one, with some room, stands for all.
-AffineForm nearer_than(double farthest_m, const SightPyramid& pyramid) {
-  constexpr double kRoom = 1.2;
+/// What is nearer than `farthest_m` of z depth. Such frusta are narrow and move little, so that a
+/// plane before the first one, with some margin, stands for all.
+AffineForm nearer_than(double farthest_m, const Frustum& frustum) {
+  constexpr double kMargin = 1.2;
   if (!std::isfinite(farthest_m)) return {Eigen::Vector3d::Zero(), 1};
-  const Eigen::Vector3d middle = 0.5 * (pyramid.corners[0] + pyramid.corners[2]);
+  const Eigen::Vector3d middle = 0.5 * (frustum.corners[0] + frustum.corners[2]);
   const Eigen::Vector3d axis = middle.normalized();
-  return {-axis, axis.dot(pyramid.eye) + kRoom * farthest_m * axis.dot(middle)};
+  return {-axis, axis.dot(frustum.eye) + kMargin * farthest_m * axis.dot(middle)};
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
 
 LitPoint Scene::State::surface_point(const Ray& ray, double distance, TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
-  if (surface.body == kStill) return local_point(ray, distance, triangle);
+  if (surface.body == kStaticBody) return local_point(ray, distance, triangle);
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
   const LitPoint local = local_point(in_frame(frame, ray), distance, triangle);
   return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
@@ -75,7 +75,7 @@ LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId t
   return {point, side * plane.gradient, side * normal.normalized(), ray.time_s};
 }
 
-SurfaceLook Scene::State::look(const Ray& ray, const TriangleSurface& surface) const {
+SurfaceSample Scene::State::sample_surface(const Ray& ray, const TriangleSurface& surface) const {
   const double distance = distance_to(surface.plane, ray);
   // A ray that grazes the triangle's plane may miss it by far: nothing of it is to be seen there.
   if (!(distance > 0 && distance < kFarthest)) return {};
@@ -83,7 +83,7 @@ SurfaceLook Scene::State::look(const Ray& ray, const TriangleSurface& surface) c
   return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
 }
 
-double Scene::State::inside(const Ray& ray, TriangleId triangle) const {
+double Scene::State::min_barycentric(const Ray& ray, TriangleId triangle) const {
   const double distance = distance_to(surfaces[triangle].plane, ray);
   if (!(distance > 0 && distance < kFarthest)) return -1;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
@@ -103,38 +103,39 @@ void Scene::visible(std::span<const Ray> rays, std::span<TriangleId> triangles) 
 }
 
 TriangleId Scene::visible_exactly(const Ray& ray) const {
-  constexpr double kFarther = 1.1;  // less than the room of nearer_than()
+  constexpr double kFarther = 1.1;  // less than the margin of nearer_than()
   constexpr double kAround = 1e-5;  // of the direction's length: far above single precision
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   const double half = kAround * ray.direction.norm();
   const Eigen::Vector3d right = half * ray.direction.unitOrthogonal();
   const Eigen::Vector3d down = half * ray.direction.cross(right).normalized();
-  const SightPyramid around{ray.origin,
-                            {ray.direction - right - down, ray.direction + right - down,
-                             ray.direction + right + down, ray.direction - right + down},
-                            ray.time_s};
+  const Frustum around{ray.origin,
+                       {ray.direction - right - down, ray.direction + right - down,
+                        ray.direction + right + down, ray.direction - right + down},
+                       ray.time_s};
   // What single precision sees is as far as a search needs to go, if it is met at all.
   TriangleId guess = kNothing;
   visible({&ray, 1}, {&guess, 1});
   std::vector<TriangleId> triangles;
   const auto nearest_up_to = [&](double farthest) {
     static_cast<void>(collect({&around, 1}, farthest, kAll, triangles));
-    return nearest_of(triangles, ray);
+    return nearest_among(triangles, ray);
   };
   if (guess != kNothing) {
-    const double distance = look(ray, guess).distance;
+    const double distance = sample_surface(ray, guess).distance;
     const TriangleId nearest = nearest_up_to(distance);
-    if (nearest != kNothing && look(ray, nearest).distance <= distance * kFarther) return nearest;
+    if (nearest != kNothing && sample_surface(ray, nearest).distance <= distance * kFarther)
+      return nearest;
   }
   return nearest_up_to(std::numeric_limits<double>::infinity());
 }
 
-TriangleId Scene::nearest_of(std::span<const TriangleId> triangles, const Ray& ray) const {
+TriangleId Scene::nearest_among(std::span<const TriangleId> triangles, const Ray& ray) const {
   TriangleId nearest = kNothing;
   double least = std::numeric_limits<double>::infinity();
   for (const TriangleId triangle : triangles) {
-    if (!meets(ray, triangle)) continue;
-    const double distance = look(ray, triangle).distance;
+    if (!intersects(ray, triangle)) continue;
+    const double distance = sample_surface(ray, triangle).distance;
     if (!(distance < least)) continue;
     nearest = triangle;
     least = distance;
@@ -143,43 +144,46 @@ TriangleId Scene::nearest_of(std::span<const TriangleId> triangles, const Ray& r
 }
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
-  SurfaceLook seen = look(ray, triangle);
+  SurfaceSample seen = sample_surface(ray, triangle);
   illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
   return {seen.radiance(), seen.distance};
 }
 
-SurfaceLook Scene::look(const Ray& ray, TriangleId triangle) const {
-  if (triangle == kNothing) return state_->background.look(ray.direction);
+SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
+  if (triangle == kNothing) return state_->background.sample(ray.direction);
   const TriangleSurface& surface = state_->surfaces[triangle];
-  const SurfaceLook seen = state_->in_frame_of(
-      surface.body, ray, [&](const Ray& local) { return state_->look(local, surface); });
-  return seen.distance > 0 ? seen : state_->background.look(ray.direction);
+  const SurfaceSample seen = state_->in_frame_of(
+      surface.body, ray, [&](const Ray& local) { return state_->sample_surface(local, surface); });
+  return seen.distance > 0 ? seen : state_->background.sample(ray.direction);
 }
 
-SurfaceLook Scene::look(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
-  SurfaceLook seen = look(ray, triangle);
+SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
+                                    const RayDifferential& differential) const {
+  SurfaceSample seen = sample_surface(ray, triangle);
   if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
   const TriangleSurface& surface = state_->surfaces[triangle];
-  if (surface.body == kStill) {
-    seen.level = level_of(surface, ray.direction, seen.distance, spread);
+  if (surface.body == kStaticBody) {
+    seen.level = level_of(surface, ray.direction, seen.distance, differential);
   } else {
     const Eigen::Matrix3d body_from_world =
         state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
-    seen.level = level_of(surface, body_from_world * ray.direction, seen.distance,
-                          {body_from_world * spread.right, body_from_world * spread.down});
+    seen.level =
+        level_of(surface, body_from_world * ray.direction, seen.distance,
+                 {body_from_world * differential.right, body_from_world * differential.down});
   }
   return seen;
 }
 
-Shade Scene::shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const {
-  SurfaceLook seen = look(ray, triangle, spread);
+Shade Scene::shade(const Ray& ray, TriangleId triangle, const RayDifferential& differential) const {
+  SurfaceSample seen = sample_surface(ray, triangle, differential);
   illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
   return {seen.radiance(), seen.distance};
 }
 
-TexelMap Scene::texel_map(TriangleId triangle, const Eigen::Vector3d& position,
-                          const Eigen::Matrix3d& world_from_camera) const {
-  SACCADE_CHECK(triangle < state_->surfaces.size() && state_->surfaces[triangle].body == kStill);
+TexelHomography Scene::texel_homography(TriangleId triangle, const Eigen::Vector3d& position,
+                                        const Eigen::Matrix3d& world_from_camera) const {
+  SACCADE_CHECK(triangle < state_->surfaces.size() &&
+                state_->surfaces[triangle].body == kStaticBody);
   const TriangleSurface& surface = state_->surfaces[triangle];
   const Eigen::Vector3d& normal = surface.plane.gradient;
   const double depth = -surface.plane.at(position);
@@ -191,123 +195,123 @@ TexelMap Scene::texel_map(TriangleId triangle, const Eigen::Vector3d& position,
 }
 
 void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
-                       std::span<SurfaceLook> looks) const {
+                       std::span<SurfaceSample> samples) const {
   SACCADE_CHECK(rays.size() <= kPacket && triangles.size() == rays.size() &&
-                looks.size() == rays.size());
+                samples.size() == rays.size());
   if (!state_->illumination) return;
   std::array<LitPoint, kPacket> points;
-  std::array<LampSet, kPacket> lamps;
+  std::array<LightSet, kPacket> lights;
   std::array<std::size_t, kPacket> owners;
   std::size_t n = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!(looks[i].distance > 0)) continue;
-    points[n] = state_->surface_point(rays[i], looks[i].distance, triangles[i]);
+    if (!(samples[i].distance > 0)) continue;
+    points[n] = state_->surface_point(rays[i], samples[i].distance, triangles[i]);
     owners[n++] = i;
   }
-  state_->illumination->find_lamps({points.data(), n}, *state_->visibility, {lamps.data(), n});
+  state_->illumination->find_unoccluded_lights({points.data(), n}, *state_->visibility,
+                                               {lights.data(), n});
   for (std::size_t k = 0; k < n; ++k) {
-    SurfaceLook& look = looks[owners[k]];
-    look.lamps = lamps[k];
-    look.irradiance = state_->illumination->from_lamps(points[k], lamps[k]);
+    SurfaceSample& surface = samples[owners[k]];
+    surface.lights = lights[k];
+    surface.irradiance = state_->illumination->irradiance(points[k], lights[k]);
   }
 }
 
-double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceLook& look) const {
-  if (!state_->illumination || !(look.distance > 0)) return 1;
-  return state_->illumination->from_lamps(state_->surface_point(ray, look.distance, triangle),
-                                          look.lamps);
+double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
+  if (!state_->illumination || !(surface.distance > 0)) return 1;
+  return state_->illumination->irradiance(state_->surface_point(ray, surface.distance, triangle),
+                                          surface.lights);
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
 
-bool Scene::meets(const Ray& ray, TriangleId triangle) const {
+bool Scene::intersects(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return false;
   const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
   return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    return state_->inside(local, triangle) >= -kEdgeTolerance &&
+    return state_->min_barycentric(local, triangle) >= -kEdgeTolerance &&
            (triangle < opaque || state_->is_opaque(local, triangle));
   });
 }
 
-double Scene::inside(const Ray& ray, TriangleId triangle) const {
+double Scene::min_barycentric(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return -1;
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray,
-                             [&](const Ray& local) { return state_->inside(local, triangle); });
-}
-
-const OccluderTree& Scene::State::occluders(std::size_t body) {
-  std::call_once(trees_built, [this] {
-    for (const OccluderSource& source : occluder_sources)
-      trees.emplace_back(source.corners, source.ids);
-    occluder_sources = {};
+  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
+    return state_->min_barycentric(local, triangle);
   });
-  return trees[body];
 }
 
-bool Scene::is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const {
+const TriangleBvh& Scene::State::bvh(std::size_t body) {
+  std::call_once(bvhs_built, [this] {
+    for (const BvhTriangles& source : bvh_triangles) bvhs.emplace_back(source.corners, source.ids);
+    bvh_triangles = {};
+  });
+  return bvhs[body];
+}
+
+bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta) const {
   if (triangle == kNothing)
-    return !state_->occluders(0).may_show(sweep, {Eigen::Vector3d::Zero(), 1});
+    return !state_->bvh(0).may_intersect(frusta, {Eigen::Vector3d::Zero(), 1});
   if (triangle >= state_->surfaces.size() - state_->cutouts.size()) return false;
   const TriangleSurface& surface = state_->surfaces[triangle];
-  if (surface.body != kStill) return false;
-  for (const SightPyramid& pyramid : sweep)
-    for (const Eigen::Vector3d& corner : pyramid.corners)
-      if (state_->inside({pyramid.eye, corner}, triangle) < 0) return false;
+  if (surface.body != kStaticBody) return false;
+  for (const Frustum& frustum : frusta)
+    for (const Eigen::Vector3d& corner : frustum.corners)
+      if (state_->min_barycentric({frustum.eye, corner}, triangle) < 0) return false;
   // On the eye's side of the plane; what lies in the plane itself, to single precision, is not.
   AffineForm front = surface.plane;
-  if (front.at(sweep.front().eye) < 0) front = {-front.gradient, -front.offset};
-  front.offset -= kSamePlane * state_->size_m;
-  return !state_->occluders(0).may_show(sweep, front);
+  if (front.at(frusta.front().eye) < 0) front = {-front.gradient, -front.offset};
+  front.offset -= kCoplanar * state_->size_m;
+  return !state_->bvh(0).may_intersect(frusta, front);
 }
 
-bool Scene::collect(std::span<const SightPyramid> sweep, double farthest_m, std::size_t most,
+bool Scene::collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
                     std::vector<TriangleId>& found) const {
   found.clear();
-  if (!state_->occluders(0).collect(sweep, nearer_than(farthest_m, sweep.front()), most, found))
+  if (!state_->bvh(0).collect(frusta, nearer_than(farthest_m, frusta.front()), most, found))
     return false;
-  std::vector<SightPyramid> local(sweep.size());
+  std::vector<Frustum> local(frusta.size());
   for (std::size_t k = 0; k < moving_objects().size(); ++k) {
-    for (std::size_t m = 0; m < sweep.size(); ++m) {
-      const CameraFrame frame = moving_objects()[k].frame(sweep[m].time_s);
-      local[m].eye = frame.rotation.transpose() * (sweep[m].eye - frame.position);
+    for (std::size_t m = 0; m < frusta.size(); ++m) {
+      const CameraFrame frame = moving_objects()[k].frame(frusta[m].time_s);
+      local[m].eye = frame.rotation.transpose() * (frusta[m].eye - frame.position);
       for (std::size_t c = 0; c < local[m].corners.size(); ++c)
-        local[m].corners[c] = frame.rotation.transpose() * sweep[m].corners[c];
+        local[m].corners[c] = frame.rotation.transpose() * frusta[m].corners[c];
     }
-    if (!state_->occluders(k + 1).collect(local, nearer_than(farthest_m, local.front()), most,
-                                          found))
+    if (!state_->bvh(k + 1).collect(local, nearer_than(farthest_m, local.front()), most, found))
       return false;
   }
   return true;
 }
 
-TrianglePass Scene::triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
-                                  const Eigen::Matrix3d& world_from_camera, double time_s) const {
+EdgeFunctions Scene::edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
+                                    const Eigen::Matrix3d& world_from_camera, double time_s) const {
   const std::uint32_t body = state_->surfaces[triangle].body;
-  if (body == kStill) return state_->triangle_pass(triangle, position, world_from_camera);
+  if (body == kStaticBody) return state_->edge_functions(triangle, position, world_from_camera);
   const CameraFrame frame = moving_objects()[body].frame(time_s);
-  return state_->triangle_pass(triangle, frame.rotation.transpose() * (position - frame.position),
-                               frame.rotation.transpose() * world_from_camera);
+  return state_->edge_functions(triangle, frame.rotation.transpose() * (position - frame.position),
+                                frame.rotation.transpose() * world_from_camera);
 }
 
 bool Scene::is_cut_out(TriangleId triangle) const {
   return triangle >= state_->surfaces.size() - state_->cutouts.size() && triangle != kNothing;
 }
 
-CutoutLook Scene::cutout_look(const Ray& ray, TriangleId triangle) const {
+CutoutSample Scene::sample_cutout(const Ray& ray, TriangleId triangle) const {
   SACCADE_CHECK(is_cut_out(triangle));
   return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
     const double distance = distance_to(state_->surfaces[triangle].plane, local);
-    if (!(distance > 0 && distance < kFarthest)) return CutoutLook();
+    if (!(distance > 0 && distance < kFarthest)) return CutoutSample();
     const Cutout& cutout =
         state_->cutouts[triangle - (state_->surfaces.size() - state_->cutouts.size())];
     const Eigen::Vector3d point = local.origin + distance * local.direction;
-    return CutoutLook{cutout.x.at(point), cutout.y.at(point), distance,
-                      cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point))};
+    return CutoutSample{cutout.x.at(point), cutout.y.at(point), distance,
+                        cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point))};
   });
 }
 
-TrianglePass Scene::State::triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
-                                         const Eigen::Matrix3d& body_from_camera) const {
+EdgeFunctions Scene::State::edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
+                                           const Eigen::Matrix3d& body_from_camera) const {
   const AffineForm& plane = surfaces[triangle].plane;
   const TriangleInterior& interior = interiors[triangle];
   const double depth = -plane.at(position);
@@ -326,7 +330,7 @@ std::span<const MovingObject> Scene::moving_objects() const {
 }
 
 const MovingObject* Scene::moving_object(TriangleId triangle) const {
-  if (triangle == kNothing || state_->surfaces[triangle].body == kStill) return nullptr;
+  if (triangle == kNothing || state_->surfaces[triangle].body == kStaticBody) return nullptr;
   return &moving_objects()[state_->surfaces[triangle].body];
 }
 

@@ -9,11 +9,11 @@
 
 #include <Eigen/Core>
 
-#include "simulator/scene/texture.h"
+#include "simulator/scene/texture/texture.h"
 
 namespace saccade {
 
-/// A triangle of the scene, numbered over all meshes; kNothing where a ray meets none.
+/// A triangle of the scene, numbered over all meshes; kNothing where a ray intersects none.
 using TriangleId = std::uint32_t;
 constexpr TriangleId kNothing = std::numeric_limits<TriangleId>::max();
 
@@ -27,33 +27,33 @@ struct Ray {
 
 /// How much the direction of a ray differs from those of the next rays to the right and below, in
 /// the world and in units of the direction: the ray stands for the parallelogram between them.
-struct RaySpread {
+struct RayDifferential {
   Eigen::Vector3d right;
   Eigen::Vector3d down;
 };
 
 /// What is in view through a rectangle of the image: from the eye through its corners, which are in
 /// order around it.
-struct SightPyramid {
+struct Frustum {
   Eigen::Vector3d eye;
   std::array<Eigen::Vector3d, 4> corners;  ///< directions
   double time_s = 0;                       ///< at which it sees the moving objects
 };
 
 /// Lamps by their place in the list of lights, one bit each.
-using LampSet = std::uint64_t;
-constexpr std::size_t kMostLamps = 64;
+using LightSet = std::uint64_t;
+constexpr std::size_t kMaxLights = 64;
 
 /// What the radiance of a visible point is made of: irradiance * factor * texture(x, y, level),
 /// without a texture irradiance * x.
-struct SurfaceLook {
+struct SurfaceSample {
   const Texture* texture = nullptr;
   double x = 0, y = 0;    ///< texel coordinates; without a texture x is the albedo
   double factor = 1;      ///< multiplies the texture
   double irradiance = 1;  ///< under lights; else 1
   double distance = 0;    ///< along Ray::direction [its length]; 0 = background
   double level = 0;       ///< of the texture's pyramid; <= 0: the texture itself
-  LampSet lamps = 0;      ///< that light the point
+  LightSet lights = 0;    ///< that light the point
 
   [[nodiscard]] double radiance() const {
     if (texture == nullptr) return irradiance * x;
@@ -62,20 +62,21 @@ struct SurfaceLook {
   }
 };
 
-/// Texel coordinates on the plane of a triangle that stands still, for all rays of a camera at one
-/// instant: the ray d meets x = (x . d) / (w . d), y = (y . d) / (w . d) at the distance depth / (w
-/// . d).
-struct TexelMap {
+/// The homography from the rays of a camera to the texels on the plane of a static triangle, at one
+/// instant (Hartley and Zisserman, 2nd ed., 8.1): the ray d intersects the plane at
+///   x = (x . d) / (w . d),   y = (y . d) / (w . d),   distance = depth / (w . d)
+struct TexelHomography {
   Eigen::Vector3d x, y, w;
   double depth;
   const Texture* texture;  ///< nullptr: x is the albedo
   double factor;
 };
 
-/// Where the rays of a camera pass a triangle: the ray d meets its plane at the distance depth / (w
-/// . d), inside the edges where all edge . d have one sign. All of it is smooth in time, also while
-/// the plane goes through the camera.
-struct TrianglePass {
+/// The edge functions of a triangle for the rays of a camera (Pineda, SIGGRAPH 1988): the ray d is
+/// inside the edges where all edge . d have one sign, and intersects the plane at the distance
+///   depth / (w . d)
+/// All of it is smooth in time, also while the plane goes through the camera.
+struct EdgeFunctions {
   std::array<Eigen::Vector3d, 3> edges;
   Eigen::Vector3d w;
   double depth;
@@ -87,15 +88,15 @@ struct Shade {
   double distance = 0;  ///< along Ray::direction [its length]; 0 = background
 };
 
-/// Where a ray meets the plane of a triangle that is cut out.
-struct CutoutLook {
+/// Where a ray intersects the plane of a triangle that is cut out.
+struct CutoutSample {
   double x = 0, y = 0;  ///< texel coordinates of its alpha map
   double distance = 0;  ///< along Ray::direction [its length]; 0: not met
   double opacity = 0;   ///< opaque from 0.5 on
 };
 
 class MovingObject;
-struct PatchLight;
+struct PatchLighting;
 
 /// Everything that reflects or emits light, immutable after loading; all members are thread-safe
 /// and deterministic. Visibility comes from Embree (float); the point that is seen and its radiance
@@ -114,81 +115,84 @@ class Scene {
   /// The same for one ray, in double precision throughout: exact next to edges, but many times
   /// slower. Builds the trees of collect() when first asked.
   [[nodiscard]] TriangleId visible_exactly(const Ray& ray) const;
-  /// The nearest of `triangles` along a ray, in double precision; kNothing where it meets none.
-  [[nodiscard]] TriangleId nearest_of(std::span<const TriangleId> triangles, const Ray& ray) const;
+  /// The nearest of `triangles` along a ray, in double precision; kNothing where it intersects none.
+  [[nodiscard]] TriangleId nearest_among(std::span<const TriangleId> triangles,
+                                         const Ray& ray) const;
 
-  /// Radiance and distance where `ray` meets the plane of `triangle` (inside it or, for a ray that
+  /// Radiance and distance where `ray` intersects the plane of `triangle` (inside it or, for a ray that
   /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
   /// The same with the texture's mean over the ray's footprint.
-  [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle, const RaySpread& spread) const;
+  [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle,
+                            const RayDifferential& differential) const;
 
-  /// Where `ray` meets the plane of `triangle`, as shade() has it, in terms of its texture and
+  /// Where `ray` intersects the plane of `triangle`, as shade() has it, in terms of its texture and
   /// without the lights (irradiance 1).
-  [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle) const;
+  [[nodiscard]] SurfaceSample sample_surface(const Ray& ray, TriangleId triangle) const;
   /// The same at the level of the texture's pyramid whose texels are as large as the footprint of
   /// the ray on the triangle's plane, along its longer side; 0 where it is smaller than a texel,
   /// and for the background:
   ///   level = max(0, log2 max(|J right|, |J down|)),   J = t grad(x, y) (1 - d n^T / (n . d))
   /// with t the distance, d the direction and n the plane's normal. Continuous in the ray.
-  [[nodiscard]] SurfaceLook look(const Ray& ray, TriangleId triangle,
-                                 const RaySpread& spread) const;
-  /// look() at once for all rays of a camera at `position`, given in its own frame. `triangle`
-  /// stands still.
-  [[nodiscard]] TexelMap texel_map(TriangleId triangle, const Eigen::Vector3d& position,
-                                   const Eigen::Matrix3d& world_from_camera) const;
-  /// Finds the lamps that light the points of at most 16 looks along `rays` at `triangles`, and the
+  [[nodiscard]] SurfaceSample sample_surface(const Ray& ray, TriangleId triangle,
+                                             const RayDifferential& differential) const;
+  /// sample_surface() at once for all rays of a camera at `position`, given in its own frame. `triangle`
+  /// is static.
+  [[nodiscard]] TexelHomography texel_homography(TriangleId triangle,
+                                                 const Eigen::Vector3d& position,
+                                                 const Eigen::Matrix3d& world_from_camera) const;
+  /// Finds the lights that light the points of at most 16 samples along `rays` at `triangles`, and the
   /// irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
-                  std::span<SurfaceLook> looks) const;
-  /// The irradiance of a look if just `look.lamps` light it: without shadow rays.
+                  std::span<SurfaceSample> samples) const;
+  /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
-                                  const SurfaceLook& look) const;
+                                  const SurfaceSample& surface) const;
   [[nodiscard]] bool is_lit() const;
-  /// How the lamps light what pyramids of sight that move evenly through those of `sweep` (at most
-  /// 4) see of `triangle`, found for the whole triangle before or else put into `light`; nullptr
-  /// where that is not known: for what moves or is moved around, where light goes through cutouts,
-  /// and where more than `most` triangles may hide a lamp.
-  [[nodiscard]] const PatchLight* find_light(TriangleId triangle,
-                                             std::span<const SightPyramid> sweep, std::size_t most,
-                                             PatchLight& light) const;
+  /// Which lights reach the part of `triangle` that a frustum sees on its way through `frusta` (at
+  /// most 4): known for the whole triangle, or else put into `lighting`. nullptr where that is not
+  /// known: for moving triangles and among moving objects, where light goes through cutouts, and
+  /// where more than `most` triangles may occlude a light.
+  [[nodiscard]] const PatchLighting* find_lighting(TriangleId triangle,
+                                                   std::span<const Frustum> frusta,
+                                                   std::size_t most, PatchLighting& lighting) const;
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
   /// The objects with a motion of their own, in the order of the mesh list.
   [[nodiscard]] std::span<const MovingObject> moving_objects() const;
-  /// The one that a triangle belongs to; nullptr where it stands still, and for kNothing.
+  /// The one that a triangle belongs to; nullptr where it is static, and for kNothing.
   [[nodiscard]] const MovingObject* moving_object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
 
-  /// Whether nothing but `triangle` can be seen in a pyramid of sight that moves evenly through
-  /// those of `sweep` (at most 5): it is opaque, stands still and fills them, and no other triangle
-  /// that stands still reaches into them before its plane. For kNothing: whether none is in them at
-  /// all.
-  [[nodiscard]] bool is_alone(TriangleId triangle, std::span<const SightPyramid> sweep) const;
+  /// Whether nothing but `triangle` is visible in a frustum that moves evenly through `frusta` (at
+  /// most 5): it is opaque, static and fills them, and no other static triangle intersects them in
+  /// front of its plane. For kNothing: whether none intersects them at all.
+  [[nodiscard]] bool is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta) const;
 
-  /// The triangles, also of moving objects, that may reach into such pyramids nearer than
-  /// `farthest_m` of z depth, into `found`; false where there are more than `most`.
-  [[nodiscard]] bool collect(std::span<const SightPyramid> sweep, double farthest_m,
-                             std::size_t most, std::vector<TriangleId>& found) const;
+  /// The triangles, also of moving objects, that may intersect such frusta nearer than `farthest_m`
+  /// of z depth, into `found`; false where there are more than `most`.
+  [[nodiscard]] bool collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
+                             std::vector<TriangleId>& found) const;
 
-  /// How all rays of a camera at `position`, given in its own frame, pass a triangle at `time_s`.
-  [[nodiscard]] TrianglePass triangle_pass(TriangleId triangle, const Eigen::Vector3d& position,
-                                           const Eigen::Matrix3d& world_from_camera,
-                                           double time_s) const;
+  /// The edge functions of a triangle at `time_s` for all rays of a camera at `position`, given in its
+  /// own frame.
+  [[nodiscard]] EdgeFunctions edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
+                                             const Eigen::Matrix3d& world_from_camera,
+                                             double time_s) const;
 
   /// Whether rays may go through holes of the triangle.
   [[nodiscard]] bool is_cut_out(TriangleId triangle) const;
   /// Of such a triangle.
-  [[nodiscard]] CutoutLook cutout_look(const Ray& ray, TriangleId triangle) const;
+  [[nodiscard]] CutoutSample sample_cutout(const Ray& ray, TriangleId triangle) const;
 
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.
-  [[nodiscard]] bool meets(const Ray& ray, TriangleId triangle) const;
-  /// Smallest barycentric coordinate of the point where `ray` meets the plane of `triangle`: how
+  [[nodiscard]] bool intersects(const Ray& ray, TriangleId triangle) const;
+  /// Smallest barycentric coordinate of the point where `ray` intersects the plane of `triangle`: how
   /// far it passes inside the edges, negative outside. -1 where it does not meet the plane, and for
   /// kNothing.
-  [[nodiscard]] double inside(const Ray& ray, TriangleId triangle) const;
+  [[nodiscard]] double min_barycentric(const Ray& ray, TriangleId triangle) const;
 
  private:
   struct State;

@@ -14,15 +14,15 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/mesh_import.h"
-#include "simulator/scene/picture.h"
-#include "simulator/scene/placement.h"
+#include "simulator/scene/mesh/mesh_import.h"
+#include "simulator/scene/mesh/world_from_mesh.h"
+#include "simulator/scene/texture/picture.h"
 #include "simulator/scene/triangle_setup.h"
 
 namespace saccade {
 namespace {
 
-/// Shadow rays start this share of the largest body's extent above their surface: ten times what
+/// Shadow rays start this fraction of the largest body's extent above their surface: ten times what
 /// single precision resolves there.
 constexpr double kShadowOffset = 1e-6;
 
@@ -37,25 +37,25 @@ double extent_of(const Eigen::AlignedBox3f& box) {
   return static_cast<double>(box.diagonal().norm() + box.center().norm());
 }
 
-/// Corners are rounded to single precision, those of a plane lie on it: a hair of room for both.
+/// Corners are rounded to single precision, those of a plane lie on it: a hair of margin for both.
 Eigen::AlignedBox3d roomy(const Eigen::AlignedBox3f& box) {
-  constexpr double kRoom = 1e-5;
+  constexpr double kMargin = 1e-5;
   const Eigen::AlignedBox3d exact = box.cast<double>();
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant(kRoom * extent_of(box));
-  return {exact.min() - room, exact.max() + room};
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kMargin * extent_of(box));
+  return {exact.min() - margin, exact.max() + margin};
 }
 
 /// The corners of a triangle, whatever their order.
-using Place = std::array<std::array<double, 3>, 3>;
+using CornerKey = std::array<std::array<double, 3>, 3>;
 
-Place place_of(const Triangle& triangle, const Mesh& mesh) {
-  Place place;
-  for (std::size_t k = 0; k < place.size(); ++k) {
+CornerKey place_of(const Triangle& triangle, const Mesh& mesh) {
+  CornerKey key;
+  for (std::size_t k = 0; k < key.size(); ++k) {
     const Eigen::Vector3d& vertex = mesh.vertices[triangle.corners[k]];
-    place[k] = {vertex.x(), vertex.y(), vertex.z()};
+    key[k] = {vertex.x(), vertex.y(), vertex.z()};
   }
-  std::sort(place.begin(), place.end());
-  return place;
+  std::sort(key.begin(), key.end());
+  return key;
 }
 
 Background read_background(const SceneOptions& options) {
@@ -69,15 +69,15 @@ Background read_background(const SceneOptions& options) {
 }  // namespace
 
 struct SceneBuilder::Body {
-  std::optional<Spline> world_from_body;  ///< none: stands still
+  std::optional<Spline> world_from_body;  ///< none: is static
   std::uint32_t object = 0;               ///< of a moving one
   PreparedTriangles opaque, cut_out;
   TriangleId first_opaque = 0, first_cut_out = 0;
 
   [[nodiscard]] bool is_empty() const { return opaque.corners.empty() && cut_out.corners.empty(); }
   [[nodiscard]] Eigen::AlignedBox3f box() const { return box_of(opaque).merged(box_of(cut_out)); }
-  [[nodiscard]] OccluderSource occluders() && {
-    OccluderSource source{std::move(opaque.corners), {}};
+  [[nodiscard]] BvhTriangles occluders() && {
+    BvhTriangles source{std::move(opaque.corners), {}};
     source.ids.resize(source.corners.size() + cut_out.corners.size());
     const auto first = source.ids.begin() + static_cast<std::ptrdiff_t>(source.corners.size());
     std::iota(source.ids.begin(), first, first_opaque);
@@ -112,7 +112,7 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
     textures_.push_back(material.opacity);
   }
   std::size_t kept = 0;
-  std::set<Place> taken;
+  std::set<CornerKey> taken;
   for (const Triangle& triangle : mesh.triangles) {
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
     if (!is_cut_out && !taken.insert(place_of(triangle, mesh)).second) continue;
@@ -146,7 +146,7 @@ Scene SceneBuilder::build(const Background& background) && {
   state->visibility.emplace(make_visibility(*state));
   const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());
-  for (Body& body : bodies_) state->occluder_sources.push_back(std::move(body).occluders());
+  for (Body& body : bodies_) state->bvh_triangles.push_back(std::move(body).occluders());
   return Scene(std::move(state));
 }
 
@@ -181,13 +181,13 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
   std::optional<RayCaster> still;
   if (!bodies_.front().is_empty()) still.emplace(caster_of(bodies_.front()));
   std::vector<MovingObject> objects;
-  std::vector<RayCaster> casters;
+  std::vector<RayCaster> ray_casters;
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
     objects.emplace_back(body.object, *body.world_from_body, roomy(body.box()));
-    casters.push_back(caster_of(body));
+    ray_casters.push_back(caster_of(body));
   }
-  return {std::move(still), std::move(objects), std::move(casters)};
+  return {std::move(still), std::move(objects), std::move(ray_casters)};
 }
 
 Scene build_scene(const SceneOptions& options) {

@@ -9,7 +9,7 @@
 
 #include "core/spline.h"
 #include "simulator/scene/background.h"
-#include "simulator/scene/mesh.h"
+#include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_options.h"
 
@@ -38,7 +38,7 @@ class SceneBuilder {
   std::size_t add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
                          Spline world_from_object);
 
-  /// Lambertian surfaces under ambient light and lamps; without it the albedo is the radiance.
+  /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
   void light(double ambient, std::vector<LightOptions> lights);
 
   /// At least one triangle was added.
@@ -52,7 +52,7 @@ class SceneBuilder {
   [[nodiscard]] PreparedTriangles number_triangles();
   [[nodiscard]] Visibility make_visibility(const Scene::State& state) const;
 
-  std::vector<Body> bodies_;  ///< what stands still, then the moving objects
+  std::vector<Body> bodies_;  ///< what is static, then the moving objects
   std::vector<std::shared_ptr<const Texture>> textures_;
   std::uint32_t objects_ = 0;
   bool is_lit_ = false;

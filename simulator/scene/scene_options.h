@@ -15,7 +15,7 @@ namespace saccade {
 enum class Anchor { kOrigin, kCenter, kBottom };
 
 struct MeshOptions {
-  std::filesystem::path file;  ///< everything that assimp reads, or archive.zip!/path/in/it.obj
+  std::filesystem::path file;
   TransformOptions transform;
   std::optional<Eigen::Vector3d> size_m;  ///< bounding box in the file's own axes, instead of scale
   Anchor anchor = Anchor::kOrigin;
@@ -27,9 +27,9 @@ enum class LightType { kPoint, kDirectional };
 
 struct LightOptions {
   LightType type = LightType::kPoint;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();     ///< of a point light [m]
-  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();  ///< in which directional light travels
-  double intensity = 1;  ///< radiance of a white surface that faces the light (at 1 m of a point)
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();
+  double intensity = 1;
   bool shadows = true;
 };
 
@@ -38,10 +38,10 @@ enum class Lighting { kNone, kLambertian };
 /// The `scene` section of a simulation.
 struct SceneOptions {
   std::vector<MeshOptions> meshes;
-  double background = 0.5;                   ///< radiance that a ray meets which hits nothing
-  std::filesystem::path background_picture;  ///< instead: an equirectangular environment map
-  Lighting lighting = Lighting::kNone;       ///< none: the albedo is the radiance
-  double ambient = 0;                        ///< radiance of a white surface without any light
+  double background = 0.5;
+  std::filesystem::path background_picture;
+  Lighting lighting = Lighting::kNone;
+  double ambient = 0;
   std::vector<LightOptions> lights;
 };
 

@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// Twice the area below this share of the longest edge's square counts as none.
+/// Twice the area below this fraction of the longest edge's square counts as none.
 constexpr double kLeastArea = 1e-12;
 
 /// The form that has these values at the corners.

@@ -9,18 +9,18 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "simulator/scene/moving_object.h"
-#include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/object_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/motion/object_motion.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kLongestSlab_s = 0.030;
-constexpr double kShortestSlab_s = 1e-4;
-/// Of tiles around one: from there things come into its view within a slab.
+constexpr double kLongestSlice_s = 0.030;
+constexpr double kShortestSlice_s = 1e-4;
+/// Of tiles around one: from there things come into its view within a slice.
 constexpr int kRings = 2;
-constexpr double kSlabMotion_px = kRings * kTileSize;
-/// Where surfaces slide over one another, at more than this share of their motion, one can show for
+constexpr double kSliceMotion_px = kRings * kTileSize;
+/// Where surfaces slide over one another, at more than this fraction of their motion, one can show for
 /// less than a step behind another's edge; the steps there are shorter.
 constexpr double kOccluding = 0.15;
 constexpr double kOccludedRefinement = 2;
@@ -46,17 +46,17 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
 void EventCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
   if (!started_) {
-    const SplineTable first(motion_, 0, std::min(kLongestSlab_s, duration_s));
+    const SplineTable first(motion_, 0, std::min(kLongestSlice_s, duration_s));
     for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, 0); });
     started_ = true;
   }
   while (t_s_ < duration_s) {
     const double fastest = bound_speeds(t_s_);
-    const double slab_s = std::clamp(kSlabMotion_px / fastest, kShortestSlab_s, kLongestSlab_s);
-    const double until_s = even_until_s(duration_s);
+    const double slice_s = std::clamp(kSliceMotion_px / fastest, kShortestSlice_s, kLongestSlice_s);
+    const double until_s = next_motion_change_s(duration_s);
     // No sliver at the end: the rest is split evenly.
-    const double slabs_left = std::ceil((until_s - t_s_) / slab_s);
-    const double end_s = slabs_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slabs_left;
+    const double slices_left = std::ceil((until_s - t_s_) / slice_s);
+    const double end_s = slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;
     const SplineTable poses(motion_, t_s_, end_s);
     for_each_tile([&](EventTile& tile, std::size_t i) {
       TileMotion motion = motions_[i];
@@ -69,7 +69,7 @@ void EventCamera::record(double duration_s, const Sink& sink) {
   }
 }
 
-double EventCamera::even_until_s(double duration_s) const {
+double EventCamera::next_motion_change_s(double duration_s) const {
   double until_s = duration_s;
   for (const MovingObject& object : world_.scene.moving_objects())
     for (const double kink_s : {object.start_s(), object.end_s()})
@@ -101,12 +101,12 @@ void EventCamera::for_each_tile(const Work& work) {
 }
 
 double EventCamera::bound_speeds(double t_s) {
-  // The motion changes little within 5 ms, so that a few looks bound it.
+  // The motion changes little within 5 ms, so that a few samples bound it.
   std::array<Twist, 7> twists;
   for (std::size_t k = 0; k < twists.size(); ++k)
-    twists[k] = camera_twist(motion_.state(t_s + static_cast<double>(k) * kLongestSlab_s / 6));
+    twists[k] = camera_twist(motion_.state(t_s + static_cast<double>(k) * kLongestSlice_s / 6));
   const PinholeCamera& camera = rays_.camera();
-  const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlab_s);
+  const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlice_s);
   for_each_tile([&](EventTile&, std::size_t i) {
     const Tile tile = rays_.tile(i);
     const Eigen::Vector3d centre = camera.ray(

@@ -20,11 +20,11 @@ namespace saccade {
 /// L = ln(eps + I) rises to L_ref + C_on and OFF when it falls to L_ref - C_off, L_ref moves by
 /// exactly that threshold, and the time is that of the crossing of the continuous signal.
 ///
-/// Time advances in slabs of at most 30 ms and 8 px of image motion. What is in a tile of 4 x 4
-/// pixels or in the 24 around it, two rings, is all that gets before its rays within a slab; it
-/// bounds how far points move there. Every tile divides the slab as far as its pixels need, down to
+/// Time advances in slices of at most 30 ms and 8 px of image motion. Within a slice
+/// a tile of 4 x 4 pixels can see only what is in the tile itself or in the two rings of 24 tiles
+/// around it; the inverse depths there bound the image motion. Every tile divides the slice as far as its pixels need, down to
 /// equal steps of `max_step_px`. Tiles run in parallel and depend on one another only through the
-/// state at the slab's start, so the stream is the same for any number of threads.
+/// state at the slice's start, so the stream is the same for any number of threads.
 class EventCamera {
  public:
   /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera;
@@ -51,15 +51,15 @@ class EventCamera {
   /// work(tile, index) for all tiles, in parallel.
   template <class Work>
   void for_each_tile(const Work& work);
-  /// Bound of the image speed of every tile over [t, t + longest slab], into motions_; the largest.
+  /// Bound of the image speed of every tile over [t, t + longest slice], into motions_; the largest.
   double bound_speeds(double t_s);
   /// The next time, `duration_s` at the latest, at which an object starts to move or comes to rest.
-  [[nodiscard]] double even_until_s(double duration_s) const;
+  [[nodiscard]] double next_motion_change_s(double duration_s) const;
   [[nodiscard]] InverseDepthRange neighbourhood(std::size_t tile) const;
 
   const Spline& motion_;
   PixelRays rays_;
-  EventWorld world_;
+  TileContext world_;
   std::vector<std::unique_ptr<EventTile>> tiles_;
   std::vector<TileMotion> motions_;  ///< per tile, in px per second
   double t_s_ = 0;                   ///< up to which all tiles have sensed

@@ -48,7 +48,7 @@ EventDelivery::EventDelivery(const EventOptions& options, const PinholeCamera& c
 
 void EventDelivery::deliver(double t_s, bool is_last, const Sink& sink) {
   if (is_last) {
-    // The recording is half open: a camera that comes to its start again at the very end meets its
+    // The recording is half open: a camera that comes to its start again at the very end intersects its
     // first thresholds exactly, and the last bit of rounding may not decide whether it fires.
     const auto end_ns = std::llround(t_s * 1e9 / static_cast<double>(step_ns_)) * step_ns_;
     std::erase_if(pending_, [&](const SensedEvent& event) { return event.t_ns >= end_ns; });

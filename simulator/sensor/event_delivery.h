@@ -8,11 +8,11 @@
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/sensor_output.h"
 #include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 
-/// The way of the events from all pixels to the recording: put in order, through the part of the
+/// The path of the events from all pixels to the recording: put in order, through the part of the
 /// sensor behind the pixels, and handed on as soon as none can come before them.
 class EventDelivery {
  public:
@@ -29,7 +29,7 @@ class EventDelivery {
   void deliver(double t_s, bool is_last, const Sink& sink);
 
   /// Events that met a full readout.
-  [[nodiscard]] std::uint64_t lost() const { return output_.counts().lost; }
+  [[nodiscard]] std::uint64_t lost() const { return output_.lost(); }
 
   /// Everything that later deliveries depend on.
   void save(StateWriter& state) const;

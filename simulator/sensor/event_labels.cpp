@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "simulator/scene/moving_object.h"
-#include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
 
 namespace saccade {
 namespace {
@@ -53,7 +53,7 @@ void EventLabeller::label_packet(std::span<const SensedEvent> events, std::size_
   for (std::size_t k = 0; k < count; ++k) {
     const SensedEvent& event = events[first + k];
     const std::size_t i = first + k;
-    const double depth = scene_.look(rays[k], triangles[k]).distance;
+    const double depth = scene_.sample_surface(rays[k], triangles[k]).distance;
     const MovingObject* object = scene_.moving_object(triangles[k]);
     const Twist twist = object == nullptr
                             ? camera_twist(states[k])

@@ -5,8 +5,8 @@
 #include "core/io/labels_h5.h"
 #include "core/spline.h"
 #include "simulator/scene/scene.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
+#include "simulator/sensor/rays/pixel_rays.h"
 
 namespace saccade {
 

@@ -8,64 +8,65 @@
 #include <span>
 
 #include "core/check.h"
-#include "simulator/sensor/foresight.h"
-#include "simulator/sensor/pixel_signal.h"
-#include "simulator/sensor/plane_signal.h"
-#include "simulator/sensor/tile_look.h"
-#include "simulator/sensor/tile_paths.h"
+#include "simulator/sensor/rays/tile_samples.h"
+#include "simulator/sensor/signal/pixel_signal.h"
+#include "simulator/sensor/signal/texture_signal.h"
+#include "simulator/sensor/signal/tile_trajectories.h"
+#include "simulator/sensor/visibility/visibility_predictor.h"
 
 namespace saccade {
 namespace {
 
-/// Around a tile, for what a proof over some instants of a slab leaves out between them [px].
+/// Around a tile, for what a proof over some instants of a slice leaves out between them [px].
 constexpr double kMargin_px = 0.5;
 /// Longer steps, in multiples of max_step_px, where visibility is proven and the paths over the
 /// texture alone set the pace.
 constexpr double kLongSteps = 2;
 
 /// Nearer than this to an edge a pixel's view may change [px].
-constexpr double kEdge_px = 0.05;
+constexpr double kEdgeMargin_px = 0.05;
 
-/// So far from the change of what a pixel sees it is looked at on both sides [tolerances].
+/// So far from the change of what a pixel sees it is seen on both sides [tolerances].
 constexpr double kAroundChange = 0.45;
 
 template <std::size_t kRays>
 class LockstepTile final : public EventTile {
  public:
-  LockstepTile(const EventWorld& world, std::size_t index)
-      : EventTile(PixelBank(world.options, world.noise, world.seed, world.rays.tile(index))),
-        world_(world),
-        directions_(world.rays.rays(index)),
-        outline_(world.rays.outline(index, kMargin_px)),
-        tolerance_s_(1e-6 * world.options.time_tolerance_us),
+  LockstepTile(const TileContext& context, std::size_t index)
+      : EventTile(
+            PixelBank(context.options, context.noise, context.seed, context.rays.tile(index))),
+        context_(context),
+        directions_(context.rays.rays(index)),
+        outline_(context.rays.outline(index, kMargin_px)),
+        tolerance_s_(1e-6 * context.options.time_tolerance_us),
         lanes_(directions_.first(pixels_.size())),
-        is_bilinear_(world.options.texture_filter == TextureFilter::kBilinear),
-        tracer_(world.scene, statistics_, footprints(world)),
-        foresight_(world.scene, tracer_, outline_, kEdge_px / world.rays.camera().fx,
+        is_bilinear_(context.options.texture_filter == TextureFilter::kBilinear),
+        tracer_(context.scene, statistics_, footprints(context)),
+        predictor_(context.scene, tracer_, outline_, kEdgeMargin_px / context.rays.camera().fx,
                    tolerance_s_) {}
 
   void start(const SplineTable& poses, double t_s) override {
-    tracer_.use(poses);
-    TileLook look;
-    look.trace(tracer_, directions_, t_s, all_pixels());
-    look.add_views(tracer_, directions_);
+    tracer_.set_poses(poses);
+    TileSamples now;
+    now.trace(tracer_, directions_, t_s, all_pixels());
+    now.sample_surfaces(tracer_, directions_);
     for (std::size_t i = 0; i < pixels_.size(); ++i)
-      pixels_.start(i, sample(look, i).log_intensity, t_s);
-    remember(look);
+      pixels_.start(i, sample(now, i).log_intensity, t_s);
+    store_state(now);
   }
 
-  void advance(const Slab& slab, const TileMotion& motion) override {
-    tracer_.use(slab.poses);
-    if (look_ahead(slab.end_s, motion)) {
-      advance_to(slab.end_s, motion);
+  void advance(const TimeSlice& slice, const TileMotion& motion) override {
+    tracer_.set_poses(slice.poses);
+    if (predict_visibility(slice.end_s, motion)) {
+      advance_to(slice.end_s, motion);
       return;
     }
     // Fewer triangles come within reach in half the time.
-    const double middle_s = 0.5 * (t_s_ + slab.end_s);
+    const double middle_s = 0.5 * (t_s_ + slice.end_s);
     TileMotion half = motion;
     half.pixels *= 0.5;
-    for (const double end_s : {middle_s, slab.end_s}) {
-      look_ahead(end_s, half);
+    for (const double end_s : {middle_s, slice.end_s}) {
+      predict_visibility(end_s, half);
       advance_to(end_s, half);
     }
   }
@@ -93,83 +94,84 @@ class LockstepTile final : public EventTile {
  private:
   using Signal = PixelSignal<kRays>;
   using Sample = PixelSample<kRays>;
-  using TileLook = saccade::TileLook<kRays>;
-  using Triangles = typename TileLook::Triangles;
+  using TileSamples = saccade::TileSamples<kRays>;
+  using Triangles = typename TileSamples::Triangles;
 
-  /// Equal steps through a slab.
+  /// Some of the equal steps through a slice.
   struct Steps {
-    double from_s, to_s;
-    int count;
+    double from_s, to_s;  ///< of the slice
+    int count;            ///< in the slice
+    int first, last;      ///< times of these steps
+    std::size_t depth;    ///< halvings that led to them
 
-    [[nodiscard]] double operator()(int k) const {
+    [[nodiscard]] double time_s(int k) const {
       return k == count ? to_s : from_s + (to_s - from_s) * k / count;
     }
-  };
-  struct StepRange {
-    int from, to;
-    std::size_t depth;  ///< halvings that led to it
+    [[nodiscard]] Steps part(int from, int to) const {
+      return {from_s, to_s, count, from, to, depth + 1};
+    }
   };
 
-  [[nodiscard]] static const PixelRays* footprints(const EventWorld& world) {
-    return world.options.texture_filter == TextureFilter::kMipmap ? &world.rays : nullptr;
+  [[nodiscard]] static const PixelRays* footprints(const TileContext& context) {
+    return context.options.texture_filter == TextureFilter::kMipmap ? &context.rays : nullptr;
   }
 
   /// Finds out what can come into view up to `end_s`: whether that is known.
-  bool look_ahead(double end_s, const TileMotion& motion) {
-    tracer_.use(outline_, t_s_, end_s);
-    is_alone_ = !motion.has_objects && sees_one_triangle(end_s);
-    if (is_alone_) foresight_.forget();
-    foresees_ = !is_alone_ && foresight_.collect(motion.farthest_m, t_s_, end_s);
-    return is_alone_ || foresees_;
+  bool predict_visibility(double end_s, const TileMotion& motion) {
+    tracer_.set_region(outline_, t_s_, end_s);
+    sees_one_triangle_ = !motion.has_objects && sees_one_triangle(end_s);
+    if (sees_one_triangle_) predictor_.clear();
+    is_predicted_ = !sees_one_triangle_ && predictor_.collect(motion.farthest_m, t_s_, end_s);
+    return sees_one_triangle_ || is_predicted_;
   }
 
   void advance_to(double end_s, const TileMotion& motion) {
-    const double step_px = world_.options.max_step_px * (is_alone_ ? kLongSteps : 1);
-    const double refinement = is_alone_ || foresees_ ? 1 : motion.refinement;
+    const double step_px = context_.options.max_step_px * (sees_one_triangle_ ? kLongSteps : 1);
+    const double refinement = sees_one_triangle_ || is_predicted_ ? 1 : motion.refinement;
     const int count =
         std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
-    TileLook look, next;
+    TileSamples now, next;
     // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
-    look.see(triangles_, t_s_);
-    look_at(end_s, next, all_pixels());
-    sense_between({0, count, 0}, {t_s_, end_s, count}, look, next, all_pixels());
-    remember(next);
+    now.set_triangles(triangles_, t_s_);
+    sample_at(end_s, next, all_pixels());
+    sense_between({t_s_, end_s, count, 0, count, 0}, now, next, all_pixels());
+    store_state(next);
   }
 
   [[nodiscard]] PixelSet all_pixels() const { return (1ULL << pixels_.size()) - 1; }
 
   /// With rays, if it takes any.
-  void look_at(double t_s, TileLook& look, const PixelSet& pixels) {
-    is_alone_ ? look.see(triangles_, t_s) : look.trace(tracer_, directions_, t_s, pixels);
+  void sample_at(double t_s, TileSamples& now, const PixelSet& pixels) {
+    sees_one_triangle_ ? now.set_triangles(triangles_, t_s)
+                       : now.trace(tracer_, directions_, t_s, pixels);
   }
 
-  /// Senses `pixels` between two looks: at once where they see one surface all the time, else in
+  /// Senses `pixels` between two samples: at once where they see one surface all the time, else in
   /// the two halves of the steps.
-  void sense_between(const StepRange& range, const Steps& steps, TileLook& look, TileLook& next,
-                     PixelSet pixels) {
-    foresight_.narrow(look.t_s, next.t_s, range.depth);
-    if (kRays == 1 && is_bilinear_ && (is_alone_ || foresight_.has_any()))
-      pixels = sense_steady(look, next, pixels);
+  void sense_between(const Steps& steps, TileSamples& now, TileSamples& next, PixelSet pixels) {
+    predictor_.restrict_to(now.t_s, next.t_s, steps.depth);
+    if (kRays == 1 && is_bilinear_ && (sees_one_triangle_ || predictor_.has_candidates()))
+      pixels = sense_steady(now, next, pixels);
     if (pixels.none()) return;
-    if (range.to - range.from == 1) {
-      look.add_views(tracer_, directions_);
-      next.add_views(tracer_, directions_);
-      return sense_step(look, next, pixels);
+    if (steps.last - steps.first == 1) {
+      now.sample_surfaces(tracer_, directions_);
+      next.sample_surfaces(tracer_, directions_);
+      return sense_step(now, next, pixels);
     }
-    const int middle = (range.from + range.to) / 2;
-    TileLook between;
-    look_at(steps(middle), between, pixels);
-    sense_between({range.from, middle, range.depth + 1}, steps, look, between, pixels);
-    sense_between({middle, range.to, range.depth + 1}, steps, between, next, pixels);
+    const int middle = (steps.first + steps.last) / 2;
+    TileSamples between;
+    sample_at(steps.time_s(middle), between, pixels);
+    sense_between(steps.part(steps.first, middle), now, between, pixels);
+    sense_between(steps.part(middle, steps.last), between, next, pixels);
   }
 
   /// Senses those pixels that see one textured plane all the time, or one and then another. Returns
   /// the others.
-  PixelSet sense_steady(const TileLook& look, const TileLook& next, PixelSet pixels) {
-    TilePaths paths(tracer_, lanes_, look.t_s, next.t_s);
+  PixelSet sense_steady(const TileSamples& now, const TileSamples& next, PixelSet pixels) {
+    TileTrajectories paths(tracer_, lanes_, now.t_s, next.t_s);
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       if (!pixels[i]) continue;
-      const TriangleId from = look.triangles[i];
+      const TriangleId from = now.triangles[i];
       const TriangleId to = next.triangles[i];
       if (!tracer_.is_plane(from) || !tracer_.is_plane(to)) continue;
       if (from == to ? sense_plane(i, from, paths) : sense_change(i, from, to, paths))
@@ -179,33 +181,33 @@ class LockstepTile final : public EventTile {
   }
 
   /// Whether a pixel sees just the plane of a triangle; it is sensed then.
-  bool sense_plane(std::size_t i, TriangleId triangle, TilePaths& paths) {
-    if (!is_alone_ && !foresight_.stays_in_sight(directions_[i], triangle)) return false;
-    const TriangleCourse& course = paths.over(triangle);
-    const PlanePath path = course.paths.path(i);
-    if (!is_walkable(course, path)) return false;
-    sense_path(i, path, course.surface, paths.from_s, paths.to_s);
+  bool sense_plane(std::size_t i, TriangleId triangle, TileTrajectories& paths) {
+    if (!sees_one_triangle_ && !predictor_.stays_visible(directions_[i], triangle)) return false;
+    const PlaneTrajectories& trajectories = paths.over(triangle);
+    const TexelTrajectory path = trajectories.of_pixel(i);
+    if (!is_usable(trajectories, path)) return false;
+    sense_path(i, path, trajectories.surface, paths.from_s, paths.to_s);
     return true;
   }
 
   /// The same for the planes of two, one after the other: around the change on the pixel's general
   /// signal.
-  bool sense_change(std::size_t i, TriangleId from, TriangleId to, TilePaths& paths) {
-    if (is_alone_) return false;
+  bool sense_change(std::size_t i, TriangleId from, TriangleId to, TileTrajectories& paths) {
+    if (sees_one_triangle_) return false;
     const double change_s =
-        foresight_.change_s(directions_[i], {from, paths.from_s}, {to, paths.to_s});
+        predictor_.change_s(directions_[i], {from, paths.from_s}, {to, paths.to_s});
     const double before_s = change_s - kAroundChange * tolerance_s_;
     const double after_s = change_s + kAroundChange * tolerance_s_;
     if (!(before_s > paths.from_s && after_s < paths.to_s)) return false;
-    const TriangleCourse& first = paths.over(from);
-    const PlanePath path = first.paths.path(i);
-    if (!is_walkable(first, path)) return false;
-    const TriangleCourse& second = paths.over(to);
-    const PlanePath next_path = second.paths.path(i);
-    if (!is_walkable(second, next_path)) return false;
+    const PlaneTrajectories& first = paths.over(from);
+    const TexelTrajectory path = first.of_pixel(i);
+    if (!is_usable(first, path)) return false;
+    const PlaneTrajectories& second = paths.over(to);
+    const TexelTrajectory next_path = second.of_pixel(i);
+    if (!is_usable(second, next_path)) return false;
     const Signal pixel_signal = signal(i);
-    const Sample before = pixel_signal.look(before_s);
-    const Sample after = pixel_signal.look(after_s);
+    const Sample before = pixel_signal.trace(before_s);
+    const Sample after = pixel_signal.trace(after_s);
     if (before.rays[0].triangle != from || after.rays[0].triangle != to) return false;
     sense_path(i, path, first.surface, paths.from_s, before_s);
     sense(i, pixel_signal, before, after);
@@ -213,36 +215,37 @@ class LockstepTile final : public EventTile {
     return true;
   }
 
-  [[nodiscard]] bool is_walkable(const TriangleCourse& course, const PlanePath& path) const {
-    return course.surface.texture != nullptr && path.is_exact(tolerance_s_);
+  [[nodiscard]] bool is_usable(const PlaneTrajectories& trajectories,
+                               const TexelTrajectory& path) const {
+    return trajectories.surface.texture != nullptr && path.is_exact(tolerance_s_);
   }
 
-  void sense_path(std::size_t i, const PlanePath& path, const SurfaceLook& surface, double from_s,
-                  double to_s) {
+  void sense_path(std::size_t i, const TexelTrajectory& path, const SurfaceSample& surface,
+                  double from_s, double to_s) {
     if (pixels_.is_idle(i, from_s, to_s) && is_certified(i, path, surface, from_s, to_s)) return;
-    const PlaneSignal plane(path, surface, world_.options.log_eps, tolerance_s_);
+    const TextureSignal plane(path, surface, context_.options.log_eps, tolerance_s_);
     const bool is_known = pixels_.is_noisy();
-    sense(i, plane, plane.place(from_s, is_known), plane.place(to_s, is_known));
+    sense(i, plane, plane.sample_at(from_s, is_known), plane.sample_at(to_s, is_known));
   }
 
-  void sense_step(const TileLook& look, const TileLook& next, const PixelSet& pixels) {
+  void sense_step(const TileSamples& now, const TileSamples& next, const PixelSet& pixels) {
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       if (!pixels[i]) continue;
-      if (any_passes(i, look, next))
-        sense_passing(i, sample(look, i), sample(next, i));
-      else if (!pixels_.is_idle(i, look.t_s, next.t_s) || !is_certified(i, look, next) ||
-               any_shadow_passes(i, sample(look, i), sample(next, i)))
-        sense_lit(i, signal(i), sample(look, i), sample(next, i));
+      if (any_transit(i, now, next))
+        sense_transits(i, sample(now, i), sample(next, i));
+      else if (!pixels_.is_idle(i, now.t_s, next.t_s) || !is_certified(i, now, next) ||
+               any_shadow_transit(i, sample(now, i), sample(next, i)))
+        sense_lit(i, signal(i), sample(now, i), sample(next, i));
     }
   }
 
   [[nodiscard]] Signal signal(std::size_t i) {
     return Signal(tracer_, directions_.subspan(i * kRays).template first<kRays>(),
-                  world_.options.log_eps, tolerance_s_);
+                  context_.options.log_eps, tolerance_s_);
   }
 
-  [[nodiscard]] Sample sample(const TileLook& look, std::size_t i) const {
-    return look.sample(i, world_.options.log_eps);
+  [[nodiscard]] Sample sample(const TileSamples& now, std::size_t i) const {
+    return now.sample(i, context_.options.log_eps);
   }
 
   template <class AnySignal, class AnySample>
@@ -252,37 +255,37 @@ class LockstepTile final : public EventTile {
     statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
-  /// Collects the times, in order, at which a pixel must look to see what passes between two looks;
+  /// Collects the times, in order, at which a pixel must be sampled to see what passes between two samples;
   /// whether there are any.
-  [[nodiscard]] bool any_passes(std::size_t i, const TileLook& look, const TileLook& next) {
-    passing_s_.clear();
-    if (!foresight_.has_any()) return false;
-    foresight_.turn_to(directions_.subspan(i * kRays, kRays));
+  [[nodiscard]] bool any_transit(std::size_t i, const TileSamples& now, const TileSamples& next) {
+    transit_times_s_.clear();
+    if (!predictor_.has_candidates()) return false;
+    predictor_.select_rays(directions_.subspan(i * kRays, kRays));
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k)
-      foresight_.find_passes(directions_[k], {look.t_s, look.views[k]}, {next.t_s, next.views[k]},
-                             passing_s_);
-    std::sort(passing_s_.begin(), passing_s_.end());
-    return !passing_s_.empty();
+      predictor_.find_transits(directions_[k], {now.t_s, now.samples[k]},
+                               {next.t_s, next.samples[k]}, transit_times_s_);
+    std::sort(transit_times_s_.begin(), transit_times_s_.end());
+    return !transit_times_s_.empty();
   }
 
-  /// sense() with looks at passing_s_.
-  void sense_passing(std::size_t i, Sample lo, const Sample& hi) {
+  /// sense() with samples at transit_times_s_.
+  void sense_transits(std::size_t i, Sample lo, const Sample& hi) {
     const Signal pixel_signal = signal(i);
-    for (const double t_s : passing_s_) {
+    for (const double t_s : transit_times_s_) {
       if (t_s - lo.t_s < tolerance_s_ || hi.t_s - t_s < tolerance_s_) continue;
-      const Sample middle = pixel_signal.look(t_s);
+      const Sample middle = pixel_signal.trace(t_s);
       sense_lit(i, pixel_signal, lo, middle);
       lo = middle;
     }
     sense_lit(i, pixel_signal, lo, hi);
   }
 
-  /// sense() with looks around the times at which shadows come or go.
+  /// sense() with samples around the times at which shadows come or go.
   void sense_lit(std::size_t i, const Signal& pixel_signal, Sample lo, const Sample& hi) {
-    if (any_shadow_passes(i, lo, hi)) {
-      for (const double t_s : shadow_s_) {
+    if (any_shadow_transit(i, lo, hi)) {
+      for (const double t_s : shadow_times_s_) {
         if (!(t_s > lo.t_s && t_s < hi.t_s)) continue;
-        const Sample middle = pixel_signal.look_again(t_s, lo, hi);
+        const Sample middle = pixel_signal.resample(t_s, lo, hi);
         sense(i, pixel_signal, lo, middle);
         lo = middle;
       }
@@ -291,41 +294,42 @@ class LockstepTile final : public EventTile {
   }
 
   /// The same for shadows.
-  [[nodiscard]] bool any_shadow_passes(std::size_t i, const Sample& lo, const Sample& hi) {
-    shadow_s_.clear();
+  [[nodiscard]] bool any_shadow_transit(std::size_t i, const Sample& lo, const Sample& hi) {
+    shadow_times_s_.clear();
     if (!tracer_.is_lit()) return false;
     for (std::size_t k = 0; k < kRays; ++k)
-      foresight_.find_shadows(directions_[i * kRays + k], {lo.rays[k].triangle, lo.t_s},
-                              {hi.rays[k].triangle, hi.t_s}, shadow_s_);
-    std::sort(shadow_s_.begin(), shadow_s_.end());
-    return !shadow_s_.empty();
+      predictor_.find_shadows(directions_[i * kRays + k], {lo.rays[k].triangle, lo.t_s},
+                              {hi.rays[k].triangle, hi.t_s}, shadow_times_s_);
+    std::sort(shadow_times_s_.begin(), shadow_times_s_.end());
+    return !shadow_times_s_.empty();
   }
 
   /// Whether the bounds of the radiance prove that nothing crosses.
-  [[nodiscard]] bool is_certified(std::size_t i, const TileLook& look, const TileLook& next) const {
+  [[nodiscard]] bool is_certified(std::size_t i, const TileSamples& now,
+                                  const TileSamples& next) const {
     RadianceRange sum{0, 0, 0, 0};
     for (std::size_t k = i * kRays; k < (i + 1) * kRays; ++k) {
-      const RayView& from = look.views[k];
-      const RayView& to = next.views[k];
+      const RaySample& from = now.samples[k];
+      const RaySample& to = next.samples[k];
       if (from.triangle != to.triangle) return false;
-      sum.add(radiance_range(from, to, next.t_s - look.t_s));
+      sum.add(radiance_range(from, to, next.t_s - now.t_s));
     }
     sum.scale(1.0 / kRays);
     return pixels_.thresholds(i).certify(sum, next.t_s);
   }
 
   /// The same along a part of a path.
-  [[nodiscard]] bool is_certified(std::size_t i, const PlanePath& path, const SurfaceLook& surface,
-                                  double from_s, double to_s) const {
+  [[nodiscard]] bool is_certified(std::size_t i, const TexelTrajectory& path,
+                                  const SurfaceSample& surface, double from_s, double to_s) const {
     const double from = path.fraction(from_s);
     const double to = path.fraction(to_s);
-    const Interval x = TrackPart(path.x, from, to).values;
-    const Interval y = TrackPart(path.y, from, to).values;
+    const Interval x = CoordinateBounds(path.x, from, to).values;
+    const Interval y = CoordinateBounds(path.y, from, to).values;
     const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
     const double low = surface.factor * static_cast<double>(texels.low);
     const double high = surface.factor * static_cast<double>(texels.high);
-    const Interval silent = pixels_.thresholds(i).radiances(to_s);
-    return low > silent.low && high < silent.high;
+    const Interval inside = pixels_.thresholds(i).radiances(to_s);
+    return low > inside.low && high < inside.high;
   }
 
   [[nodiscard]] bool are_equal(const Triangles& triangles) const {
@@ -336,50 +340,50 @@ class LockstepTile final : public EventTile {
   /// Whether one triangle, in even light, is all that can be seen in and around the tile up to
   /// `t_s`.
   [[nodiscard]] bool sees_one_triangle(double t_s) {
-    return are_equal(triangles_) && tracer_.is_alone(triangles_[0], outline_, t_s_, t_s) &&
+    return are_equal(triangles_) && tracer_.is_sole_visible(triangles_[0], outline_, t_s_, t_s) &&
            is_evenly_lit(triangles_[0]);
   }
 
   [[nodiscard]] bool is_evenly_lit(TriangleId triangle) {
     if (!tracer_.is_lit() || triangle == kNothing) return true;
-    const PatchLight* light = tracer_.light_of(triangle);
-    return light != nullptr && light->doubtful.empty();
+    const PatchLighting* lighting = tracer_.lighting_of(triangle);
+    return lighting != nullptr && lighting->partly_occluded.empty();
   }
 
-  void remember(const TileLook& look) {
-    t_s_ = look.t_s;
-    triangles_ = look.triangles;
+  void store_state(const TileSamples& now) {
+    t_s_ = now.t_s;
+    triangles_ = now.triangles;
     inverse_depths_ =
         tracer_.inverse_depths(directions_, {triangles_.data(), directions_.size()}, t_s_);
   }
 
-  const EventWorld& world_;
+  const TileContext& context_;
   std::span<const Eigen::Vector3d> directions_;
   std::array<Eigen::Vector3d, 4> outline_;
   double tolerance_s_;
   DirectionLanes lanes_;  ///< for one ray per pixel
   bool is_bilinear_;
   RayTracer tracer_;
-  bool is_alone_ = false;  ///< the triangle that is seen, within the slab
-  bool foresees_ = false;  ///< all that can come into view within the slab
-  double t_s_ = 0;         ///< up to which the tile has sensed
+  bool sees_one_triangle_ = false;  ///< the triangle that is seen, within the slice
+  bool is_predicted_ = false;       ///< all that can come into view within the slice
+  double t_s_ = 0;                  ///< up to which the tile has sensed
   InverseDepthRange inverse_depths_;
   Triangles triangles_{};  ///< seen at t_s_
-  Foresight foresight_;
-  std::vector<double> passing_s_;  ///< of the pixel that is at work
-  std::vector<double> shadow_s_;   ///< of a stretch of it
+  VisibilityPredictor predictor_;
+  std::vector<double> transit_times_s_;  ///< of the pixel that is at work
+  std::vector<double> shadow_times_s_;   ///< of an interval of it
 };
 
 }  // namespace
 
-std::unique_ptr<EventTile> make_event_tile(const EventWorld& world, std::size_t index) {
-  switch (world.rays.rays_per_pixel()) {
+std::unique_ptr<EventTile> make_event_tile(const TileContext& context, std::size_t index) {
+  switch (context.rays.rays_per_pixel()) {
     case 1:
-      return std::make_unique<LockstepTile<1>>(world, index);
+      return std::make_unique<LockstepTile<1>>(context, index);
     case 4:
-      return std::make_unique<LockstepTile<4>>(world, index);
+      return std::make_unique<LockstepTile<4>>(context, index);
     case 16:
-      return std::make_unique<LockstepTile<16>>(world, index);
+      return std::make_unique<LockstepTile<16>>(context, index);
     default:
       SACCADE_CHECK(false);
       return nullptr;

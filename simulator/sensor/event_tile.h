@@ -8,18 +8,18 @@
 #include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/image_motion.h"
+#include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/pixel_bank.h"
-#include "simulator/sensor/pixel_noise.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/ray_tracer.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/pixel_bank.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/pixel/sensed_event.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
 
 namespace saccade {
 
 /// What all tiles of an event camera share; outlives them.
-struct EventWorld {
+struct TileContext {
   const Scene& scene;
   const PixelRays& rays;
   EventOptions options;
@@ -28,12 +28,12 @@ struct EventWorld {
 };
 
 /// A short time over which tiles sense.
-struct Slab {
+struct TimeSlice {
   const SplineTable& poses;  ///< cover it
   double end_s = 0;
 };
 
-/// How far points can move around a tile during a slab.
+/// How far points can move around a tile during a slice.
 struct TileMotion {
   double pixels = 0;         ///< image motion, at most [px]
   double refinement = 1;     ///< that divides the steps
@@ -52,17 +52,17 @@ class EventTile {
 
   /// Takes the references at time `t_s`, which the poses cover.
   virtual void start(const SplineTable& poses, double t_s) = 0;
-  /// Senses to the end of the slab, divided down to equal steps of at most `max_step_px` for the
+  /// Senses to the end of the slice, divided down to equal steps of at most `max_step_px` for the
   /// pixels that need it. Where a single triangle provably fills the tile's surroundings all the
   /// time, no ray is traced and the steps are longer.
-  virtual void advance(const Slab& slab, const TileMotion& motion) = 0;
+  virtual void advance(const TimeSlice& slice, const TileMotion& motion) = 0;
 
   /// Of the surfaces that the pixels see now.
   [[nodiscard]] virtual InverseDepthRange inverse_depths() const = 0;
 
   /// Everything that later events depend on.
   virtual void save(StateWriter& state) const = 0;
-  /// Of a tile of the same world, in place of start().
+  /// Of a tile of the same context, in place of start().
   virtual void load(StateReader& state) = 0;
 
   /// Moves out the events found since the last call, step by step and pixel by pixel; times rounded
@@ -77,8 +77,8 @@ class EventTile {
   EventStatistics statistics_;
 };
 
-/// Tile `index` of `world.rays`, for its number of rays per pixel.
-[[nodiscard]] std::unique_ptr<EventTile> make_event_tile(const EventWorld& world,
+/// Tile `index` of `context.rays`, for its number of rays per pixel.
+[[nodiscard]] std::unique_ptr<EventTile> make_event_tile(const TileContext& context,
                                                          std::size_t index);
 
 }  // namespace saccade

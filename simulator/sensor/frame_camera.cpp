@@ -6,10 +6,10 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/linear_signal.h"
-#include "simulator/sensor/object_motion.h"
-#include "simulator/sensor/tile_trace.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/motion/object_motion.h"
+#include "simulator/sensor/rays/tile_trace.h"
+#include "simulator/sensor/signal/linear_signal.h"
 
 namespace saccade {
 namespace {
@@ -40,20 +40,25 @@ FrameCamera::FrameCamera(const Scene& scene, const Spline& world_from_camera,
       options_(options),
       noise_(options, seed),
       delivery_(options, camera, seed) {
-  blocks_.reserve(rays_.tile_count());
+  tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i)
-    blocks_.emplace_back(PixelBank(options_, noise_, seed, rays_.tile(i)));
+    tiles_.emplace_back(PixelBank(options_, noise_, seed, rays_.tile(i)));
 }
 
 void FrameCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
-  if (frames_ == 0) render(0, [](Block& block, const Levels& levels) { start(block, levels); });
+  if (frames_ == 0)
+    render(0, [](TileState& tile_state, const LogIntensities& log_intensities) {
+      start(tile_state, log_intensities);
+    });
   while (t_s_ < duration_s) {
     const double next_s = next_frame_s(duration_s);
-    render(next_s, [&](Block& block, const Levels& levels) { sense(block, next_s, levels); });
+    render(next_s, [&](TileState& tile_state, const LogIntensities& log_intensities) {
+      sense(tile_state, next_s, log_intensities);
+    });
     longest_s_ = std::max(longest_s_, next_s - t_s_);
     t_s_ = next_s;
-    for (Block& block : blocks_) block.pixels.take_events(delivery_.pending());
+    for (TileState& tile_state : tiles_) tile_state.pixels.take_events(delivery_.pending());
     delivery_.deliver(t_s_, t_s_ == duration_s, sink);
   }
 }
@@ -70,52 +75,56 @@ template <class Done>
 void FrameCamera::render(double t_s, const Done& done) {
   const Instant instant(scene_, motion_.state(t_s), t_s);
   parallel_for(
-      blocks_.size(), [&](std::size_t i) { done(blocks_[i], look(i, instant, blocks_[i])); },
+      tiles_.size(), [&](std::size_t i) { done(tiles_[i], sample_tile(i, instant, tiles_[i])); },
       kTilesPerTask);
   fastest_px_s_ = 0;
-  for (const Block& block : blocks_) fastest_px_s_ = std::max(fastest_px_s_, block.fastest_px_s);
+  for (const TileState& tile_state : tiles_)
+    fastest_px_s_ = std::max(fastest_px_s_, tile_state.fastest_px_s);
   ++frames_;
 }
 
-FrameCamera::Levels FrameCamera::look(std::size_t tile, const Instant& instant,
-                                      Block& block) const {
+FrameCamera::LogIntensities FrameCamera::sample_tile(std::size_t tile, const Instant& instant,
+                                                     TileState& tile_state) const {
   const std::span<const Eigen::Vector3d> directions = rays_.rays(tile);
   const std::size_t per_pixel = rays_.rays_per_pixel();
-  Levels levels{};
-  block.fastest_px_s = 0;
-  trace_tile(
-      scene_, directions, instant.pose, [&](std::size_t k, const Ray& ray, TriangleId triangle) {
-        const Eigen::Vector3d& direction = directions[k];
-        const Shade shade =
-            options_.texture_filter == TextureFilter::kBilinear
-                ? scene_.shade(ray, triangle)
-                : scene_.shade(ray, triangle, spread_in_world(rays_, instant.rotation, direction));
-        levels[k / per_pixel] += shade.radiance;
-        const Eigen::Vector2d motion = point_motion(rays_.camera(), direction, shade.distance,
-                                                    instant.twists.before(triangle));
-        block.fastest_px_s = std::max(block.fastest_px_s, motion.norm());
-      });
-  block.statistics.rays += directions.size();
-  if (scene_.is_lit()) block.statistics.lit_points += directions.size();
-  for (double& level : levels)
-    level = std::log(options_.log_eps + level / static_cast<double>(per_pixel));
-  return levels;
+  LogIntensities log_intensities{};
+  tile_state.fastest_px_s = 0;
+  trace_tile(scene_, directions, instant.pose,
+             [&](std::size_t k, const Ray& ray, TriangleId triangle) {
+               const Eigen::Vector3d& direction = directions[k];
+               const Shade shade =
+                   options_.texture_filter == TextureFilter::kBilinear
+                       ? scene_.shade(ray, triangle)
+                       : scene_.shade(ray, triangle,
+                                      differential_in_world(rays_, instant.rotation, direction));
+               log_intensities[k / per_pixel] += shade.radiance;
+               const Eigen::Vector2d motion = point_motion(
+                   rays_.camera(), direction, shade.distance, instant.twists.relative_to(triangle));
+               tile_state.fastest_px_s = std::max(tile_state.fastest_px_s, motion.norm());
+             });
+  tile_state.statistics.rays += directions.size();
+  if (scene_.is_lit()) tile_state.statistics.lit_points += directions.size();
+  for (double& value : log_intensities)
+    value = std::log(options_.log_eps + value / static_cast<double>(per_pixel));
+  return log_intensities;
 }
 
-void FrameCamera::start(Block& block, const Levels& levels) {
-  for (std::size_t i = 0; i < block.pixels.size(); ++i) block.pixels.start(i, levels[i], 0);
-  block.levels = levels;
+void FrameCamera::start(TileState& tile_state, const LogIntensities& log_intensities) {
+  for (std::size_t i = 0; i < tile_state.pixels.size(); ++i)
+    tile_state.pixels.start(i, log_intensities[i], 0);
+  tile_state.log_intensities = log_intensities;
 }
 
-void FrameCamera::sense(Block& block, double next_s, const Levels& levels) const {
+void FrameCamera::sense(TileState& tile_state, double next_s,
+                        const LogIntensities& log_intensities) const {
   const LinearSignal signal(options_.log_eps, 1e-6 * options_.time_tolerance_us);
-  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
-    const LinearSample to{next_s, levels[i]};
-    const Thresholds& thresholds = block.pixels.thresholds(i);
-    if (block.pixels.is_noisy() || !thresholds.band().holds(thresholds.signal(to)))
-      block.pixels.sense(i, signal, {t_s_, block.levels[i]}, to);
+  for (std::size_t i = 0; i < tile_state.pixels.size(); ++i) {
+    const LinearSample to{next_s, log_intensities[i]};
+    const Thresholds& thresholds = tile_state.pixels.thresholds(i);
+    if (tile_state.pixels.is_noisy() || !thresholds.band().contains(thresholds.signal(to)))
+      tile_state.pixels.sense(i, signal, {t_s_, tile_state.log_intensities[i]}, to);
   }
-  block.levels = levels;
+  tile_state.log_intensities = log_intensities;
 }
 
 std::string FrameCamera::state() const {
@@ -124,10 +133,10 @@ std::string FrameCamera::state() const {
   state.value(frames_);
   state.value(fastest_px_s_);
   state.value(longest_s_);
-  for (const Block& block : blocks_) {
-    block.pixels.save(state);
-    state.value(block.levels);
-    state.value(block.statistics);
+  for (const TileState& tile_state : tiles_) {
+    tile_state.pixels.save(state);
+    state.value(tile_state.log_intensities);
+    state.value(tile_state.statistics);
   }
   delivery_.save(state);
   return state.take();
@@ -139,10 +148,10 @@ void FrameCamera::resume(std::string_view bytes) {
   state.value(frames_);
   state.value(fastest_px_s_);
   state.value(longest_s_);
-  for (Block& block : blocks_) {
-    block.pixels.load(state);
-    state.value(block.levels);
-    state.value(block.statistics);
+  for (TileState& tile_state : tiles_) {
+    tile_state.pixels.load(state);
+    state.value(tile_state.log_intensities);
+    state.value(tile_state.statistics);
   }
   delivery_.load(state);
   if (!state.at_end()) throw InputError("saved state", "is too long; start the simulation afresh");
@@ -150,7 +159,7 @@ void FrameCamera::resume(std::string_view bytes) {
 
 EventStatistics FrameCamera::statistics() const {
   EventStatistics total;
-  for (const Block& block : blocks_) total.add(block.statistics);
+  for (const TileState& tile_state : tiles_) total.add(tile_state.statistics);
   total.lost = delivery_.lost();
   total.time_bound_s = longest_s_;
   return total;

@@ -12,10 +12,10 @@
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_delivery.h"
 #include "simulator/sensor/event_options.h"
-#include "simulator/sensor/pixel_bank.h"
-#include "simulator/sensor/pixel_noise.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/ray_tracer.h"
+#include "simulator/sensor/pixel/pixel_bank.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
 
 namespace saccade {
 
@@ -49,38 +49,39 @@ class FrameCamera {
   [[nodiscard]] EventStatistics statistics() const;
 
  private:
-  using Levels = std::array<double, kTilePixels>;
-  /// A tile's share of the camera.
-  struct Block {
-    explicit Block(PixelBank bank) : pixels(std::move(bank)) {}
+  using LogIntensities = std::array<double, kTilePixels>;
+  /// A tile's fraction of the camera.
+  struct TileState {
+    explicit TileState(PixelBank bank) : pixels(std::move(bank)) {}
 
     PixelBank pixels;
-    Levels levels{};  ///< log intensities in the last frame
+    LogIntensities log_intensities{};  ///< log intensities in the last frame
     EventStatistics statistics;
     double fastest_px_s = 0;  ///< of what it saw in the last frame
   };
   struct Instant;
 
   [[nodiscard]] double next_frame_s(double duration_s) const;
-  /// Renders the frame of `t_s` and calls done(block, log intensities) for all tiles, in parallel.
+  /// Renders the frame of `t_s` and calls done(tile_state, log intensities) for all tiles, in parallel.
   template <class Done>
   void render(double t_s, const Done& done);
   /// The log intensities of a tile, and how fast what it sees moves.
-  [[nodiscard]] Levels look(std::size_t tile, const Instant& instant, Block& block) const;
-  static void start(Block& block, const Levels& levels);
+  [[nodiscard]] LogIntensities sample_tile(std::size_t tile, const Instant& instant,
+                                           TileState& tile_state) const;
+  static void start(TileState& tile_state, const LogIntensities& log_intensities);
   /// From the last frame to the one of `next_s`.
-  void sense(Block& block, double next_s, const Levels& levels) const;
+  void sense(TileState& tile_state, double next_s, const LogIntensities& log_intensities) const;
 
   const Scene& scene_;
   const Spline& motion_;
   PixelRays rays_;
   EventOptions options_;
   PixelNoise noise_;
-  std::vector<Block> blocks_;  ///< one per tile
-  double t_s_ = 0;             ///< of the last frame
-  std::uint64_t frames_ = 0;   ///< so far
-  double fastest_px_s_ = 0;    ///< in the last frame
-  double longest_s_ = 0;       ///< between two frames
+  std::vector<TileState> tiles_;  ///< one per tile
+  double t_s_ = 0;                ///< of the last frame
+  std::uint64_t frames_ = 0;      ///< so far
+  double fastest_px_s_ = 0;       ///< in the last frame
+  double longest_s_ = 0;          ///< between two frames
   EventDelivery delivery_;
 };
 

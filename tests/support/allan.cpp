@@ -7,12 +7,12 @@
 
 namespace saccade::testing {
 
-double allan_deviation(std::span<const double> readings, double dt_s, std::size_t m) {
-  SACCADE_CHECK(m >= 1 && 2 * m <= readings.size());
-  std::vector<double> theta(readings.size() + 1, 0.0);
+double allan_deviation(std::span<const double> samples, double dt_s, std::size_t m) {
+  SACCADE_CHECK(m >= 1 && 2 * m <= samples.size());
+  std::vector<double> theta(samples.size() + 1, 0.0);
   // A constant changes nothing but the rounding.
-  for (std::size_t k = 0; k < readings.size(); ++k)
-    theta[k + 1] = theta[k] + dt_s * (readings[k] - readings[0]);
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    theta[k + 1] = theta[k] + dt_s * (samples[k] - samples[0]);
   double sum = 0;
   const std::size_t terms = theta.size() - 2 * m;
   for (std::size_t k = 0; k < terms; ++k) {

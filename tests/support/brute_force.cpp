@@ -12,10 +12,10 @@
 
 #include "core/parallel.h"
 #include "simulator/sensor/event_camera.h"
-#include "simulator/sensor/event_pixel.h"
-#include "simulator/sensor/pixel_rays.h"
-#include "simulator/sensor/tile_trace.h"
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
+#include "simulator/sensor/pixel/event_pixel.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/tile_trace.h"
 
 namespace saccade::testing {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 constexpr double kBracket_s = 1e-9;
 /// Next to an edge rays may slip through for less than this.
 constexpr double kShortest_s = 1e-7;
-constexpr double kMostTexels = 0.1;
+constexpr double kMaxTexels = 0.1;
 
 /// What a pixel sees at one instant through all its rays.
 struct Look {
@@ -65,7 +65,7 @@ class BrutePixel {
     return at(0.5 * (a.t_s + b.t_s));
   }
 
-  /// The two looks, a nanosecond apart, between which `is_before` turns false; true at `lo`, false
+  /// The two samples, a nanosecond apart, between which `is_before` turns false; true at `lo`, false
   /// at `hi`.
   template <class IsBefore>
   [[nodiscard]] std::pair<Look, Look> bisect(Look lo, Look hi, const IsBefore& is_before) const {
@@ -105,7 +105,7 @@ class BrutePixel {
     double sum = 0;
     for (std::size_t k = 0; k < rays.size(); ++k) {
       sum += radiance(rays[k], look.triangles[k], pose, directions_[k]);
-      const SurfaceLook surface = scene_.look(rays[k], look.triangles[k]);
+      const SurfaceSample surface = scene_.sample_surface(rays[k], look.triangles[k]);
       look.texels.emplace_back(surface.texture != nullptr ? Eigen::Vector2d(surface.x, surface.y)
                                                           : Eigen::Vector2d(0, 0));
     }
@@ -116,7 +116,8 @@ class BrutePixel {
   [[nodiscard]] double radiance(const Ray& ray, TriangleId triangle, const Rigid3& pose,
                                 const Eigen::Vector3d& direction) const {
     if (!filters_) return scene_.shade(ray, triangle).radiance;
-    return scene_.shade(ray, triangle, spread_in_world(rays_, pose.rotation_matrix(), direction))
+    return scene_
+        .shade(ray, triangle, differential_in_world(rays_, pose.rotation_matrix(), direction))
         .radiance;
   }
 
@@ -159,7 +160,7 @@ class BruteSensor {
     double farthest = 0;
     for (std::size_t k = 0; k < to.texels.size(); ++k)
       farthest = std::max(farthest, (to.texels[k] - last_.texels[k]).cwiseAbs().maxCoeff());
-    if (farthest > kMostTexels && depth < kDeepest && to.t_s - last_.t_s > 2 * kBracket_s) {
+    if (farthest > kMaxTexels && depth < kDeepest && to.t_s - last_.t_s > 2 * kBracket_s) {
       const Look middle = pixel_.between(last_, to);
       if (middle.triangles == last_.triangles) {
         advance_on_surface(middle, depth + 1);
@@ -184,7 +185,7 @@ class BruteSensor {
         // The extremum is on one side of the look in the middle; what lies before that has been
         // passed already and is gone back to.
         const Look peak = pixel_.extremum(previous_, to, sign);
-        if (peak.triangles == last_.triangles && !state_.band().holds(peak.log_intensity)) {
+        if (peak.triangles == last_.triangles && !state_.band().contains(peak.log_intensity)) {
           if (peak.t_s < last_.t_s) last_ = previous_;
           fire_up_to(peak);
         }
@@ -196,7 +197,7 @@ class BruteSensor {
   }
 
   void fire_up_to(const Look& to) {
-    while (!state_.band().holds(to.log_intensity)) {
+    while (!state_.band().contains(to.log_intensity)) {
       const int polarity = to.log_intensity >= state_.band().upper ? 1 : -1;
       const auto [lo, hi] = pixel_.bisect(last_, to, [&](const Look& look) {
         return polarity > 0 ? look.log_intensity < state_.band().upper
@@ -338,7 +339,7 @@ Agreement agreement(const Scene& scene, const Spline& motion, const PinholeCamer
 
 double mean_path_px(const Scene& scene, const Spline& motion, const PinholeCamera& camera) {
   constexpr int kInstants = 20;
-  const ViewRenderer renderer(scene, camera, 1);
+  const ImageRenderer renderer(scene, camera, 1);
   double sum = 0;
   for (int k = 0; k < kInstants; ++k) {
     const double t_s = motion.end_s() * (k + 0.5) / kInstants;

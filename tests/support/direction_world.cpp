@@ -25,7 +25,7 @@ Eigen::Quaterniond level() {
   return Eigen::Quaterniond(axes);
 }
 
-Eigen::Vector3d rate_at(const Turning& turning, double t_s) {
+Eigen::Vector3d rate_at(const OrientationFunction& turning, double t_s) {
   constexpr double kDelta_s = 1e-5;
   return so3_log(turning(t_s - kDelta_s).conjugate() * turning(t_s + kDelta_s)) / (2 * kDelta_s);
 }
@@ -59,7 +59,8 @@ ImageF DirectionWorld::view(const Eigen::Quaterniond& world_from_camera) const {
   return image;
 }
 
-Events DirectionWorld::simulate(const Turning& turning, double end_s, double contrast) const {
+Events DirectionWorld::simulate(const OrientationFunction& turning, double end_s,
+                                double contrast) const {
   const auto c = static_cast<float>(contrast);
   ImageF before = view(turning(0));
   ImageF reference = before;
@@ -72,8 +73,8 @@ Events DirectionWorld::simulate(const Turning& turning, double end_s, double con
         const float sign = to > from ? 1 : -1;
         while (sign * (to - reference(x, y)) >= c) {
           reference(x, y) += sign * c;
-          const auto share = static_cast<double>((reference(x, y) - from) / (to - from));
-          events.push_back({ns_from_seconds(kStep_s * (i - 1 + std::clamp(share, 0.0, 1.0))),
+          const auto fraction = static_cast<double>((reference(x, y) - from) / (to - from));
+          events.push_back({ns_from_seconds(kStep_s * (i - 1 + std::clamp(fraction, 0.0, 1.0))),
                             static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                             static_cast<std::int8_t>(sign)});
         }
@@ -86,11 +87,11 @@ Events DirectionWorld::simulate(const Turning& turning, double end_s, double con
 
 PinholeCamera small_camera() { return {48, 36, 60, 60, 23.5, 17.5, {}}; }
 
-Turning sweep(double start, double turn) {
-  return [start, turn](double t_s) {
+OrientationFunction sweep(double start, double rate) {
+  return [start, rate](double t_s) {
     const double moving_s = std::max(t_s - kRest_s, 0.0);
     // It starts and goes on without a jolt.
-    const double yaw = start + turn * (moving_s - std::tanh(5 * moving_s) / 5);
+    const double yaw = start + rate * (moving_s - std::tanh(5 * moving_s) / 5);
     const double pitch = kNod * std::pow(std::sin(4 * moving_s), 2);
     return Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                               Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY())) *
@@ -98,7 +99,8 @@ Turning sweep(double start, double turn) {
   };
 }
 
-void write_sky_dataset(const std::filesystem::path& folder, const Turning& turning, double end_s) {
+void write_sky_dataset(const std::filesystem::path& folder, const OrientationFunction& turning,
+                       double end_s) {
   constexpr double kContrast = 0.15;
   const DirectionWorld world(small_camera());
   DatasetWriter writer(folder, world.camera());

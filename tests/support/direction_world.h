@@ -12,9 +12,9 @@
 
 namespace saccade::testing {
 
-using Turning = std::function<Eigen::Quaterniond(double t_s)>;  ///< world_from_camera
+using OrientationFunction = std::function<Eigen::Quaterniond(double t_s)>;  ///< world_from_camera
 
-/// A sky of waves with soft edges, infinitely far away, around a camera that only turns.
+/// A sky of waves with soft edges, infinitely far away, around a purely rotating camera.
 class DirectionWorld {
  public:
   explicit DirectionWorld(PinholeCamera camera) : camera_(camera) {}
@@ -25,7 +25,8 @@ class DirectionWorld {
   [[nodiscard]] static ImageF log_intensity(const Panorama& panorama);
   /// Events of an ideal sensor over [0, end_s]: the signal is sampled every ms and linear in
   /// between; in EventOrder.
-  [[nodiscard]] Events simulate(const Turning& turning, double end_s, double contrast) const;
+  [[nodiscard]] Events simulate(const OrientationFunction& turning, double end_s,
+                                double contrast) const;
 
  private:
   [[nodiscard]] ImageF view(const Eigen::Quaterniond& world_from_camera) const;
@@ -36,13 +37,14 @@ class DirectionWorld {
 /// 48 x 36 pixels, 44 degrees wide.
 [[nodiscard]] PinholeCamera small_camera();
 
-/// Level at first and looking along longitude `start` [rad]; at rest until 0.1 s, then `turn` rad/s
+/// Horizontal at first and looking along longitude `start` [rad]; at rest until 0.1 s, then `rate` rad/s
 /// to the left, nodding by 0.1 rad.
-[[nodiscard]] Turning sweep(double start, double turn);
+[[nodiscard]] OrientationFunction sweep(double start, double rate);
 
 /// A dataset of it with a perfect inertial sensor in the camera's axes and panorama.exr; contrast
 /// 0.15.
-void write_sky_dataset(const std::filesystem::path& folder, const Turning& turning, double end_s);
+void write_sky_dataset(const std::filesystem::path& folder, const OrientationFunction& turning,
+                       double end_s);
 
 /// Correlation of two images on a mask.
 [[nodiscard]] double correlation(const ImageF& a, const ImageF& b, const ImageU8& mask);

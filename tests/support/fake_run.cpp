@@ -37,15 +37,15 @@ std::vector<StampedPose> true_poses(double duration_s) {
 /// The true pose with a slow wander and white noise on it.
 Rigid3 erring_pose(const Rigid3& truth, double t_s, std::uint64_t index, const FakeErrors& errors) {
   const Random random(7);
-  Eigen::Vector3d shift, turn;
+  Eigen::Vector3d shift, rotation;
   for (int axis = 0; axis < 3; ++axis) {
     const auto stream = static_cast<std::uint64_t>(axis);
     const double wave = std::sin(2 * kPi * t_s * (0.8 + 0.3 * axis));
     shift[axis] = errors.slow_m * wave + errors.noise_m * random.normal(stream, index);
-    turn[axis] =
+    rotation[axis] =
         (errors.slow_deg * wave + errors.noise_deg * random.normal(stream + 3, index)) * kPi / 180;
   }
-  return {truth.rotation() * so3_exp(turn), truth.translation() + shift};
+  return {truth.rotation() * so3_exp(rotation), truth.translation() + shift};
 }
 
 PointCloud edge_points(const Dataset& dataset) {

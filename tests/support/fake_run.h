@@ -30,7 +30,7 @@ void write_fake_run(const std::filesystem::path& folder, const std::filesystem::
                     const FakeErrors& errors = {}, const std::string& configuration = "accurate");
 
 /// Makes such a run one of odometry: `count` keyframes every 20 ms from 20 ms on, in force from 10
-/// ms after their view on and each alone, with the true depth and log intensity and an equal share
+/// ms after their view on and each alone, with the true depth and log intensity and an equal part
 /// of the map.
 void add_fake_keyframes(const std::filesystem::path& run, int count);
 

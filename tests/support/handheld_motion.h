@@ -7,7 +7,7 @@
 
 namespace saccade::testing {
 
-/// A camera carried about in a hand: half a metre to and fro and turns of some 20 degrees, at half
+/// A hand-held camera: half a metre to and fro and rotations of about 20 degrees, at half
 /// a hertz to two, from time 0 on; z is up.
 [[nodiscard]] Spline handheld_motion(double duration_s);
 

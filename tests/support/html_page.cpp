@@ -6,9 +6,9 @@
 namespace saccade::testing {
 namespace {
 
-/// Whether the text at `place` stands in a tag <a ...>, a link that is followed by hand alone.
-bool in_anchor(std::string_view html, std::size_t place) {
-  const std::size_t tag = html.rfind('<', place);
+/// Whether the text at `position` stands in a tag <a ...>, a link that is followed by hand alone.
+bool in_anchor(std::string_view html, std::size_t position) {
+  const std::size_t tag = html.rfind('<', position);
   return tag != std::string_view::npos && html.substr(tag, 3) == "<a ";
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/image.h"
 #include "core/spline.h"
-#include "simulator/scene/mesh.h"
+#include "simulator/scene/mesh/mesh.h"
 
 namespace saccade::testing {
 

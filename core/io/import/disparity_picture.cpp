@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
-#include "core/io/file_bytes.h"
+#include "core/io/files/file_bytes.h"
 
 namespace saccade {
 

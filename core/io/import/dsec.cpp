@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/io/import/disparity_picture.h"
 #include "core/io/import/public_sequence.h"
-#include "core/io/text_table.h"
+#include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
 
 namespace saccade {

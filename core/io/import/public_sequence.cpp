@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/dataset_writer.h"
-#include "core/io/events_h5.h"
-#include "core/progress.h"
+#include "core/io/dataset/dataset_writer.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 namespace {

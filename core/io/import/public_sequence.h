@@ -9,7 +9,7 @@
 #include "core/image.h"
 #include "core/imu_sample.h"
 #include "core/io/calibration_file.h"
-#include "core/io/file_list.h"
+#include "core/io/files/file_list.h"
 #include "core/trajectory.h"
 
 namespace saccade {
@@ -43,7 +43,7 @@ struct PublicSequence {
 /// A sequence of TUM-VIE (Klenk et al., IROS 2021): *events_left.h5 and the
 /// camera-calibration*.json that belongs to it; imu_data.txt and, with mocap-imu-calibration*.json,
 /// mocap_data.txt where it has them, here or in a folder below. Its fisheye model becomes the
-/// nearest radial-tangential one; InputError where that is off by more than a tenth of a pixel.
+/// nearest radial-tangential one; InputError where that differs by more than a tenth of a pixel.
 [[nodiscard]] PublicSequence open_tum_vie(const std::filesystem::path& folder);
 
 /// A part of a sequence, in seconds from its first event.

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/io/import/fisheye_camera.h"
 #include "core/io/import/public_sequence.h"
-#include "core/io/text_table.h"
+#include "core/io/tables/text_table.h"
 
 namespace saccade {
 namespace {

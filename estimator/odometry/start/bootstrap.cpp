@@ -4,21 +4,20 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/odometry/start/carried_path.h"
+#include "core/time_search.h"
+#include "estimator/odometry/start/extrapolated_path.h"
 
 namespace saccade {
 namespace {
 
+/// The events with from_s <= t < to_s, as seconds.
 std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
-  const auto at = [&](double t_s) {
-    return std::partition_point(events.begin(), events.end(),
-                                [t_s](const Event& e) { return seconds_from_ns(e.t_ns) < t_s; });
-  };
-  const auto first = at(from_s);
-  return {first, std::max(first, at(to_s))};
+  const auto time_of = [](const Event& e) { return seconds_from_ns(e.t_ns); };
+  const std::size_t first = count_before(events, from_s, time_of);
+  return events.subspan(first, std::max(first, count_before(events, to_s, time_of)) - first);
 }
 
-/// `gyroscope` tells the turn, where it is not empty.
+/// `gyroscope` measures the rotation, where it is not empty.
 Trajectory path_of(const PlaneFit& fit, const Gyroscope& gyroscope) {
   std::vector<StampedPose> poses;
   const double duration_s = fit.end_s - fit.start_s;
@@ -27,11 +26,11 @@ Trajectory path_of(const PlaneFit& fit, const Gyroscope& gyroscope) {
     const double t_s = fit.start_s + i * duration_s / steps;
     poses.push_back({t_s, fit.motion.reference_from_camera(t_s - fit.middle_s)});
   }
-  turn_by(gyroscope, poses, 1);
+  rotate_by(gyroscope, poses, 1);
   return Trajectory(std::move(poses));
 }
 
-/// Largest distance from the first pose, seen at depth 1 [px].
+/// Parallax at depth 1 of the largest distance from the first pose [px].
 double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
   const Eigen::Vector3d first = path.poses().front().world_from_camera.translation();
   double most = 0;
@@ -81,7 +80,8 @@ class StartFinder {
   [[nodiscard]] static PathRefinementOptions refinement_of(const BootstrapOptions& options,
                                                            const Gyroscope& gyroscope) {
     PathRefinementOptions refinement = options.refinement;
-    if (!gyroscope.is_empty()) refinement.adjustment.turn_share = options.felt_turn_share;
+    if (!gyroscope.is_empty())
+      refinement.adjustment.rotation_sigma_ratio = options.gyro_rotation_sigma_ratio;
     return refinement;
   }
 
@@ -101,7 +101,7 @@ class StartFinder {
         std::min(options_.window_s, seconds_from_ns(events.back().t_ns) - start_s);
     while (path.is_clear && path.poses.end_s() - start_s < longest_s - kPoseSpacing_s) {
       const double window_s = std::min(options_.growth * (path.poses.end_s() - start_s), longest_s);
-      path = refined(events, carried_on(path.poses, start_s + window_s, gyroscope_), 1);
+      path = refined(events, extrapolated(path.poses, start_s + window_s, gyroscope_), 1);
     }
     return path;
   }

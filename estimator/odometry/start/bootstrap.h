@@ -16,13 +16,13 @@ struct BootstrapOptions {
   double window_s = 0.25;  ///< of the path that is found, at most
   PlaneSearchOptions plane;
   PathRefinementOptions refinement = start_refinement();
-  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
-  double felt_turn_share = 0.05;
+  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
+  double gyro_rotation_sigma_ratio = 0.05;
   int first_rounds = 1;        ///< of every hypothesis, before the best goes on
   int rounds = 3;              ///< of the best
   double growth = 1.15;        ///< of its window, from round to round after these
   double min_gain = 1.1;       ///< of contrast: less is noise
-  double min_parallax_px = 5;  ///< of the path at the typical depth: less is a turn
+  double min_parallax_px = 5;  ///< of the path at the typical depth: less is a rotation
   double retry_s = 0.1;        ///< where a window gives no start the next begins so much later
 };
 
@@ -31,21 +31,22 @@ struct Bootstrap {
   enum class Status {
     kFound,
     kNoMotion,    ///< nothing but noise in all of the events
-    kNoParallax,  ///< the camera only turned, or its motion was never clear
+    kNoParallax,  ///< the camera only rotated, or its motion was never clear
   };
   Status status = Status::kNoMotion;
   Trajectory path;         ///< world_from_camera, the identity at its first pose
   std::size_t edges = 0;   ///< found with it
-  double residual_px = 0;  ///< robust deviation of their events
+  double residual_px = 0;  ///< robust standard deviation of their events
   double parallax_px = 0;  ///< of the typical depth, between the ends of the path
 };
 
 /// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
-/// by contrast (PlaneSearch), then path and edges adjusted together (PathRefinement); the one by
-/// which most events lie on edges is taken, and carried on at its last velocity: the longer the
-/// path, the better it tells a turn from a step, but no steady motion explains a long one. Where
-/// the camera rests, or only turns, it begins later. `events` in order of time; `camera` with its
-/// lens; `gyroscope`, where it is not empty, tells the turn. Deterministic.
+/// by contrast (PlaneSearch), then path and edges adjusted together (PathRefinement); the path by
+/// which most events lie on edges is taken and extrapolated at its last velocity: the longer the
+/// path, the better it distinguishes rotation from translation, but constant velocity explains no
+/// long one. Where the camera rests, or only rotates, the start begins later. `events` in order of
+/// time; `camera` with its lens; `gyroscope`, where it is not empty, measures the rotation.
+/// Deterministic.
 [[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
                                    const BootstrapOptions& options,
                                    const Gyroscope& gyroscope = {});

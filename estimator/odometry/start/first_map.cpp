@@ -4,14 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/odometry/start/carried_path.h"
+#include "estimator/odometry/start/extrapolated_path.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
 namespace {
 
 /// `path` with the given poses as they are, and what follows after the last of them.
-Trajectory held(const Trajectory& path, const KnownPath& start) {
+Trajectory with_given_poses(const Trajectory& path, const KnownPath& start) {
   const double until_s = start.given_until_s;
   const Rigid3 given_from_found =
       start.poses.at_clamped(until_s) * path.at_clamped(until_s).inverse();
@@ -29,9 +29,10 @@ FirstMap first_map(std::span<const Event> events, const KnownPath& start, const 
                    const Gyroscope& gyroscope) {
   FirstMap first{start, mapper.map(within(events, start.poses), start)};
   const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
-  if (is_enough() || start.given_until_s == kNothingGiven || events.empty()) return first;
+  if (is_enough() || start.given_until_s == kNoGivenPoses || events.empty()) return first;
   PathRefinementOptions refined = options.refinement;
-  if (!gyroscope.is_empty()) refined.adjustment.turn_share = options.felt_turn_share;
+  if (!gyroscope.is_empty())
+    refined.adjustment.rotation_sigma_ratio = options.gyro_rotation_sigma_ratio;
   const PathRefinement refinement(refined, camera);
   const double start_s = start.poses.start_s();
   const double longest_s =
@@ -40,11 +41,12 @@ FirstMap first_map(std::span<const Event> events, const KnownPath& start, const 
   double length_s = path.poses.end_s() - start_s;
   while (!is_enough() && length_s < longest_s) {
     length_s = std::min(options.growth * length_s, longest_s);
-    const Trajectory longer = carried_on(path.poses, start_s + length_s, gyroscope);
+    const Trajectory longer = extrapolated(path.poses, start_s + length_s, gyroscope);
     const std::span<const Event> window = within(events, longer);
     if (window.empty()) continue;
     // Where there is too little to adjust it by, the path is the longer one as it is.
-    path.poses = held(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
+    path.poses =
+        with_given_poses(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
     Mapping mapping = mapper.map(window, path);
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};

@@ -12,16 +12,16 @@
 namespace saccade {
 
 struct FirstMapOptions {
-  std::size_t min_edges = 0;  ///< with fewer, given poses are carried on; 0: never
+  std::size_t min_edges = 0;  ///< with fewer, given poses are extrapolated; 0: never
   double window_s = 0.3;      ///< of the path with the given poses, to a millisecond; at most
   double growth = 1.15;       ///< of the path, from round to round
-  /// Of the deviations of turns, where a gyroscope tells them, from the step's as image motion.
-  double felt_turn_share = 0.05;
+  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
+  double gyro_rotation_sigma_ratio = 0.05;
   PathRefinementOptions refinement = given_refinement();
 
  private:
-  /// Little is known of an edge, or the poses were not carried on; what says how far away it is
-  /// are its events while they are given.
+  /// An edge's depth is uncertain, or the poses would not be extrapolated; its events while the poses
+  /// are given determine it.
   [[nodiscard]] static PathRefinementOptions given_refinement() {
     PathRefinementOptions options = start_refinement();
     options.min_edges = 60;
@@ -37,13 +37,13 @@ struct FirstMap {
   Mapping mapping;
 };
 
-/// What a run starts from. Where the camera hardly steps sideways while its poses are given, few
-/// edges tell their depth, and it would be lost soon after. The path then goes on at its last
-/// velocity and is adjusted together with the edges (PathRefinement), the given poses being put
-/// back each time, until `mapper` makes a map of edges enough, or the path is as long as it may
+/// What a run starts from. Where the camera hardly translates sideways while its poses are given,
+/// few edges have a depth, and tracking would be lost soon after. The path is then extrapolated at
+/// its last velocity and adjusted together with the edges (PathRefinement), with the given poses
+/// restored each time, until `mapper` makes a map of edges enough, or the path is as long as it may
 /// get; the largest map is taken. `start` as of Odometry::run(): one without given poses is taken
 /// as it is. `events` in order of time; `camera` with its lens; `gyroscope`, where it is not empty,
-/// tells the turn beyond the given poses. Deterministic.
+/// measures the rotation beyond the given poses. Deterministic.
 [[nodiscard]] FirstMap first_map(std::span<const Event> events, const KnownPath& start,
                                  const Mapper& mapper, const PinholeCamera& camera,
                                  const FirstMapOptions& options, const Gyroscope& gyroscope);

@@ -30,9 +30,9 @@ PathRefinementOptions start_refinement() {
   PathRefinementOptions options;
   options.adjustment.edges = 800;
   options.adjustment.node_spacing_s = 0.02;
-  options.adjustment.deviations = AdjustmentOptions::Deviations::kPose;
+  options.adjustment.prior_of = WindowAdjustmentOptions::PriorOf::kPose;
   options.adjustment.pose_sigma_px = 20;
-  options.adjustment.step_sigma_px = 0.3;
+  options.adjustment.smoothness_sigma_px = 0.3;
   options.adjustment.surface_sigma = 0.02;
   options.adjustment.iterations = 20;
   return options;
@@ -43,7 +43,7 @@ PathRefinement::PathRefinement(const PathRefinementOptions& options, const Pinho
 
 FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path, int rounds,
                                 double given_until_s) const {
-  const bool is_free = given_until_s == kNothingGiven;
+  const bool is_free = given_until_s == kNoGivenPoses;
   FreePath result;
   result.poses = path;
   const double reference_s =
@@ -55,9 +55,9 @@ FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory&
     result.events = 0;
     for (const FittedEdge& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
-    const Adjustment adjustment =
-        adjust(window, edges, camera_, {given_until_s, given_until_s, median_depth(edges), {}},
-               options_.adjustment);
+    const WindowAdjustment adjustment =
+        adjust_window(window, edges, camera_,
+                      {given_until_s, given_until_s, median_depth(edges), {}}, options_.adjustment);
     if (!adjustment.ok) return result;
     result.residual_px = adjustment.residual_after_px;
     result.poses = is_free ? scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges))

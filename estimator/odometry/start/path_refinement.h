@@ -7,7 +7,7 @@
 #include "core/event.h"
 #include "core/trajectory.h"
 #include "estimator/depth/ray_depth.h"
-#include "estimator/refinement/edge_adjustment.h"
+#include "estimator/edges/window/window_adjustment.h"
 
 namespace saccade {
 
@@ -15,10 +15,10 @@ struct PathRefinementOptions {
   std::size_t min_edges = 100;
   RayDepthOptions rays;
   DepthLimits limits{.near_m = 0.3, .far_m = 50};  ///< of a free path the typical depth is 1
-  AdjustmentOptions adjustment;
+  WindowAdjustmentOptions adjustment;
 };
 
-/// What the refinement of a start is by default: loose where there is nothing to hold on to.
+/// The refinement of a start by default: weak priors on the path, edges on a smooth surface.
 [[nodiscard]] PathRefinementOptions start_refinement();
 
 /// A path that is known up to a similarity, or from its given poses on.
@@ -26,21 +26,21 @@ struct FreePath {
   Trajectory poses;        ///< world_from_camera; of a free one the typical depth is 1
   std::size_t edges = 0;   ///< found with it
   std::size_t events = 0;  ///< of theirs
-  double residual_px = 0;  ///< robust deviation of these
+  double residual_px = 0;  ///< robust standard deviation of these
   bool is_clear = false;   ///< there were enough edges in every round
 };
 
-/// Path and edges of a window, adjusted in turn: edges are found with the path (RayDepth), then
-/// both are adjusted (edge_adjustment.h). Of a path without given poses nothing is held, and the
+/// Path and edges of a window, adjusted alternately: edges are found with the path (RayDepth), then
+/// both are adjusted (window_adjustment.h). Of a path without given poses no pose is fixed, and the
 /// typical depth stays the unit of length.
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);
 
   /// `events` of the window, at least one, none beyond `path`; `rounds` of finding edges and
-  /// adjusting them with the path, whose nodes until `given_until_s` are held.
+  /// adjusting them with the path, whose nodes until `given_until_s` are fixed.
   [[nodiscard]] FreePath refine(std::span<const Event> events, const Trajectory& path, int rounds,
-                                double given_until_s = kNothingGiven) const;
+                                double given_until_s = kNoGivenPoses) const;
 
  private:
   PathRefinementOptions options_;

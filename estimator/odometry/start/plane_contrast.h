@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// How sharp the image of a window's events is when they are carried along a PlaneMotion to the
+/// Contrast of the image of a window's events that are warped by a PlaneMotion to the
 /// camera in the middle of the window. An event with the ray q, at time t, saw the plane at
 ///   X = o + l R q,  l = (1 - m . o) / (m . R q),  (R, o) = reference_from_camera(t),
 /// and is drawn at pi(X); the value is sum I^2 as in RotationContrast. With g the gradient there,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/time_search.h"
 #include "estimator/rotation/rotation_estimator.h"
 
 namespace saccade {
@@ -13,18 +14,18 @@ namespace {
 constexpr int kSize = 8;
 using Parameters = PlaneContrast::Parameters;
 
-/// From this image motion on turn and step are told apart.
-constexpr double kTurn_px = 8;
-constexpr double kLeastMotion_px = 3;
+/// From this image motion on rotation and translation are distinguished.
+constexpr double kRotation_px = 8;
+constexpr double kMinMotion_px = 3;
 constexpr double kGrowth = 2;  ///< of the window, at most
-constexpr double kStepShares[] = {1, 0.5, 1.5};
+constexpr double kTranslationFractions[] = {1, 0.5, 1.5};
 
 /// -log contrast + (slope / sigma)^2 / 2, of parameters in pixels.
 class PlaneCost : public ceres::FirstOrderFunction {
  public:
-  /// `turns`: the turn is looked for, too.
-  PlaneCost(PlaneContrast& contrast, const Parameters& px, double slope_sigma, bool turns)
-      : contrast_(contrast), px_(px), slope_sigma_(slope_sigma), turns_(turns) {}
+  /// `finds_rotation`: the rotation is an unknown, too.
+  PlaneCost(PlaneContrast& contrast, const Parameters& px, double slope_sigma, bool finds_rotation)
+      : contrast_(contrast), px_(px), slope_sigma_(slope_sigma), finds_rotation_(finds_rotation) {}
 
   bool Evaluate(const double* const x, double* cost, double* gradient) const override {
     const Parameters at = Eigen::Map<const Parameters>(x).cwiseQuotient(px_);
@@ -35,7 +36,7 @@ class PlaneCost : public ceres::FirstOrderFunction {
     if (gradient != nullptr) {
       Parameters by = -value.gradient / value.contrast;
       by.tail<2>() += slope / slope_sigma_;
-      if (!turns_) by.segment<3>(3).setZero();
+      if (!finds_rotation_) by.segment<3>(3).setZero();
       Eigen::Map<Parameters>(gradient, kSize) = by.cwiseQuotient(px_);
     }
     return true;
@@ -46,7 +47,7 @@ class PlaneCost : public ceres::FirstOrderFunction {
   PlaneContrast& contrast_;
   Parameters px_;
   double slope_sigma_;
-  bool turns_;
+  bool finds_rotation_;
 };
 
 /// By how much an event moves, RMS, per unit of the parameters [px].
@@ -71,10 +72,7 @@ PlaneSearch::PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera&
                 static_cast<std::size_t>(options.samples)) {}
 
 std::span<const Event> PlaneSearch::window(std::span<const Event> events, double duration_s) const {
-  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(duration_s);
-  const auto end = std::partition_point(events.begin(), events.end(),
-                                        [end_ns](const Event& e) { return e.t_ns <= end_ns; });
-  return events.first(static_cast<std::size_t>(end - events.begin()));
+  return events.first(count_until(events, events.front().t_ns + ns_from_seconds(duration_s)));
 }
 
 double PlaneSearch::image_motion_px(const PlaneFit& fit) const {
@@ -98,7 +96,7 @@ double PlaneSearch::image_motion_px(const PlaneFit& fit) const {
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-PlaneFit PlaneSearch::first_turn(std::span<const Event> events) const {
+PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
   RotationOptions options;
   options.samples = options_.samples;
   options.blur_px = options_.blur_px;
@@ -117,10 +115,10 @@ PlaneFit PlaneSearch::first_turn(std::span<const Event> events) const {
     fit.motion.rate = found.turning.rate;
     fit.motion_px = image_motion_px(fit);
     const double duration_s = fit.end_s - fit.start_s;
-    if (!found.is_valid || fit.motion_px >= kTurn_px || part.size() == events.size() ||
+    if (!found.is_valid || fit.motion_px >= kRotation_px || part.size() == events.size() ||
         duration_s >= options_.max_window_s)
       return fit;
-    const double growth = std::clamp(1.1 * kTurn_px / fit.motion_px, 1.1, kGrowth);
+    const double growth = std::clamp(1.1 * kRotation_px / fit.motion_px, 1.1, kGrowth);
     const std::span<const Event> longer =
         window(events, std::min(growth * duration_s, options_.max_window_s));
     if (longer.size() <= part.size()) return fit;
@@ -129,14 +127,14 @@ PlaneFit PlaneSearch::first_turn(std::span<const Event> events) const {
   }
 }
 
-PlaneFit PlaneSearch::climbed(std::span<const Event> events, const PlaneFit& guess) {
+PlaneFit PlaneSearch::maximized(std::span<const Event> events, const PlaneFit& guess) {
   contrast_.load(events);
   PlaneFit fit = guess;
   fit.start_s = seconds_from_ns(events.front().t_ns);
   fit.end_s = seconds_from_ns(events.back().t_ns);
   fit.middle_s = contrast_.middle_s();
   fit.motion = guess.motion.seen_at(fit.middle_s - guess.middle_s);
-  if (!gyroscope_.is_empty()) fit.motion.rate = felt_rate(fit);
+  if (!gyroscope_.is_empty()) fit.motion.rate = measured_rate(fit);
   const Parameters px = px_per_parameter(contrast_, fit.motion);
   Parameters at = PlaneContrast::parameters_of(fit.motion).cwiseProduct(px);
   ceres::GradientProblem problem(
@@ -155,22 +153,22 @@ PlaneFit PlaneSearch::climbed(std::span<const Event> events, const PlaneFit& gue
   return fit;
 }
 
-Eigen::Vector3d PlaneSearch::felt_rate(const PlaneFit& fit) const {
+Eigen::Vector3d PlaneSearch::measured_rate(const PlaneFit& fit) const {
   return gyroscope_.mean_rate(ns_from_seconds(fit.start_s), ns_from_seconds(fit.end_s));
 }
 
-std::vector<PlaneFit> PlaneSearch::guesses(const PlaneFit& turn) const {
+std::vector<PlaneFit> PlaneSearch::guesses(const PlaneFit& rotation) const {
   std::vector<PlaneFit> guesses;
   if (!gyroscope_.is_empty()) {
-    PlaneFit guess = turn;
-    guess.motion.rate -= felt_rate(turn);
-    guess.motion = guess.motion.with_step_share(1);
+    PlaneFit guess = rotation;
+    guess.motion.rate -= measured_rate(rotation);
+    guess.motion = guess.motion.with_translation_fraction(1);
     guesses.push_back(guess);
     return guesses;
   }
-  for (const double share : kStepShares) {
-    guesses.push_back(turn);
-    guesses.back().motion = turn.motion.with_step_share(share);
+  for (const double fraction : kTranslationFractions) {
+    guesses.push_back(rotation);
+    guesses.back().motion = rotation.motion.with_translation_fraction(fraction);
   }
   return guesses;
 }
@@ -178,13 +176,13 @@ std::vector<PlaneFit> PlaneSearch::guesses(const PlaneFit& turn) const {
 std::vector<PlaneFit> PlaneSearch::find(std::span<const Event> events) {
   std::vector<PlaneFit> fits;
   if (events.empty()) return fits;
-  const PlaneFit turn = first_turn(events);
-  if (turn.motion_px < kLeastMotion_px) return fits;
-  for (PlaneFit fit : guesses(turn)) {
+  const PlaneFit rotation = first_rotation(events);
+  if (rotation.motion_px < kMinMotion_px) return fits;
+  for (PlaneFit fit : guesses(rotation)) {
     double duration_s = fit.end_s - fit.start_s;
     while (true) {
       const std::span<const Event> part = window(events, duration_s);
-      fit = climbed(part, fit);
+      fit = maximized(part, fit);
       if (fit.motion_px >= 0.9 * options_.motion_px || part.size() == events.size() ||
           duration_s >= options_.max_window_s)
         break;

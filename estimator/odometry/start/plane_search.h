@@ -12,12 +12,12 @@
 namespace saccade {
 
 struct PlaneSearchOptions {
-  double motion_px = 20;       ///< of the image over the window that is looked for
+  double motion_px = 20;       ///< of the image over the window that is searched for
   double max_window_s = 0.25;  ///< a slower motion ends here
   double events_per_px = 0.5;  ///< of the first window
   int samples = 20000;         ///< at most so many events of a window are used
   double blur_px = 1;          ///< of the image of events
-  double burst_share = 0.15;   ///< of the window's length, see BurstFilter
+  double burst_share = 0.15;   ///< ratio to the window's length, see BurstFilter
   double slope_sigma = 3;      ///< of the plane's slope from 0, where the events hardly say
   int iterations = 40;         ///< of quasi-Newton steps, at most
 };
@@ -30,10 +30,11 @@ struct PlaneFit {
   double gain = 0;                              ///< contrast over that of events where they fired
 };
 
-/// Explains the first events by motions before a plane. The window grows: first a turn, which
-/// hardly any window is too short for; then, at several px, turn and step in several proportions,
-/// because a short window does not tell them apart. Where a gyroscope tells the turn, the rest of
-/// the image's motion is a step, and the turn stays as it is. Deterministic.
+/// Explains the first events by motions before a plane that maximise PlaneContrast. The window
+/// grows: first a rotation, which hardly any window is too short for; then, at several px, rotation
+/// and translation in several proportions, because a short window does not distinguish them. Where
+/// a gyroscope measures the rotation, it is fixed and the rest of the image motion is translation.
+/// Deterministic.
 class PlaneSearch {
  public:
   /// `gyroscope`: none where it is empty; outlives it.
@@ -46,10 +47,10 @@ class PlaneSearch {
  private:
   [[nodiscard]] std::span<const Event> window(std::span<const Event> events,
                                               double duration_s) const;
-  [[nodiscard]] Eigen::Vector3d felt_rate(const PlaneFit& fit) const;
-  [[nodiscard]] std::vector<PlaneFit> guesses(const PlaneFit& turn) const;
-  [[nodiscard]] PlaneFit first_turn(std::span<const Event> events) const;
-  [[nodiscard]] PlaneFit climbed(std::span<const Event> events, const PlaneFit& guess);
+  [[nodiscard]] Eigen::Vector3d measured_rate(const PlaneFit& fit) const;
+  [[nodiscard]] std::vector<PlaneFit> guesses(const PlaneFit& rotation) const;
+  [[nodiscard]] PlaneFit first_rotation(std::span<const Event> events) const;
+  [[nodiscard]] PlaneFit maximized(std::span<const Event> events, const PlaneFit& guess);
   [[nodiscard]] double image_motion_px(const PlaneFit& fit) const;
 
   PlaneSearchOptions options_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "core/config/fields.h"
+
 namespace saccade {
 namespace {
 
@@ -14,6 +16,22 @@ std::size_t line_count(const ReadoutOptions& options, int height) {
 }
 
 }  // namespace
+
+void describe(config::Fields& fields, ReadoutOptions& options) {
+  fields
+      .value("rate_hz", options.rate_hz,
+             "Number of events that the bus transfers per second. 0 means without a limit.")
+      .range(0, 1e12);
+  fields.value("rows", options.rows,
+               "Whether all waiting events of a row leave together under one time stamp.");
+  fields
+      .value("capacity", options.capacity,
+             "Number of events that can wait; further ones are lost and counted. 0 means without a "
+             "limit.")
+      .at_least(0);
+  fields.expect(options.rate_hz > 0 || (!options.rows && options.capacity == 0), "rate_hz",
+                "must be above 0 for rows and capacity");
+}
 
 EventBus::EventBus(const ReadoutOptions& options, int height, TimeNs step_ns)
     : options_(options),
@@ -33,24 +51,24 @@ void EventBus::push(std::span<const SensedEvent> events) {
 
 void EventBus::enqueue(const Request& request) {
   const std::size_t index = options_.rows ? request.event.y : 0;
-  if (lines_[index].empty()) turns_.push({request.number, index});
+  if (lines_[index].empty()) service_order_.push({request.number, index});
   lines_[index].push_back(request);
   ++waiting_;
 }
 
 void EventBus::serve_before(TimeNs t_ns) {
-  while (!turns_.empty()) {
-    const Turn turn = turns_.top();
-    const auto request_ns = static_cast<double>(lines_[turn.line].front().event.t_ns);
+  while (!service_order_.empty()) {
+    const Service service = service_order_.top();
+    const auto request_ns = static_cast<double>(lines_[service.second].front().event.t_ns);
     const double start_ns = std::max(free_ns_, request_ns);
     if (start_ns >= static_cast<double>(t_ns)) return;
-    turns_.pop();
-    serve(turn, start_ns);
+    service_order_.pop();
+    serve(service, start_ns);
   }
 }
 
-void EventBus::serve(const Turn& turn, double start_ns) {
-  std::deque<Request>& line = lines_[turn.line];
+void EventBus::serve(const Service& service, double start_ns) {
+  std::deque<Request>& line = lines_[service.second];
   const TimeNs stamp_ns = step_ns_ * std::llround(start_ns / static_cast<double>(step_ns_));
   double busy_ns = 0;
   do {
@@ -62,7 +80,7 @@ void EventBus::serve(const Turn& turn, double start_ns) {
   } while (options_.rows && !line.empty() &&
            static_cast<double>(line.front().event.t_ns) <= start_ns);
   free_ns_ = start_ns + busy_ns;
-  if (!line.empty()) turns_.push({line.front().number, turn.line});
+  if (!line.empty()) service_order_.push({line.front().number, service.second});
 }
 
 void EventBus::take(TimeNs complete_ns, SensedEvents& out) {

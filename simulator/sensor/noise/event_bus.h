@@ -4,42 +4,51 @@
 #include <deque>
 #include <queue>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/noise/output_stage.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
+namespace config {
+class Fields;
+}
+
+/// A bus that serves `rate_hz` events per second in the order of their requests, or row by row: the
+/// row that has waited longest sends all its events under one time stamp (Boahen's address-event
+/// readout; Brandli et al. 2014). An event that intersects a full queue is lost and counted.
+struct ReadoutOptions {
+  double rate_hz = 0;  ///< 0: no limit
+  bool rows = false;
+  std::int64_t capacity = 0;  ///< events that can wait; 0: no limit
+
+  [[nodiscard]] bool on() const { return rate_hz > 0; }
+};
+void describe(config::Fields& fields, ReadoutOptions& options);
 
 /// The readout (ReadoutOptions) as a queue with one server: an event that finds the bus free is
 /// stamped with its own time, any other with the time at which its service starts; a service takes
 /// 1 / rate per event. With `rows` the row whose first event has waited longest is served, and with
 /// it all its events that have come by then, under one stamp. Events of one stamp stand in
 /// SensedEventOrder. All times are exact; only the stamp is rounded to the step.
-class EventBus {
+class EventBus final : public OutputStage {
  public:
   EventBus(const ReadoutOptions& options, int height, TimeNs step_ns);
 
-  /// `events`: requests in time order over all calls.
-  void push(std::span<const SensedEvent> events);
-  /// Appends the events stamped before `complete_ns` to `out`, in SensedEventOrder over all calls.
-  /// Contract: every event that is pushed later has t_ns >= complete_ns.
-  void take(TimeNs complete_ns, SensedEvents& out);
+  void push(std::span<const SensedEvent> events) override;
+  void take(TimeNs complete_ns, SensedEvents& out) override;
 
   /// Events that met a full queue.
-  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  [[nodiscard]] std::uint64_t lost() const override { return lost_; }
 
-  void save(StateWriter& state) const;
-  void load(StateReader& state);
+  void save(StateWriter& state) const override;
+  void load(StateReader& state) override;
 
  private:
-  /// The first request of a line of the queue, in the order of service.
-  struct Turn {
-    std::uint64_t number;  ///< of the request, counted from the first one
-    std::size_t line;
-    bool operator>(const Turn& other) const { return number > other.number; }
-  };
+  /// The first request of a line of the queue: its number, counted from the first one, and the line.
+  /// Served in the order of the numbers, which are unique.
+  using Service = std::pair<std::uint64_t, std::size_t>;
   struct Request {
     std::uint64_t number;
     SensedEvent event;
@@ -48,7 +57,7 @@ class EventBus {
   void enqueue(const Request& request);
   /// Starts all services before `t_ns`.
   void serve_before(TimeNs t_ns);
-  void serve(const Turn& turn, double start_ns);
+  void serve(const Service& service, double start_ns);
 
   ReadoutOptions options_;
   TimeNs step_ns_;
@@ -58,8 +67,9 @@ class EventBus {
   std::uint64_t waiting_ = 0;
   std::uint64_t lost_ = 0;
   std::vector<std::deque<Request>> lines_;  ///< one per row, or a single one
-  std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns_;  ///< of lines not empty
-  SensedEvents served_;                                                 ///< stamps ascending
+  std::priority_queue<Service, std::vector<Service>, std::greater<>>
+      service_order_;    ///< of lines not empty
+  SensedEvents served_;  ///< stamps ascending
 };
 
 }  // namespace saccade

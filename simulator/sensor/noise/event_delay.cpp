@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/fields.h"
 #include "simulator/sensor/noise/pixel_random.h"
 #include "simulator/sensor/noise/radiance.h"
 
@@ -15,6 +16,22 @@ constexpr double kLongestJitter = 4;  // standard deviations
 bool comes_later(const SensedEvent& a, const SensedEvent& b) { return SensedEventOrder{}(b, a); }
 
 }  // namespace
+
+void describe(config::Fields& fields, LatencyOptions& options) {
+  constexpr double kLongest_us = 1e6;
+  fields
+      .value("mean_us", options.mean_us,
+             "Delay of every time stamp behind the crossing, in microseconds.")
+      .range(0, kLongest_us);
+  fields
+      .value("intensity_us", options.intensity_us,
+             "Additional delay at radiance 1, in microseconds; it grows as the pixel gets darker.")
+      .range(0, kLongest_us);
+  fields
+      .value("jitter_us", options.jitter_us,
+             "Standard deviation of the delay from event to event, in microseconds.")
+      .range(0, kLongest_us);
+}
 
 EventDelay::EventDelay(const LatencyOptions& options, double log_eps, int width, int height,
                        TimeNs step_ns, std::uint64_t seed)

@@ -5,31 +5,44 @@
 #include <vector>
 
 #include "core/random.h"
-#include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/noise/state_bytes.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/noise/output_stage.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
+namespace config {
+class Fields;
+}
+
+/// Time from the crossing to the request at the bus:
+///   latency = max(0, mean_us + intensity_us (1 + dark_radiance) / (I + dark_radiance)
+///                    + jitter_us z),   z ~ N(0, 1) cut at +-4
+/// Reciprocal in the radiance as Lichtsteiner et al. 2008 measured. The bandwidth model brings a
+/// latency of its own; state only the rest here when both are on.
+struct LatencyOptions {
+  double mean_us = 0;
+  double intensity_us = 0;
+  double dark_radiance = 0.08;
+  double jitter_us = 0;
+
+  [[nodiscard]] bool on() const { return mean_us > 0 || intensity_us > 0 || jitter_us > 0; }
+};
+void describe(config::Fields& fields, LatencyOptions& options);
 
 /// Latency and jitter (formula at LatencyOptions). An event never precedes its pixel's previous
 /// one, and comes at least one step later when the polarity has changed, so that the order in which
 /// a pixel fired can be read from the stream. The jitter's draw is that of the pixel's n-th event.
-class EventDelay {
+class EventDelay final : public OutputStage {
  public:
-  /// With `options` off only load() and save() may be called. Times are multiples of `step_ns`; so
-  /// are the delayed ones (nearest). `log_eps`: eps of
-  /// L = ln(eps + I).
+  /// Times are multiples of `step_ns`; so are the delayed ones (nearest). `log_eps`: eps of
+  /// L = ln(eps + I). With `options` off only load() and save() may be called.
   EventDelay(const LatencyOptions& options, double log_eps, int width, int height, TimeNs step_ns,
              std::uint64_t seed);
 
-  /// `events`: in time order over all calls.
-  void push(std::span<const SensedEvent> events);
-  /// Appends the delayed events before `complete_ns` to `out`, in SensedEventOrder over all calls.
-  /// Contract: every event that is pushed later has t_ns >= complete_ns.
-  void take(TimeNs complete_ns, SensedEvents& out);
+  void push(std::span<const SensedEvent> events) override;
+  void take(TimeNs complete_ns, SensedEvents& out) override;
 
-  void save(StateWriter& state) const;
-  void load(StateReader& state);
+  void save(StateWriter& state) const override;
+  void load(StateReader& state) override;
 
  private:
   /// Without padding.

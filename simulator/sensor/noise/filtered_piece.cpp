@@ -8,10 +8,7 @@
 namespace saccade {
 namespace {
 
-struct ValueAndSlope {
-  double value;
-  double slope;
-};
+using ValueAndSlope = std::pair<double, double>;
 
 /// The upper end of a bracket of the only root of a function that rises through it, closed to
 /// `tolerance`: f(lo) < 0 <= f(hi). Newton's steps, aimed half a tolerance past the root so that
@@ -25,12 +22,11 @@ double close_bracket(const Function& f, double lo, double hi, double tolerance) 
     if (!(t > lo && t < hi)) t = 0.5 * (lo + hi);
     if (t <= lo || t >= hi) break;  // no double left between them
     const double width = hi - lo;
-    const ValueAndSlope at = f(t);
-    (at.value < 0 ? lo : hi) = t;
+    const auto [value, slope] = f(t);
+    (value < 0 ? lo : hi) = t;
     const bool is_slow = hi - lo > 0.5 * width_before;
     width_before = width;
-    t = is_slow ? 0.5 * (lo + hi)
-                : t - at.value / at.slope + (at.value < 0 ? 0.5 : -0.5) * tolerance;
+    t = is_slow ? 0.5 * (lo + hi) : t - value / slope + (value < 0 ? 0.5 : -0.5) * tolerance;
   }
   return hi;
 }
@@ -75,7 +71,7 @@ FilterState FilteredPiece::state_after(const Elapsed& e) const {
   return {first_after(e), value_after(e)};
 }
 
-FilteredPiece::Reach FilteredPiece::reach() const {
+std::pair<double, double> FilteredPiece::bounds() const {
   const double end = input_ + slope_ * duration_s_;
   const double low = std::min({state_.first, input_, end, state_.output});
   const double high = std::max({state_.first, input_, end, state_.output});
@@ -97,31 +93,32 @@ double FilteredPiece::slope_after(double tau_s) const {
 }
 
 /// The stage's slope s + e^-a (w (x0 - y1_0) - s) vanishes where e^a = 1 + w (y1_0 - x0) / s.
-std::optional<double> FilteredPiece::first_turn() const {
+std::optional<double> FilteredPiece::first_extremum() const {
   const double ratio = rate_ * (state_.first - input_) / slope_;
   if (!(ratio > 0) || std::isinf(ratio)) return std::nullopt;
   return std::log1p(ratio) / rate_;
 }
 
 /// e^a times the second stage's slope is s e^a + P - Q a. Its own slope s e^a - Q vanishes where
-/// the first stage turns, so on either side of that time the output turns at most once.
-FilteredPiece::Turns FilteredPiece::turns() const {
-  Turns turns;
-  const std::optional<double> first = first_turn();
+/// the first stage extrema, so on either side of that time the output turns at most once.
+FilteredPiece::Extrema FilteredPiece::extrema() const {
+  Extrema extrema;
+  const std::optional<double> first = first_extremum();
   if (order_ == 1) {
-    if (first && *first < duration_s_) turns.t_s[static_cast<std::size_t>(turns.count++)] = *first;
+    if (first && *first < duration_s_)
+      extrema.t_s[static_cast<std::size_t>(extrema.count++)] = *first;
   } else if (first && *first < duration_s_) {
-    add_turn(0, *first, turns);
-    add_turn(*first, duration_s_, turns);
+    add_extremum(0, *first, extrema);
+    add_extremum(*first, duration_s_, extrema);
   } else {
-    add_turn(0, duration_s_, turns);
+    add_extremum(0, duration_s_, extrema);
   }
-  for (double& t : turns.t_s) t += t0_s_;
-  return turns;
+  for (double& t : extrema.t_s) t += t0_s_;
+  return extrema;
 }
 
 /// The turn of a second-order output strictly between two times after t0, if there is one.
-void FilteredPiece::add_turn(double from_s, double to_s, Turns& turns) const {
+void FilteredPiece::add_extremum(double from_s, double to_s, Extrema& extrema) const {
   double turn = 0;
   if (slope_ == 0) {
     // In closed form, because the slope's sign at the end of a long piece underflows.
@@ -137,10 +134,10 @@ void FilteredPiece::add_turn(double from_s, double to_s, Turns& turns) const {
       return ValueAndSlope{sign * at, sign * rate_ * (first_slope_after(tau_s) - at)};
     };
     // The value at a turn is exact to the square of this.
-    constexpr double kTimeShare = 1e-12;
-    turn = close_bracket(slope, from_s, to_s, kTimeShare * (to_s - from_s));
+    constexpr double kTimeFraction = 1e-12;
+    turn = close_bracket(slope, from_s, to_s, kTimeFraction * (to_s - from_s));
   }
-  turns.t_s[static_cast<std::size_t>(turns.count++)] = turn;
+  extrema.t_s[static_cast<std::size_t>(extrema.count++)] = turn;
 }
 
 std::optional<FilterCrossing> FilteredPiece::first_crossing(double lower, double upper,
@@ -150,10 +147,10 @@ std::optional<FilterCrossing> FilteredPiece::first_crossing(double lower, double
   double lo = from_s - t0_s_;
   if (const int polarity = side(value_after(lo)); polarity != 0)
     return FilterCrossing{from_s, polarity};
-  const Turns turns = this->turns();
-  for (int k = 0; k <= turns.count; ++k) {
+  const Extrema extrema = this->extrema();
+  for (int k = 0; k <= extrema.count; ++k) {
     const double hi =
-        k < turns.count ? turns.t_s[static_cast<std::size_t>(k)] - t0_s_ : duration_s_;
+        k < extrema.count ? extrema.t_s[static_cast<std::size_t>(k)] - t0_s_ : duration_s_;
     if (hi <= lo) continue;
     if (const int polarity = side(value_after(hi)); polarity != 0) {
       const double level = polarity > 0 ? upper : lower;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 namespace saccade {
 
@@ -44,22 +45,18 @@ class FilteredPiece {
   /// What the next piece is entered with.
   [[nodiscard]] FilterState end_state() const { return state_after(whole_); }
 
-  /// Between which values the output provably stays. Every stage averages its input with positive
+  /// The lowest and the highest value between which the output provably stays. Every stage averages its input with positive
   /// weights, so within the hull [l, h] of the first stage and the input
   ///   y0 + min(0, l - y0)(1 - e^-a) <= y <= y0 + max(0, h - y0)(1 - e^-a)   with a of the end.
-  struct Reach {
-    double low;
-    double high;
-  };
-  [[nodiscard]] Reach reach() const;
+  [[nodiscard]] std::pair<double, double> bounds() const;
 
   /// The times inside the piece at which the output turns, ascending; at most 1 for order 1, at
   /// most 2 for order 2.
-  struct Turns {
+  struct Extrema {
     std::array<double, 2> t_s;
     int count = 0;
   };
-  [[nodiscard]] Turns turns() const;
+  [[nodiscard]] Extrema extrema() const;
 
   /// The first time from `from_s` to the piece's end at which the output is not between `lower` and
   /// `upper`; `from_s` itself where it is outside already. Rigorous: between two turns the output
@@ -91,8 +88,8 @@ class FilteredPiece {
   [[nodiscard]] double slope_after(double tau_s) const;
   [[nodiscard]] double first_slope_after(double tau_s) const;
   /// Where the first stage turns, if it does in any time.
-  [[nodiscard]] std::optional<double> first_turn() const;
-  void add_turn(double from_s, double to_s, Turns& turns) const;
+  [[nodiscard]] std::optional<double> first_extremum() const;
+  void add_extremum(double from_s, double to_s, Extrema& extrema) const;
 
   FilterState state_;
   double t0_s_;

@@ -3,9 +3,19 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/config/fields.h"
 #include "simulator/sensor/noise/radiance.h"
 
 namespace saccade {
+
+void describe(config::Fields& fields, BandwidthOptions& options) {
+  fields
+      .value("cutoff_hz", options.cutoff_hz,
+             "Cutoff frequency of the photoreceptor at radiance 1, in hertz; it falls with the "
+             "radiance. 0 disables the low pass.")
+      .range(0, BandwidthOptions{}.max_cutoff_hz);
+  fields.value("order", options.order, "Number of poles of the low pass: 1 or 2.").range(1, 2);
+}
 
 double PhotoreceptorFilter::cutoff_at(double radiance) const {
   const double brightness =

@@ -1,15 +1,31 @@
 #pragma once
 
 #include "simulator/sensor/noise/filtered_piece.h"
-#include "simulator/sensor/noise/noise_options.h"
 
 namespace saccade {
+namespace config {
+class Fields;
+}
+
+/// The photoreceptor as a low pass of the log intensity with one pole or two equal ones, whose
+/// cutoff grows with the photocurrent (Lichtsteiner et al. 2008, Hu et al. 2021):
+///   f_c(I) = min(max_cutoff_hz, cutoff_hz (I + dark_radiance) / (bright_radiance + dark_radiance))
+struct BandwidthOptions {
+  double cutoff_hz = 0;
+  int order = 1;
+  double bright_radiance = 1;
+  double dark_radiance = 0.08;  ///< stands for the dark current: keeps f_c > 0 at I = 0
+  double max_cutoff_hz = 1e5;
+
+  [[nodiscard]] bool on() const { return cutoff_hz > 0; }
+};
+void describe(config::Fields& fields, BandwidthOptions& options);
 
 /// The low pass of the photoreceptor (formula at BandwidthOptions): with w = 2 pi f_c(I)
 ///   order 1: y' = w (x - y)        order 2: y1' = w (x - y1),  y' = w (y1 - y)
 /// on the log intensity x, which is given in pieces that are linear in time; a piece has the cutoff
 /// of its middle. Each piece is solved in closed form, so the result depends on the pieces' error
-/// alone: where the pieces are within d of the true signal and the cutoff within a share r of the
+/// alone: where the pieces are within d of the true signal and the cutoff within a fraction r of the
 /// true one, the output is within d + r max|x - y| per stage of the exact one, since every stage
 /// averages its input with positive weights. For the same reason the output never leaves the hull
 /// of the state and the inputs since. A jump of the signal is a gap between the values of two

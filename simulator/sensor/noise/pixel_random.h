@@ -4,6 +4,9 @@
 
 namespace saccade {
 
+/// Greatest rate of a noise process of one pixel that a configuration may ask for [1/s].
+constexpr double kMaxNoiseRate_hz = 1e5;
+
 /// Who draws random numbers at a pixel. Apart, so that switching one model on changes no draw of
 /// another.
 enum class NoiseStream : std::uint64_t {

@@ -5,25 +5,22 @@
 namespace saccade {
 
 SensorOutput::SensorOutput(const NoiseOptions& options, double log_eps, int width, int height,
-                           TimeNs step_ns, std::uint64_t seed)
-    : delay_(options.latency, log_eps, width, height, step_ns, seed),
-      bus_(options.readout, height, step_ns),
-      delays_(options.latency.on()),
-      queues_(options.readout.on()) {}
+                           TimeNs step_ns, std::uint64_t seed) {
+  const OutputStageInput input{options, log_eps, width, height, step_ns, seed};
+  for (const NoiseModel& model : noise_models())
+    if (model.make_stage != nullptr)
+      stages_.push_back({model.make_stage(input), model.is_on(options)});
+}
 
 void SensorOutput::push(std::span<const SensedEvent> events, TimeNs complete_ns, const Sink& sink) {
   fired_ += events.size();
-  SensedEvents delayed;
-  if (delays_) {
-    delay_.push(events);
-    delay_.take(complete_ns, delayed);
-    events = delayed;
-  }
-  SensedEvents served;
-  if (queues_) {
-    bus_.push(events);
-    bus_.take(complete_ns, served);
-    events = served;
+  SensedEvents held;
+  for (const Stage& each : stages_) {
+    if (!each.is_on) continue;
+    each.stage->push(events);
+    held.clear();
+    each.stage->take(complete_ns, held);
+    events = held;
   }
   recorded_ += events.size();
   if (!events.empty()) sink(events);
@@ -31,14 +28,17 @@ void SensorOutput::push(std::span<const SensedEvent> events, TimeNs complete_ns,
 
 void SensorOutput::finish(const Sink& sink) { push({}, std::numeric_limits<TimeNs>::max(), sink); }
 
-OutputCounts SensorOutput::counts() const { return {fired_, recorded_, bus_.lost()}; }
+std::uint64_t SensorOutput::lost() const {
+  std::uint64_t lost = 0;
+  for (const Stage& each : stages_) lost += each.stage->lost();
+  return lost;
+}
 
 std::string SensorOutput::state() const {
   StateWriter state;
   state.value(fired_);
   state.value(recorded_);
-  delay_.save(state);
-  bus_.save(state);
+  for (const Stage& each : stages_) each.stage->save(state);
   return state.take();
 }
 
@@ -46,8 +46,7 @@ void SensorOutput::load(std::string_view state) {
   StateReader reader(state);
   reader.value(fired_);
   reader.value(recorded_);
-  delay_.load(reader);
-  bus_.load(reader);
+  for (const Stage& each : stages_) each.stage->load(reader);
   if (!reader.at_end()) throw InputError("saved state", "is longer than that of this sensor");
 }
 

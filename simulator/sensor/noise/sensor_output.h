@@ -6,23 +6,15 @@
 #include <string>
 #include <string_view>
 
-#include "simulator/sensor/noise/event_bus.h"
-#include "simulator/sensor/noise/event_delay.h"
-#include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/noise/noise_models.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
 
-/// What became of the events behind the pixels.
-struct OutputCounts {
-  std::uint64_t fired = 0;     ///< by the pixels
-  std::uint64_t recorded = 0;  ///< handed out so far
-  std::uint64_t lost = 0;      ///< met a full queue of the bus
-};
-
-/// The part of the sensor behind the pixels: latency, then the readout. It turns the stream of true
-/// times into the stream of recorded ones, event by event in time order, so how the stream is cut
-/// into calls changes nothing. With both models off it hands out what it got.
+/// The part of the sensor behind the pixels: the stages of noise_models(), one after the other. It
+/// turns the stream of true times into the stream of recorded ones, event by event in time order,
+/// so how the stream is cut into calls changes nothing. With all stages off it hands out what it
+/// got.
 class SensorOutput {
  public:
   /// Receives events in SensedEventOrder over all calls.
@@ -38,7 +30,9 @@ class SensorOutput {
   /// Hands out what still waits, stamped beyond the last time if need be.
   void finish(const Sink& sink);
 
-  [[nodiscard]] OutputCounts counts() const;
+  /// Number of events handed out so far, and of those that met a full queue.
+  [[nodiscard]] std::uint64_t recorded() const { return recorded_; }
+  [[nodiscard]] std::uint64_t lost() const;
 
   /// Everything that later output depends on, for load() of an output made with the same arguments.
   [[nodiscard]] std::string state() const;
@@ -46,10 +40,12 @@ class SensorOutput {
   void load(std::string_view state);
 
  private:
-  EventDelay delay_;
-  EventBus bus_;
-  bool delays_;
-  bool queues_;
+  struct Stage {
+    std::unique_ptr<OutputStage> stage;
+    bool is_on;
+  };
+
+  std::vector<Stage> stages_;  ///< in the order of noise_models()
   std::uint64_t fired_ = 0;
   std::uint64_t recorded_ = 0;
 };

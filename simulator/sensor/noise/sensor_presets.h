@@ -1,7 +1,7 @@
 #pragma once
 
-#include "simulator/sensor/event_pixel.h"
 #include "simulator/sensor/noise/noise_options.h"
+#include "simulator/sensor/pixel/event_pixel.h"
 
 namespace saccade {
 

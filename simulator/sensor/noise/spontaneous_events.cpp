@@ -3,10 +3,33 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/config/fields.h"
+#include "simulator/sensor/noise/noise_options.h"
 #include "simulator/sensor/noise/pixel_random.h"
 #include "simulator/sensor/noise/radiance.h"
 
 namespace saccade {
+
+void describe(config::Fields& fields, ShotOptions& options) {
+  fields
+      .value("rate_hz", options.rate_hz,
+             "Rate of the shot noise events of a pixel in the dark, ON and OFF together, in events "
+             "per second; it falls to a quarter in bright light. 0 disables shot noise.")
+      .range(0, kMaxNoiseRate_hz);
+}
+
+void describe(config::Fields& fields, HotOptions& options) {
+  fields.value("fraction", options.fraction, "Fraction of the pixels that are hot. 0 disables it.")
+      .range(0, 1);
+  fields
+      .value("rate_hz", options.rate_hz,
+             "Median rate of the ON events of a hot pixel, in events per second. 0 disables it.")
+      .range(0, kMaxNoiseRate_hz);
+  fields
+      .value("sigma", options.sigma,
+             "Standard deviation of the natural logarithm of the hot pixels' rates.")
+      .range(0, 1);
+}
 
 SpontaneousEvents::SpontaneousEvents(const NoiseOptions& options, double log_eps,
                                      std::uint64_t seed)

@@ -5,10 +5,39 @@
 #include <limits>
 
 #include "core/random.h"
-#include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/sensed_event.h"
+#include "simulator/sensor/pixel/sensed_event.h"
 
 namespace saccade {
+namespace config {
+class Fields;
+}
+struct NoiseOptions;
+
+/// Shot noise: a Poisson process per pixel, ON and OFF equally likely, whose rate falls from
+/// rate_hz in the dark linearly with the radiance to bright_share of it (v2e, Hu et al. 2021;
+/// measured by Graca et al., "Shining light on the DVS pixel", 2023):
+///   rate(I) = rate_hz (1 - (1 - bright_share) min(1, I / bright_radiance))
+struct ShotOptions {
+  double rate_hz = 0;
+  double bright_share = 0.25;  ///< of the rate, that remains at bright_radiance and above
+  double bright_radiance = 1;
+
+  [[nodiscard]] bool on() const { return rate_hz > 0; }
+};
+void describe(config::Fields& fields, ShotOptions& options);
+
+/// Pixels whose leaking junctions fire by themselves: a Poisson process of ON events per hot pixel,
+///   rate_p = rate_hz exp(sigma z),   z ~ N(0, 1), one draw per pixel
+/// The heavy tail is what noise histograms of real sensors show (Joubert et al., Frontiers in
+/// Neuroscience 15, 2021).
+struct HotOptions {
+  double fraction = 0;
+  double rate_hz = 100;
+  double sigma = 0.5;
+
+  [[nodiscard]] bool on() const { return fraction > 0 && rate_hz > 0; }
+};
+void describe(config::Fields& fields, HotOptions& options);
 
 /// A time at which a pixel may fire without a crossing.
 struct SpontaneousCandidate {

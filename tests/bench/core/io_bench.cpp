@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/event_file.h"
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/sha256.h"
-#include "core/parallel.h"
+#include "core/io/events/event_file.h"
+#include "core/io/files/sha256.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/process/parallel.h"
 #include "core/random.h"
 #include "core/srgb.h"
 #include "tests/support/command.h"
-#include "tests/unit/core/io/random_events.h"
+#include "tests/unit/core/io/events/random_events.h"
 
 namespace saccade {
 namespace {

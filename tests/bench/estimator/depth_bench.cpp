@@ -2,20 +2,21 @@
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/parallel.h"
 #include "estimator/depth/depth_config.h"
-#include "estimator/depth/derotated_frame.h"
-#include "estimator/depth/edge_refiner.h"
-#include "estimator/depth/edge_seeds.h"
-#include "estimator/depth/epipolar.h"
-#include "estimator/depth/epipolar_search.h"
-#include "estimator/depth/event_rays.h"
-#include "estimator/depth/local_planes.h"
-#include "estimator/depth/ray_gather.h"
-#include "estimator/depth/ray_regression.h"
-#include "estimator/depth/ray_votes.h"
+#include "estimator/depth/rays/edgel_refiner.h"
+#include "estimator/depth/rays/edgel_seeds.h"
+#include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/local_planes.h"
+#include "estimator/depth/rays/ray_gatherer.h"
+#include "estimator/depth/rays/ray_regression.h"
+#include "estimator/depth/rays/ray_votes.h"
+#include "estimator/depth/thesis/derotated_frame.h"
+#include "estimator/depth/thesis/epipolar.h"
+#include "estimator/depth/thesis/epipolar_search.h"
 #include "estimator/run/view_windows.h"
 #include "tests/support/planar_world.h"
 
@@ -130,7 +131,7 @@ BENCHMARK(regression)->Unit(benchmark::kMicrosecond);
 void seeds(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
-  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}, {}).size());
+  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}).size());
   items_per_second(state, rays.size());
 }
 BENCHMARK(seeds)->Unit(benchmark::kMillisecond);
@@ -138,13 +139,13 @@ BENCHMARK(seeds)->Unit(benchmark::kMillisecond);
 void refinement(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
-  const auto found = find_seeds(rays, r.world.camera(), {}, {});
+  const auto found = find_seeds(rays, r.world.camera(), {});
   const RefinerOptions options;
   for (auto _ : state) {
-    EdgeRefiner refiner(rays, options, {}, r.world.camera());
-    EdgeEvents events;
+    EdgelRefiner refiner(rays, options, {}, r.world.camera());
+    EdgelEvents events;
     std::size_t edges = 0;
-    for (const EdgeSeed& seed : found) edges += refiner.refine(seed, events) ? 1 : 0;
+    for (const EdgelSeed& seed : found) edges += refiner.refine(seed, events) ? 1 : 0;
     benchmark::DoNotOptimize(edges);
   }
   items_per_second(state, found.size());
@@ -153,7 +154,7 @@ BENCHMARK(refinement)->Unit(benchmark::kMillisecond);
 
 /// One plane through some forty points.
 void local_plane(benchmark::State& state) {
-  std::vector<EdgeDepth> points;
+  std::vector<EdgePoint> points;
   for (int y = 0; y < 60; y += 2)
     for (int x = 0; x < 60; x += 2)
       points.push_back({static_cast<float>(x), static_cast<float>(y), 0.5F, 0.001F});
@@ -167,7 +168,9 @@ BENCHMARK(local_plane)->Unit(benchmark::kNanosecond);
 /// The whole recording in four windows. Arguments: method, threads.
 void depth(benchmark::State& state) {
   DepthConfig config;
-  config.method = static_cast<DepthConfig::Method>(state.range(0));
+  constexpr std::string_view kMethods[] = {DepthConfig::Method::kThesis, DepthConfig::Method::kRays,
+                                           DepthConfig::Method::kSweep};
+  config.method = kMethods[state.range(0)];
   set_thread_count(static_cast<int>(state.range(1)));
   const Recording& r = recording();
   const auto windows = cut_windows(r.events, r.trajectory, {.duration_s = 0.1});

@@ -5,12 +5,12 @@
 
 #include "core/depth_mesh.h"
 #include "core/parallel.h"
-#include "estimator/reconstruction/level_system.h"
-#include "estimator/reconstruction/place_finder.h"
-#include "estimator/reconstruction/place_levels.h"
-#include "estimator/reconstruction/poisson.h"
+#include "estimator/reconstruction/equations/intensity_system.h"
+#include "estimator/reconstruction/gradient/poisson.h"
+#include "estimator/reconstruction/observations/intensity_observations.h"
+#include "estimator/reconstruction/observations/reference_grid.h"
+#include "estimator/reconstruction/observations/reprojector.h"
 #include "estimator/reconstruction/reconstruction_config.h"
-#include "estimator/reconstruction/reference_grid.h"
 #include "estimator/run/view_windows.h"
 #include "tests/support/planar_world.h"
 
@@ -57,51 +57,34 @@ const Recording& recording() {
   return recording;
 }
 
-/// The thresholds of configs/reconstruction/best.yaml.
-EquationOptions best() {
-  EquationOptions options;
-  options.levels = {.event_sigma = 0.075,
-                    .track_events = 12,
-                    .still_px = 0.7,
-                    .still_turns = 4,
-                    .still_events = 40,
-                    .beyond = 0.4,
-                    .places = {.redraw_px = 8, .parallax_px = 1.4, .step_margin_px = 1}};
-  options.thin_px = 0.9;
-  options.smoothness = 0.05;
-  options.bound_sigma = 0.3;
-  options.tolerance = 0.005;
-  return options;
-}
-
 void items_per_second(benchmark::State& state, std::size_t count) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
 }
 
-std::vector<PlaceLevel> levels_of_recording() {
+std::vector<IntensityObservation> observations_of_recording() {
   const Recording& r = recording();
-  SurfaceLevels finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
-                       kContrast, kContrast, best().levels);
-  finder.expect(r.events);
-  std::vector<PlaceLevel> levels;
-  finder.find(r.events, r.trajectory, levels);
-  return levels;
+  SurfaceObservations source(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
+                             {kContrast, kContrast}, EquationOptions{}.observations);
+  source.plan(r.events);
+  std::vector<IntensityObservation> observations;
+  source.observe(r.events, r.trajectory, observations);
+  return observations;
 }
 
-/// Places of all pixels at one pose, on surfaces that are drawn already.
-void places(benchmark::State& state) {
+/// Reprojections of all pixels at one pose, on surfaces that are rendered already.
+void reprojections(benchmark::State& state) {
   const Recording& r = recording();
-  PlaceFinder finder(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
-                     best().levels.places);
+  Reprojector reprojector(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
+                          EquationOptions{}.observations.reprojection);
   const Rigid3 motion = r.world_from_reference.inverse() * corner_motion(0.25);
   const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
-  finder.prepare(pose);
+  reprojector.prepare(pose);
   for (auto _ : state)
     for (int y = 0; y < 180; ++y)
-      for (int x = 0; x < 240; ++x) benchmark::DoNotOptimize(finder.find(x, y, pose));
+      for (int x = 0; x < 240; ++x) benchmark::DoNotOptimize(reprojector.find(x, y, pose));
   items_per_second(state, r.inverse_depth.size());
 }
-BENCHMARK(places)->Unit(benchmark::kMicrosecond);
+BENCHMARK(reprojections)->Unit(benchmark::kMicrosecond);
 
 /// Surfaces of one view, drawn with the depth test.
 void surfaces(benchmark::State& state) {
@@ -115,50 +98,51 @@ void surfaces(benchmark::State& state) {
 }
 BENCHMARK(surfaces)->Unit(benchmark::kMicrosecond);
 
-/// What all events and silent pixels say; items are events.
-void levels(benchmark::State& state) {
+/// Observations of all events and no-event constraints; items are events.
+void observations(benchmark::State& state) {
   static_cast<void>(recording());  // made before the clock runs
-  for (auto _ : state) benchmark::DoNotOptimize(levels_of_recording().size());
+  for (auto _ : state) benchmark::DoNotOptimize(observations_of_recording().size());
   items_per_second(state, recording().events.size());
 }
-BENCHMARK(levels)->Unit(benchmark::kMillisecond);
+BENCHMARK(observations)->Unit(benchmark::kMillisecond);
 
-std::vector<std::vector<GridLevel>> tracks_of(const std::vector<PlaceLevel>& levels,
-                                              const ReferenceGrid& grid) {
-  std::vector<std::vector<GridLevel>> tracks;
-  for (const PlaceLevel& level : levels) {
-    if (level.track() >= tracks.size()) tracks.resize(level.track() + 1);
-    tracks[level.track()].push_back({grid.at(level.x, level.y), level.level, 100});
+std::vector<std::vector<GridObservation>> runs_of(
+    const std::vector<IntensityObservation>& observations, const ReferenceGrid& grid) {
+  std::vector<std::vector<GridObservation>> runs;
+  for (const IntensityObservation& observation : observations) {
+    if (observation.run() >= runs.size()) runs.resize(observation.run() + 1);
+    runs[observation.run()].push_back(
+        {grid.at(observation.x, observation.y), observation.log_intensity, 100});
   }
-  return tracks;
+  return runs;
 }
 
-void assemble(const std::vector<std::vector<GridLevel>>& tracks, const ReferenceGrid& grid,
-              LevelSystem& system) {
+void assemble(const std::vector<std::vector<GridObservation>>& runs, const ReferenceGrid& grid,
+              IntensitySystem& system) {
   system.clear();
-  for (const auto& track : tracks)
-    if (track.size() > 1) system.add_track(track);
+  for (const auto& run : runs)
+    if (run.size() > 1) system.add_run(run);
   for (int i = 0; i + 1 < grid.width() * grid.height(); ++i)
-    if ((i + 1) % grid.width() != 0) system.add_smooth(i, i + 1, 1);
+    if ((i + 1) % grid.width() != 0) system.add_smoothness_term(i, i + 1, 1);
 }
 
-/// Equations of all levels; items are levels.
+/// Equations of all observations; items are observations.
 void assembly(benchmark::State& state) {
-  const std::vector<PlaceLevel> found = levels_of_recording();
-  const ReferenceGrid grid(recording().inverse_depth, 1, 0.05);
-  const auto tracks = tracks_of(found, grid);
-  LevelSystem system(grid.width(), grid.height());
-  for (auto _ : state) assemble(tracks, grid, system);
+  const std::vector<IntensityObservation> found = observations_of_recording();
+  const ReferenceGrid grid(recording().inverse_depth);
+  const auto runs = runs_of(found, grid);
+  IntensitySystem system(grid.width(), grid.height());
+  for (auto _ : state) assemble(runs, grid, system);
   items_per_second(state, found.size());
 }
 BENCHMARK(assembly)->Unit(benchmark::kMillisecond);
 
-/// Ten steps of conjugate gradients; items are steps.
+/// Ten iterations of conjugate gradients; items are iterations.
 void solution(benchmark::State& state) {
   constexpr int kSteps = 10;
-  const ReferenceGrid grid(recording().inverse_depth, 1, 0.05);
-  LevelSystem system(grid.width(), grid.height());
-  assemble(tracks_of(levels_of_recording(), grid), grid, system);
+  const ReferenceGrid grid(recording().inverse_depth);
+  IntensitySystem system(grid.width(), grid.height());
+  assemble(runs_of(observations_of_recording(), grid), grid, system);
   for (auto _ : state) benchmark::DoNotOptimize(system.solve(kSteps, 0).residual);
   items_per_second(state, kSteps);
 }
@@ -184,16 +168,15 @@ BENCHMARK(poisson)
 void reconstruction(benchmark::State& state) {
   const Recording& r = recording();
   ReconstructionConfig config;
-  config.method = static_cast<ReconstructionConfig::Method>(state.range(0));
-  config.equations = best();
+  config.method = state.range(0) == 0 ? config.kGradient : config.kEquations;
   set_thread_count(static_cast<int>(state.range(1)));
   std::vector<ReconstructionWindow> windows;
   for (const ViewWindow& cut : cut_windows(r.events, r.trajectory, {.duration_s = 0.1}))
-    windows.push_back({cut, r.scene, kContrast, kContrast});
+    windows.push_back({cut, r.scene, {kContrast, kContrast}});
   const auto estimator = make_image_estimator(config, r.world.camera());
   for (auto _ : state)
     parallel_for(windows.size(), [&](std::size_t i) {
-      benchmark::DoNotOptimize(estimator->reconstruct(windows[i]).levels);
+      benchmark::DoNotOptimize(estimator->reconstruct(windows[i]).observations);
     });
   items_per_second(state, r.events.size());
   set_thread_count(0);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -41,8 +41,7 @@ BENCHMARK(extract)->Unit(benchmark::kMicrosecond);
 /// Argument: 0 nearest, 1 bilinear splats.
 void draw_template(benchmark::State& state) {
   TemplateOptions options;
-  options.splat =
-      state.range(0) == 0 ? TemplateOptions::Splat::kNearest : TemplateOptions::Splat::kBilinear;
+  options.bilinear = state.range(0) != 0;
   TemplateDrawer drawer(recording().camera, options, recording().map);
   for (auto _ : state) benchmark::DoNotOptimize(drawer.draw({}).data());
   items_per_second(state, recording().map.size());
@@ -64,12 +63,11 @@ void blur(benchmark::State& state) {
 }
 BENCHMARK(blur)->Arg(3)->Arg(5)->Arg(9)->Arg(15)->Unit(benchmark::kMicrosecond);
 
-/// Clears and draws one frame. Arguments: events, lens distortion or not, bilinear or not.
+/// Clears and draws one frame. Arguments: events, lens distortion or not.
 void event_frame(benchmark::State& state) {
   PinholeCamera camera = recording().camera;
   if (state.range(1) != 0) camera.distortion[0] = -0.3;
-  EventFrame frame(camera, state.range(2) == 0 ? EventFrameOptions::Drawing::kNearest
-                                               : EventFrameOptions::Drawing::kBilinear);
+  EventFrame frame(camera);
   const auto count = std::min(static_cast<std::size_t>(state.range(0)), recording().events.size());
   const std::span<const Event> events(recording().events.data(), count);
   for (auto _ : state) {
@@ -79,23 +77,18 @@ void event_frame(benchmark::State& state) {
   }
   items_per_second(state, count);
 }
-BENCHMARK(event_frame)
-    ->Args({2000, 0, 0})
-    ->Args({2000, 1, 0})
-    ->Args({2000, 1, 1})
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(event_frame)->Args({2000, 0})->Args({2000, 1})->Unit(benchmark::kMicrosecond);
 
 /// One Gauss-Newton step. Arguments: samples, J^T J of the samples (1) or of the template (0).
 void lucas_kanade_iteration(benchmark::State& state) {
   AlignOptions options;
   options.samples = static_cast<int>(state.range(0));
   options.iterations = 1;
-  options.hessian =
-      state.range(1) == 0 ? AlignOptions::Hessian::kTemplate : AlignOptions::Hessian::kSamples;
+  options.sampled_hessian = state.range(1) != 0;
   TemplateDrawer drawer(recording().camera, {}, recording().map);
   TemplateAligner aligner(options, recording().camera);
   aligner.set_template(drawer.draw({}));
-  EventFrame frame(recording().camera, EventFrameOptions::Drawing::kNearest);
+  EventFrame frame(recording().camera);
   frame.draw(
       std::span(recording().events).first(std::min<std::size_t>(4000, recording().events.size())));
   std::uint64_t draw = 0;
@@ -105,25 +98,25 @@ void lucas_kanade_iteration(benchmark::State& state) {
 }
 BENCHMARK(lucas_kanade_iteration)->ArgsProduct({{50, 500}, {0, 1}})->Unit(benchmark::kMicrosecond);
 
-TrackerOptions setting(bool fast) {
-  TrackerOptions options;
+EdgeTrackerOptions setting(bool fast) {
+  EdgeTrackerOptions options;
   if (!fast) return options;
-  options.event_frame.ratio = 0.15;
+  options.event_frame.event_map_ratio = 0.15;
   options.templates.redraw_px = 4;
   options.align.samples = 50;
   options.align.iterations = 5;
   options.align.averaging_from = 0;
-  options.motion.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  options.motion.prediction = MotionModelOptions::Prediction::kConstantVelocity;
   return options;
 }
 
 /// The whole recording. Argument: 0 accurate, 1 fast. `s_per_frame` is the time of one pose.
 void track(benchmark::State& state) {
-  Tracker tracker(setting(state.range(0) != 0), recording().camera, recording().map, {}, 1);
+  EdgeTracker tracker(setting(state.range(0) != 0), recording().camera, recording().map, {}, 1);
   std::size_t frames = 0;
   for (auto _ : state) {
     tracker.reset(0, corner_motion(0));
-    frames += tracker.track(recording().events).size();
+    frames += tracker.track({recording().events}).size();
   }
   items_per_second(state, recording().events.size());
   state.counters["s_per_frame"] = benchmark::Counter(

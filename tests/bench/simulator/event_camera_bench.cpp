@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 #include "tests/support/closed_form_plane.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {
@@ -44,7 +44,7 @@ BENCHMARK(record_events)->Arg(15)->Arg(50)->Unit(benchmark::kMillisecond)->UseRe
 void render_frame(benchmark::State& state) {
   const ClosedFormPlane plane = ClosedFormPlane::smooth(240, 180);
   const Scene scene = testing::scene_of(plane);
-  const ViewRenderer renderer(scene, plane.camera, static_cast<int>(state.range(0)));
+  const ImageRenderer renderer(scene, plane.camera, static_cast<int>(state.range(0)));
   const std::vector<StampedPose> pose{{0.1, plane.motion().pose(0.1)}};
   for (auto _ : state) benchmark::DoNotOptimize(renderer.radiance(pose));
   state.SetItemsProcessed(state.iterations() * 240 * 180);

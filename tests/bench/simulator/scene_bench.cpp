@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "simulator/scene/scene_builder.h"
-#include "simulator/scene/texture_generator.h"
+#include "simulator/scene/texture/texture_generator.h"
 
 namespace saccade {
 namespace {
@@ -53,7 +53,7 @@ Scene scene(std::int64_t kind) {
     builder.add(terrain(224, 0.1, 3), Eigen::Affine3d::Identity());
   }
   LightOptions lamp;
-  std::vector<LightOptions> lamps;
+  std::vector<LightOptions> lights;
   for (const double x : {-1.0, 0.0, 1.0}) {
     lamp.position = {x, 0.3, 0.5};
     lamps.push_back(lamp);

@@ -5,16 +5,16 @@
   name = $2 " " substr($0, index($0, "]") + 2)
 }
 name ~ /embree|RayCaster|Visibility::visible/ { part["trace"] += percent; next }
-name ~ /Occluder|is_alone|pyramid|triangle_pass|PassingTriangle|TriangleSight|stays_|misses|find_passing|asters|PatchLight|find_light|find_shadows|light_of|::inside|nearest_of|visible_exactly|Scene::meets/ { part["foresee"] += percent; next }
-name ~ /CellWalk|CellCourse|Borders|TrackPart|Texture::range|Texture::cell|radiance_range|picture_range|range_across|RadianceRange|Thresholds|certif|PlaneSignal::range/ { part["walk"] += percent; next }
+name ~ /TriangleBvh|Occluder|is_sole_visible|frust|edge_functions|TransitTriangle|TriangleRayBounds|EdgeCulling|stays_|misses|find_transits|occluders|PatchLighting|find_lighting|find_shadows|lighting_of|min_barycentric|nearest_among|visible_exactly|Scene::intersects/ { part["predict"] += percent; next }
+name ~ /TexelTraversal|CellSegment|TexelBorders|CoordinateBounds|Texture::range|Texture::cell|radiance_range|texture_range|range_across|RadianceRange|Thresholds|certif|TextureSignal::range/ { part["texels"] += percent; next }
 name ~ /EventLog|BlockJournal|H5|hdf5|libz|deflate|Sha|sha256|Crc|DatasetWriter|EventFile/ { part["write"] += percent; next }
-name ~ /find_exit|first_exit|refine|PixelSignal|PlaneSignal|PixelSensor|interpolate|is_straight|dividing|change_s|is_crease|EventPixel|libm/ { part["roots"] += percent; next }
+name ~ /find_exit|first_exit|refine|PixelSignal|TextureSignal|PixelSensor|interpolate|is_straight|split_fraction|change_s|is_crease|EventPixel|libm/ { part["crossings"] += percent; next }
 name ~ /sort|partition|SensedEvent|deliver/ { part["sort"] += percent; next }
-name ~ /Scene|RayTracer|Texture|PlaneView|PlanePath|sample|illuminat|Illumination|Background|SurfaceLook/ { part["look"] += percent; next }
+name ~ /Scene|RayTracer|Texture|PlaneSampler|TexelTrajectory|sample|illuminat|Illumination|Background|SurfaceSample/ { part["sample"] += percent; next }
 name ~ /Tile|EventCamera|FrameCamera|Function_handler|SplineTable|ObjectMotion|image_speed|interaction|Spline|tbb|parallel/ { part["schedule"] += percent; next }
 { part["other"] += percent }
 END {
   for (p in part) total += part[p]
-  n = split("foresee trace look walk roots schedule sort write other", order, " ")
+  n = split("predict trace sample texels crossings schedule sort write other", order, " ")
   for (i = 1; i <= n; ++i) printf "%s %s %.1f\n", scene, order[i], 100 * part[order[i]] / total
 }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "simulator/scene/mesh_import.h"
-#include "simulator/scene/placement.h"
-#include "simulator/sensor/pixel_rays.h"
+#include "simulator/scene/mesh/mesh_import.h"
+#include "simulator/scene/mesh/world_from_mesh.h"
+#include "simulator/sensor/rays/pixel_rays.h"
 
 namespace saccade::study {
 namespace {

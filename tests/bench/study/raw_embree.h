@@ -11,7 +11,7 @@ struct RayRates {
   double visible;  ///< Scene::visible(), from rays in double precision
 };
 
-/// Of all threads, through the meshes that stand still.
+/// Of all threads, through the meshes that are static.
 [[nodiscard]] RayRates measure_ray_rates(const Scenario& scenario);
 
 }  // namespace saccade::study

@@ -7,7 +7,7 @@
 
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "tests/support/command.h"
 
 namespace saccade {

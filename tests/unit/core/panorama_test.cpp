@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/io/panorama_file.h"
+#include "core/io/images/panorama_file.h"
 #include "tests/support/command.h"
 #include "tests/support/direction_world.h"
 #include "tests/support/error_of.h"

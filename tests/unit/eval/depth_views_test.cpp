@@ -109,7 +109,7 @@ TEST_F(DepthViews, OtherProgramsResultsScoreAlike) {
 }
 
 TEST_F(DepthViews, SaysWhatIsWrong) {
-  const auto error = [&](const ForeignDepth& depth) {
+  const auto error = [&](const ExternalDepth& depth) {
     return error_of([&] { return evaluate_depth(depth, dataset()); });
   };
   EXPECT_THAT(error({folder_.path(), false, {}}), HasSubstr("views.yaml"));

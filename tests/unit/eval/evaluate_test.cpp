@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "eval/score_inputs.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {
@@ -15,7 +16,7 @@ class Evaluate : public testing::FakeFolders {};
 
 TEST_F(Evaluate, WritesWhatItReturns) {
   const Metrics metrics = evaluate_run(run());
-  EXPECT_EQ(testing::read_file(run() / "metrics.json"), to_json(metrics));
+  EXPECT_EQ(testing::read_file(run() / "metrics.json"), to_json(metrics, recorded_inputs(run())));
   EXPECT_EQ(read_json_metrics(run() / "metrics.json"), metrics);
   EXPECT_EQ(metrics.get("trajectory.poses"), 175);
   EXPECT_GT(*metrics.get("trajectory.coverage"), 0.99);

@@ -148,11 +148,10 @@ class FakeCamera {
 
 TEST_F(Log, HoldsTheSameEventsHoweverOftenTheRecordingIsKilled) {
   constexpr double kDuration_s = 1e-4;
-  const CheckpointPace always{std::chrono::milliseconds(0), 0};
   int programs = 0;
   for (bool complete = false; !complete; ++programs) {
     ASSERT_LT(programs, 100);
-    EventLog log(folder_, always);
+    EventLog log(folder_, std::chrono::milliseconds(0), 0);
     FakeCamera camera(2);
     double shown_s = 0;
     try {

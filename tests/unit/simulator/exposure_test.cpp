@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {
@@ -24,7 +24,7 @@ Scene edge() {
 }
 
 /// The camera moves along x and is at 0 at time 0.5, one second in all.
-Spline passing() {
+Spline transit() {
   const std::vector<StampedPose> poses = {
       {0, {Eigen::Quaterniond::Identity(), {-0.5 * kSpeed_m_s, 0, 0}}},
       {1, {Eigen::Quaterniond::Identity(), {0.5 * kSpeed_m_s, 0, 0}}}};
@@ -32,7 +32,7 @@ Spline passing() {
 }
 
 ImageF blurred(const Scene& scene, const Spline& motion, double t_s, double exposure_s) {
-  const ViewRenderer renderer(scene, kCamera, 1);
+  const ImageRenderer renderer(scene, kCamera, 1);
   std::vector<StampedPose> poses;
   for (const double t : exposure_times(renderer, motion, t_s, exposure_s))
     poses.push_back({t, motion.pose(t)});
@@ -47,7 +47,7 @@ double share(int x, double from_px, double to_px) {
 
 TEST(Exposure, AMovingEdgeBlursOverItsPath) {
   const Scene scene = edge();
-  const Spline motion = passing();
+  const Spline motion = transit();
   // 0.1 s: 20 px about the principal point.
   const ImageF image = blurred(scene, motion, 0.5, 0.1);
   int ramp = 0;
@@ -62,8 +62,8 @@ TEST(Exposure, AMovingEdgeBlursOverItsPath) {
 
 TEST(Exposure, IsCutAtTheEndsOfTheRecording) {
   const Scene scene = edge();
-  const Spline motion = passing().cut(0.4, 0.2);
-  const ViewRenderer renderer(scene, kCamera, 1);
+  const Spline motion = transit().cut(0.4, 0.2);
+  const ImageRenderer renderer(scene, kCamera, 1);
   for (const double t : exposure_times(renderer, motion, 0, 0.1)) {
     EXPECT_GT(t, 0);
     EXPECT_LT(t, 0.05);
@@ -85,7 +85,7 @@ TEST(Exposure, SamplesAMotionThatTurnsRoundWithinIt) {
   }
   const Scene scene = edge();
   const Spline motion = Spline::interpolate(poses);
-  const ViewRenderer renderer(scene, kCamera, 1);
+  const ImageRenderer renderer(scene, kCamera, 1);
   // At rest at 0.5 s, 500 px/s at the ends of the exposure.
   const std::vector<double> times = exposure_times(renderer, motion, 0.5, 0.1);
   EXPECT_GT(times.size(), 150U);
@@ -98,8 +98,8 @@ TEST(Exposure, SamplesAMotionThatTurnsRoundWithinIt) {
 
 TEST(Exposure, WithoutOneShowsTheInstant) {
   const Scene scene = edge();
-  const Spline motion = passing();
-  EXPECT_EQ(exposure_times(ViewRenderer(scene, kCamera, 1), motion, 0.3, 0),
+  const Spline motion = transit();
+  EXPECT_EQ(exposure_times(ImageRenderer(scene, kCamera, 1), motion, 0.3, 0),
             std::vector<double>{0.3});
 }
 

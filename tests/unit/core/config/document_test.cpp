@@ -24,9 +24,9 @@ TEST(Load, IncludedFilesAreMergedAndKeepTheirPlaces) {
   const Document document = load(file);
   EXPECT_EQ(to_yaml(document.root()), "camera:\n  width: 240\n  fx: 100\n  fy: 101\nlist: [4]\n");
   const Node& camera = at(document.root(), "camera");
-  EXPECT_EQ(at(camera, "width").place.text(),
+  EXPECT_EQ(at(camera, "width").location.text(),
             (folder.path() / "parts/camera.yaml").string() + ":2");
-  EXPECT_EQ(at(camera, "fx").place.text(), file.string() + ":3");
+  EXPECT_EQ(at(camera, "fx").location.text(), file.string() + ":3");
 }
 
 TEST(Load, LaterIncludesWinOverEarlierOnes) {
@@ -107,8 +107,8 @@ TEST(Overrides, SetKeysAlongTheirPath) {
 TEST(Overrides, StandAtTheirOwnPlace) {
   const std::vector<std::string> overrides{"a.b=5"};
   const Document document = parse("a: {b: 1, c: 2}\n", "a.yaml", {}, overrides);
-  EXPECT_EQ(at(at(document.root(), "a"), "b").place.text(), "--set a.b");
-  EXPECT_EQ(at(at(document.root(), "a"), "c").place.text(), "a.yaml:1");
+  EXPECT_EQ(at(at(document.root(), "a"), "b").location.text(), "--set a.b");
+  EXPECT_EQ(at(at(document.root(), "a"), "c").location.text(), "a.yaml:1");
 }
 
 TEST(Overrides, NameWhatIsWrong) {

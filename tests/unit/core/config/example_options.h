@@ -66,7 +66,7 @@ inline void describe(Fields& fields, Options& options) {
   fields.value("samples", options.samples, "points per iteration").range(6, 1e6);
   fields.value("big", options.big, "a large number");
   fields.value("seed", options.seed, "of all random numbers");
-  fields.value("ratio", options.ratio, "a share").above(0).at_most(1);
+  fields.value("ratio", options.ratio, "a fraction").above(0).at_most(1);
   fields.value("gain", options.gain, "a factor").at_least(0.1).below(10);
   fields.value("name", options.name, "a text");
   fields.path("output", options.output, "a path");

@@ -89,9 +89,9 @@ TEST(Print, IsPlainYaml) {
 
 TEST(Print, DocumentedNamesHelpAndRanges) {
   const std::string text = print_documented(Options{});
-  EXPECT_NE(text.find("samples: 500  # points per iteration; 6 to 1000000\n"), std::string::npos);
-  EXPECT_NE(text.find("ratio: 0.4  # a share; > 0; <= 1\n"), std::string::npos);
-  EXPECT_NE(text.find("source: file  # where poses come from: file, circle\n"), std::string::npos);
+  EXPECT_NE(text.find("samples: 500  # points per iteration [6 to 1000000]\n"), std::string::npos);
+  EXPECT_NE(text.find("ratio: 0.4  # a fraction [> 0, <= 1]\n"), std::string::npos);
+  EXPECT_NE(text.find("source: file  # where poses come from [file, circle]\n"), std::string::npos);
   EXPECT_NE(text.find("blur:  # of the template\n"), std::string::npos);
   EXPECT_EQ(print(read<Options>(parse(text, "printed.yaml"))), print(Options{}));
 }

@@ -24,13 +24,13 @@ TEST(ParseYaml, KeepsPlacesOrderAndQuotes) {
   const Node root = parse_text("b: 1\na:\n  - x\n  - 'y'\nc:\n");
   ASSERT_EQ(root.entries.size(), 3U);
   EXPECT_EQ(root.entries[0].key, "b");
-  EXPECT_EQ(root.entries[1].place.text(), "a.yaml:2");
+  EXPECT_EQ(root.entries[1].location.text(), "a.yaml:2");
   const Node& list = root.entries[1].value;
-  EXPECT_EQ(list.items[1].place.text(), "a.yaml:4");
+  EXPECT_EQ(list.items[1].location.text(), "a.yaml:4");
   EXPECT_FALSE(list.items[0].quoted);
   EXPECT_TRUE(list.items[1].quoted);
   EXPECT_EQ(root.entries[2].value.kind, Node::Kind::kNull);
-  EXPECT_EQ(root.entries[2].value.place.text(), "a.yaml:5");
+  EXPECT_EQ(root.entries[2].value.location.text(), "a.yaml:5");
 }
 
 TEST(ParseYaml, EmptyTextIsNull) {

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "core/io/calibration_file.h"
-#include "core/io/csv_file.h"
-#include "core/io/file_list.h"
+#include "core/io/files/file_list.h"
 #include "core/io/imu_file.h"
+#include "core/io/tables/csv_file.h"
 #include "core/io/trajectory_file.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/config/config.h"
@@ -26,8 +27,8 @@ TEST(DepthConfig, TheShippedFileHoldsTheDefaults) {
 }
 
 TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
-  const std::pair<const char*, DepthConfig::Method> files[] = {
-      {"best", DepthConfig::Method::kRays}, {"sweep", DepthConfig::Method::kSweep}};
+  const std::pair<const char*, std::string_view> files[] = {{"best", DepthConfig::Method::kRays},
+                                                            {"sweep", DepthConfig::Method::kSweep}};
   for (const auto& [name, method] : files) {
     const auto document =
         config::load(std::string(SACCADE_SOURCE_DIR "/configs/depth/") + name + ".yaml");
@@ -41,7 +42,7 @@ TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
 TEST(DepthConfig, ReadsWhatItPrints) {
   const std::string yaml =
       "{window: {by: events, events: 5000, reference: end}, range_m: {near: 1, far: 9}, "
-      "thesis: {initial_depth_m: 2, search: {patch_radius_px: 3}}, seed: 5}";
+      "thesis: {initial_depth_m: 2, patch_radius_px: 3}, seed: 5}";
   const DepthConfig config = parsed(yaml);
   EXPECT_EQ(config.window.events, 5000);
   EXPECT_EQ(config.thesis.search.patch_radius_px, 3);
@@ -57,12 +58,13 @@ TEST(DepthConfig, NamesWhatIsWrong) {
   EXPECT_THAT(error("range_m: {near: 3, far: 2}"), HasSubstr("must be below far"));
   EXPECT_THAT(error("range_m: {near: 0}"), HasSubstr("range_m.near"));
   EXPECT_THAT(error("thesis: {events_per_px: -1}"), HasSubstr("events_per_px"));
-  EXPECT_THAT(error("thesis: {keypoints: {cell_px: 0}}"), HasSubstr("cell_px"));
-  EXPECT_THAT(error("thesis: {search: {patch_radius: 3}}"), HasSubstr("patch_radius_px"));
-  EXPECT_THAT(error("thesis: {filter: {converged: 0}}"), HasSubstr("converged"));
-  EXPECT_THAT(error("thesis: {outliers: {radius: .inf}}"), HasSubstr("radius"));
+  EXPECT_THAT(error("thesis: {cell_px: 0}"), HasSubstr("cell_px"));
+  EXPECT_THAT(error("thesis: {patch_radius: 3}"), HasSubstr("patch_radius_px"));
+  EXPECT_THAT(error("thesis: {max_sigma: 0}"), HasSubstr("max_sigma"));
+  EXPECT_THAT(error("thesis: {outliers: {radius_ratio: .inf}}"), HasSubstr("radius_ratio"));
   EXPECT_THAT(error("thesis: {initial_depth_m: 0}"), HasSubstr("initial_depth_m"));
-  EXPECT_THAT(error("{method: sweep, sweep: {median_side_px: 4}}"), HasSubstr("must be odd"));
+  EXPECT_THAT(error("{method: sweep, sweep: {planes: 1}}"), HasSubstr("planes"));
+  EXPECT_THAT(error("{method: sweep, rays: {}}"), HasSubstr("method: rays"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 TEST(CommandTemplate, PutsValuesIntoWords) {
   const Placeholders values{{"events", "/a folder/events.txt"}, {"out", "/out"}};
-  EXPECT_THAT(filled_words("run --in={events} '{out}/a b' {{x}}", values),
+  EXPECT_THAT(substituted_words("run --in={events} '{out}/a b' {{x}}", values),
               ElementsAre("run", "--in=/a folder/events.txt", "/out/a b", "{x}"));
 }
 

@@ -69,7 +69,7 @@ TEST(TiltCorrection, TakesTheVerticalToAnyDirection) {
 TEST(Tilt, IsReadFromTheForceAndHeadsWhereXHeads) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     const Eigen::Quaterniond truth = so3_exp(3 * normal3(2, i));
-    const Eigen::Quaterniond tilt = tilt_of(truth.conjugate() * kUp);
+    const Eigen::Quaterniond tilt = tilt_from_specific_force(truth.conjugate() * kUp);
     EXPECT_LT(tilt_error(tilt, truth), 1e-12);
     const Eigen::Vector3d x = tilt * Eigen::Vector3d::UnitX();
     if (std::abs(x.z()) < 0.89) {
@@ -77,7 +77,7 @@ TEST(Tilt, IsReadFromTheForceAndHeadsWhereXHeads) {
       EXPECT_GT(x.x(), 0);
     }
   }
-  EXPECT_EQ(tilt_of({0, 0, 0}).w(), 1);
+  EXPECT_EQ(tilt_from_specific_force({0, 0, 0}).w(), 1);
 }
 
 TEST(ComplementaryFilter, FollowsAPerfectSensor) {
@@ -116,7 +116,7 @@ TEST(ComplementaryFilter, PullsAWrongTiltUpWithItsTimeConstant) {
   for (const double tau : {0.5, 2.0}) {
     ComplementaryOptions options;
     options.time_constant_s = tau;
-    options.bias.estimate = false;
+    options.estimate_bias = false;
     ComplementaryFilter filter(options);
     const Eigen::Quaterniond truth = so3_exp({0.5, 0, 0});
     ImuSample sample;
@@ -135,7 +135,7 @@ TEST(ComplementaryFilter, PullsAWrongTiltUpWithItsTimeConstant) {
 TEST(ComplementaryFilter, TheCorrectionDoesNotDependOnTheRateOfReadings) {
   const auto after_one_second = [](const std::vector<TimeNs>& steps_ms) {
     ComplementaryOptions options;
-    options.bias.estimate = false;
+    options.estimate_bias = false;
     ComplementaryFilter filter(options);
     ImuSample sample;
     sample.specific_force = kUp;
@@ -230,16 +230,16 @@ ImuSample at_rest(std::uint64_t seed, int i, const Eigen::Vector3d& bias, double
   return sample;
 }
 
-TEST(SteadyBias, ErrsAsItsOwnDeviationSays) {
+TEST(GyroBiasEstimator, ErrorMatchesItsSigma) {
   // Two seconds of rest determine the mean to noise / sqrt(2 s), and no estimate can be better.
   const Eigen::Vector3d bias(0.05, -0.05, 0.05);
   constexpr int kRuns = 200;
   double squares = 0, sigma = 0;
   for (int run = 0; run < kRuns; ++run) {
-    SteadyBias estimate({}, 9.81);
+    GyroBiasEstimator estimate({});
     for (int i = 0; i < 2000; ++i)
       estimate.add(at_rest(static_cast<std::uint64_t>(run), i, bias, 1e-3), 1e-3);
-    EXPECT_TRUE(estimate.is_steady());
+    EXPECT_TRUE(estimate.is_at_rest());
     squares += (estimate.bias() - bias).squaredNorm() / 3;
     sigma = estimate.sigma();
   }
@@ -250,37 +250,27 @@ TEST(SteadyBias, ErrsAsItsOwnDeviationSays) {
   EXPECT_NEAR(deviation / bound, 1, 0.15);
 }
 
-TEST(SteadyBias, DoesNotTakeMotionForBias) {
-  SteadyBias estimate({}, 9.81);
+TEST(GyroBiasEstimator, DoesNotTakeMotionForBias) {
+  GyroBiasEstimator estimate({});
   for (int i = 0; i < 2000; ++i) estimate.add(at_rest(1, i, {0, 0, 0}, 1e-3), 1e-3);
   const Eigen::Vector3d before = estimate.bias();
   for (int i = 0; i < 2000; ++i) {
     ImuSample turning = at_rest(2, i, {0.1, 0, 0}, 1e-3);
     estimate.add(turning, 1e-3);
-    EXPECT_FALSE(i > 200 && estimate.is_steady());
+    EXPECT_FALSE(i > 200 && estimate.is_at_rest());
   }
   EXPECT_EQ(estimate.bias(), before);
 }
 
-TEST(SteadyBias, AcceleratedIsNotSteady) {
-  SteadyBias estimate({}, 9.81);
+TEST(GyroBiasEstimator, AcceleratedIsNotAtRest) {
+  GyroBiasEstimator estimate({});
   for (int i = 0; i < 1000; ++i) {
     ImuSample sample = at_rest(3, i, {0.05, 0, 0}, 1e-3);
     sample.specific_force.z() += 1;
     estimate.add(sample, 1e-3);
   }
-  EXPECT_FALSE(estimate.is_steady());
+  EXPECT_FALSE(estimate.is_at_rest());
   EXPECT_EQ(estimate.bias().norm(), 0);
-}
-
-TEST(SteadyBias, AConstantGainIsThatOfTheThesis) {
-  SteadyBiasOptions options;
-  options.gain = 0.25;
-  SteadyBias estimate(options, 9.81);
-  const Eigen::Vector3d bias(0.02, 0, -0.01);
-  for (int i = 0; i < 500; ++i) estimate.add(at_rest(4, i, bias, 0), 1e-3);
-  // Five windows, the first of which has none before it.
-  EXPECT_LT((estimate.bias() - (1 - std::pow(0.75, 4)) * bias).norm(), 1e-12);
 }
 
 }  // namespace

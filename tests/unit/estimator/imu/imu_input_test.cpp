@@ -19,7 +19,7 @@ ImuInput at_rest(const Eigen::Vector3d& specific_force) {
 TEST(Levelled, PutsTheMeanForceUpright) {
   const Rigid3 tilted(so3_exp({0.2, 0, 0.5}), Eigen::Vector3d::Zero());
   const Trajectory level =
-      levelled(Trajectory({{0, tilted}, {0.002, tilted}}), at_rest({0, 0, 9.81}));
+      gravity_aligned(Trajectory({{0, tilted}, {0.002, tilted}}), at_rest({0, 0, 9.81}));
   const Eigen::Vector3d up =
       level.poses()[1].world_from_camera.rotation() * Eigen::Vector3d::UnitZ();
   EXPECT_NEAR(up.z(), 1, 1e-12);
@@ -27,7 +27,8 @@ TEST(Levelled, PutsTheMeanForceUpright) {
 
 TEST(Levelled, KeepsOrientationsWhereNoForceSaysWhatIsLevel) {
   const Rigid3 tilted(so3_exp({0.2, 0, 0.5}), Eigen::Vector3d::Zero());
-  const Trajectory kept = levelled(Trajectory({{0, tilted}, {0.002, tilted}}), at_rest({0, 0, 0}));
+  const Trajectory kept =
+      gravity_aligned(Trajectory({{0, tilted}, {0.002, tilted}}), at_rest({0, 0, 0}));
   EXPECT_LT(angle_between(kept.poses()[0].world_from_camera.rotation(), tilted.rotation()), 1e-12);
 }
 

@@ -39,7 +39,7 @@ MountedImu sensor_on(const Spline& motion, const Eigen::Vector3d& place = {0, 0,
   MountedImu imu;
   imu.samples = testing::imu_readings(motion, {Eigen::Quaterniond::Identity(), place}, kBias.gyro,
                                       kBias.accel);
-  imu.place = place;
+  imu.position_in_camera = place;
   imu.noise = {1000, {1e-2, 0}, {1e-3, 0}};
   return imu;
 }
@@ -55,7 +55,7 @@ TEST(InertialAlignment, FindsWhatAPerfectPathHides) {
   EXPECT_LT((found.bias.gyro - kBias.gyro).norm(), 1e-4);
   EXPECT_LT((found.bias.accel - kBias.accel).norm(), 5e-3);
   EXPECT_NEAR(found.time_offset_s, 0, 1e-5);
-  EXPECT_LT((found.level() * gravity - kGravity).norm(), 5e-3);
+  EXPECT_LT((found.gravity_alignment() * gravity - kGravity).norm(), 5e-3);
 }
 
 TEST(InertialAlignment, TellsHowWellItKnowsTheScaleOfANoisyPath) {
@@ -94,7 +94,7 @@ TEST(InertialAlignment, AnEvenMotionHasNoScale) {
     poses.push_back({0.1 * i, {so3_exp({-1.6, 0, 0.02 * i}), {0.05 * i, 0.02 * i, 0}}});
   const Spline motion = Spline::interpolate(poses);
   EXPECT_EQ(align_inertially(path_of(motion, 1e-3), sensor_on(motion), {}).status,
-            Status::kEvenMotion);
+            Status::kUnobservableScale);
 }
 
 TEST(InertialAlignment, APathThatWasNotFeltDisagrees) {
@@ -107,7 +107,7 @@ TEST(InertialAlignment, APathThatWasNotFeltDisagrees) {
   }
   const InertialAlignment found =
       align_inertially(Trajectory(std::move(poses)), sensor_on(motion), {});
-  EXPECT_EQ(found.status, Status::kDisagrees);
+  EXPECT_EQ(found.status, Status::kInconsistent);
   EXPECT_GT(found.residual, 2);
 }
 

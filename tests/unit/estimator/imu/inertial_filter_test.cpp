@@ -61,15 +61,13 @@ double tilt_error(const Eigen::Quaterniond& estimate, double t_s) {
   return std::atan2(std::hypot(up.x(), up.y()), up.z());
 }
 
-InertialOptions options() {
-  InertialOptions options;
-  options.gyroscope = {.density = 1e-4, .random_walk = 1e-6, .bias_sigma = 0.005};
-  options.speed = 0.5;
-  return options;
+InertialFilter slow_filter() {
+  return InertialFilter({.velocity_sigma = 0.5},
+                        {.density = 1e-4, .random_walk = 1e-6, .bias_sigma = 0.005});
 }
 
 TEST(InertialFilter, TellsGravityFromAccelerationInMotion) {
-  InertialFilter filter(options());
+  InertialFilter filter = slow_filter();
   ComplementaryFilter complementary({});
   double squares = 0, complementary_squares = 0, count = 0;
   for (int i = 0; i <= 30000; ++i) {
@@ -104,7 +102,7 @@ TEST(InertialFilter, ItsErrorsAreAsLargeAsItSays) {
       errors.rate_bias[k] = 0.005 * random.normal(100, axis);
       errors.force_bias[k] = 0.05 * random.normal(101, axis);
     }
-    InertialFilter filter(options());
+    InertialFilter filter = slow_filter();
     for (int i = 0; i <= 10000; ++i) filter.update(reading(i, seed, errors));
     tilt += std::pow(tilt_error(filter.world_from_imu(), 10) / filter.tilt_sigma(), 2) / 2;
     bias += (filter.bias() - errors.rate_bias).squaredNorm() /
@@ -138,7 +136,7 @@ TEST(InertialFilter, ReadsItsBiasAtRest) {
 }
 
 TEST(InertialFilter, AGapCostsTheTiltOnly) {
-  InertialFilter filter(options());
+  InertialFilter filter = slow_filter();
   for (int i = 0; i <= 5000; ++i) filter.update(reading(i, 1, {}));
   const Eigen::Vector3d bias = filter.bias();
   const double sigma = filter.tilt_sigma();

@@ -51,7 +51,7 @@ TEST_F(Mounted, TurnsTheReadingsIntoTheCamerasAxes) {
   ASSERT_EQ(imu.samples.size(), 2U);
   EXPECT_LT((imu.samples[1].specific_force - Eigen::Vector3d(0, 9.81, 0)).norm(), 1e-12);
   EXPECT_LT((imu.samples[1].angular_velocity - Eigen::Vector3d(0.2, 0.3, 0.1)).norm(), 1e-12);
-  EXPECT_LT((imu.place - Eigen::Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
+  EXPECT_LT((imu.position_in_camera - Eigen::Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
 }
 
 TEST_F(Mounted, NoiseThatNobodyStatesIsThatOfAConsumersSensor) {

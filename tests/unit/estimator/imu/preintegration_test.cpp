@@ -27,7 +27,7 @@ const Motion& motion() {
 
 Eigen::Matrix<double, 9, 1> sums(const Preintegration& about, const Preintegration& sum) {
   Eigen::Matrix<double, 9, 1> all;
-  all.head<3>() = so3_log(about.turn.conjugate() * sum.turn);
+  all.head<3>() = so3_log(about.rotation.conjugate() * sum.rotation);
   all.segment<3>(3) = sum.velocity;
   all.tail<3>() = sum.position;
   return all;
@@ -42,7 +42,7 @@ TEST(Preintegration, CarriesTheTrueStateOn) {
   const double t_s = kTo_s - kFrom_s;
   EXPECT_NEAR(sum->duration_s, t_s, 1e-12);
   const Eigen::Quaterniond& rotation = from.world_from_body.rotation();
-  EXPECT_LT(angle_between(rotation * sum->turn, to.world_from_body.rotation()), 1e-5);
+  EXPECT_LT(angle_between(rotation * sum->rotation, to.world_from_body.rotation()), 1e-5);
   EXPECT_LT(
       (from.velocity_in_world + kGravity * t_s + rotation * sum->velocity - to.velocity_in_world)
           .norm(),
@@ -64,11 +64,11 @@ TEST(Preintegration, DerivativesByTheBiases) {
   const Vector6 at = (Vector6() << kReadingBias.gyro, kReadingBias.accel).finished();
   const Preintegration sum = with(at);
   testing::expect_jacobian<9, 6>(
-      sum.by_bias, [&](const Vector6& bias) { return sums(sum, with(bias)); }, at);
+      sum.bias_jacobian, [&](const Vector6& bias) { return sums(sum, with(bias)); }, at);
   const ImuBias other{kReadingBias.gyro + Eigen::Vector3d(0.01, 0, -0.01),
                       kReadingBias.accel * 1.1};
   const Preintegration anew = *preintegrate(motion().readings, 0.3, 0.6, other, kNoise);
-  EXPECT_LT(angle_between(sum.turn_with(other), anew.turn), 1e-5);
+  EXPECT_LT(angle_between(sum.rotation_with(other), anew.rotation), 1e-5);
   EXPECT_LT((sum.velocity_with(other) - anew.velocity).norm(), 1e-4);
   EXPECT_LT((sum.position_with(other) - anew.position).norm(), 1e-4);
 }

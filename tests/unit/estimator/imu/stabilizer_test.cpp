@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/rigid3.h"
-#include "estimator/imu/steady_pose.h"
+#include "estimator/imu/orientation_smoothing.h"
 
 namespace saccade {
 namespace {
@@ -98,33 +98,33 @@ TEST(Stabilizer, TurnsAPictureToTheSteadyView) {
   EXPECT_LT(seen, 240 * 180) << "part of the view lies outside the picture";
 }
 
-TEST(SteadyPose, FollowsAStepWithItsTimeConstant) {
+TEST(OrientationSmoothing, FollowsAStepWithItsTimeConstant) {
   std::vector<StampedPose> poses;
   const Eigen::Quaterniond turned = so3_exp({0.1, 0.2, 0});
   for (int i = 0; i <= 1000; ++i)
     poses.push_back({1e-3 * i, {i == 0 ? Eigen::Quaterniond::Identity() : turned, {0, 0, 0}}});
-  SteadyPoseOptions options;
+  SmoothingOptions options;
   options.time_constant_s = 0.25;
-  const Trajectory steady = steady_poses(Trajectory(poses), options);
-  const double left = angle_between(steady.at(0.5)->rotation(), turned);
+  const Trajectory smoothed = smoothed_orientations(Trajectory(poses), options);
+  const double left = angle_between(smoothed.at(0.5)->rotation(), turned);
   EXPECT_NEAR(left / std::hypot(0.1, 0.2), std::exp(-2), 1e-3);
 }
 
-TEST(SteadyPose, IsDraggedAlongWhenTheCameraTurnsAway) {
+TEST(OrientationSmoothing, StaysWithinTheLargestAngle) {
   std::vector<StampedPose> poses;
   for (int i = 0; i <= 1000; ++i)
     poses.push_back({1e-3 * i, {so3_exp({0, 3e-3 * i, 0}), {0, 0, 0}}});
-  SteadyPoseOptions options;
+  SmoothingOptions options;
   options.time_constant_s = 10;
   options.max_angle_deg = 15;
   const Trajectory trajectory(poses);
-  const Trajectory steady = steady_poses(trajectory, options);
+  const Trajectory smoothed = smoothed_orientations(trajectory, options);
   for (const double t_s : {0.2, 0.5, 1.0})
-    EXPECT_LE(angle_between(steady.at(t_s)->rotation(), trajectory.at(t_s)->rotation()),
+    EXPECT_LE(angle_between(smoothed.at(t_s)->rotation(), trajectory.at(t_s)->rotation()),
               15.001 * std::numbers::pi / 180);
 }
 
-TEST(SteadyPose, WithoutRollTheRowsAreLevel) {
+TEST(OrientationSmoothing, WithoutRollTheRowsAreLevel) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Quaterniond q =
         so3_exp({-1.4 + 0.01 * i, 0.3 * std::sin(i), 0.2 * std::cos(3 * i)});

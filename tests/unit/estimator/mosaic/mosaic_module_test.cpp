@@ -40,7 +40,7 @@ TEST_F(MosaicModule, NeedsNothingButEventsAndTheInertialSensor) {
   fs::copy(dataset(), bare);
   fs::remove(bare / "groundtruth.txt");
   fs::remove(bare / "panorama.exr");
-  RunRequest blind = request("blind", "growth: [3000, 1000000]");
+  RunRequest blind = request("blind", "snapshot_events: [3000, 1000000]");
   blind.dataset = bare;
   const RunSummary summary = run_mosaic(blind);
   EXPECT_GT(summary.events, 1000U);
@@ -58,7 +58,7 @@ TEST_F(MosaicModule, NeedsNothingButEventsAndTheInertialSensor) {
 TEST_F(MosaicModule, IsTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
-    (void)run_mosaic(request("t" + std::to_string(threads), "growth: [2000, 5000]"));
+    (void)run_mosaic(request("t" + std::to_string(threads), "snapshot_events: [2000, 5000]"));
   }
   set_thread_count(0);
   for (const char* file : {"mosaic.exr", "mosaic.png", "mosaic.yaml", "orientation.txt",
@@ -89,11 +89,11 @@ TEST_F(MosaicModule, MayShowTheWholeSphere) {
 }
 
 TEST_F(MosaicModule, NamesWhatIsMissing) {
-  const fs::path still = path("still");
-  fs::copy(dataset(), still);
-  fs::remove(still / "imu.txt");
+  const fs::path without_imu = path("without_imu");
+  fs::copy(dataset(), without_imu);
+  fs::remove(without_imu / "imu.txt");
   RunRequest run = request("none", "");
-  run.dataset = still;
+  run.dataset = without_imu;
   EXPECT_THAT(error_of([&] { return run_mosaic(run); }),
               ::testing::AllOf(HasSubstr("imu.txt"), HasSubstr("--poses-from")));
   EXPECT_FALSE(fs::exists(path("none")));
@@ -104,8 +104,8 @@ TEST_F(MosaicModule, NamesWhatIsMissing) {
   EXPECT_THAT(error_of([&] { return run_mosaic(run); }), HasSubstr("no events within the time"));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "pixels_per_radian: 0")); }),
               HasSubstr("pixels_per_radian"));
-  EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "growth: [5000, 0]")); }),
-              ::testing::AllOf(HasSubstr("growth"), HasSubstr("0 is no number of events")));
+  EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "snapshot_events: [5000, 0]")); }),
+              HasSubstr("snapshot_events"));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "depth: {}")); }),
               HasSubstr("depth"));
 }

@@ -15,7 +15,7 @@ constexpr double kEnd_s = 1.2;
 
 PinholeCamera camera() { return {120, 90, 150, 150, 59.5, 44.5, {}}; }
 
-/// To and fro, so that places are seen again.
+/// To and fro, so that directions are observed again.
 Eigen::Quaterniond swing(double t_s) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(0.7 * std::sin(6 * t_s), Eigen::Vector3d::UnitZ()) *
                             Eigen::AngleAxisd(0.3 * std::sin(9 * t_s), Eigen::Vector3d::UnitY())) *
@@ -32,15 +32,15 @@ Trajectory true_poses() {
 TEST(RateOffset, IsTakenOutOfEveryTurnAndNotOfTheStart) {
   const Eigen::Vector3d rate(0.1, -0.2, 0.05);
   const Trajectory corrected = without_rate(true_poses(), rate, 0.5);
-  const auto turn = [](const Trajectory& poses, double from_s, double to_s) {
+  const auto rotation = [](const Trajectory& poses, double from_s, double to_s) {
     return poses.at_clamped(from_s).rotation().conjugate() * poses.at_clamped(to_s).rotation();
   };
   EXPECT_LT(
       angle_between(corrected.at_clamped(0.5).rotation(), true_poses().at_clamped(0.5).rotation()),
       1e-9);
   for (const double t_s : {0.1, 0.9})
-    EXPECT_LT((so3_log(turn(true_poses(), t_s, t_s + 1e-3)) -
-               so3_log(turn(corrected, t_s, t_s + 1e-3)) - 1e-3 * rate)
+    EXPECT_LT((so3_log(rotation(true_poses(), t_s, t_s + 1e-3)) -
+               so3_log(rotation(corrected, t_s, t_s + 1e-3)) - 1e-3 * rate)
                   .norm(),
               1e-6);
   // There and back again.

@@ -47,10 +47,10 @@ TEST(MetricWorld, IsInMetresAndUpright) {
   std::vector<StampedCovariance> covariances = {{1, Matrix6::Identity()}};
   MountedImu imu;
   imu.samples = testing::imu_readings(motion, Rigid3(), {0.02, 0, 0}, {0, 0.05, 0});
-  const InertialAlignment found = align_odometry(poses, keyframes, imu, {});
+  const InertialAlignment found = align_odometry(poses, keyframes, imu);
   ASSERT_EQ(found.status, Status::kOk);
   EXPECT_NEAR(found.scale, kScale, 0.005 * kScale);
-  take_into_metric_world(found, poses, keyframes, covariances);
+  transform_to_metric_world(found, poses, keyframes, covariances);
   // Up to where the world's x axis points.
   for (const std::size_t i : {100U, 500U, 700U}) {
     const Rigid3 truth = motion.pose(0.005 * static_cast<double>(i));
@@ -80,9 +80,7 @@ TEST(MetricWorld, SaysWhatTheReadingsShow) {
   EXPECT_THAT(text, ::testing::HasSubstr("applied: false"));
 }
 
-TEST(MetricWorld, NeedsPoses) {
-  EXPECT_EQ(align_odometry({}, {}, {}, {}).status, Status::kNoReadings);
-}
+TEST(MetricWorld, NeedsPoses) { EXPECT_EQ(align_odometry({}, {}, {}).status, Status::kNoReadings); }
 
 }  // namespace
 }  // namespace saccade

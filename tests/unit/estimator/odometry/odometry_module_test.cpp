@@ -66,21 +66,25 @@ void expect_glide(const fs::path& run) {
 }
 
 constexpr const char* kQuick = R"(
-start: {truth_s: 0.2, truth_share: 0.4}
-keyframe: {distance: 0.05, active: 3}
-mapping: {duration_s: 0.3, view: middle, edges: depth, image: false}
-depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_sigma: 0.05}}}
-tracking:
-  event_frame: {ratio: 0.2}
-  motion: {prediction: constant_velocity}
+start: {truth_s: 0.2, truth_fraction: 0.4}
+keyframe: {distance: 0.05, active: 3, active_window_s: 0.1}
+mapping: {duration_s: 0.3, min_edges: 0, image: false}
+adjustment: {rounds: 0, edges: 500}
+tracking: {event_map_ratio: 0.2}
 )";
+
+/// With the adjustment of every keyframe.
+std::string adjusted() {
+  std::string yaml = kQuick;
+  yaml.replace(yaml.find("rounds: 0"), 9, "rounds: 1");
+  return yaml;
+}
 
 /// A tenth of a second of given poses shows too few edges.
 std::string with_short_start() {
-  std::string yaml =
-      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  std::string yaml = adjusted();
   yaml.replace(yaml.find("truth_s: 0.2"), 12, "truth_s: 0.1");
-  yaml.replace(yaml.find("edges: depth"), 12, "edges: depth, min_edges: 600");
+  yaml.replace(yaml.find("min_edges: 0"), 12, "min_edges: 900");
   return yaml;
 }
 
@@ -105,8 +109,7 @@ class OdometryModule : public testing::SharedFolder<OdometryModule> {
 };
 
 TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
-  const RunSummary summary = run_odometry(request(
-      "run", std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n"));
+  const RunSummary summary = run_odometry(request("run", adjusted()));
   EXPECT_GT(summary.poses, 20U);
   EXPECT_EQ(summary.lost_poses, 0U);
   const fs::path run = folder_.path() / "run";
@@ -115,30 +118,29 @@ TEST_F(OdometryModule, FollowsTheTrueMotionByItsOwnMap) {
 }
 
 TEST_F(OdometryModule, TheEventsOfSomeOfThePixelsWillDo) {
-  std::string yaml =
-      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  std::string yaml = adjusted();
   (void)run_odometry(request("all", yaml));
-  yaml.replace(yaml.find("duration_s: 0.3"), 15, "duration_s: 0.3, thinned_to: 120000");
+  yaml.replace(yaml.find("duration_s: 0.3"), 15, "duration_s: 0.3, depth_events: 120000");
   (void)run_odometry(request("some", yaml));
   expect_glide(folder_.path() / "some");
   const auto all = read_keyframe_list(folder_.path() / "all" / "keyframes.yaml");
   const auto some = read_keyframe_list(folder_.path() / "some" / "keyframes.yaml");
-  ASSERT_GT(all.front().events, 120000) << "there is something to thin";
+  ASSERT_GT(all.front().events, 120000) << "there are events to leave out";
   EXPECT_EQ(some.front().events, all.front().events) << "the window is as long";
   EXPECT_LT(some.front().edges, all.front().edges);
-  yaml.replace(yaml.find("thinned_to: 120000"), 18, "thinned_to: 100");
+  yaml.replace(yaml.find("depth_events: 120000"), 18, "depth_events: 100");
   EXPECT_THAT(error_of([&] { return run_odometry(request("hardly any", yaml)); }),
               HasSubstr("show no edges in depth"));
 }
 
-TEST_F(OdometryModule, AStartOfAFewPixelsIsCarriedOn) {
+TEST_F(OdometryModule, AStartOfAFewPixelsIsExtrapolated) {
   const RunSummary summary = run_odometry(request("run", with_short_start()));
-  EXPECT_THAT(summary.found, HasSubstr(", the start carried on for 0.0"));
+  EXPECT_THAT(summary.found, HasSubstr(", the start extrapolated for 0.0"));
   const fs::path run = folder_.path() / "run";
   expect_glide(run);
   const Trajectory found = read_trajectory(run / "trajectory.txt");
   EXPECT_GT(found.start_s(), 0.1) << "given poses are no output";
-  EXPECT_LT(found.start_s(), 0.102) << "those that it was carried on by are";
+  EXPECT_LT(found.start_s(), 0.102) << "those of the extrapolation are";
   const auto keyframes = read_keyframe_list(run / "keyframes.yaml");
   EXPECT_GT(keyframes.front().made_s, 0.11);
   EXPECT_GE(keyframes.front().edges, 600);
@@ -165,21 +167,17 @@ TEST_F(OdometryModule, GivenPosesMayBeStampedLate) {
   std::vector<StampedPose> late = poses_until(kEnd_s);
   for (StampedPose& pose : late) pose.t_s += kLate_s;
   write_tum_trajectory(dataset() / "groundtruth.txt", late);
-  const std::string known = "start: {truth_s: 0.2, truth_share: 0.4, time_offset_s: -0.05}";
-  std::string yaml =
-      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
+  const std::string known = "start: {truth_s: 0.2, truth_fraction: 0.4, time_offset_s: -0.05}";
+  std::string yaml = adjusted();
   yaml.replace(yaml.find("start:"), yaml.find("\nkeyframe") - yaml.find("start:"), known);
   (void)run_odometry(request("run", yaml));
   write_poses_until(dataset(), kEnd_s);
   expect_glide(folder_.path() / "run");
 }
 
-TEST_F(OdometryModule, AtLastTheWholePathAndAllKeyframesAreAdjustedTogether) {
+TEST_F(OdometryModule, TheBatchAdjustmentImprovesTheWholePathAndAllKeyframes) {
   (void)run_odometry(request("before"));
-  (void)run_odometry(request(
-      "after",
-      std::string(kQuick) +
-          "last: {use: true, window_s: 0.5, edges: 200, events_per_edge: 15, rounds: 1}\n"));
+  (void)run_odometry(request("after", std::string(kQuick) + "batch_adjustment: events\n"));
   const Trajectory before = read_trajectory(folder_.path() / "before" / "trajectory.txt");
   const Trajectory after = read_trajectory(folder_.path() / "after" / "trajectory.txt");
   ASSERT_EQ(after.size(), before.size());
@@ -227,14 +225,13 @@ TEST_F(OdometryModule, LooksAtNoPoseBeyondTheStart) {
           << file;
   };
   expect_none_is_read(0.2, kQuick);
-  // Nor where it is carried on.
+  // Nor where it is extrapolated.
   for (const char* run : {"all", "start"}) fs::remove_all(folder_.path() / run);
   expect_none_is_read(0.1, with_short_start());
 }
 
 TEST_F(OdometryModule, MapsBesideTrackingWithTheSameResultForAnyNumberOfThreads) {
-  const std::string beside = std::string(kQuick) + "adjustment: {rounds: 1, edges: 300}\n";
-  std::string yaml = beside;
+  std::string yaml = adjusted();
   yaml.replace(yaml.find("active: 3"), 9, "active: 3, handover_s: 0.03");
   set_thread_count(1);
   (void)run_odometry(request("one", yaml));
@@ -260,7 +257,9 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
     events.insert(events.end(), some.begin(), some.end());
   }
   const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  RunRequest run = request("found", std::string(kQuick) + "relocation: {when_unlike: true}\n");
+  std::string yaml = std::string(kQuick) + "relocation: inconsistent\n";
+  yaml.replace(yaml.find("ratio: 0.2"), 10, "ratio: 0.1");
+  RunRequest run = request("found", yaml);
   run.dataset = folder_.path() / "leap";
   testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
                            poses_until(kEnd_s));
@@ -269,7 +268,7 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
   const CsvColumns poses(run.output / "poses.csv");
   const std::size_t t_s = poses.require("t_s");
   for (std::size_t row = 1; row < poses.rows(); ++row)
-    EXPECT_GT(poses.number(row, t_s), poses.number(row - 1, t_s)) << "what was astray is forgotten";
+    EXPECT_GT(poses.number(row, t_s), poses.number(row - 1, t_s)) << "diverged poses are discarded";
   const Trajectory found = read_trajectory(run.output / "trajectory.txt");
   const Rigid3 error = leap(0.49).inverse() * found.at_clamped(0.49);
   EXPECT_LT(error.translation().norm(), 0.02 * kDepth_m);
@@ -287,11 +286,9 @@ TEST_F(OdometryModule, OnlineItSaysHowLateItIsAndWhatItDropped) {
 
 TEST_F(OdometryModule, ThesisMakesItsMapFromTheReconstructedGradient) {
   const RunSummary summary = run_odometry(request("thesis", R"(
-start: {truth_s: 0.3, truth_share: 0.6}
+method: thesis
+start: {truth_s: 0.3, truth_fraction: 0.6}
 keyframe: {distance: 1}
-mapping: {view: end, edges: gradient}
-depth: {method: thesis, thesis: {filter: {converged: 0.1}}}
-reconstruction: {method: gradient}
 )"));
   EXPECT_GT(summary.poses, 5U);
   const auto views = read_view_list(folder_.path() / "thesis" / "views.yaml");
@@ -301,9 +298,8 @@ reconstruction: {method: gradient}
 }
 
 TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
-  std::string yaml =
-      std::string(kQuick) + "adjustment: {rounds: 1, edges: 500, pose_sigma_px: 1}\n";
-  yaml.replace(yaml.find("truth_s: 0.2, truth_share: 0.4"), 30, "truth_s: 0, depth_m: 2.2");
+  std::string yaml = adjusted();
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33, "truth_s: 0, depth_m: 2.2");
   const RunSummary summary = run_odometry(request("with", yaml));
   EXPECT_EQ(summary.lost_poses, 0U);
   fs::remove(dataset() / "groundtruth.txt");
@@ -317,24 +313,25 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   EXPECT_LT(found.poses().front().world_from_camera.log().norm(), 0.01);
 }
 
-TEST_F(OdometryModule, ImagesAreSwitchedOffByOneKey) {
-  const auto printed = [](const std::string& image) {
-    return print_odometry_config(config::parse(
-        "mapping: {edges: depth, image: " + image + "}\nreconstruction: {levels: {beyond: 0.5}}\n",
-        "configuration"));
+TEST_F(OdometryModule, TheMethodSetsTheDefaults) {
+  const auto printed = [](const std::string& yaml) {
+    return print_odometry_config(config::parse(yaml, "configuration"));
   };
-  EXPECT_THAT(printed("true"), HasSubstr("reconstruction:"));
-  EXPECT_THAT(printed("false"), ::testing::Not(HasSubstr("reconstruction:")));
+  const std::string thesis = printed("method: thesis\nmapping: {events: 100000}\n");
+  EXPECT_THAT(thesis, HasSubstr("relocation: never"));
+  EXPECT_THAT(thesis, HasSubstr("events: 100000"));
+  EXPECT_EQ(printed("{}"), printed("method: edges")) << "the default";
+  EXPECT_THAT(printed("{}"), HasSubstr("active: 3"));
+  EXPECT_EQ(printed(thesis), thesis) << "a run's own configuration reads back";
 }
 
 TEST_F(OdometryModule, SaysWhatIsWrong) {
   fs::remove(dataset() / "groundtruth.txt");
   EXPECT_THAT(error_of([&] { return run_odometry(request("none")); }), HasSubstr("start.truth_s"));
   write_poses_until(dataset(), kEnd_s);
-  EXPECT_THAT(error_of([&] { return run_odometry(request("rays", "adjustment: {rounds: 1}\n")); }),
-              HasSubstr("depth.method: rays"));
-  EXPECT_THAT(error_of([&] { return run_odometry(request("last", "last: {use: true}\n")); }),
-              HasSubstr("last needs depth.method: rays"));
+  const std::string thesis = "method: thesis\nadjustment: {rounds: 1}\n";
+  EXPECT_THAT(error_of([&] { return run_odometry(request("thesis", thesis)); }),
+              HasSubstr("adjustment"));
 }
 
 }  // namespace

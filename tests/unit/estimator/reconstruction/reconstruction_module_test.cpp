@@ -27,11 +27,10 @@ using ::testing::HasSubstr;
 using testing::read_file;
 
 constexpr const char* kBest =
-    "{method: equations, levels: {event_sigma: 0.1, still_px: 1, redraw_px: 1, still_turns: 2, "
-    "step_margin_px: 1, track_events: 8}, equations: {smoothness: 0.05, rounds: 2, thin_px: 0.8}}";
+    "{method: equations, observations: {event_sigma: 0.1, no_event_spacing_px: 1, run_events: 8}}";
 constexpr const char* kThesis =
     "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
-    "levels: {event_sigma: 0.1, still: false}}";
+    "observations: {no_event_constraints: false}}";
 
 class ReconstructionModule : public testing::SharedFolder<ReconstructionModule> {
  public:
@@ -80,9 +79,9 @@ TEST_F(ReconstructionModule, GradientFilterRecoversTheImageNotItsNegative) {
 }
 
 /// True gradients in, image out; depth where it is known is the depth that is there.
-TEST_F(ReconstructionModule, KeepsItsStepsByThemselves) {
-  (void)run_reconstruction(request("steps", "{method: equations, figures: true}"));
-  const fs::path figures = path("steps") / "figures";
+TEST_F(ReconstructionModule, WritesTheFiguresOfTheThesis) {
+  (void)run_reconstruction(request("figures", "{method: equations, figures: true}"));
+  const fs::path figures = path("figures") / "figures";
   const auto channel = [](const fs::path& file, const std::string& name) {
     for (ExrChannel& c : read_exr_channels(file))
       if (c.name == name) return c.image;
@@ -117,7 +116,7 @@ TEST_F(ReconstructionModule, KeepsItsStepsByThemselves) {
 }
 
 TEST_F(ReconstructionModule, IsTheSameForAnyNumberOfThreads) {
-  const std::string windows = "window: {duration_s: 0.1}, growth: [2000, 5000]";
+  const std::string windows = "window: {duration_s: 0.1}, snapshot_events: [2000, 5000]";
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
     (void)run_reconstruction(
@@ -140,14 +139,13 @@ TEST_F(ReconstructionModule, TakesTheDepthOfARun) {
   EXPECT_THAT(read_file(path("with_depth") / "run.yaml"), HasSubstr("depth_from"));
 }
 
-TEST_F(ReconstructionModule, BadInputIsAnErrorWithItsPlace) {
+TEST_F(ReconstructionModule, BadInputIsAnErrorThatNamesItsSource) {
   RunRequest none = request("none", kBest);
   none.depth_from = dataset();
   EXPECT_THAT(error_of([&] { return run_reconstruction(none).events; }), HasSubstr("views.yaml"));
-  RunRequest track = request("track", "{}");
-  track.depth_from = dataset();
-  EXPECT_THAT(error_of([&] { return run_module("track", track).events; }),
-              HasSubstr("--depth-from"));
+  RunRequest run = request("track", "{}");
+  run.depth_from = dataset();
+  EXPECT_THAT(error_of([&] { return run_module("track", run).events; }), HasSubstr("--depth-from"));
   EXPECT_THAT(
       error_of([&] {
         return run_reconstruction(request("even", "depth: {propagation: splat, kernel_px: 4}"))

@@ -107,7 +107,7 @@ class RefinementModule : public testing::SharedFolder<RefinementModule> {
   }
 };
 
-constexpr const char* kPoses = "{map: {contrast: 0.12}, poses: {events: 20000}}";
+constexpr const char* kPoses = "{kind: poses, poses: {contrast: 0.12, events: 20000}}";
 
 TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
   const RunSummary summary = run_refinement(request("poses", kPoses));
@@ -129,9 +129,9 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
 }
 
 TEST_F(RefinementModule, PosesByImagesOfEventsBecomeBetter) {
-  (void)run_refinement(
-      request("images",
-              "{map: {contrast: 0.12}, poses: {residual: frames, increments: 100000, rounds: 1}}"));
+  (void)run_refinement(request(
+      "images",
+      "{kind: poses, poses: {contrast: 0.12, residual: frames, increments: 100000, rounds: 1}}"));
   const Errors before = errors_of(path("track"), sweep), after = errors_of(path("images"), sweep);
   EXPECT_LT(after.position_m, before.position_m);
   EXPECT_LT(after.rotation_rad, before.rotation_rad);
@@ -140,17 +140,17 @@ TEST_F(RefinementModule, PosesByImagesOfEventsBecomeBetter) {
 TEST_F(RefinementModule, PathAndMapOfARunOfOdometryGoTogether) {
   record(path("corner"), testing::corner_world(160, 120), wavy_glide, 0.5);
   RunRequest odometry = request("odometry", R"(
-start: {truth_s: 0.2, truth_share: 0.4}
-keyframe: {distance: 0.05, active: 3}
-mapping: {duration_s: 0.3, view: middle, edges: depth, image: false}
-depth: {method: rays, rays: {max_sigma: 0.03, fusion: {min_neighbours: 1, max_sigma: 0.05}}}
-tracking: {event_frame: {ratio: 0.2}, motion: {prediction: constant_velocity}}
+start: {truth_s: 0.2, truth_fraction: 0.4}
+keyframe: {distance: 0.05, active: 3, active_window_s: 0.1}
+mapping: {duration_s: 0.3, min_edges: 0, image: false}
+adjustment: {rounds: 0}
+tracking: {event_map_ratio: 0.2}
 )");
   odometry.dataset = path("corner");
   odometry.from.reset();
   (void)run_odometry(odometry);
   RunRequest joint =
-      request("joint", "{joint: {window_s: 0.5, edges: 200, events_per_edge: 15, rounds: 1}}");
+      request("joint", "{kind: joint, joint: {window_s: 0.5, edges: 200, rounds: 1}}");
   joint.dataset = path("corner");
   joint.from = path("odometry");
   (void)run_refinement(joint);
@@ -175,7 +175,7 @@ TEST_F(RefinementModule, SaysWhatIsWrongWithTheRun) {
   };
   EXPECT_THAT(error(std::nullopt), HasSubstr("--from"));
   EXPECT_THAT(error(path("absent")), HasSubstr("absent"));
-  EXPECT_THAT(error(path("track"), "{}"), HasSubstr("map.contrast"));
+  EXPECT_THAT(error(path("track"), "{}"), HasSubstr("poses.contrast"));
   EXPECT_THAT(error(path("track"), "{kind: joint}"), HasSubstr("track"));
   const fs::path broken = path("broken");
   fs::copy(path("track"), broken);

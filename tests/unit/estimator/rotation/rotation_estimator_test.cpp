@@ -15,7 +15,7 @@ const PinholeCamera kCamera{120, 90, 100, 102, 59.5, 44.5, {-0.1, 0.02, 0, 0, 0}
 
 /// Events of points at infinity before a camera that turns: one each time a point enters another
 /// pixel.
-Events turning(const Turning& truth, double duration_s, int points = 150) {
+Events turning(const AngularMotion& truth, double duration_s, int points = 150) {
   Events events;
   const Random random(7);
   constexpr int kSteps = 400;
@@ -49,19 +49,19 @@ using Parameters = RotationContrast::Parameters;
 TEST(RotationContrast, GradientIsThatOfTheContrast) {
   RotationContrast contrast(kCamera, 1, 0, 5000);
   contrast.load(turning({{1.5, -2, 1}, {20, -10, 30}}, 0.05));
-  for (const Turning& at :
-       {Turning{}, Turning{{1, -1.5, 0.2}, {5, -30, 0}}, Turning{{2, -2.5, 2}, {0, 0, 60}}}) {
-    const Parameters place = contrast.parameters_of(at);
-    const auto value = contrast.evaluate(place);
+  for (const AngularMotion& at : {AngularMotion{}, AngularMotion{{1, -1.5, 0.2}, {5, -30, 0}},
+                                  AngularMotion{{2, -2.5, 2}, {0, 0, 60}}}) {
+    const Parameters at_motion = contrast.to_parameters(at);
+    const auto value = contrast.evaluate(at_motion);
     Parameters numeric;
     for (int axis = 0; axis < 6; ++axis) {
       // A move of 0.03 px.
       const double delta =
           0.03 / (axis < 3 ? contrast.px_per_rate() : contrast.px_per_acceleration());
       const Parameters step = delta * Parameters::Unit(axis);
-      numeric[axis] =
-          (contrast.evaluate(place + step).contrast - contrast.evaluate(place - step).contrast) /
-          (2 * delta);
+      numeric[axis] = (contrast.evaluate(at_motion + step).contrast -
+                       contrast.evaluate(at_motion - step).contrast) /
+                      (2 * delta);
     }
     // The bilinear image has kinks, and the turn is differentiated to first order.
     EXPECT_LT((value.gradient - numeric).head<3>().norm(), 0.05 * numeric.head<3>().norm());
@@ -69,22 +69,22 @@ TEST(RotationContrast, GradientIsThatOfTheContrast) {
   }
 }
 
-TEST(RotationContrast, ParametersAreThoseOfATurning) {
+TEST(RotationContrast, ParametersAreThoseOfTheMotion) {
   RotationContrast contrast(kCamera, 1, 0.1, 5000);
   Events events = turning({{1.5, -2, 1}, {20, -10, 30}}, 0.05);
   events.resize(2 * events.size() / 3);
   contrast.load(events);
-  const Turning turning{{1, 2, 3}, {40, 50, 60}};
-  const Turning back = contrast.turning_of(contrast.parameters_of(turning));
+  const AngularMotion turning{{1, 2, 3}, {40, 50, 60}};
+  const AngularMotion back = contrast.to_motion(contrast.to_parameters(turning));
   EXPECT_LT((back.rate - turning.rate).norm(), 1e-12);
   EXPECT_EQ(back.acceleration, turning.acceleration);
 }
 
 TEST(RotationContrast, IsLargestAtTheTrueMotion) {
-  const Turning truth{{1.5, -2, 1}, {20, -10, 30}};
+  const AngularMotion truth{{1.5, -2, 1}, {20, -10, 30}};
   RotationContrast contrast(kCamera, 1, 0, 5000);
   contrast.load(turning(truth, 0.08));
-  const Parameters best = contrast.parameters_of(truth);
+  const Parameters best = contrast.to_parameters(truth);
   for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {-1.0, 1.0})
       EXPECT_LT(
@@ -115,17 +115,17 @@ TEST(RotationEstimator, FindsTheRateFromEventsAlone) {
 
 TEST(RotationEstimator, FindsARateThatChanges) {
   RotationEstimator estimator(kCamera, few_events());
-  const Turning truth{{1, -2, 0.5}, {-60, 80, 40}};
+  const AngularMotion truth{{1, -2, 0.5}, {-60, 80, 40}};
   const RotationEstimate estimate = estimator.estimate(turning(truth, 0.05), {});
   EXPECT_LT((estimate.turning.rate - truth.rate).norm(), 0.25);
   EXPECT_LT((estimate.turning.acceleration - truth.acceleration).norm(), 20);
-  const Turning later = RotationEstimator::predict(estimate, estimate.t_s + 0.01);
+  const AngularMotion later = RotationEstimator::predict(estimate, estimate.t_s + 0.01);
   EXPECT_LT((later.rate - truth.rate - 0.01 * truth.acceleration).norm(), 0.4);
 }
 
 TEST(RotationEstimator, AGuessFarOffDoesNoHarm) {
   RotationEstimator estimator(kCamera, few_events());
-  const Turning truth{{1, -2, 0.5}, Eigen::Vector3d::Zero()};
+  const AngularMotion truth{{1, -2, 0.5}, Eigen::Vector3d::Zero()};
   const RotationEstimate estimate =
       estimator.estimate(turning(truth, 0.05), {{900, 0, -700}, {1e5, 0, 0}});
   EXPECT_LT((estimate.turning.rate - truth.rate).norm(), 0.1);
@@ -148,17 +148,17 @@ TEST(RotationEstimator, EventsOfOneMomentSayNothing) {
 
 TEST(RotationEstimator, ASlowWindowIsCut) {
   RotationOptions options;
-  options.events = 100;
+  options.window_events = 100;
   options.max_window_s = 0.01;
   Events events;
   for (int i = 0; i < 1000; ++i) events.push_back({i * 1'000'000, 0, 0, 1});
-  EXPECT_EQ(next_window(events, options), 10U);
+  EXPECT_EQ(next_window_size(events, options), 10U);
   options.max_window_s = 1;
-  EXPECT_EQ(next_window(events, options), 100U);
-  EXPECT_EQ(next_window({}, options), 0U);
+  EXPECT_EQ(next_window_size(events, options), 100U);
+  EXPECT_EQ(next_window_size({}, options), 0U);
   // Of what is left, no window is less than half of one.
-  EXPECT_EQ(next_window(std::span(events).first(149), options), 149U);
-  EXPECT_EQ(next_window(std::span(events).first(150), options), 100U);
+  EXPECT_EQ(next_window_size(std::span(events).first(149), options), 149U);
+  EXPECT_EQ(next_window_size(std::span(events).first(150), options), 100U);
 }
 
 }  // namespace

@@ -39,33 +39,30 @@ TEST_F(RotationModule, ThePerfectSensorIsRight) {
 }
 
 TEST_F(RotationModule, AveragesTheReadings) {
-  EXPECT_LT(run("average", "{source: imu, average_s: 0.01, orientation: {method: gyroscope}}"),
+  EXPECT_LT(run("average", "{source: imu, averaging_s: 0.01, orientation: {method: gyroscope}}"),
             0.05);
 }
 
 TEST_F(RotationModule, BothFollowTheSensorOverAWindow) {
   // The corner also moves, which events alone take for a turn: the bias follows it.
-  EXPECT_LT(run("both", "{source: both, events: {events: 4000, min_events: 500}}"), 2);
+  EXPECT_LT(run("both", "{source: both, window_events: 4000}"), 2);
 }
 
 TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
   EXPECT_THAT(
       error_of([] {
-        return config::read<RotationConfig>(config::parse("events: {blurr_px: 2}", "t.yaml")).seed;
+        return config::read<RotationConfig>(config::parse("window_event: 2", "t.yaml")).seed;
       }),
-      ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("blur_px")));
+      ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("window_events")));
   EXPECT_THAT(error_of([] {
                 return config::read<RotationConfig>(config::parse("source: eyes", "t.yaml")).seed;
               }),
               HasSubstr("t.yaml:1"));
 }
 
-TEST_F(RotationModule, EventsOfAStillCameraSayNothing) {
-  RunRequest request;
-  request.dataset = path("corner");
-  request.output = path("still");
-  request.config = config::parse("events: {min_events: 100000000}", "t.yaml");
-  run_rotation(request);
+TEST_F(RotationModule, WindowsOfTooFewEventsSayNothing) {
+  const std::string yaml = "{window_events: 100, max_window_s: 1.0e-4}";
+  run_rotation(testing::run_request(path("corner"), path("still"), yaml));
   EXPECT_TRUE(read_angular_velocities(path("still") / "angular_velocity.txt").empty());
 }
 

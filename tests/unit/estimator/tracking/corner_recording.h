@@ -12,9 +12,9 @@
 #include "core/config/config.h"
 #include "core/event.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
-#include "estimator/tracking/tracker.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade::testing {
@@ -95,6 +95,14 @@ inline CornerRecording::Errors resolved_errors(const std::vector<TrackedPose>& p
 inline TrackConfig tracking_config(const std::string& name) {
   const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/" + name + ".yaml";
   return config::read<TrackConfig>(config::load(file));
+}
+
+/// The edges that a method falls back to, as track_methods.cpp sets them.
+inline EdgeTrackerOptions fallback_options(const TrackConfig& config) {
+  EdgeTrackerOptions options;
+  options.templates.redraw_px = 0;
+  options.motion = config.motion;
+  return options;
 }
 
 /// The same bits.

@@ -27,9 +27,9 @@ TEST(GyroscopeInput, ReadingsAreOfALaterTimeThanTheirStamps) {
   }
   write_imu(folder.path() / "imu.txt", samples);
   const Dataset dataset = Dataset::open(folder.path());
-  PredictionOptions options;
+  MotionModelOptions options;
   EXPECT_TRUE(load_gyroscope(options, dataset).is_empty()) << "of prediction: imu alone";
-  options.prediction = PredictionOptions::Prediction::kImu;
+  options.prediction = MotionModelOptions::Prediction::kImu;
   const auto rate = [&] {
     return load_gyroscope(options, dataset).mean_rate(50'000'000, 50'000'000).x();
   };

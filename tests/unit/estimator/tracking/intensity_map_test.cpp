@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "estimator/tracking/grey_frames.h"
+#include "estimator/tracking/frames/grey_frames.h"
 
 namespace saccade {
 namespace {
@@ -74,7 +74,7 @@ TEST(IntensityMap, NoBlurLeavesThePicture) {
 
 TEST(IntensityMap, WhatIsUnknownStaysSoAndSpreadsNowhere) {
   ReferenceView view = view_with_step(2.5F);
-  for (int y = 0; y < 18; ++y) view.log_intensity(13, y) = kUnknownLevel;
+  for (int y = 0; y < 18; ++y) view.log_intensity(13, y) = kUnknownLogIntensity;
   const IntensityMap map = map_of(view);
   for (int y = 0; y < 18; ++y)
     for (int x = 0; x < 24; ++x) EXPECT_EQ(std::isnan(map.atlas()(x, y)), x == 13);

@@ -96,7 +96,7 @@ TEST(ExtractMap, MaxShareKeepsTheSteepestPixels) {
     for (int x = 0; x < kMapWidth; ++x) image(x, y) = static_cast<float>(x * x);
   MapOptions options;
   options.min_gradient = 0;
-  options.max_share = 0.25;
+  options.max_fraction = 0.25;
   const MapPoints map =
       extract_map(image, ImageF(kMapWidth, kMapHeight, 2.0F), map_camera(), options);
   EXPECT_LE(map.size(), kMapWidth * kMapHeight / 4U);

@@ -58,15 +58,16 @@ TEST(MapView, PointsAndPlacesAreThoseThatThePixelsSee) {
   const MapView view = view_of(map, beside());
   int seen_pixels = 0;
   for_every_pixel(kMargin, [&](int x, int y) {
-    const SeenPlace& seen = view(x, y);
+    const MapSample& seen = view(x, y);
     if (!(seen.inverse_depth > 0)) return;
     ++seen_pixels;
     const Eigen::Vector3d point = seen.point.cast<double>();
     const Eigen::Vector3d in_camera = beside().inverse() * point;
     EXPECT_LT((two_planes_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);
-    EXPECT_LT((two_planes_camera().project(point) - seen.place.cast<double>()).norm(), 0.02);
+    EXPECT_LT((two_planes_camera().project(point) - seen.atlas_px.cast<double>()).norm(), 0.02);
     EXPECT_NEAR(1 / in_camera.z(), static_cast<double>(seen.inverse_depth), 1e-4);
-    EXPECT_NEAR(point.z(), is_near(seen.place.x(), seen.place.y(), -0.5) ? kNear_m : kFar_m, 1e-4);
+    EXPECT_NEAR(point.z(), is_near(seen.atlas_px.x(), seen.atlas_px.y(), -0.5) ? kNear_m : kFar_m,
+                1e-4);
   });
   EXPECT_GT(seen_pixels, kWidth * kHeight * 7 / 10);
 }
@@ -104,15 +105,15 @@ TEST(MapView, ACoarseViewSeesAtItsNodesWhatAFineOneSees) {
     int seen_nodes = 0;
     for (int y = 0; y * step < kHeight; ++y)
       for (int x = 0; x * step < kWidth; ++x) {
-        const SeenPlace& node = coarse(x, y);
-        const SeenPlace& pixel = fine(x * step, y * step);
+        const MapSample& node = coarse(x, y);
+        const MapSample& pixel = fine(x * step, y * step);
         if (!(node.inverse_depth > 0)) continue;
         if (truth_at(x * step, y * step, beside()) == Truth::kBorder) continue;
         ++seen_nodes;
         EXPECT_NEAR(node.inverse_depth, pixel.inverse_depth, 1e-5) << x << " " << y;
         EXPECT_LT((node.point - pixel.point).norm(), 1e-3) << x << " " << y;
-        EXPECT_LT((node.place - pixel.place).norm(), 5e-3) << x << " " << y;
-        EXPECT_LT((node.scale - pixel.scale).norm(), 5e-3) << x << " " << y;
+        EXPECT_LT((node.atlas_px - pixel.atlas_px).norm(), 5e-3) << x << " " << y;
+        EXPECT_LT((node.atlas_per_pixel - pixel.atlas_per_pixel).norm(), 5e-3) << x << " " << y;
       }
     EXPECT_GT(seen_nodes, kWidth * kHeight / (step * step) / 2);
   }
@@ -124,7 +125,7 @@ TEST(MapView, TheNearerPlaneHidesTheFartherAndTheGapIsUnknown) {
   int gap = 0;
   int hidden = 0;
   for_every_pixel(0, [&](int x, int y) {
-    const SeenPlace& seen = view(x, y);
+    const MapSample& seen = view(x, y);
     switch (truth_at(x, y, beside())) {
       case Truth::kNear:
         EXPECT_GT(seen.inverse_depth, 0.5F) << x << " " << y;
@@ -151,15 +152,16 @@ TEST(MapView, ScaleIsHowPlacesDifferBetweenNeighbours) {
   const MapView view = view_of(map, beside());
   int compared = 0;
   for_every_pixel(kMargin - 1, [&](int x, int y) {
-    const SeenPlace& seen = view(x, y);
+    const MapSample& seen = view(x, y);
     const auto difference = [&](int dx, int dy, int column) {
-      const SeenPlace& before = view(x - dx, y - dy);
-      const SeenPlace& after = view(x + dx, y + dy);
-      const auto goes_on = [&](const SeenPlace& other) {
+      const MapSample& before = view(x - dx, y - dy);
+      const MapSample& after = view(x + dx, y + dy);
+      const auto goes_on = [&](const MapSample& other) {
         return std::abs(other.inverse_depth - seen.inverse_depth) < 0.05F;
       };
       if (!(seen.inverse_depth > 0) || !goes_on(before) || !goes_on(after)) return;
-      EXPECT_LT((seen.scale.col(column) - (after.place - before.place) / 2).norm(), 0.01F);
+      EXPECT_LT((seen.atlas_per_pixel.col(column) - (after.atlas_px - before.atlas_px) / 2).norm(),
+                0.01F);
       ++compared;
     };
     difference(1, 0, 0);
@@ -172,11 +174,12 @@ TEST(MapView, AtTheViewOfTheMapEveryPixelSeesItself) {
   const IntensityMap map = two_planes();
   const MapView view = view_of(map, {});
   for_every_pixel(0, [&](int x, int y) {
-    const SeenPlace& seen = view(x, y);
+    const MapSample& seen = view(x, y);
     if (!(seen.inverse_depth > 0)) return;
-    EXPECT_LT((seen.place - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y))).norm(),
-              1e-3F);
-    EXPECT_LT((seen.scale - Eigen::Matrix2f::Identity()).norm(), 1e-3F);
+    EXPECT_LT(
+        (seen.atlas_px - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y))).norm(),
+        1e-3F);
+    EXPECT_LT((seen.atlas_per_pixel - Eigen::Matrix2f::Identity()).norm(), 1e-3F);
   });
   EXPECT_GT(view.coverage(), 0.9);
   EXPECT_FALSE(view(-1, 5).inverse_depth > 0) << "nothing is known of the margin";
@@ -219,7 +222,7 @@ TEST(MapView, DrawingAgainForgetsTheLastView) {
   for_every_pixel(kMargin, [&](int x, int y) {
     EXPECT_EQ(view(x, y).inverse_depth, fresh(x, y).inverse_depth);
     if (fresh(x, y).inverse_depth > 0) {
-      EXPECT_EQ(view(x, y).place, fresh(x, y).place);
+      EXPECT_EQ(view(x, y).atlas_px, fresh(x, y).atlas_px);
     }
   });
 }
@@ -241,8 +244,8 @@ IntensityMap turned_views(const std::vector<double>& angles) {
 
 /// Which view the place belongs to; -1: none.
 int view_at(const MapView& view, int x, int y) {
-  const SeenPlace& seen = view(x, y);
-  return seen.inverse_depth > 0 ? static_cast<int>(seen.place.y() + 0.5F) / (kHeight + 1) : -1;
+  const MapSample& seen = view(x, y);
+  return seen.inverse_depth > 0 ? static_cast<int>(seen.atlas_px.y() + 0.5F) / (kHeight + 1) : -1;
 }
 
 TEST(MapView, TheViewNearestInAngleIsShownWhereItCan) {
@@ -264,11 +267,11 @@ TEST(MapView, PlacesInFurtherViewsAreWhereThoseShowThePoint) {
   for_every_pixel(0, [&](int x, int y) {
     const int shown_by = view_at(view, x, y);
     if (shown_by < 0) return;
-    const SeenPlace& seen = view(x, y);
+    const MapSample& seen = view(x, y);
     const IntensityMap::View& of = map.views()[static_cast<std::size_t>(shown_by)];
     const Eigen::Vector2d in_view =
         two_planes_camera().project(of.view_from_map * seen.point.cast<double>());
-    EXPECT_LT((in_view + Eigen::Vector2d(0, of.first_row) - seen.place.cast<double>()).norm(),
+    EXPECT_LT((in_view + Eigen::Vector2d(0, of.first_row) - seen.atlas_px.cast<double>()).norm(),
               0.02);
     const Eigen::Vector3d in_camera = pose.inverse() * seen.point.cast<double>();
     EXPECT_LT((two_planes_camera().project(in_camera) - Eigen::Vector2d(x, y)).norm(), 0.02);

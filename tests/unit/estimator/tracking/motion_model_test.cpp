@@ -12,9 +12,9 @@ constexpr double kFocal_px = 200;
 constexpr double kTypical_m = 2;
 constexpr TimeNs kFrameStep = 10'000'000;  // 10 ms
 
-PredictionOptions constant_velocity() {
-  PredictionOptions options;
-  options.prediction = PredictionOptions::Prediction::kConstantVelocity;
+MotionModelOptions constant_velocity() {
+  MotionModelOptions options;
+  options.prediction = MotionModelOptions::Prediction::kConstantVelocity;
   return options;
 }
 
@@ -91,8 +91,8 @@ TEST(MotionModel, KnowsLessTheFurtherItLooksAhead) {
 
 TEST(MotionModel, MoreAgilityMeansLessTrust) {
   const auto precision_of = [](double agility) {
-    PredictionOptions options = constant_velocity();
-    options.agility_px = agility;
+    MotionModelOptions options = constant_velocity();
+    options.acceleration_sigma_px = agility;
     MotionModel model(options, kFocal_px);
     model.reset(0, {});
     for (int i = 1; i <= 10; ++i) {
@@ -139,8 +139,8 @@ TEST(MotionModel, ResetForgetsEverything) {
 
 /// A model that has seen no motion, with a gyroscope that turns all the while.
 MotionModel with_gyroscope(const Eigen::Vector3d& rate, double sigma) {
-  PredictionOptions options;
-  options.prediction = PredictionOptions::Prediction::kImu;
+  MotionModelOptions options;
+  options.prediction = MotionModelOptions::Prediction::kImu;
   options.gyro_sigma = sigma;
   MotionModel model(options, kFocal_px);
   ImuSample sample;
@@ -189,8 +189,8 @@ TEST(MotionModel, ABetterGyroscopeKnowsTheRotationBetter) {
 TEST(MotionModel, WhatMovesFastIsExpectedToChangeFast) {
   // Precision of the prediction after a while at constant velocity; in the direction of a turn.
   const auto precision = [](double share, double speed) {
-    PredictionOptions options = constant_velocity();
-    options.agility_share = share;
+    MotionModelOptions options = constant_velocity();
+    options.acceleration_per_speed = share;
     MotionModel model(options, kFocal_px);
     model.reset(0, {});
     const Twist moving = speed * steady_velocity();
@@ -208,13 +208,13 @@ TEST(MotionModel, WhatMovesFastIsExpectedToChangeFast) {
 
 TEST(MotionModel, AStartIsAsPreciseAsItIsSaidToBe) {
   // At the start itself, before the unknown velocity counts.
-  const auto deviation_px = [](double px) {
+  const auto sigma_px = [](double px) {
     MotionModel model(constant_velocity(), kFocal_px);
     model.reset(0, {}, px);
     return kFocal_px / std::sqrt(model.predict(0, kTypical_m).precision(4, 4));
   };
-  EXPECT_NEAR(deviation_px(0.2), 0.2, 1e-6);
-  EXPECT_NEAR(deviation_px(4), 4, 1e-6);
+  EXPECT_NEAR(sigma_px(0.2), 0.2, 1e-6);
+  EXPECT_NEAR(sigma_px(4), 4, 1e-6);
 }
 
 TEST(MotionModel, SpeedInTheImageIsThatOfTurnAndShift) {
@@ -238,8 +238,8 @@ TEST(MotionModel, StatesTheCovarianceOfThePose) {
   alone.update(Rigid3(), information);
   EXPECT_TRUE(alone.covariance().isApprox(1e-4 * Matrix6::Identity()));
 
-  PredictionOptions options;
-  options.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  MotionModelOptions options;
+  options.prediction = MotionModelOptions::Prediction::kConstantVelocity;
   MotionModel expecting(options, 200);
   expecting.reset(0, Rigid3());
   const PosePrediction predicted = expecting.predict(1'000'000, 2);

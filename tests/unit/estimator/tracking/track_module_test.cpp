@@ -244,8 +244,11 @@ TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
   EXPECT_GT(summary.poses, 20U);
   EXPECT_EQ(summary.lost_poses, 0U);
   const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
+  // Until then the velocity, and with it the expected increments, is not known yet.
+  constexpr double kVelocityKnown_s = 0.05;
   for (const StampedPose& pose : trajectory.poses())
-    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), 1.5) << pose.t_s;
+    EXPECT_LT(error_px(pose.world_from_camera, pose.t_s), pose.t_s < kVelocityKnown_s ? 3 : 1.5)
+        << pose.t_s;
 }
 
 TEST_F(TrackModule, WithoutContrastNamesTheCure) {
@@ -255,9 +258,9 @@ TEST_F(TrackModule, WithoutContrastNamesTheCure) {
 
 TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {
   // The second frame is turned by 1.7 degrees.
-  const auto points = [&](const std::string& name, const std::string& turn_deg) {
-    static_cast<void>(run_track(
-        request(name, "reference: {frame: 0, planar_depth_m: 1.5, turn_deg: " + turn_deg + "}")));
+  const auto points = [&](const std::string& name, const std::string& new_view_deg) {
+    static_cast<void>(run_track(request(
+        name, "reference: {frame: 0, planar_depth_m: 1.5, new_view_deg: " + new_view_deg + "}")));
     const PointCloud map = read_ply(folder_.path() / name / "map.ply");
     for (const Eigen::Vector3f& point : map.positions)
       EXPECT_NEAR(point.z(), kDepth_m, 0.02) << "both are taken for planes at this depth";
@@ -271,9 +274,9 @@ TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {
 TEST_F(TrackModule, FurtherFramesNeedTheTruth) {
   remove("groundtruth.txt");
   EXPECT_THAT(error(request("run",
-                            "{reference: {planar_depth_m: 1.5, turn_deg: 1}, initial_pose: "
+                            "{reference: {planar_depth_m: 1.5, new_view_deg: 1}, initial_pose: "
                             "[0, 0, 0, 0, 0, 0, 1]}")),
-              HasSubstr("turn_deg"));
+              HasSubstr("new_view_deg"));
 }
 
 TEST_F(TrackModule, WithoutTruthNamesTheCure) {
@@ -352,9 +355,8 @@ TEST_F(TrackModule, AnEmptyMapIsLostTracking) {
 }
 
 TEST_F(TrackModule, TooFewEventsForAFrameStillMakeARun) {
-  RunRequest part = request("run",
-                            "{reference: {planar_depth_m: 1.5}, event_frame: {min_events: "
-                            "100000000}}");
+  RunRequest part =
+      request("run", "{reference: {planar_depth_m: 1.5}, edges: {event_map_ratio: 100}}");
   const RunSummary summary = run_track(part);
   EXPECT_EQ(summary.poses, 0U);
   EXPECT_TRUE(fs::exists(folder_.path() / "run/run.yaml"));

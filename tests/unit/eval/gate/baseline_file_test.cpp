@@ -66,7 +66,7 @@ TEST(GateRun, TwoOfOneKeyAreAnError) {
   EXPECT_THAT(error_of([&] {
                 return read_gate_runs({first, second});
               }),
-              HasSubstr("is the same work as " + first.string()));
+              HasSubstr("has the same key as " + first.string()));
   EXPECT_EQ(read_gate_runs({first, write_run(folder, "c", 4)}).size(), 2U);
 }
 

@@ -203,7 +203,7 @@ TEST(Gate, FurtherMetricsAreJudgedOnDemand) {
   EXPECT_TRUE(compare_runs(baseline, runs, options).tripped());
   options.metrics = {"trajectory.poses"};
   EXPECT_THAT(error_of([&] { return compare_runs(baseline, runs, options); }),
-              HasSubstr("better neither high nor low"));
+              HasSubstr("neither lower nor higher is better"));
   options.metrics = {"trajectory.drift"};
   EXPECT_THAT(error_of([&] { return compare_runs(baseline, runs, options); }),
               HasSubstr("no pair of runs has a 'trajectory.drift'"));

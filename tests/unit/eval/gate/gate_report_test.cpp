@@ -57,7 +57,7 @@ TEST(GateMarkdown, IsATable) {
   EXPECT_EQ(gate_markdown(sample()),
             "**saccade gate: tripped.** 2 regressed, 0 improved, 1 unchanged\n"
             "\n"
-            "| | metric | where | before -> after | change | how sure |\n"
+            "| | metric | scope | before -> after | change | evidence |\n"
             "|---|---|---|---|---|---|\n"
             "| regressed | trajectory.dt_rel_percent.mean | track, 3 sequences | 0.1680 -> 0.1764 "
             "| +5.0 % [+3.0 %, +7.0 %] | p 0.0012, 30 pairs |\n"

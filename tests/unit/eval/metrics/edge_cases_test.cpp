@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/run_folder.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

@@ -7,8 +7,8 @@
 
 #include "core/io/covariance_file.h"
 #include "core/io/trajectory_file.h"
-#include "eval/metrics/consistency.h"
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/trajectory/consistency.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 
 namespace saccade {
 namespace {

@@ -11,8 +11,8 @@
 #include "core/io/trajectory_file.h"
 #include "eval/metrics/depth_metrics.h"
 #include "eval/metrics/image_metrics.h"
-#include "eval/metrics/reprojection.h"
 #include "eval/metrics/sharpness.h"
+#include "eval/metrics/trajectory/reprojection.h"
 
 namespace saccade {
 namespace {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "eval/picture/canvas.h"
-#include "eval/picture/colour.h"
-#include "eval/picture/event_picture.h"
-#include "eval/picture/image_picture.h"
-#include "eval/picture/map_overlay.h"
-#include "eval/picture/sheet.h"
-#include "eval/picture/trajectory_picture.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/canvas/colour.h"
+#include "eval/picture/canvas/contact_sheet.h"
+#include "eval/picture/image/event_picture.h"
+#include "eval/picture/image/image_picture.h"
+#include "eval/picture/image/map_picture.h"
+#include "eval/picture/image/trajectory_picture.h"
 
 namespace saccade {
 namespace {
@@ -144,8 +144,8 @@ TEST(TrajectoryPicture, DrawsNothingStandingAndStraight) {
   EXPECT_EQ(draw_trajectory({}, {}, 200, 150, kLightTheme).height(), 150);
 }
 
-TEST(Sheet, HoldsItsRows) {
-  Sheet sheet("title", kLightTheme);
+TEST(ContactSheet, HoldsItsRows) {
+  ContactSheet sheet("title", kLightTheme);
   sheet.add_row("a", {{"one", ImageRgb8(100, 50)}, {"two", ImageRgb8(100, 70)}});
   sheet.add_row("b", {{"three", ImageRgb8(100, 50)}});
   const ImageRgb8 picture = sheet.draw();

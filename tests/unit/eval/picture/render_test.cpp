@@ -10,7 +10,7 @@
 #include "core/io/file_list.h"
 #include "core/io/image_file.h"
 #include "core/io/stabilized_events.h"
-#include "eval/picture/video.h"
+#include "eval/picture/video_writer.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {

@@ -86,7 +86,7 @@ TEST(Leaderboard, FailuresStandWithTheirReasonAndAreNotRanked) {
   EXPECT_EQ(methods_of(board), (std::vector<std::string>{"a", "b", "c"}));
   EXPECT_EQ(board.rows[0].rank, 1);
   EXPECT_EQ(board.rows[1].rank, 0);
-  const ReportTable table = leaderboard_table(board);
+  const Table table = leaderboard_table(board);
   EXPECT_EQ(table.rows[1][2].note, "1 of 2 failed");
   EXPECT_EQ(table.rows[2][2].text, "crashed: signal 11");
 }
@@ -95,10 +95,11 @@ TEST(Leaderboard, TheTableHasTheBestOfEveryColumnInBold) {
   const std::vector<LeaderboardEntry> entries{scored("a", "walls", 1), scored("a", "desk", 2),
                                               scored("b", "walls", 2), scored("b", "desk", 3),
                                               scored("c", "desk", 1)};
-  const ReportTable table = leaderboard_table(leaderboards(entries).at(0));
+  const Table table = leaderboard_table(leaderboards(entries).at(0));
   EXPECT_EQ(table.name, "leaderboard_trajectory_dt_rel_percent_mean");
   EXPECT_EQ(table.columns,
-            (std::vector<std::string>{"method", "rank", "overall", "walls", "desk"}));
+            (std::vector<Table::Column>{
+                {"method"}, {"rank", true}, {"overall", true}, {"walls", true}, {"desk", true}}));
   EXPECT_TRUE(table.rows[0][2].best);
   EXPECT_TRUE(table.rows[0][3].best);
   EXPECT_FALSE(table.rows[0][4].best);

@@ -10,7 +10,8 @@
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
-#include "eval/report/page_data.h"
+#include "eval/report/charts/page_data.h"
+#include "eval/score_inputs.h"
 #include "tests/support/html_page.h"
 #include "tests/unit/eval/fake_folders.h"
 
@@ -97,6 +98,26 @@ TEST_F(Report, LeavesOutWhatTheRunLacks) {
 }
 
 TEST_F(Report, IsTheSameEveryTime) { EXPECT_EQ(written({run()}), written({run()})); }
+
+/// Has metrics.json of the run state another mean error, with the same inputs.
+void state_error(const fs::path& run, double dt_rel_percent) {
+  Metrics metrics = read_json_metrics(run / "metrics.json");
+  metrics.set("trajectory.dt_rel_percent.mean", dt_rel_percent);
+  std::ofstream(run / "metrics.json") << to_json(metrics, recorded_inputs(run));
+}
+
+TEST_F(Report, ShowsWhatEvalScored) {
+  const fs::path scored = twin();
+  (void)evaluate_run(scored);
+  const std::string fresh = written({scored});
+  fs::remove(scored / "metrics.json");
+  EXPECT_EQ(written({scored}), fresh) << "it is scored again";
+  (void)evaluate_run(scored);
+  state_error(scored, 42.42);
+  EXPECT_GE(count(written({scored}), "42.42"), 1U);
+  std::ofstream(scored / "poses.csv", std::ios::app) << "\n";
+  EXPECT_EQ(count(written({scored}), "42.42"), 0U) << "the scores are stale";
+}
 
 TEST_F(Report, WithoutTheDatasetTheStoredScoresRemain) {
   (void)evaluate_run(run());

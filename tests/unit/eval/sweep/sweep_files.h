@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/config/config.h"
-#include "eval/sweep/sweep_config.h"
+#include "eval/sweep/plan/sweep_config.h"
 #include "tests/support/command.h"
 
 namespace saccade::testing {

@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 #include "tests/support/meshes.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <vector>
 
-#include "simulator/sensor/view.h"
+#include "simulator/sensor/image_renderer.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {
@@ -175,7 +175,7 @@ TEST(ClosedForm, DepthAndMotionOfASphere) {
   const double half_cell = 0.5 * std::numbers::pi / kRings;
   const double sagitta = 2 * kRadius * (1 - std::cos(half_cell));
   const PinholeCamera camera{80, 60, 90, 95, 40, 30, {}};
-  const ViewRenderer renderer(scene, camera, 1);
+  const ImageRenderer renderer(scene, camera, 1);
   const Spline motion = testing::lively_motion(0.2, 1, 1, 3);
   constexpr double kTime_s = 0.07;
   const Rigid3 pose = motion.pose(kTime_s);

@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "tests/support/closed_form_plane.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "simulator/sensor/view.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "simulator/sensor/image_renderer.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {
@@ -61,7 +61,7 @@ TEST(EventLabels, AgreeWithTheImagesOfADistortingCamera) {
       StampedPose{0, {so3_exp({0, 0, 0}), {0, 0, 0}}},
       StampedPose{1, {so3_exp({0.1, 0.05, -0.2}), {0.2, 0.3, 1}}}};
   const Spline motion = Spline::interpolate(poses);
-  const ViewRenderer renderer(scene, camera, 1);
+  const ImageRenderer renderer(scene, camera, 1);
   const ImageF depth = renderer.depth({0.5, motion.pose(0.5)});
   const FlowField flow = renderer.flow(motion.state(0.5), 0.5);
   SensedEvents events;

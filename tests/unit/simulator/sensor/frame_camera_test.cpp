@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "tests/support/closed_form_plane.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -12,7 +12,7 @@
 #include "simulator/sensor/event_camera.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {
@@ -27,7 +27,7 @@ Mesh card(std::uint64_t seed) {
 
 Scene still_scene() { return testing::scene_of({testing::slanted_wall(), card(2)}); }
 
-/// A card that moves and one that does not, under a lamp.
+/// A card that moves and one that does not, under a light.
 Scene lively_scene() {
   SceneBuilder builder;
   builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
@@ -72,7 +72,7 @@ SensedEvents sense(EventCamera& camera, double end_s) {
   return all;
 }
 
-// 0.137 divides neither the slabs nor the other steps.
+// 0.137 divides neither the slices nor the other steps.
 TEST(Invariance, DenserSamplingGivesTheSameEvents) {
   const Scene scene = still_scene();
   const Spline way = motion();

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "simulator/sensor/event_camera.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/log_eps.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
@@ -88,7 +88,7 @@ std::vector<double> counts(const SensedEvents& events, const PinholeCamera& came
   return counts;
 }
 
-// The texture is linear between texels: ln I strays by (ln 40 / 4096)^2 / 8 = 1e-7 from the ramp.
+// The texture is linear between texels: ln I departs by (ln 40 / 4096)^2 / 8 = 1e-7 from the ramp.
 TEST(NoisyCamera, RefractoryPeriodMakesARampFireAtItsReciprocalRate) {
   EventOptions options = testing::in_nanoseconds();
   options.noise.refractory.period_us = 20'000;

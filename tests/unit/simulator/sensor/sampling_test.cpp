@@ -6,8 +6,8 @@
 #include "core/image.h"
 #include "core/random.h"
 #include "simulator/motion/spline_table.h"
-#include "simulator/sensor/image_motion.h"
-#include "simulator/sensor/pixel_rays.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/rays/pixel_rays.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {

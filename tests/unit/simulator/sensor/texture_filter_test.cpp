@@ -4,7 +4,7 @@
 #include "core/config/config.h"
 #include "simulator/sensor/event_camera.h"
 #include "tests/support/error_of.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 
 namespace saccade {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/io/dataset.h"
-#include "core/io/events_h5.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/events_h5.h"
 #include "core/io/import/fisheye_camera.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/imu_sample.h"
 #include "core/parallel.h"
-#include "estimator/odometry/start/carried_path.h"
+#include "estimator/odometry/start/extrapolated_path.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -42,7 +42,7 @@ MappingOptions quick_mapping() {
   options.adjust_rounds = 1;
   options.adjustment.node_spacing_s = 0.02;
   options.adjustment.edges = 400;
-  options.adjustment.known_sigma_px = 0.02;
+  options.adjustment.fixed_sigma_px = 0.02;
   options.depth.method = DepthConfig::Method::kRays;
   options.depth.rays.refiner.max_sigma = 0.03;
   options.depth.rays.fusion.min_neighbours = 1;
@@ -53,7 +53,7 @@ MappingOptions quick_mapping() {
 KnownPath given() {
   KnownPath path;
   path.poses = testing::trajectory_of(shaken, kGiven_s);
-  path.settled_until_s = path.given_until_s = kGiven_s;
+  path.fixed_until_s = path.given_until_s = kGiven_s;
   return path;
 }
 
@@ -99,7 +99,7 @@ TEST(FirstMap, GivenPosesThatShowTooLittleAreCarriedOn) {
   const Worst found = worst_of(first.path.poses, kGiven_s, kWhole_s);
   EXPECT_LT(found.m, 0.008 * testing::kCornerDepth_m);
   EXPECT_LT(found.rad, 0.008);
-  const Trajectory blind = carried_on(given().poses, first.path.poses.end_s(), {});
+  const Trajectory blind = extrapolated(given().poses, first.path.poses.end_s(), {});
   EXPECT_GT(worst_of(blind, kGiven_s, kWhole_s).rad, 3 * found.rad) << "the events say more";
 }
 
@@ -155,8 +155,8 @@ TEST(FirstMap, AGapInTheEventsIsGoneBeyond) {
 
 TEST(FirstMap, AStartThatWasFoundIsTakenAsItIs) {
   KnownPath start = given();
-  start.given_until_s = kNothingGiven;
-  start.settled_until_s = 0;
+  start.given_until_s = kNoGivenPoses;
+  start.fixed_until_s = 0;
   EXPECT_DOUBLE_EQ(made(start, carried()).path.poses.end_s(), kGiven_s);
 }
 

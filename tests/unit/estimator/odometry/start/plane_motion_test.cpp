@@ -36,11 +36,11 @@ TEST(PlaneMotion, StepAndTurnShareTheMotionInTheViewingDirection) {
   const Eigen::Vector3d ray(0, 0, 1);
   const Eigen::Vector2d moved = seen(kMotion, ray, kStep_s);
   for (const double share : {0.0, 0.5, 1.5}) {
-    const PlaneMotion other = kMotion.with_step_share(share);
+    const PlaneMotion other = kMotion.with_translation_fraction(share);
     EXPECT_LT((seen(other, ray, kStep_s) - moved).norm(), 1e-3 * moved.norm()) << share;
   }
-  EXPECT_LT(kMotion.with_step_share(1).rate.head<2>().norm(), 1e-15);
-  EXPECT_LT(kMotion.with_step_share(0).velocity.head<2>().norm(), 1e-15);
+  EXPECT_LT(kMotion.with_translation_fraction(1).rate.head<2>().norm(), 1e-15);
+  EXPECT_LT(kMotion.with_translation_fraction(0).velocity.head<2>().norm(), 1e-15);
 }
 
 }  // namespace

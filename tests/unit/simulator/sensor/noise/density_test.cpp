@@ -13,7 +13,7 @@
 
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/noise/sensor_presets.h"
-#include "tests/unit/simulator/plane_scene.h"
+#include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 
 namespace saccade {
@@ -167,7 +167,7 @@ TEST_P(Density, HardlyMovesSingleEvents) {
   EXPECT_LT(p99_s, 2e-4);
 }
 
-// At 3 kHz most silent stretches are longer than the low pass remembers.
+// At 3 kHz most without an event stretches are longer than the low pass remembers.
 INSTANTIATE_TEST_SUITE_P(OrdersAndCutoffs, Density,
                          ::testing::Combine(::testing::Values(1, 2),
                                             ::testing::Values(200.0, 3000.0)));

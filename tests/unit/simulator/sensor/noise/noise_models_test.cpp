@@ -7,8 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/leak.h"
 #include "simulator/sensor/noise/mismatch.h"
+#include "simulator/sensor/noise/noise_models.h"
 #include "simulator/sensor/noise/photoreceptor.h"
 #include "simulator/sensor/noise/sensor_output.h"
 #include "simulator/sensor/noise/spontaneous_events.h"
@@ -90,7 +92,8 @@ std::vector<double> traces(const NoiseOptions& noise, std::uint64_t seed) {
   SensedEvents events;
   for (std::uint16_t y = 0; y < kSide; ++y) {
     for (std::uint16_t x = 0; x < kSide; ++x) {
-      const Contrast contrast = pixel_contrast(options, seed, x, y);
+      const Contrast contrast =
+          pixel_contrast(options.noise.mismatch, options.contrast, seed, x, y);
       traces.insert(traces.end(),
                     {contrast.on, contrast.off, leak_slope(noise.leak, contrast.on, seed, x, y)});
       SpontaneousState state = spontaneous.start(x, y, 0);

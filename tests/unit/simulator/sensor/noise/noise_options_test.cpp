@@ -1,4 +1,4 @@
-#include "simulator/sensor/noise/noise_options.h"
+#include "simulator/sensor/noise/noise_models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,9 +57,9 @@ TEST(NoiseOptions, ErrorsNameTheKey) {
       {"mismatch: {sigma_on: 0.1}", "sigma_on"},
       {"refractory: {period_us: -1}", "noise.refractory.period_us"},
       {"leak: {rate_hz: fast}", "noise.leak.rate_hz"},
-      {"shot: {bright_share: 1.5}", "noise.shot.bright_share"},
+      {"shot: {rate_hz: 2e5}", "noise.shot.rate_hz"},
       {"bandwidth: {cutoff_hz: 100, order: 3}", "noise.bandwidth.order"},
-      {"bandwidth: {cutoff_hz: 100, max_cutoff_hz: 10}", "noise.bandwidth.cutoff_hz"},
+      {"bandwidth: {cutoff_hz: 2e5}", "noise.bandwidth.cutoff_hz"},
       {"hot: {fraction: 2}", "noise.hot.fraction"},
       {"latency: {jitter_us: .inf}", "noise.latency.jitter_us"},
       {"readout: {capacity: 10}", "noise.readout.rate_hz"},

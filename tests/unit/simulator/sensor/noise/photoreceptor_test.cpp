@@ -104,7 +104,7 @@ TEST(FilteredPiece, WithoutLengthKeepsTheStateAndAJumpOnlyEnters) {
   const FilteredPiece none({0.3, 0.2}, {1, 1, 0, 5}, 1000, 2);
   EXPECT_EQ(none.end_state().first, 0.3);
   EXPECT_EQ(none.end_state().output, 0.2);
-  EXPECT_EQ(none.turns().count, 0);
+  EXPECT_EQ(none.extrema().count, 0);
   EXPECT_FALSE(none.first_crossing(0, 1, 1, 1e-9));
 }
 
@@ -137,7 +137,7 @@ TEST(FilteredPiece, TurnsAreItsExtrema) {
       LinearPiece input = pieces.input(0.01);
       if (trial % 3 == 0) input.end = input.start;
       const FilteredPiece piece(pieces.state(), input, pieces.rate(input, -1, 3), order);
-      const FilteredPiece::Turns turns = piece.turns();
+      const FilteredPiece::Extrema turns = piece.extrema();
       ASSERT_LE(turns.count, order);
       ++seen[turns.count];
       std::vector<double> knots = {input.t0_s};
@@ -165,17 +165,17 @@ TEST(FilteredPiece, StaysWithinItsReach) {
     const int order = 1 + trial % 2;
     const LinearPiece input = pieces.input(0.01);
     const FilteredPiece piece(pieces.state(), input, pieces.rate(input, -9, 6), order);
-    const FilteredPiece::Reach reach = piece.reach();
+    const auto [reach_low, reach_high] = piece.bounds();
     for (int i = 0; i <= 100; ++i) {
       const double y = piece.value(input.t0_s + (input.t1_s - input.t0_s) * i / 100);
-      ASSERT_GE(y, reach.low - 1e-12);
-      ASSERT_LE(y, reach.high + 1e-12);
+      ASSERT_GE(y, reach_low - 1e-12);
+      ASSERT_LE(y, reach_high + 1e-12);
     }
   }
   // Narrow where there is little time.
-  const FilteredPiece::Reach brief = FilteredPiece({0, 0}, {0, 0.01, 1, 1}, 1, 2).reach();
-  EXPECT_EQ(brief.low, 0);
-  EXPECT_NEAR(brief.high, -std::expm1(-0.01), 1e-15);
+  const auto [brief_low, brief_high] = FilteredPiece({0, 0}, {0, 0.01, 1, 1}, 1, 2).bounds();
+  EXPECT_EQ(brief_low, 0);
+  EXPECT_NEAR(brief_high, -std::expm1(-0.01), 1e-15);
 }
 
 TEST(FilteredPiece, FirstCrossingIsTheFirst) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "simulator/sensor/event_options.h"
 #include "simulator/sensor/noise/leak.h"
 #include "simulator/sensor/noise/mismatch.h"
 #include "simulator/sensor/noise/spontaneous_events.h"
@@ -43,10 +44,12 @@ TEST(Mismatch, HasTheStatedSpreadOnBothSidesApart) {
   EventOptions options;
   options.contrast = {0.2, 0.3};
   options.noise.mismatch.sigma = 0.15;
-  const auto on = over_pixels(
-      kWidth, kHeight, [&](auto x, auto y) { return pixel_contrast(options, kSeed, x, y).on; });
-  const auto off = over_pixels(
-      kWidth, kHeight, [&](auto x, auto y) { return pixel_contrast(options, kSeed, x, y).off; });
+  const auto on = over_pixels(kWidth, kHeight, [&](auto x, auto y) {
+    return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).on;
+  });
+  const auto off = over_pixels(kWidth, kHeight, [&](auto x, auto y) {
+    return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).off;
+  });
   expect_normal(on, 0.2, 0.2 * 0.15);
   expect_normal(off, 0.3, 0.3 * 0.15);
   double product = 0;
@@ -61,7 +64,7 @@ TEST(Mismatch, KeepsEveryThresholdAboveTheFloor) {
   options.noise.mismatch.sigma = 0.5;
   int at_floor = 0;
   for (const double on : over_pixels(kWidth, kHeight, [&](auto x, auto y) {
-         return pixel_contrast(options, kSeed, x, y).on;
+         return pixel_contrast(options.noise.mismatch, options.contrast, kSeed, x, y).on;
        })) {
     ASSERT_GE(on, kLeastContrast * 0.2);
     at_floor += on == kLeastContrast * 0.2 ? 1 : 0;
@@ -181,7 +184,7 @@ TEST(ShotNoise, SavedStateGoesOnWithTheSameCandidates) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(events.take(state, 3, 4).t_s, events.take(copy, 3, 4).t_s);
 }
 
-TEST(HotPixels, AreTheStatedShareWithLogNormalRates) {
+TEST(HotPixels, AreTheStatedFractionWithLogNormalRates) {
   NoiseOptions options;
   options.hot = {0.05, 40, 0.5};
   const SpontaneousEvents events(options, kLogEps, kSeed);

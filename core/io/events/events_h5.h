@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "core/io/events/event_file.h"
+
+namespace saccade {
+
+/// Events in the DSEC layout: /events/x and y (u16), /events/p (0/1), /events/t (integers,
+/// attribute "unit" = "us" or "ns", us without it), /ms_to_idx (index of the first event at or
+/// after each millisecond) and /t_offset, which is added to all times. Beside the layout the group
+/// may state the sensor's size, attributes "width" and "height" [px]. Opening checks types and
+/// lengths.
+class EventH5Reader {
+ public:
+  explicit EventH5Reader(const std::filesystem::path& file);
+  ~EventH5Reader();
+  EventH5Reader(EventH5Reader&&) noexcept;
+  EventH5Reader& operator=(EventH5Reader&&) noexcept;
+
+  [[nodiscard]] EventFileInfo info() const;
+  /// Indices [first, second) of the window's events.
+  [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> range(TimeWindow window) const;
+  /// Events of the window in EventOrder; reads only the chunks that hold them. InputError with the
+  /// place `file:/events/t[INDEX]` for times that go back, polarities other than 0/1, coordinates
+  /// outside `size`, an index that contradicts the times, and chunks that cannot be read.
+  [[nodiscard]] Events read(SensorSize size, TimeWindow window = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Writes the layout above; chunks are shuffled and deflated (level 1) in parallel, the bytes do
+/// not depend on the number of threads. With TimestampUnit::kMicroseconds times are rounded to the
+/// nearest microsecond and ties that this creates are sorted by EventOrder. Times count from 0
+/// (/t_offset = 0) where the first one is within the first hour, else from the whole second before
+/// it.
+class EventH5Writer final : public EventWriter {
+ public:
+  /// `sensor`: 0 is not stated.
+  EventH5Writer(const std::filesystem::path& file, TimestampUnit unit, SensorSize sensor = {});
+  ~EventH5Writer() override;
+  void append(std::span<const Event> events) override;
+  void close() override;
+  [[nodiscard]] std::uint64_t count() const override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,326 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/tables/h5_handle.h"
+#include "core/time_search.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::uint64_t kBlock = std::uint64_t{1} << 20;  // events in memory besides the result
+
+/// Smallest tick whose time is not before `t_ns`.
+std::int64_t ceil_ticks(TimeNs t_ns, TimeNs unit) {
+  return t_ns / unit + static_cast<std::int64_t>(t_ns % unit > 0);
+}
+
+std::int64_t saturating_subtract(std::int64_t a, std::int64_t b) {
+  std::int64_t result = 0;
+  if (!__builtin_sub_overflow(a, b, &result)) return result;
+  return a < 0 ? std::numeric_limits<std::int64_t>::min()
+               : std::numeric_limits<std::int64_t>::max();
+}
+
+/// A half-open range of event indices.
+struct Range {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+};
+
+}  // namespace
+
+struct EventH5Reader::State {
+  explicit State(const std::filesystem::path& file_name) : name(file_name.string()) {
+    const H5Lock lock;
+    open(file_name);
+    x = column("/events/x", 2);
+    y = column("/events/y", 2);
+    p = column("/events/p", 1);
+    t = column("/events/t", 8);
+    read_unit();
+    sensor = {read_size("width"), read_size("height")};
+    read_offset();
+    read_index();
+  }
+
+  [[noreturn]] void fail(const std::string& path, const std::string& problem) const {
+    throw InputError(name + ":" + path, problem);
+  }
+  [[noreturn]] void fail_at(const char* path, std::uint64_t index,
+                            const std::string& problem) const {
+    fail(std::string(path) + "[" + std::to_string(index) + "]", problem);
+  }
+
+  void open(const std::filesystem::path& file_name);
+  [[nodiscard]] H5Handle open_dataset(const char* path) const;
+  [[nodiscard]] H5Handle column(const char* path, std::size_t widest);
+  void read_unit();
+  [[nodiscard]] int read_size(const char* side) const;
+  void read_offset();
+  void read_index();
+
+  template <class T>
+  void read(const H5Handle& dataset, const char* path, hid_t type, Range range,
+            std::vector<T>& values) const;
+  [[nodiscard]] std::vector<std::int64_t> read_times(Range range) const;
+  [[nodiscard]] Range bracket(std::int64_t start_tick, std::int64_t end_tick) const;
+  [[nodiscard]] Range find(TimeWindow window) const;
+  [[nodiscard]] TimeNs time_ns(std::int64_t tick, std::uint64_t index) const;
+  void append_block(Range range, SensorSize size, Events& events) const;
+
+  std::string name;
+  H5Handle file, x, y, p, t;
+  std::uint64_t count = 0;
+  TimeNs unit = 1000;  ///< [ns]
+  SensorSize sensor;
+  std::int64_t offset = 0;
+  std::optional<std::vector<std::uint64_t>> ms_to_idx;
+};
+
+void EventH5Reader::State::open(const std::filesystem::path& file_name) {
+  if (!std::filesystem::exists(file_name)) throw InputError(name, "no such file");
+  const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
+  H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
+  file = {H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+  if (!file.valid())
+    throw InputError(name,
+                     "is no HDF5 file, or is truncated or damaged (HDF5: " + h5_reason() + ")");
+  if (H5Lexists(file, "events", H5P_DEFAULT) <= 0) fail("/events", "the group is missing");
+}
+
+H5Handle EventH5Reader::State::open_dataset(const char* path) const {
+  if (H5Lexists(file, path, H5P_DEFAULT) <= 0) fail(path, "the dataset is missing");
+  H5Handle dataset = {H5Dopen2(file, path, H5P_DEFAULT), H5Dclose};
+  if (!dataset.valid()) fail(path, "is no dataset that can be opened");
+  const H5Handle type = {H5Dget_type(dataset), H5Tclose};
+  if (H5Tget_class(type) != H5T_INTEGER) fail(path, "must hold whole numbers");
+  return dataset;
+}
+
+/// Opens a column; its integers have at most `widest` bytes.
+H5Handle EventH5Reader::State::column(const char* path, std::size_t widest) {
+  H5Handle dataset = open_dataset(path);
+  const H5Handle type = {H5Dget_type(dataset), H5Tclose};
+  if (H5Tget_size(type) > widest || (widest < 8 && H5Tget_sign(type) != H5T_SGN_NONE))
+    fail(path, widest < 8
+                   ? "must hold unsigned whole numbers of " + std::to_string(8 * widest) + " bits"
+                   : "must hold whole numbers of at most 64 bits");
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  if (H5Sget_simple_extent_ndims(space) != 1) fail(path, "must have one dimension");
+  const auto length = static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space));
+  if (!x.valid()) count = length;
+  if (length != count)
+    fail(path,
+         "has " + std::to_string(length) + " entries, /events/x has " + std::to_string(count));
+  return dataset;
+}
+
+void EventH5Reader::State::read_unit() {
+  if (H5Aexists(t, "unit") <= 0) return;  // DSEC: microseconds
+  const H5Handle attribute = {H5Aopen(t, "unit", H5P_DEFAULT), H5Aclose};
+  const H5Handle type = {H5Aget_type(attribute), H5Tclose};
+  std::string text;
+  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) > 0) {
+    char* value = nullptr;
+    if (H5Aread(attribute, type, &value) >= 0 && value != nullptr) text = value;
+    if (value != nullptr) H5free_memory(value);
+  } else if (H5Tget_class(type) == H5T_STRING) {
+    text.resize(H5Tget_size(type));
+    if (H5Aread(attribute, type, text.data()) < 0) text.clear();
+    text = text.c_str();  // without padding
+  }
+  if (text != "us" && text != "ns")
+    fail("/events/t", "attribute \"unit\" is '" + text + "'; it must be \"us\" or \"ns\"");
+  unit = text == "us" ? 1000 : 1;
+}
+
+/// [px]; 0 where it is not stated.
+int EventH5Reader::State::read_size(const char* side) const {
+  const H5Handle group = {H5Gopen2(file, "events", H5P_DEFAULT), H5Gclose};
+  if (H5Aexists(group, side) <= 0) return 0;
+  const H5Handle attribute = {H5Aopen(group, side, H5P_DEFAULT), H5Aclose};
+  int pixels = 0;
+  if (H5Aread(attribute, H5T_NATIVE_INT, &pixels) < 0 || pixels < 1 || pixels > 65536)
+    fail("/events", fmt::format("attribute \"{}\" must be a number of pixels", side));
+  return pixels;
+}
+
+void EventH5Reader::State::read_offset() {
+  if (H5Lexists(file, "t_offset", H5P_DEFAULT) <= 0) return;
+  const H5Handle dataset = open_dataset("/t_offset");
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  if (H5Sget_simple_extent_npoints(space) != 1) fail("/t_offset", "must hold one number");
+  if (H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &offset) < 0)
+    fail("/t_offset", "cannot be read (HDF5: " + h5_reason() + ")");
+}
+
+void EventH5Reader::State::read_index() {
+  if (H5Lexists(file, "ms_to_idx", H5P_DEFAULT) <= 0) return;
+  const H5Handle dataset = open_dataset("/ms_to_idx");
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  std::vector<std::uint64_t> index;
+  read(dataset, "/ms_to_idx", H5T_NATIVE_UINT64,
+       {0, static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space))}, index);
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (index[i] > count || (i > 0 && index[i] < index[i - 1]))
+      fail_at("/ms_to_idx", i, "indices must not decrease nor exceed the number of events");
+  ms_to_idx = std::move(index);
+}
+
+template <class T>
+void EventH5Reader::State::read(const H5Handle& dataset, const char* path, hid_t type, Range range,
+                                std::vector<T>& values) const {
+  const hsize_t start = range.begin;
+  const hsize_t length = range.end - range.begin;
+  values.resize(length);
+  if (length == 0) return;
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  const H5Handle memory = {H5Screate_simple(1, &length, nullptr), H5Sclose};
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &length, nullptr);
+  if (H5Dread(dataset, type, memory, space, H5P_DEFAULT, values.data()) < 0)
+    fail_at(path, range.begin,
+            "cannot be read: damaged, or its compression filter is not installed (HDF5: " +
+                h5_reason() + ")");
+}
+
+std::vector<std::int64_t> EventH5Reader::State::read_times(Range range) const {
+  std::vector<std::int64_t> times;
+  read(t, "/events/t", H5T_NATIVE_INT64, range, times);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] < times[i - 1])
+      fail_at(
+          "/events/t", range.begin + i,
+          "time goes back: " + std::to_string(times[i]) + " after " + std::to_string(times[i - 1]));
+  return times;
+}
+
+/// A range of indices that holds all events with start_tick <= t < end_tick, by the index.
+Range EventH5Reader::State::bracket(std::int64_t start_tick, std::int64_t end_tick) const {
+  Range range{0, count};
+  if (!ms_to_idx || ms_to_idx->empty()) return range;
+  const std::int64_t ticks_per_ms = 1'000'000 / unit;
+  const auto length = static_cast<std::int64_t>(ms_to_idx->size());
+  const std::int64_t first_ms = std::clamp<std::int64_t>(start_tick / ticks_per_ms, 0, length - 1);
+  if (start_tick > 0) range.begin = (*ms_to_idx)[static_cast<std::size_t>(first_ms)];
+  if (end_tick < (length - 1) * ticks_per_ms) {
+    const std::int64_t last_ms = std::max<std::int64_t>(end_tick, 0) / ticks_per_ms + 1;
+    range.end = (*ms_to_idx)[static_cast<std::size_t>(last_ms)];
+  }
+  // The neighbours outside prove that the index tells the truth.
+  const auto tick_at = [&](std::uint64_t i) { return read_times({i, i + 1}).front(); };
+  if ((range.begin > 0 && tick_at(range.begin - 1) >= start_tick) ||
+      (range.end < count && tick_at(range.end) < end_tick))
+    fail("/ms_to_idx", "contradicts the times in /events/t");
+  return range;
+}
+
+/// The events of the window, by bisection over blocks within the bracket.
+Range EventH5Reader::State::find(TimeWindow window) const {
+  const std::int64_t start = saturating_subtract(ceil_ticks(window.start_ns, unit), offset);
+  const std::int64_t end = saturating_subtract(ceil_ticks(window.end_ns, unit), offset);
+  if (start >= end || count == 0) return {};
+  const Range range = bracket(start, end);
+  const auto first_at_or_after = [&](std::int64_t tick) {
+    std::uint64_t low = range.begin;
+    std::uint64_t high = range.end;
+    while (high - low > kBlock) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      if (read_times({middle, middle + 1}).front() < tick)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low + count_before(read_times({low, high}), tick, std::identity{});
+  };
+  constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  return {window.start_ns == kAlways ? range.begin : first_at_or_after(start),
+          window.end_ns == kNever ? range.end : first_at_or_after(end)};
+}
+
+TimeNs EventH5Reader::State::time_ns(std::int64_t tick, std::uint64_t index) const {
+  TimeNs t_ns = 0;
+  if (__builtin_add_overflow(tick, offset, &t_ns) || __builtin_mul_overflow(t_ns, unit, &t_ns))
+    fail_at("/events/t", index, "the time is too large: " + std::to_string(tick));
+  return t_ns;
+}
+
+void EventH5Reader::State::append_block(Range range, SensorSize size, Events& events) const {
+  std::vector<std::uint16_t> xs;
+  std::vector<std::uint16_t> ys;
+  std::vector<std::uint8_t> ps;
+  read(x, "/events/x", H5T_NATIVE_UINT16, range, xs);
+  read(y, "/events/y", H5T_NATIVE_UINT16, range, ys);
+  read(p, "/events/p", H5T_NATIVE_UINT8, range, ps);
+  const std::vector<std::int64_t> ts = read_times(range);
+  const int width = size.width > 0 ? size.width : 65536;
+  const int height = size.height > 0 ? size.height : 65536;
+  for (std::size_t i = 0; i < ts.size(); ++i) {
+    const TimeNs t_ns = time_ns(ts[i], range.begin + i);
+    if (!events.empty() && t_ns < events.back().t_ns)
+      fail_at("/events/t", range.begin + i, "time goes back");
+    if (xs[i] >= width || ys[i] >= height)
+      fail_at(xs[i] >= width ? "/events/x" : "/events/y", range.begin + i,
+              "pixel (" + std::to_string(xs[i]) + ", " + std::to_string(ys[i]) +
+                  ") lies outside the sensor of " + std::to_string(width) + " x " +
+                  std::to_string(height) + " px");
+    if (ps[i] > 1)
+      fail_at("/events/p", range.begin + i,
+              "polarity " + std::to_string(ps[i]) + " must be 0 or 1");
+    events.push_back({t_ns, xs[i], ys[i], static_cast<std::int8_t>(ps[i] == 1 ? 1 : -1)});
+  }
+}
+
+EventH5Reader::EventH5Reader(const std::filesystem::path& file)
+    : state_(std::make_unique<State>(file)) {}
+
+EventH5Reader::~EventH5Reader() = default;
+EventH5Reader::EventH5Reader(EventH5Reader&&) noexcept = default;
+EventH5Reader& EventH5Reader::operator=(EventH5Reader&&) noexcept = default;
+
+EventFileInfo EventH5Reader::info() const {
+  const H5Lock lock;
+  EventFileInfo info;
+  info.count = state_->count;
+  info.unit = state_->unit == 1 ? TimestampUnit::kNanoseconds : TimestampUnit::kMicroseconds;
+  info.sensor = state_->sensor;
+  if (info.count == 0) return info;
+  const auto time_at = [&](std::uint64_t i) {
+    return state_->time_ns(state_->read_times({i, i + 1}).front(), i);
+  };
+  info.first_ns = time_at(0);
+  info.last_ns = time_at(info.count - 1);
+  return info;
+}
+
+std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) const {
+  const H5Lock lock;
+  const Range range = state_->find(window);
+  return {range.begin, range.end};
+}
+
+Events EventH5Reader::read(SensorSize size, TimeWindow window) const {
+  const H5Lock lock;
+  const Range range = state_->find(window);
+  Events events;
+  events.reserve(range.end - range.begin);
+  // Blocks end at multiples of kBlock, so that no chunk is unpacked twice.
+  for (std::uint64_t begin = range.begin; begin < range.end;) {
+    const std::uint64_t end = std::min(range.end, (begin / kBlock + 1) * kBlock);
+    state_->append_block({begin, end}, size, events);
+    begin = end;
+  }
+  sort_ties(events);
+  return events;
+}
+
+}  // namespace saccade

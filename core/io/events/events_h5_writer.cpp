@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/h5_column.h"
+#include "core/process/parallel.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::int64_t kMaxIndexMs = std::int64_t{1} << 31;
+
+struct PackedChunk {
+  std::array<H5Chunk, 4> columns;  ///< x, y, p, t
+};
+
+/// `unit` is 1 or 1000 ns: a constant divides many times faster than a variable.
+std::int64_t in_ticks(TimeNs t_ns, TimeNs unit) { return unit == 1 ? t_ns : t_ns / 1000; }
+
+PackedChunk pack(std::span<const Event> events, TimeNs unit, TimeNs offset) {
+  std::vector<std::uint16_t> x(kH5ChunkValues);
+  std::vector<std::uint16_t> y(kH5ChunkValues);
+  std::vector<std::uint8_t> p(kH5ChunkValues);
+  std::vector<std::int64_t> t(kH5ChunkValues);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    x[i] = events[i].x;
+    y[i] = events[i].y;
+    p[i] = events[i].polarity > 0 ? 1 : 0;
+    t[i] = in_ticks(events[i].t_ns, unit) - offset;
+  }
+  return {{pack_h5_chunk(x), pack_h5_chunk(y), pack_h5_chunk(p), pack_h5_chunk(t)}};
+}
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+  return a / b - static_cast<std::int64_t>(a % b < 0);
+}
+
+}  // namespace
+
+struct EventH5Writer::State {
+  State(const std::filesystem::path& file_name, TimestampUnit timestamp_unit, SensorSize sensor)
+      : target(file_name),
+        unit(timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1),
+        ticks_per_ms(1'000'000 / unit) {
+    const H5Lock lock;
+    file = {H5Fcreate(target.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
+    check(file.valid());
+    const H5Handle group = {H5Gcreate2(file, "events", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                            H5Gclose};
+    columns[0] = {group, "x", H5T_STD_U16LE, target.target()};
+    columns[1] = {group, "y", H5T_STD_U16LE, target.target()};
+    columns[2] = {group, "p", H5T_STD_U8LE, target.target()};
+    columns[3] = {group, "t", H5T_STD_I64LE, target.target()};
+    write_unit(columns[3].id());
+    if (sensor.width == 0) return;
+    write_size(group, "width", sensor.width);
+    write_size(group, "height", sensor.height);
+  }
+
+  void check(bool success) const { check_h5_write(success, target.target()); }
+
+  void write_unit(hid_t dataset) const {
+    const H5Handle type = {H5Tcopy(H5T_C_S1), H5Tclose};
+    H5Tset_size(type, 2);
+    const H5Handle space = {H5Screate(H5S_SCALAR), H5Sclose};
+    const H5Handle attribute = {H5Acreate2(dataset, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT),
+                                H5Aclose};
+    check(attribute.valid() && H5Awrite(attribute, type, unit == 1 ? "ns" : "us") >= 0);
+  }
+
+  void write_size(hid_t group, const char* name, int pixels) const {
+    const H5Handle space = {H5Screate(H5S_SCALAR), H5Sclose};
+    const H5Handle attribute = {
+        H5Acreate2(group, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose};
+    check(attribute.valid() && H5Awrite(attribute, H5T_NATIVE_INT, &pixels) >= 0);
+  }
+
+  void add(std::span<const Event> events);
+  void write_chunks(std::size_t end);
+  void index(std::span<const Event> events);
+  void finish();
+
+  AtomicFile target;
+  TimeNs unit;  ///< [ns]
+  std::int64_t ticks_per_ms;
+  H5Handle file;
+  std::array<H5Column, 4> columns;
+  std::vector<Event> pending;  ///< not yet written, times rounded to the unit
+  std::size_t open_ties = 0;   ///< where the last run of equal times begins in `pending`
+  std::int64_t offset = 0;     ///< /t_offset [ticks]
+  std::uint64_t written = 0;
+  TimeNs last = std::numeric_limits<TimeNs>::min();  ///< before rounding
+  std::vector<std::uint64_t> ms_to_idx;
+};
+
+void EventH5Writer::State::add(std::span<const Event> events) {
+  for (Event event : events) {
+    SACCADE_CHECK(event.t_ns >= last);
+    last = event.t_ns;
+    if (unit > 1) event.t_ns = floor_div(event.t_ns + 500, 1000) * 1000;
+    if (pending.empty() || pending.back().t_ns != event.t_ns) {
+      sort_ties(std::span(pending).subspan(open_ties));
+      // Only complete runs of ties are written: a later event may still belong before the others.
+      if (pending.size() >= kH5BatchValues) write_chunks(pending.size());
+      open_ties = pending.size();
+    }
+    pending.push_back(event);
+  }
+}
+
+/// Writes the whole chunks among the first `end` pending events.
+void EventH5Writer::State::write_chunks(std::size_t end) {
+  const std::size_t count = end / kH5ChunkValues * kH5ChunkValues;
+  const std::span<const Event> events = std::span(pending).first(count);
+  index(events);
+  std::vector<PackedChunk> packed(count / kH5ChunkValues);
+  parallel_for(packed.size(), [&](std::size_t i) {
+    packed[i] = pack(events.subspan(i * kH5ChunkValues, kH5ChunkValues), unit, offset);
+  });
+  const H5Lock lock;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    columns[c].extend(written + count);
+    for (const PackedChunk& chunk : packed) columns[c].append(chunk.columns[c]);
+  }
+  written += count;
+  pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// Extends ms_to_idx by events that follow those written.
+void EventH5Writer::State::index(std::span<const Event> events) {
+  if (written == 0 && !events.empty()) {
+    constexpr std::int64_t kHourNs = 3'600'000'000'000;
+    const TimeNs first = events.front().t_ns;
+    if (first < 0 || first > kHourNs)
+      offset = floor_div(first, 1'000'000'000) * ticks_per_ms * 1000;
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::int64_t tick = in_ticks(events[i].t_ns, unit) - offset;
+    if (tick > kMaxIndexMs * ticks_per_ms)
+      throw InputError(target.target().string(),
+                       "the events span more than 24 days; is a time wrong?");
+    while (static_cast<std::int64_t>(ms_to_idx.size()) * ticks_per_ms <= tick)
+      ms_to_idx.push_back(written + i);
+  }
+}
+
+void EventH5Writer::State::finish() {
+  sort_ties(std::span(pending).subspan(open_ties));
+  write_chunks(pending.size());
+  index(pending);
+  const H5Lock lock;
+  if (!pending.empty()) {
+    const PackedChunk chunk = pack(pending, unit, offset);  // padded to the chunk's size
+    const std::size_t size = written + pending.size();
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      columns[c].extend(size);
+      columns[c].append(chunk.columns[c]);
+    }
+    written = size;
+    pending.clear();
+  }
+  H5Column index_column(file, "ms_to_idx", H5T_STD_U64LE, target.target());
+  index_column.extend(ms_to_idx.size());
+  check(H5Dwrite(index_column.id(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                 ms_to_idx.data()) >= 0);
+  const H5Handle scalar = {H5Screate(H5S_SCALAR), H5Sclose};
+  const H5Handle layout = {H5Pcreate(H5P_DATASET_CREATE), H5Pclose};
+  H5Pset_obj_track_times(layout, false);
+  H5Handle offset_dataset = {
+      H5Dcreate2(file, "t_offset", H5T_STD_I64LE, scalar, H5P_DEFAULT, layout, H5P_DEFAULT),
+      H5Dclose};
+  check(offset_dataset.valid() &&
+        H5Dwrite(offset_dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &offset) >= 0);
+  bool closed = index_column.close() && offset_dataset.close();
+  for (H5Column& column : columns) closed = column.close() && closed;
+  check(file.close() && closed);
+  target.commit();
+}
+
+EventH5Writer::EventH5Writer(const std::filesystem::path& file, TimestampUnit unit,
+                             SensorSize sensor)
+    : state_(std::make_unique<State>(file, unit, sensor)) {}
+
+EventH5Writer::~EventH5Writer() = default;
+
+void EventH5Writer::append(std::span<const Event> events) { state_->add(events); }
+
+void EventH5Writer::close() { state_->finish(); }
+
+std::uint64_t EventH5Writer::count() const { return state_->written + state_->pending.size(); }
+
+}  // namespace saccade

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/io/events/event_file.h"
+
+namespace saccade {
+
+/// Lines `t x y p` (Event Camera Dataset): seconds, column, row, polarity 1/0 or 1/-1. Times become
+/// integer ns digit by digit, hence exactly. In EventOrder; InputError with `file:line` for
+/// malformed lines, times that go back and coordinates outside `size`. Lines outside `window` are
+/// checked for their time only; reading stops at its end.
+[[nodiscard]] Events read_events_text(const std::filesystem::path& file, SensorSize size,
+                                      TimeWindow window = {});
+[[nodiscard]] EventFileInfo read_events_text_info(const std::filesystem::path& file);
+
+/// Writes lines `t x y p` with 9 decimals and p = 0/1, so that reading gives the same events.
+class EventTextWriter final : public EventWriter {
+ public:
+  explicit EventTextWriter(const std::filesystem::path& file);
+  ~EventTextWriter() override;
+  void append(std::span<const Event> events) override;
+  void close() override;
+  [[nodiscard]] std::uint64_t count() const override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,156 @@
+#include "core/io/files/resumable_folder.h"
+
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "core/check.h"
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/files/file_bytes.h"
+#include "core/io/files/file_lock.h"
+#include "core/io/files/sha256.h"
+
+namespace saccade {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kLockFile = "lock";
+constexpr const char* kInputsFile = "inputs.yaml";
+/// Stands beside the content while that is being given its name, with the hash of its marker.
+constexpr const char* kCompleteFile = "complete";
+
+/// The contents of inputs.yaml.
+void describe_inputs(config::Fields& fields, Fingerprint& inputs) {
+  fields.value("inputs", inputs, "What the unfinished work depends on.");
+}
+
+void create_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
+}
+
+/// Files that their writer had not renamed yet.
+void remove_half_written(const fs::path& folder) {
+  std::vector<fs::path> partial;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with('.') && name.find(".partial-") != std::string::npos)
+      partial.push_back(entry.path());
+  }
+  for (const fs::path& file : partial) fs::remove(file);
+}
+
+/// All of a workplace, the lock last, so that a kill in between leaves something recognisable.
+void remove_workplace(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> entries;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename() != kLockFile) entries.push_back(entry.path());
+  for (const fs::path& entry : entries) fs::remove_all(entry, ignored);
+  fs::remove_all(folder, ignored);
+}
+
+}  // namespace
+
+std::string difference(const Fingerprint& before, const Fingerprint& now) {
+  for (const auto& [name, content] : now) {
+    const auto it = before.find(name);
+    if (it == before.end() || it->second != content) return name + " differs";
+  }
+  for (const auto& [name, content] : before)
+    if (!now.contains(name)) return name + " is not used any more";
+  return {};
+}
+
+/// `folder` is created when it is not there.
+class ResumableFolder::Lock {
+ public:
+  Lock(const fs::path& folder, const fs::path& target)
+      : lock_(FileLock::try_take(folder / kLockFile)) {
+    if (!lock_)
+      throw InputError(target.string(), "is being written by another program at this moment");
+  }
+
+ private:
+  std::optional<FileLock> lock_;
+};
+
+ResumableFolder::ResumableFolder(const fs::path& folder, std::string marker,
+                                 const Fingerprint& fingerprint)
+    : final_(folder, std::move(marker)), fingerprint_(fingerprint) {
+  final_.check_replaceable();
+  final_.create_parent();
+  workplace_ = target().parent_path() / ("." + target().filename().string() + ".unfinished");
+  if (fs::exists(workplace_) && !fs::exists(workplace_ / kLockFile) &&
+      !(fs::is_directory(workplace_) && fs::is_empty(workplace_)))
+    throw InputError(workplace_.string(), "is in the way: remove it or choose another output");
+  lock_ = std::make_unique<Lock>(workplace_, target());
+  try {
+    take_up_leftovers();
+  } catch (const std::exception&) {
+    remove_workplace(workplace_);
+    throw;
+  }
+}
+
+ResumableFolder::~ResumableFolder() {
+  if (!committed_) remove_workplace(workplace_);
+}
+
+void ResumableFolder::take_up_leftovers() {
+  if (!fs::exists(workplace_ / kInputsFile)) return clear();  // new, or not even begun
+  try {
+    Fingerprint before;
+    config::Session::read(config::load(workplace_ / kInputsFile),
+                          [&](config::Fields& fields) { describe_inputs(fields, before); }, {});
+    refusal_ = difference(before, fingerprint_);
+  } catch (const InputError&) {
+    refusal_ = "its list of inputs is damaged";
+  }
+  if (refusal_.empty() && !(fs::is_directory(path()) && fs::is_directory(journal())))
+    refusal_ = "a part of it is missing";
+  if (!refusal_.empty()) return clear();
+  const fs::path complete = workplace_ / kCompleteFile;
+  const fs::path result = path() / final_.marker();
+  if (fs::exists(complete)) {
+    // The content may be the folder that the complete one replaced.
+    const std::vector<std::byte> stated = read_file_bytes(complete);
+    const std::string hash = fs::exists(result) ? sha256_of_file(result) : "";
+    if (std::string_view(reinterpret_cast<const char*>(stated.data()), stated.size()) != hash)
+      return clear();
+    fs::remove(complete);
+  }
+  remove_half_written(path());
+  remove_half_written(journal());
+  is_resumed_ = true;
+}
+
+void ResumableFolder::clear() {
+  for (const char* old : {kInputsFile, kCompleteFile}) fs::remove(workplace_ / old);
+  for (const fs::path& old : {path(), journal()}) {
+    fs::remove_all(old);
+    create_folder(old);
+  }
+  write_atomically(workplace_ / kInputsFile,
+                   config::to_yaml(config::Session::write(
+                       [&](config::Fields& fields) { describe_inputs(fields, fingerprint_); })));
+}
+
+void ResumableFolder::start_clean(const std::string& why) {
+  is_resumed_ = false;
+  refusal_ = why;
+  clear();
+}
+
+void ResumableFolder::commit() {
+  SACCADE_CHECK(!committed_);
+  write_atomically(workplace_ / kCompleteFile, sha256_of_file(path() / final_.marker()));
+  final_.take(path());
+  committed_ = true;
+  remove_workplace(workplace_);
+}
+
+}  // namespace saccade

@@ -1,0 +1,102 @@
+#include "core/io/images/image_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/files/file_bytes.h"
+
+namespace saccade {
+namespace {
+
+cv::Mat decode(std::span<const std::byte> bytes, const std::string& place, int flags) {
+  if (bytes.empty()) throw InputError(place, "is empty, not a picture");
+  const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
+                        const_cast<std::byte*>(bytes.data()));
+  cv::Mat decoded;
+  try {
+    decoded = cv::imdecode(encoded, flags);
+  } catch (const cv::Exception&) {
+    decoded.release();  // broken headers throw, broken pixels do not; both get the message below
+  }
+  if (decoded.empty()) throw InputError(place, "is no picture that can be decoded, or is damaged");
+  return decoded;
+}
+
+cv::Mat read(const std::filesystem::path& file, int flags) {
+  return decode(read_file_bytes(file), file.string(), flags);
+}
+
+template <class T>
+Image<T> copied(const cv::Mat& mat) {
+  SACCADE_CHECK(mat.elemSize() == sizeof(T));
+  Image<T> image(mat.cols, mat.rows);
+  for (int y = 0; y < mat.rows; ++y) std::copy_n(mat.ptr<T>(y), mat.cols, &image(0, y));
+  return image;
+}
+
+ImageRgba8 rgba_from(cv::Mat mat) {
+  if (mat.depth() == CV_16U) mat.convertTo(mat, CV_8U, 1.0 / 256);
+  if (mat.depth() != CV_8U) mat.convertTo(mat, CV_8U, 255);
+  const int code = mat.channels() == 1   ? cv::COLOR_GRAY2RGBA
+                   : mat.channels() == 3 ? cv::COLOR_BGR2RGBA
+                                         : cv::COLOR_BGRA2RGBA;
+  cv::Mat rgba;
+  cv::cvtColor(mat, rgba, code);
+  return copied<Rgba8>(rgba);
+}
+
+std::string encode(const cv::Mat& mat) {
+  std::vector<unsigned char> bytes;
+  SACCADE_CHECK(cv::imencode(".png", mat, bytes));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+ImageU8 read_image_grey(const std::filesystem::path& file) {
+  return copied<std::uint8_t>(read(file, cv::IMREAD_GRAYSCALE));
+}
+
+ImageRgb8 read_image_rgb(const std::filesystem::path& file) {
+  cv::Mat rgb;
+  cv::cvtColor(read(file, cv::IMREAD_COLOR), rgb, cv::COLOR_BGR2RGB);
+  return copied<Rgb8>(rgb);
+}
+
+ImageRgba8 read_image_rgba(const std::filesystem::path& file) {
+  return rgba_from(read(file, cv::IMREAD_UNCHANGED));
+}
+
+ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes, const std::string& place) {
+  return rgba_from(decode(bytes, place, cv::IMREAD_UNCHANGED));
+}
+
+std::string encode_png(const ImageU8& image) {
+  SACCADE_CHECK(!image.empty());
+  return encode(
+      cv::Mat(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data())));
+}
+
+std::string encode_png(const ImageRgb8& image) {
+  SACCADE_CHECK(!image.empty());
+  const cv::Mat rgb(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return encode(bgr);
+}
+
+void write_png(const std::filesystem::path& file, const ImageU8& image) {
+  write_atomically(file, encode_png(image));
+}
+
+void write_png(const std::filesystem::path& file, const ImageRgb8& image) {
+  write_atomically(file, encode_png(image));
+}
+
+}  // namespace saccade

@@ -1,0 +1,197 @@
+#include "core/process/child_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/shell.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::array kInterrupts{SIGINT, SIGTERM, SIGHUP};
+volatile std::sig_atomic_t interrupted = 0;
+std::array<struct sigaction, kInterrupts.size()> former_actions;
+
+void remember(int signal) { interrupted = signal; }
+
+/// What a child gets instead of what this program has.
+class SpawnSetup {
+ public:
+  SpawnSetup(const std::filesystem::path& log, const std::filesystem::path& working_folder) {
+    posix_spawn_file_actions_init(&files);
+    if (!working_folder.empty())
+      posix_spawn_file_actions_addchdir_np(&files, working_folder.c_str());
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(),
+                                     O_WRONLY | O_CREAT | O_APPEND, 0666);
+    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    sigset_t all;
+    sigfillset(&all);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+  }
+  ~SpawnSetup() {
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+  }
+  SpawnSetup(const SpawnSetup&) = delete;
+  SpawnSetup& operator=(const SpawnSetup&) = delete;
+
+  posix_spawn_file_actions_t files{};
+  posix_spawnattr_t attributes{};
+};
+
+void append(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::app | std::ios::binary);
+  stream << text << std::flush;
+  if (!stream) fail_to_write(file, errno);
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+ChildEnd end_of(int status, const rusage& usage) {
+  ChildEnd end;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  end.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024;
+  return end;
+}
+
+/// The high-water mark of a process and of all below it; 0 where there is none (any more).
+double largest_memory_mb(pid_t pid) {
+  const std::string folder = fmt::format("/proc/{}", pid);
+  double largest = 0;
+  std::ifstream status(folder + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) largest = std::strtod(line.c_str() + 6, nullptr) / 1024;
+  std::ifstream children(fmt::format("{}/task/{}/children", folder, pid));
+  for (pid_t child = 0; children >> child;) largest = std::max(largest, largest_memory_mb(child));
+  return largest;
+}
+
+/// "NAME=value" of this program's environment with `changes` in it.
+std::vector<std::string> environment_with(const std::map<std::string, std::string>& changes) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    if (!changes.contains(text.substr(0, text.find('=')))) all.push_back(text);
+  }
+  for (const auto& [name, value] : changes) all.push_back(name + "=" + value);
+  return all;
+}
+
+/// As the system wants a list of texts; valid as long as they are.
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  pointers.reserve(texts.size() + 1);
+  for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+}  // namespace
+
+std::string ChildEnd::text() const {
+  if (signal == 0) return fmt::format("exit code {}", exit_code);
+  return fmt::format("killed by signal {} ({})", signal, sigdescr_np(signal));
+}
+
+ChildProcess::ChildProcess(const std::filesystem::path& program,
+                           const std::vector<std::string>& words, const std::filesystem::path& log,
+                           const ChildSettings& settings) {
+  append(log, "$ " + shell_line(words) + "\n");
+  const std::vector<std::string> environment = environment_with(settings.environment);
+  const SpawnSetup setup(log, settings.working_folder);
+  const int error = posix_spawnp(&pid_, program.c_str(), &setup.files, &setup.attributes,
+                                 pointers_to(words).data(), pointers_to(environment).data());
+  if (error != 0)
+    throw InputError(program.string(),
+                     fmt::format("cannot be started: {}", std::generic_category().message(error)));
+  // The header of glibc 2.36 declares pidfd_open() for C alone.
+  descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+  if (descriptor_ < 0) {
+    const int reason = errno;
+    kill_and_close();
+    throw InputError(program.string(), fmt::format("cannot be waited for: {}",
+                                                   std::generic_category().message(reason)));
+  }
+}
+
+ChildProcess::~ChildProcess() { kill_and_close(); }
+
+ChildProcess::ChildProcess(ChildProcess&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
+  if (this == &other) return *this;
+  kill_and_close();
+  pid_ = std::exchange(other.pid_, -1);
+  descriptor_ = std::exchange(other.descriptor_, -1);
+  return *this;
+}
+
+std::optional<ChildEnd> ChildProcess::poll_end() {
+  int status = 0;
+  rusage usage{};
+  if (pid_ < 0 || wait4(pid_, &status, WNOHANG, &usage) != pid_) return std::nullopt;
+  pid_ = -1;
+  return end_of(status, usage);
+}
+
+double ChildProcess::memory_mb() const { return pid_ > 0 ? largest_memory_mb(pid_) : 0; }
+
+void ChildProcess::stop() const {
+  if (pid_ > 0) ::kill(-pid_, SIGTERM);
+}
+
+void ChildProcess::kill_and_close() {
+  if (pid_ > 0) {
+    ::kill(-pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+}
+
+InterruptGuard::InterruptGuard() {
+  interrupted = 0;
+  struct sigaction action {};
+  action.sa_handler = remember;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < kInterrupts.size(); ++i) {
+    sigaction(kInterrupts[i], nullptr, &former_actions[i]);
+    // nohup has SIGHUP ignored, and so it stays.
+    if (former_actions[i].sa_handler != SIG_IGN) sigaction(kInterrupts[i], &action, nullptr);
+  }
+}
+
+InterruptGuard::~InterruptGuard() {
+  for (std::size_t i = 0; i < kInterrupts.size(); ++i)
+    sigaction(kInterrupts[i], &former_actions[i], nullptr);
+}
+
+int InterruptGuard::signal() const { return interrupted; }
+
+}  // namespace saccade

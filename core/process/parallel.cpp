@@ -1,0 +1,57 @@
+#include "core/process/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// TBB's own default arena never has more threads than cores; this one has as many as asked for.
+struct Pool {
+  explicit Pool(int count)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
+        arena(count) {}
+
+  tbb::global_control limit;
+  tbb::task_arena arena;
+};
+
+std::unique_ptr<Pool>& pool() {
+  static std::unique_ptr<Pool> instance = std::make_unique<Pool>(tbb::info::default_concurrency());
+  return instance;
+}
+
+}  // namespace
+
+void set_thread_count(int count) {
+  SACCADE_CHECK(count >= 0);
+  const int threads = count > 0 ? count : tbb::info::default_concurrency();
+  std::unique_ptr<Pool>& current = pool();
+  current.reset();
+  current = std::make_unique<Pool>(threads);
+  cv::setNumThreads(threads);
+}
+
+int thread_count() { return pool()->arena.max_concurrency(); }
+
+void parallel_for_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t, std::size_t)>& body) {
+  SACCADE_CHECK(grain > 0);
+  const std::size_t ranges = (count + grain - 1) / grain;
+  const auto run = [&](std::size_t i) { body(i * grain, std::min((i + 1) * grain, count)); };
+  if (ranges <= 1 || thread_count() == 1) {
+    for (std::size_t i = 0; i < ranges; ++i) run(i);
+    return;
+  }
+  pool()->arena.execute([&] { tbb::parallel_for(std::size_t{0}, ranges, run); });
+}
+
+}  // namespace saccade

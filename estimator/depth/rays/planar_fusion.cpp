@@ -1,0 +1,104 @@
+#include "estimator/depth/rays/planar_fusion.h"
+
+#include <cmath>
+
+#include "estimator/depth/rays/biweight.h"
+
+namespace saccade {
+namespace {
+
+constexpr float kAlwaysAllowed = 0.005F;  ///< relative distance from the plane that is no outlier
+
+// The model of sigma, fitted to the errors on Walls, Planes, Dunes and Boxes (docs/depth.md).
+constexpr float kSigmaScale = 1.1F;  ///< a: above 1 since neighbours share events
+constexpr float kSparseWeight = 14;  ///< w_0: a plane of this weight has twice the variance
+constexpr float kSparseModelError = 0.0015F;  ///< m: relative, of a surface through w_0 points
+constexpr float kMinRelativeSigma = 0.0004F;  ///< f: errors that all neighbours have in common
+constexpr float kResidualRatio = 0.4F;        ///< o
+constexpr float kScatterRatio = 0.15F;        ///< c
+
+/// Whether a point agrees with its neighbourhood.
+bool is_supported(const EdgePoint& point, const LocalPlane& plane, const FusionOptions& options) {
+  const float change = std::abs(plane.inverse_depth - point.inverse_depth);
+  return plane.weights >= static_cast<float>(options.min_neighbours + 1) &&
+         change <=
+             kBiweightReach * plane.spread * point.sigma + kAlwaysAllowed * point.inverse_depth;
+}
+
+float sigma_of(const LocalPlane& plane) {
+  const float sparse = kSparseWeight / plane.weights;
+  const float fit = kSigmaScale * plane.spread * plane.sigma;
+  const float surface = kSparseModelError * sparse * plane.inverse_depth;
+  const float common = kMinRelativeSigma * plane.inverse_depth;
+  return std::sqrt(fit * fit * (1 + sparse * sparse) + surface * surface + common * common);
+}
+
+/// What a point's own position and neighbourhood add to the standard deviation of its plane.
+float local_sigma_of(const EdgePoint& point, const LocalPlane& plane,
+                     const FusionOptions& options) {
+  const float position = static_cast<float>(options.position_sigma_px) * plane.slope.norm();
+  const float residual = kResidualRatio * (point.inverse_depth - plane.inverse_depth);
+  const float scatter = kScatterRatio * point.sigma * std::sqrt(plane.spread * plane.spread - 1);
+  return std::sqrt(position * position + residual * residual + scatter * scatter);
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, FusionOptions& options) {
+  fields
+      .value("radius_px", options.plane.radius_px,
+             "Radius of the neighbourhood whose plane gives a point's depth, in pixels; 0 disables "
+             "the fusion.")
+      .range(0, 100);
+  fields
+      .value("min_neighbours", options.min_neighbours,
+             "Points with a smaller sum of weights of their neighbours are dropped; larger values "
+             "give fewer and better points.")
+      .range(0, 1000);
+  fields
+      .value("max_sigma", options.max_sigma,
+             "Points whose plane has a larger standard deviation, divided by the inverse depth, "
+             "are dropped.")
+      .above(0);
+  fields
+      .value(
+          "contour_shift_px", options.contour_shift_px,
+          "Shift of a point on an occluding contour onto the surface that ends there, in pixels; "
+          "0 leaves it on the contour, where the pixel is as likely the surface behind.")
+      .range(0, 5);
+}
+
+std::vector<EdgePoint> supported_points(const std::vector<EdgePoint>& points,
+                                        const FusionOptions& options) {
+  if (!(options.plane.radius_px > 0) || points.empty()) return points;
+  LocalPlanes planes(points, options.plane);
+  std::vector<EdgePoint> kept;
+  for (const EdgePoint& point : points)
+    if (is_supported(point, planes.fit(point), options)) kept.push_back(point);
+  return kept;
+}
+
+std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
+                                   const FusionOptions& options) {
+  if (!(options.plane.radius_px > 0) || points.empty()) return points;
+  LocalPlanes planes(points, options.plane);
+  std::vector<EdgePoint> result;
+  for (const EdgePoint& point : points) {
+    const LocalPlane plane = planes.fit(point);
+    if (!is_supported(point, plane, options)) continue;
+    const float sigma = sigma_of(plane);
+    if (sigma > static_cast<float>(options.max_sigma) * plane.inverse_depth) continue;
+    const Eigen::Vector2f shift = static_cast<float>(options.contour_shift_px) *
+                                  static_cast<float>(planes.surface_side(point, plane)) *
+                                  point.normal;
+    EdgePoint smooth = point;
+    smooth.x_px += shift.x();
+    smooth.y_px += shift.y();
+    smooth.inverse_depth = plane.inverse_depth + plane.slope.dot(shift);
+    smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options));
+    if (smooth.inverse_depth > 0) result.push_back(smooth);
+  }
+  return result;
+}
+
+}  // namespace saccade

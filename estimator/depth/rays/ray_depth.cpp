@@ -1,0 +1,229 @@
+#include "estimator/depth/rays/ray_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "core/image.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "estimator/depth/rays/edgel_index.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kTile_px = 16;
+constexpr int kStripTiles = 3;
+
+// Seeds that are refined on their own; weaker ones, those with less parallax and those off the best
+// plane of their pixel need neighbours that predict their depth.
+constexpr float kMinStrength = 1.6F;
+constexpr float kMinVoteRatio = 1;
+constexpr float kMinParallax_px = 1.2F;
+// The neighbours that predict a depth.
+constexpr PlaneOptions kPropagationPlane{.radius_px = 10};
+constexpr float kPropagationSpacing_px = 1;  ///< between edgels at the same depth
+constexpr float kMinNeighbours = 4;          ///< least sum of weights of a plane
+constexpr float kDepthTolerance = 0.15F;  ///< relative, between a seed's depth and the nearest one
+
+int tile_of(float px) { return std::max(0, static_cast<int>(px)) / kTile_px; }
+
+/// By tiles, since neighbouring seeds read the same events; the strongest come first within a tile,
+/// since an edgel suppresses its neighbours.
+SeedStrips sorted_into_strips(const std::vector<EdgelSeed>& seeds, int height) {
+  std::vector<std::tuple<int, int, float, std::size_t>> order(seeds.size());
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    order[i] = {tile_of(seeds[i].pixel.y()), tile_of(seeds[i].pixel.x()), -seeds[i].score, i};
+  std::sort(order.begin(), order.end());
+  const int strips = tile_of(static_cast<float>(height)) / kStripTiles + 1;
+  SeedStrips sorted(static_cast<std::size_t>(strips));
+  for (const auto& [row, column, score, index] : order)
+    sorted[static_cast<std::size_t>(std::min(row / kStripTiles, strips - 1))].push_back(
+        seeds[index]);
+  return sorted;
+}
+
+/// Appends the edgels of the strips, without those that an earlier strip found beyond its border.
+void append(const std::vector<WindowEdgels>& strips, EdgelIndex found, WindowEdgels& all) {
+  for (const WindowEdgels& strip : strips)
+    for (FittedEdgel edge : strip.edges) {
+      if (found.has_similar(edge.edge, EdgelRefiner::kSameDepth * edge.edge.inverse_depth))
+        continue;
+      found.add(edge.edge);
+      const auto first = static_cast<std::uint32_t>(all.events.event.size());
+      for (std::uint32_t i = edge.first; i < edge.last; ++i) {
+        all.events.event.push_back(strip.events.event[i]);
+        all.events.weight.push_back(strip.events.weight[i]);
+      }
+      edge.last = first + (edge.last - edge.first);
+      edge.first = first;
+      all.edges.push_back(edge);
+    }
+}
+
+}  // namespace
+
+void describe(config::Fields& fields, RayDepthOptions& options) {
+  RegressionOptions& regression = options.refiner.regression;
+  fields
+      .value("spacing_px", options.refiner.spacing_px,
+             "Smallest distance between edgels at the same depth, in pixels; smaller values give "
+             "denser points whose errors are more correlated, at a higher cost.")
+      .range(0, 20);
+  fields
+      .value("max_sigma", options.refiner.max_sigma,
+             "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
+             "depth, are dropped; larger values give more and less accurate points.")
+      .above(0);
+  fields
+      .value("offset_sigma_px", regression.offset_sigma_px,
+             "Standard deviation of the prior on an edgel's offset from its seed across the edge, "
+             "in pixels; 0 fixes the offset at zero.")
+      .range(0, 100);
+  fields
+      .value("tilt_sigma", regression.tilt_sigma,
+             "Standard deviation of the prior on the change of an edgel's direction, as a slope; 0 "
+             "fixes the direction of the seed.")
+      .range(0, 10);
+  fields
+      .value(
+          "hysteresis_sigma_px", regression.hysteresis_sigma_px,
+          "Standard deviation of the prior on the shift between ON and OFF events of an edge, in "
+          "pixels; 0 fixes the shift at zero.")
+      .range(0, 10);
+  fields
+      .value("min_own_event_fraction", options.min_own_event_fraction,
+             "An edgel is dropped when less than this fraction of its events is explained by it "
+             "better than by others; 0 keeps every edgel.")
+      .range(0, 1);
+  fields
+      .value("max_unobserved_px", options.max_unobserved_px,
+             "An edgel that moves farther than this without an event around the time of the view "
+             "was hidden then, and is no point of the view; in pixels.")
+      .above(0);
+  fields
+      .value("propagation_rounds", options.propagation.rounds,
+             "Rounds in which seeds take a depth that their neighbours predict; 0 disables the "
+             "propagation, each round gives more points and takes longer.")
+      .range(0, 100);
+  fields.section("fusion", options.fusion, "Planes fitted through neighbouring points.");
+}
+
+RayDepth::RayDepth(const RayDepthOptions& options, const DepthLimits& limits,
+                   const PinholeCamera& camera)
+    : options_(options), limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
+
+DepthResult RayDepth::estimate(const ViewWindow& window) const { return fuse(find_edgels(window)); }
+
+WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
+  double rays_s = 0, seeds_s = 0, regression_s = 0, assignment_s = 0, propagation_s = 0;
+  const auto timed = [](double& seconds, const auto& stage) {
+    const ScopedTimer clock(seconds);
+    return stage();
+  };
+  WindowEdgels found;
+  const EventRays rays = timed(rays_s, [&] {
+    return EventRays(window, camera_, undistortion_, RayDepthOptions::kTimeSlices);
+  });
+  const SeedStrips strips = timed(seeds_s, [&] {
+    const auto seeds = find_seeds(rays, camera_, limits_);
+    for (const EdgelSeed& seed : seeds) found.seeds.push_back(seed.pixel);
+    return sorted_into_strips(seeds, camera_.height);
+  });
+  timed(regression_s, [&] { fit(rays, strips, found); });
+  const auto assign = [&] {
+    found.edges =
+        assign_events(found.edges, found.events, rays.size(), options_.min_own_event_fraction);
+  };
+  timed(assignment_s, assign);
+  for (int i = 0; i < options_.propagation.rounds; ++i) {
+    timed(propagation_s, [&] { propagate(rays, strips, found); });
+    timed(assignment_s, assign);
+  }
+  for (std::uint32_t& event : found.events.event) event = rays.source[event];
+  found.stages_s = {{"rays", rays_s},
+                    {"seeds", seeds_s},
+                    {"regression", regression_s},
+                    {"assignment", assignment_s},
+                    {"propagation", propagation_s}};
+  return found;
+}
+
+DepthResult RayDepth::fuse(const WindowEdgels& found) const {
+  double fusion_s = 0;
+  DepthResult result;
+  {
+    const ScopedTimer clock(fusion_s);
+    result.points = fuse_planes(points_of(found.edges), options_.fusion);
+  }
+  result.candidates = found.seeds;
+  result.stages_s = found.stages_s;
+  result.stages_s.emplace_back("fusion", fusion_s);
+  return result;
+}
+
+void RayDepth::fit(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const {
+  std::vector<WindowEdgels> fitted(strips.size());
+  parallel_for(strips.size(), [&](std::size_t k) {
+    EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
+    for (const EdgelSeed& seed : strips[k]) {
+      if (seed.vote_ratio < kMinVoteRatio || seed.strength < kMinStrength ||
+          seed.parallax_px < kMinParallax_px)
+        continue;
+      if (const auto edge = refiner.refine(seed, fitted[k].events))
+        fitted[k].edges.push_back(*edge);
+    }
+  });
+  append(fitted, EdgelIndex(camera_, static_cast<float>(options_.refiner.spacing_px)), found);
+}
+
+std::vector<EdgePoint> RayDepth::points_of(const std::vector<FittedEdgel>& edges) const {
+  std::vector<EdgePoint> points;
+  for (const FittedEdgel& e : edges)
+    if (e.unobserved_px <= static_cast<float>(options_.max_unobserved_px) &&
+        camera_.contains(e.edge.pixel.cast<double>()))
+      points.push_back(
+          {e.edge.pixel.x(), e.edge.pixel.y(), e.edge.inverse_depth, e.sigma, e.edge.normal});
+  return points;
+}
+
+void RayDepth::propagate(const EventRays& rays, const SeedStrips& strips,
+                         WindowEdgels& found) const {
+  EdgelIndex known(camera_, kPropagationSpacing_px);
+  for (const FittedEdgel& fitted : found.edges) known.add(fitted.edge);
+  const LocalPlanes planes(supported_points(points_of(found.edges), options_.fusion),
+                           kPropagationPlane);
+  std::vector<WindowEdgels> confirmed(strips.size());
+  parallel_for(strips.size(), [&](std::size_t k) {
+    EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
+    refiner.restart(known);
+    LocalPlanes own_planes = planes;  // fit() is not thread-safe
+    for (const EdgelSeed& seed : strips[k])
+      if (const auto edge = confirm(seed, own_planes, refiner, confirmed[k].events))
+        confirmed[k].edges.push_back(*edge);
+  });
+  append(confirmed, std::move(known), found);
+}
+
+std::optional<FittedEdgel> RayDepth::confirm(const EdgelSeed& seed, LocalPlanes& planes,
+                                             EdgelRefiner& refiner, EdgelEvents& events) const {
+  const float tolerance = kDepthTolerance * seed.inverse_depth;
+  if (refiner.has_similar({seed.pixel, seed.normal, seed.inverse_depth}, tolerance))
+    return std::nullopt;
+  const EdgePoint* nearest = planes.nearest(seed.pixel.x(), seed.pixel.y());
+  if (nearest == nullptr) return std::nullopt;
+  if (std::abs(seed.inverse_depth - nearest->inverse_depth) > tolerance) return std::nullopt;
+  const LocalPlane plane =
+      planes.fit({seed.pixel.x(), seed.pixel.y(), nearest->inverse_depth, nearest->sigma});
+  if (plane.weights < kMinNeighbours) return std::nullopt;
+  const float model = static_cast<float>(kPropagationPlane.model_error) * plane.inverse_depth;
+  const NeighbourPrediction prediction{
+      plane.spread * std::hypot(plane.sigma, model),
+      planes.gap_around(seed.pixel.x(), seed.pixel.y(), plane),
+      static_cast<float>(options_.propagation.max_sigma) * plane.inverse_depth};
+  return refiner.confirm({seed.pixel, seed.normal, plane.inverse_depth}, prediction, events);
+}
+
+}  // namespace saccade

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+#include "core/config/fields.h"
+#include "estimator/depth/depth_estimator.h"
+#include "estimator/depth/rays/edgel_refiner.h"
+#include "estimator/depth/rays/edgel_seeds.h"
+#include "estimator/depth/rays/event_assignment.h"
+#include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/local_planes.h"
+#include "estimator/depth/rays/planar_fusion.h"
+
+namespace saccade {
+
+struct PropagationOptions {
+  int rounds = 1;
+  double max_sigma = 0.05;  ///< relative, of the own events of an edgel that is confirmed
+};
+
+struct RayDepthOptions {
+  /// Time slices of a window in which events are looked up by pixel; with 64 the first stages have
+  /// too few events.
+  static constexpr int kTimeSlices = 24;
+
+  RefinerOptions refiner;
+  double min_own_event_fraction = 0.9;
+  double max_unobserved_px = 2;
+  PropagationOptions propagation;
+  FusionOptions fusion;
+};
+
+void describe(config::Fields& fields, RayDepthOptions& options);
+
+/// The edgels of a window before their depths are fused.
+struct WindowEdgels {
+  std::vector<FittedEdgel> edges;  ///< `first` and `last` are indices into `events`
+  EdgelEvents events;              ///< indices into the window's events
+  std::vector<Eigen::Vector2f> seeds;
+  std::vector<std::pair<std::string, double>> stages_s;
+};
+
+/// Seeds by horizontal strips of the view, which are processed in parallel.
+using SeedStrips = std::vector<std::vector<EdgelSeed>>;
+
+/// Depth of edge points from the rays of all events, without a reference image. Seeds come from a
+/// space sweep; the inverse depth of each is estimated by a regression over the rays near it, first
+/// those near the reference time, then, as the depth gets better, over the whole window.
+class RayDepth : public DepthEstimator {
+ public:
+  RayDepth(const RayDepthOptions& options, const DepthLimits& limits, const PinholeCamera& camera);
+
+  [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
+
+  /// The two halves of estimate(), for callers that adjust the edgels in between.
+  [[nodiscard]] WindowEdgels find_edgels(const ViewWindow& window) const;
+  [[nodiscard]] DepthResult fuse(const WindowEdgels& edges) const;
+
+ private:
+  void fit(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
+  void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
+  [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, LocalPlanes& planes,
+                                                   EdgelRefiner& refiner,
+                                                   EdgelEvents& events) const;
+  [[nodiscard]] std::vector<EdgePoint> points_of(const std::vector<FittedEdgel>& edges) const;
+
+  RayDepthOptions options_;
+  DepthLimits limits_;
+  PinholeCamera camera_;  ///< undistorted
+  UndistortionTable undistortion_;
+};
+
+}  // namespace saccade

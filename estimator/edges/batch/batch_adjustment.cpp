@@ -1,0 +1,345 @@
+#include "estimator/edges/batch/batch_adjustment.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/time_search.h"
+#include "estimator/edges/batch/batch_windows.h"
+#include "estimator/edges/batch/path_edge_cost.h"
+#include "estimator/edges/edge_matches.h"
+#include "estimator/edges/edge_noise.h"
+#include "estimator/edges/event_runs.h"
+#include "estimator/edges/least_squares/marginal_information.h"
+#include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/edges/least_squares/prior_cost.h"
+#include "estimator/edges/least_squares/robust_spread.h"
+#include "estimator/edges/least_squares/schur_solver.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kPositionSigma = 1e-3;  ///< of the path over an interval, relative to the depth
+constexpr double kPoseSpacing_s = 1e-3;  ///< of a path
+
+/// `most` of `count` indices, evenly.
+std::vector<std::size_t> evenly(std::size_t count, int most) {
+  const std::size_t size = std::min(count, static_cast<std::size_t>(most));
+  std::vector<std::size_t> some(size);
+  for (std::size_t i = 0; i < size; ++i) some[i] = i * count / size;
+  return some;
+}
+
+/// Appends `most` of some events, evenly.
+void append_evenly(std::span<const std::uint32_t> events, int most,
+                   std::vector<std::uint32_t>& chosen) {
+  for (const std::size_t i : evenly(events.size(), most)) chosen.push_back(events[i]);
+}
+
+/// The path as a smooth spline, every millisecond.
+Trajectory smoothed_path(const BatchInput& start, double smoothing_s) {
+  const Spline spline = Spline::smooth(start.path, smoothing_s);
+  const double length_s = spline.end_s() - spline.start_s();
+  const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kPoseSpacing_s)));
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= steps; ++i) {
+    const double t_s = spline.start_s() + length_s * i / steps;
+    poses.push_back({t_s, spline.pose(t_s)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+/// An edge of a keyframe, and its unknowns.
+struct BatchEdge {
+  KeyframeEdge found;
+  BatchEdgeUnknowns unknowns;
+};
+
+/// One round: the problem of the path's correction and the edges that were found on the path
+/// before.
+class BatchProblem {
+ public:
+  BatchProblem(const Trajectory& path, const std::vector<ViewWindow>& windows,
+               const std::vector<RayEdges>& found, const BatchInput& start,
+               const PinholeCamera& camera, const BatchAdjustmentOptions& options)
+      : path_(path),
+        windows_(windows),
+        found_(found),
+        camera_(camera),
+        undistorted_(camera.undistorted()),
+        options_(options),
+        depth_m_(start.typical_depth_m),
+        given_until_s_(start.given.size() > 1 ? start.given.back().t_s : path.start_s()),
+        correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
+    run_positions_.resize(windows.size());
+    parallel_for(windows.size(), [&](std::size_t k) {
+      run_positions_[k] = run_positions(windows[k].events, camera);
+    });
+    choose_edges();
+    for (BatchEdge& edge : edges_) add_edge(edge);
+    if (options.reobserved_keyframes > 0) add_reobservations();
+    add_path_priors(start.given);
+    if (options.use_imu) add_readings(start);
+  }
+
+  void solve(CostLog& costs, const std::function<void()>& each) {
+    const double start_s = costs.now_s();
+    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-6, each);
+    costs.add_round(summary.iterations, start_s);
+  }
+
+  [[nodiscard]] Trajectory path() const { return correction_.applied(path_); }
+
+  [[nodiscard]] std::optional<InertialAlignment> inertial() const {
+    return readings_ ? std::optional(readings_->found()) : std::nullopt;
+  }
+
+  void judge(BatchAdjustment& result) {
+    result.observations = residuals_.size();
+    result.knots = correction_.knots();
+    if (residuals_.empty()) return;
+    std::vector<double> absolute_px;
+    double squares = 0;
+    for (const auto& [id, sigma_px] : residuals_) {
+      double value = 0;
+      problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr);
+      absolute_px.push_back(std::abs(value) * sigma_px);
+      squares += clipped_square(value);
+    }
+    result.residual_px = gaussian_sigma(absolute_px);
+    const double spread = squares / static_cast<double>(residuals_.size());
+    result.covariance = spread / options_.information_ratio * inverse_information();
+  }
+
+ private:
+  /// The sigma of a twist (v, w) whose parts move the image by `px`.
+  [[nodiscard]] Twist sigma_of_px(double px) const {
+    const double rad = px / undistorted_.fx;
+    return (Twist() << Eigen::Vector3d::Constant(rad * depth_m_), Eigen::Vector3d::Constant(rad))
+        .finished();
+  }
+
+  void choose_edges() {
+    for (std::size_t k = 0; k < found_.size(); ++k)
+      for (const std::size_t i : evenly(found_[k].edges.size(), options_.edges)) {
+        const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);
+        edges_.push_back({{k, i}, {rho, 0, 0, 0, 0}});
+      }
+  }
+
+  void add_edge(BatchEdge& edge) {
+    add_events(edge, edge.found, [&](std::span<const std::uint32_t> events) {
+      return choose_events(windows_[edge.found.keyframe], events);
+    });
+    BatchEdgeUnknowns sigma;
+    sigma << EdgeNoise::prior_sigma(edge.unknowns[0]), EdgeNoise::kRunSpacingSigma_px;
+    problem_.AddResidualBlock(new LinearPriorCost<5>(root_of_sigma<5>(sigma), edge.unknowns),
+                              nullptr, edge.unknowns.data());
+    ordering_->AddElementToGroup(edge.unknowns.data(), 0);
+  }
+
+  /// Residuals of an edge by some of the events of `observation`: of itself, or of its match in
+  /// another keyframe.
+  void add_events(BatchEdge& edge, const KeyframeEdge& observation, const auto& choose) {
+    const RayEdges& found = found_[observation.keyframe];
+    const FittedEdge& observed = found.edges[observation.edge];
+    std::vector<std::uint32_t> events(found.events.event.begin() + observed.first,
+                                      found.events.event.begin() + observed.last);
+    std::sort(events.begin(), events.end());
+    const std::vector<std::uint8_t>& positions = run_positions_[observation.keyframe];
+    const double mean = mean_run_position(positions, events);
+    for (const std::uint32_t e : choose(events))
+      add_event(edge, windows_[observation.keyframe].events[e],
+                positions[e] > 0 ? positions[e] - mean : 0, EdgeNoise::sigma_px(observed));
+  }
+
+  /// Events of edges that later keyframes observe again, as observations of the first one's edge.
+  void add_reobservations() {
+    std::vector<KeyframeEdge> edges;
+    for (const BatchEdge& edge : edges_) edges.push_back(edge.found);
+    const auto again = reobservations(edges, windows_, found_, options_.window_s, undistorted_);
+    for (std::size_t i = 0; i < edges_.size(); ++i)
+      for (const std::size_t a : evenly(again[i].size(), options_.reobserved_keyframes))
+        add_events(edges_[i], again[i][a], [&](std::span<const std::uint32_t> events) {
+          std::vector<std::uint32_t> chosen;
+          append_evenly(events, options_.reobserved_events, chosen);
+          return chosen;
+        });
+  }
+
+  /// Some of an edge's events, given and returned in order of time.
+  [[nodiscard]] std::vector<std::uint32_t> choose_events(
+      const ViewWindow& window, std::span<const std::uint32_t> events) const {
+    const std::size_t given = count_until(events, given_until_s_, [&](std::uint32_t e) {
+      return seconds_from_ns(window.events[e].t_ns);
+    });
+    std::vector<std::uint32_t> chosen;
+    append_evenly(events.first(given), options_.given_events_per_edge, chosen);
+    append_evenly(events.subspan(given), options_.events_per_edge, chosen);
+    return chosen;
+  }
+
+  /// `run_offset`: its position in its run above the mean of the edge.
+  void add_event(BatchEdge& batch_edge, const Event& event, double run_offset, double sigma_px) {
+    const auto& [keyframe, number] = batch_edge.found;
+    const ViewWindow& view = windows_[keyframe];
+    const RayEdge& edge = found_[keyframe].edges[number].edge;
+    const double t_s = seconds_from_ns(event.t_ns);
+    EdgeObservation observation;
+    observation.view_from_camera = view.world_from_reference().inverse() * path_.at_clamped(t_s);
+    observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
+    observation.lag = event.polarity;
+    observation.pixel = edge.pixel.cast<double>();
+    observation.normal = edge.normal.cast<double>();
+    const SplineKnots::Place place = correction_.knots().at(t_s);
+    const auto id = problem_.AddResidualBlock(
+        new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, place.weight,
+                         sigma_px),
+        new ceres::CauchyLoss(EdgeNoise::kCauchyScale), correction_.data(place.first),
+        correction_.data(place.first + 1), correction_.data(place.first + 2),
+        correction_.data(place.first + 3), batch_edge.unknowns.data());
+    residuals_.emplace_back(id, sigma_px);
+  }
+
+  void add_path_priors(const std::vector<StampedPose>& given) {
+    const Matrix6 weak = root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px));
+    for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
+      problem_.AddResidualBlock(new LinearPriorCost<6>(weak, Twist::Zero()), nullptr,
+                                correction_.data(k));
+      ordering_->AddElementToGroup(correction_.data(k), 1);
+    }
+    add_slope_prior();
+    const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px));
+    for (const StampedPose& pose : given) {
+      if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
+      const SplineKnots::Place place = correction_.knots().at(pose.t_s);
+      // xi(t) = -log(given^-1 path): the gauge.
+      const Twist error = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
+      add_prior(root, -error, place.weight, place.first);
+    }
+  }
+
+  /// A prior on sum_k weight_k c_(first + k) of the correction's controls.
+  void add_prior(const Matrix6& root, const Twist& mean, const Eigen::Vector4d& weight,
+                 std::size_t first) {
+    problem_.AddResidualBlock(new LinearPriorCost<6>(root, mean, {weight.begin(), weight.end()}),
+                              nullptr, correction_.data(first), correction_.data(first + 1),
+                              correction_.data(first + 2), correction_.data(first + 3));
+  }
+
+  /// c_(k-1) - 2 c_k + c_(k+1) = 0 of the correction's controls: its slope is a random walk.
+  void add_slope_prior() {
+    const double walk_px = options_.slope_walk_px * std::pow(options_.knot_spacing_s, 1.5);
+    const Matrix6 root = root_of_sigma<6>(sigma_of_px(walk_px));
+    const std::size_t last = correction_.knots().controls() - 4;
+    for (std::size_t k = 0; k <= last + 1; ++k) {
+      // Four controls at a time, the last four twice: three of them count.
+      const bool is_end = k > last;
+      const Eigen::Vector4d weight =
+          is_end ? Eigen::Vector4d(0, 1, -2, 1) : Eigen::Vector4d(1, -2, 1, 0);
+      add_prior(root, Twist::Zero(), weight, is_end ? last : k);
+    }
+  }
+
+  void add_readings(const BatchInput& start) {
+    SACCADE_CHECK(start.imu.has_value());
+    InertialAlignmentOptions alignment;
+    alignment.position_sigma = kPositionSigma * depth_m_;
+    alignment.interval_s = options_.imu_interval_s;
+    const InertialAlignment aligned = align_inertially(path_, *start.imu, alignment);
+    if (!(aligned.gravity.norm() > 0))
+      throw InputError("imu.txt",
+                       "the readings of imu.txt cover too little of the path, or do not fit it");
+    const bool knows_scale = aligned.status == InertialAlignment::Status::kOk;
+    // Neighbouring events err alike and count for less than their number says; readings do not.
+    readings_.emplace(path_, correction_.knots(),
+                      InertialStart{*start.imu, aligned, start.is_metric || !knows_scale, depth_m_},
+                      options_.imu_interval_s, 1 / std::sqrt(options_.information_ratio));
+    readings_->add_to(problem_, correction_, *ordering_);
+  }
+
+  [[nodiscard]] Eigen::MatrixXd inverse_information() {
+    std::vector<double*> controls, edges;
+    for (std::size_t k = 0; k < correction_.knots().controls(); ++k)
+      controls.push_back(correction_.data(k));
+    if (readings_)
+      for (double* block : readings_->unknowns()) controls.push_back(block);
+    for (BatchEdge& edge : edges_) edges.push_back(edge.unknowns.data());
+    const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
+    const Eigen::LLT<Eigen::MatrixXd> factor(information);
+    if (factor.info() != Eigen::Success) return {};
+    const auto wanted =
+        static_cast<Eigen::Index>(PathCorrection::kSize * correction_.knots().controls());
+    return factor.solve(Eigen::MatrixXd::Identity(information.rows(), wanted)).topRows(wanted);
+  }
+
+  const Trajectory& path_;
+  const std::vector<ViewWindow>& windows_;
+  const std::vector<RayEdges>& found_;
+  const PinholeCamera& camera_;
+  PinholeCamera undistorted_;
+  const BatchAdjustmentOptions& options_;
+  double depth_m_;
+  double given_until_s_;
+  PathCorrection correction_;
+  std::vector<std::vector<std::uint8_t>> run_positions_;  ///< of the windows' events
+  std::vector<BatchEdge> edges_;
+  std::optional<InertialFactors> readings_;
+  std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
+  ceres::Problem problem_;
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+};
+
+}  // namespace
+
+Matrix6 BatchAdjustment::covariance_at(double t_s) const {
+  const SplineKnots::Place place = knots.at(t_s);
+  Eigen::Matrix<double, 6, 24> by_twists;
+  for (Eigen::Index k = 0; k < 4; ++k)
+    by_twists.middleCols<6>(6 * k) = place.weight[k] * Matrix6::Identity();
+  return saccade::covariance_at(covariance, place.first, by_twists);
+}
+
+BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& start,
+                             const PinholeCamera& camera, const RayDepth& depth,
+                             const BatchAdjustmentOptions& options,
+                             const std::function<void(std::size_t)>& progress) {
+  BatchAdjustment result;
+  std::size_t done = 0;
+  const auto advance_to = [&](std::size_t step) {
+    if (progress && step > done) progress(step - done);
+    done = std::max(done, step);
+  };
+  result.path = smoothed_path(start, options.smoothing_s);
+  const std::vector<double> views =
+      batch_views(start.keyframe_s, result.path.end_s(), options.window_s);
+  for (int i = 0; i < options.rounds; ++i) {
+    const Trajectory before = result.path;
+    std::vector<ViewWindow> windows;
+    for (const double t_s : views)
+      windows.push_back({events_of_view(events, t_s, options.window_s), &before, t_s});
+    std::vector<RayEdges> found(windows.size());
+    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });
+    BatchProblem problem(before, windows, found, start, camera, options);
+    problem.solve(result.costs, [&] { advance_to(done + 1); });
+    if (i + 1 == options.rounds) problem.judge(result);
+    result.path = problem.path();
+    advance_to(options.steps() * static_cast<std::size_t>(i + 1) /
+               static_cast<std::size_t>(options.rounds));
+    result.inertial = problem.inertial();
+  }
+  return result;
+}
+
+}  // namespace saccade

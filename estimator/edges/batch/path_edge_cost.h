@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include "core/camera.h"
+#include "estimator/edges/batch/path_correction.h"
+#include "estimator/edges/edge_residual.h"
+
+namespace saccade {
+
+/// The unknowns of an edge (edge_residual.h) and, last, k [px]: how far further in each event of a
+/// run (event_runs.h) lies than the one before. h is of the polarity alone.
+using BatchEdgeUnknowns = Eigen::Matrix<double, 5, 1>;
+
+/// One event against an edge of a keyframe (edge_residual.h) over its sigma (edge_noise.h), by the
+/// four twists of the path's correction at its time and the edge's unknowns: the offset is
+///   c + k p (j - mean j),
+/// j the event's position in its run.
+class PathEdgeCost
+    : public ceres::SizedCostFunction<1, PathCorrection::kSize, PathCorrection::kSize,
+                                      PathCorrection::kSize, PathCorrection::kSize, 5> {
+ public:
+  /// `run_offset`: p (j - mean j).
+  PathEdgeCost(const EdgeObservation& observation, double run_offset, const PinholeCamera& camera,
+               const Eigen::Vector4d& weight, double sigma_px)
+      : observation_(observation),
+        run_offset_(run_offset),
+        camera_(camera),
+        weight_(weight),
+        sigma_px_(sigma_px) {}
+
+  /// False where the ray leads away from the keyframe's view.
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  EdgeObservation observation_;
+  double run_offset_;
+  PinholeCamera camera_;
+  Eigen::Vector4d weight_;
+  double sigma_px_;
+};
+
+}  // namespace saccade

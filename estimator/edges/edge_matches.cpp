@@ -1,0 +1,86 @@
+#include "estimator/edges/edge_matches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kReach_px = 2;
+constexpr double kDepthTolerance = 0.1;  ///< relative
+constexpr float kMinCosine = 0.966F;     ///< of 15 degrees
+
+std::vector<Landmark> landmarks_of(std::span<const FittedEdge> edges, const PinholeCamera& camera) {
+  std::vector<Landmark> landmarks;
+  landmarks.reserve(edges.size());
+  for (const FittedEdge& fitted : edges) {
+    const auto rho = static_cast<double>(fitted.edge.inverse_depth);
+    landmarks.push_back({camera.ray(fitted.edge.pixel.cast<double>()) / rho,
+                         static_cast<double>(fitted.sigma) / rho});
+  }
+  return landmarks;
+}
+
+}  // namespace
+
+std::optional<FittedEdge> transformed(const Rigid3& other_from_view, FittedEdge fitted,
+                                      const PinholeCamera& camera) {
+  RayEdge& edge = fitted.edge;
+  const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
+  const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {
+    return other_from_view * (depth_m * camera.ray(pixel.cast<double>()));
+  };
+  const Eigen::Vector3d point = moved(edge.pixel);
+  const Eigen::Vector3d along = moved(edge.pixel + edge.tangent());
+  if (!(point.z() > 0 && along.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d pixel = camera.project(point);
+  const Eigen::Vector2d tangent = (camera.project(along) - pixel).normalized();
+  edge.pixel = pixel.cast<float>();
+  edge.normal = Eigen::Vector2f(static_cast<float>(tangent.y()), static_cast<float>(-tangent.x()));
+  fitted.sigma *= static_cast<float>(depth_m / point.z());
+  edge.inverse_depth = static_cast<float>(1 / point.z());
+  return fitted;
+}
+
+EdgeMatcher::EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+                         const PinholeCamera& camera)
+    : edges_(edges),
+      other_from_view_(other_from_view),
+      camera_(camera),
+      landmarks_(landmarks_of(edges, camera), other_from_view, camera) {}
+
+std::optional<std::size_t> EdgeMatcher::match(const RayEdge& edge) const {
+  const ProjectedLandmarks::Projection* nearest =
+      landmarks_.nearest(edge, kReach_px, kDepthTolerance);
+  if (nearest == nullptr) return std::nullopt;
+  const auto other = transformed(other_from_view_, edges_[nearest->index], camera_);
+  if (!other || other->edge.normal.dot(edge.normal) < kMinCosine) return std::nullopt;
+  return nearest->index;
+}
+
+std::vector<std::vector<KeyframeEdge>> reobservations(std::span<const KeyframeEdge> edges,
+                                                      std::span<const ViewWindow> windows,
+                                                      std::span<const RayEdges> found,
+                                                      double apart_s, const PinholeCamera& camera) {
+  std::vector<std::vector<KeyframeEdge>> observations(edges.size());
+  const auto find = [&](std::size_t keyframe) {
+    const auto before = [](const KeyframeEdge& edge, std::size_t k) { return edge.keyframe < k; };
+    const auto first = std::lower_bound(edges.begin(), edges.end(), keyframe, before);
+    const auto last = std::lower_bound(first, edges.end(), keyframe + 1, before);
+    const Rigid3 view_from_world = windows[keyframe].world_from_reference().inverse();
+    for (std::size_t other = keyframe + 1; other < windows.size(); ++other) {
+      if (windows[other].reference_s - windows[keyframe].reference_s < apart_s) continue;
+      const EdgeMatcher matcher(found[other].edges,
+                                view_from_world * windows[other].world_from_reference(), camera);
+      for (auto edge = first; edge != last; ++edge)
+        if (const auto match = matcher.match(found[keyframe].edges[edge->edge].edge))
+          observations[static_cast<std::size_t>(edge - edges.begin())].push_back({other, *match});
+    }
+  };
+  parallel_for(windows.size(), find);
+  return observations;
+}
+
+}  // namespace saccade

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "estimator/depth/event_ownership.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/edges/landmarks.h"
+#include "estimator/run/view_windows.h"
+
+namespace saccade {
+
+/// The edge in another view; nullopt for behind it. `camera` is undistorted.
+[[nodiscard]] std::optional<FittedEdge> transformed(const Rigid3& other_from_view,
+                                                    FittedEdge fitted, const PinholeCamera& camera);
+
+/// Data association of edges between two views: which edge of the other view is an edge of this
+/// one. The match lies within 2 px of the reprojection, within a tenth of the inverse depth and
+/// within 15 degrees of the direction, and is brighter on the same side.
+class EdgeMatcher {
+ public:
+  /// `other_from_view`: from the view of `edges` to that of the edges that are matched. `edges`
+  /// outlive the matcher; `camera` is undistorted.
+  EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+              const PinholeCamera& camera);
+
+  /// The index of the edge's match; nullopt for none.
+  [[nodiscard]] std::optional<std::size_t> match(const RayEdge& edge) const;
+
+ private:
+  std::span<const FittedEdge> edges_;
+  Rigid3 other_from_view_;
+  PinholeCamera camera_;
+  ProjectedLandmarks landmarks_;
+};
+
+/// An edge that a keyframe's window shows.
+struct KeyframeEdge {
+  std::size_t keyframe;
+  std::size_t edge;  ///< in the keyframe's RayEdges
+};
+
+/// Observations of each of these edges by later keyframes at least `apart_s` away, in order of
+/// time. `windows` are in order of time, `found` are their edges; `edges` are in order of their
+/// keyframes.
+[[nodiscard]] std::vector<std::vector<KeyframeEdge>> reobservations(
+    std::span<const KeyframeEdge> edges, std::span<const ViewWindow> windows,
+    std::span<const RayEdges> found, double apart_s, const PinholeCamera& camera);
+
+}  // namespace saccade

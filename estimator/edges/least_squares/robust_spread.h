@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace saccade {
+
+/// Normalised residuals beyond this count as outliers.
+inline constexpr double kInlier = 2.4;
+
+/// Square of a normalised residual for the spread of many: outliers weigh like the worst inlier.
+[[nodiscard]] inline double clipped_square(double residual) {
+  return std::min(residual * residual, kInlier * kInlier);
+}
+
+/// The middle one of some values (of an even number, the upper), which are reordered.
+[[nodiscard]] inline double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Deviation of a Gaussian with the median of these absolute values, which are reordered.
+[[nodiscard]] inline double gaussian_sigma(std::vector<double>& absolute) {
+  return 1.4826 * median_of(absolute);
+}
+
+}  // namespace saccade

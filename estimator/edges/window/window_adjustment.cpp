@@ -1,0 +1,262 @@
+#include "estimator/edges/window/window_adjustment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <ceres/ceres.h>
+
+#include "core/parallel.h"
+#include "estimator/edges/edge_fit.h"
+#include "estimator/edges/edge_matches.h"
+#include "estimator/edges/edge_noise.h"
+#include "estimator/edges/least_squares/prior_cost.h"
+#include "estimator/edges/least_squares/robust_spread.h"
+#include "estimator/edges/least_squares/schur_solver.h"
+#include "estimator/edges/window/coarse_surface.h"
+#include "estimator/edges/window/node_correction.h"
+#include "estimator/edges/window/observed_edges.h"
+#include "estimator/edges/window/window_costs.h"
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kMinEdges = 30;  ///< fewer do not constrain a path
+constexpr std::size_t kGrain = 16;     ///< edges that a thread takes at a time
+
+EdgeUnknowns unknowns_of(const FittedEdge& edge) {
+  return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};
+}
+
+FittedEdge corrected(FittedEdge fitted, const EdgeUnknowns& unknowns) {
+  RayEdge& edge = fitted.edge;
+  const Eigen::Vector2f tangent = edge.tangent();
+  const auto inverse_depth = static_cast<float>(unknowns[0]);
+  edge.pixel += static_cast<float>(unknowns[1]) * edge.normal;
+  edge.normal = (edge.normal - static_cast<float>(unknowns[2]) * tangent).normalized();
+  fitted.sigma *= inverse_depth / edge.inverse_depth;
+  edge.inverse_depth = inverse_depth;
+  return fitted;
+}
+
+class WindowProblem {
+ public:
+  WindowProblem(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+                const WindowPriors& priors, const WindowAdjustmentOptions& options)
+      : window_(window),
+        edges_(edges),
+        options_(options),
+        priors_(priors),
+        landmarks_(priors.landmarks, window.world_from_reference().inverse(), camera.undistorted()),
+        correction_(seconds_from_ns(window.events.front().t_ns),
+                    seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
+        observed_(window, edges, camera, correction_,
+                  [&](double t_s) {
+                    return t_s < priors.given_until_s ? options.given_pairs : options.pairs;
+                  }),
+        surface_(observed_.camera(), options.surface_spacing_px, 1 / priors.typical_depth_m) {}
+
+  WindowAdjustment solve() {
+    WindowAdjustment result;
+    result.trajectory = *window_.trajectory;
+    result.edges = edges_;
+    if (edges_.edges.size() < kMinEdges) return result;
+    add_edges();
+    add_nodes();
+    if (options_.surface_sigma > 0) add_surface();
+    result.residual_before_px = residual_sigma_px();
+    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-5);
+    result.residual_after_px = residual_sigma_px();
+    result.ok = summary.IsSolutionUsable();
+    if (result.ok) correct(result);
+    return result;
+  }
+
+ private:
+  /// The sigma of a twist (v, w) whose parts move the image by `px`.
+  [[nodiscard]] Twist sigma_of_px(double px) const {
+    Twist sigma;
+    sigma.head<3>().setConstant(px * priors_.typical_depth_m / observed_.camera().fx);
+    sigma.tail<3>().setConstant(px / observed_.camera().fx);
+    return sigma;
+  }
+
+  /// A root of the information on a node with this sigma.
+  [[nodiscard]] Matrix6 sqrt_information_of_px(double px) const {
+    if (options_.prior_of == WindowAdjustmentOptions::PriorOf::kImageMotion)
+      return image_motion_sqrt_information(observed_.camera(), priors_.typical_depth_m, px);
+    Twist sigma = sigma_of_px(px);
+    sigma.tail<3>() *= options_.rotation_sigma_ratio;
+    return root_of_sigma<6>(sigma);
+  }
+
+  void add_edges() {
+    const std::size_t all = edges_.edges.size();
+    const std::size_t count = std::min(all, static_cast<std::size_t>(options_.edges));
+    chosen_.resize(count);
+    const auto fitted_at = [&](std::size_t k) -> const FittedEdge& {
+      return edges_.edges[k * all / count];
+    };
+    parallel_for(
+        count, [&](std::size_t k) { chosen_[k].events = observed_.of(fitted_at(k)); }, kGrain);
+    for (std::size_t k = 0; k < count; ++k) {
+      const FittedEdge& fitted = fitted_at(k);
+      ChosenEdge& edge = chosen_[k];
+      edge.pixel = fitted.edge.pixel.cast<double>();
+      edge.unknowns = unknowns_of(fitted);
+      const double weight = 1 / EdgeNoise::sigma_px(fitted);
+      for (std::size_t i = 0; i < edge.events.size();) {
+        // One that is left alone is paired with nothing.
+        const bool is_pair =
+            i + 1 < edge.events.size() && edge.events[i + 1].node == edge.events[i].node;
+        add_pair(edge, edge.events[i], edge.events[is_pair ? i + 1 : i],
+                 {weight, is_pair ? weight : 0});
+        i += is_pair ? 2 : 1;
+      }
+      add_prior(edge, prior_of(fitted));
+    }
+  }
+
+  struct ChosenEdge {
+    Eigen::Vector2d pixel;
+    EdgeUnknowns unknowns;
+    std::vector<ObservedEvent> events;
+  };
+
+  void add_pair(ChosenEdge& edge, const ObservedEvent& first, const ObservedEvent& second,
+                const std::array<double, 2>& weights) {
+    problem_.AddResidualBlock(new EventPairCost({first, second}, weights, observed_.camera()),
+                              nullptr, correction_.data(first.node),
+                              correction_.data(first.node + 1), edge.unknowns.data());
+  }
+
+  /// By the landmark that the edge lies on, where there is one.
+  [[nodiscard]] EdgePrior prior_of(const FittedEdge& fitted) const {
+    constexpr double kReach_px = 1.5;
+    constexpr double kTolerance = 0.1;
+    const RayEdge& edge = fitted.edge;
+    EdgePrior prior{unknowns_of(fitted), EdgeNoise::prior_sigma(edge.inverse_depth)};
+    if (options_.landmark_sigma_px <= 0) return prior;
+    if (const auto* landmark = landmarks_.nearest(edge, kReach_px, kTolerance)) {
+      prior.mean[0] = landmark->inverse_depth;
+      prior.sigma[0] =
+          std::hypot(landmark->sigma, options_.landmark_depth_sigma * landmark->inverse_depth);
+      prior.mean[1] = edge.normal.cast<double>().dot(landmark->pixel - edge.pixel.cast<double>());
+      prior.sigma[1] = options_.landmark_sigma_px;
+    }
+    return prior;
+  }
+
+  /// Robust, since not every landmark is on the edge.
+  void add_prior(ChosenEdge& edge, const EdgePrior& prior) {
+    const Eigen::Matrix4d root = root_of_sigma<4>(prior.sigma);
+    for (const int first : {0, 2})
+      problem_.AddResidualBlock(new LinearPriorCost<4, 2>(root.middleRows<2>(first), prior.mean),
+                                new ceres::CauchyLoss(EdgeNoise::kCauchyScale),
+                                edge.unknowns.data());
+    ordering_->AddElementToGroup(edge.unknowns.data(), 0);
+  }
+
+  void add_nodes() {
+    const Matrix6 smooth = sqrt_information_of_px(options_.smoothness_sigma_px);
+    const Matrix6 active = sqrt_information_of_px(options_.pose_sigma_px);
+    const Matrix6 fixed = root_of_sigma<6>(sigma_of_px(options_.fixed_sigma_px));
+    for (int i = 0; i < correction_.count(); ++i) {
+      const bool is_fixed = correction_.time_s(i) <= priors_.fixed_until_s;
+      problem_.AddResidualBlock(new LinearPriorCost<6>(is_fixed ? fixed : active, Twist::Zero()),
+                                nullptr, correction_.data(i));
+      if (i > 0)
+        problem_.AddResidualBlock(new LinearPriorCost<6>(smooth, Twist::Zero(), {-1, 1}), nullptr,
+                                  correction_.data(i - 1), correction_.data(i));
+      ordering_->AddElementToGroup(correction_.data(i), 1);
+    }
+  }
+
+  /// The event's observation after the correction.
+  [[nodiscard]] EdgeObservation moved(const ObservedEvent& event) const {
+    EdgeObservation observation = event.observation;
+    const auto twist = [&](int node) { return Eigen::Map<const Twist>(correction_.data(node)); };
+    observation.view_from_camera =
+        observation.view_from_camera * Rigid3::exp((1 - event.fraction) * twist(event.node) +
+                                                   event.fraction * twist(event.node + 1));
+    return observation;
+  }
+
+  void add_surface() {
+    surface_.add_smoothness(problem_);
+    for (ChosenEdge& edge : chosen_)
+      surface_.add_edge(problem_, edge.pixel, edge.unknowns.data(), options_.surface_sigma);
+    // A group of its own: within one Ceres orders by address, which differs from run to run.
+    for (double& node : surface_.nodes()) ordering_->AddElementToGroup(&node, 2);
+  }
+
+  /// Median of the absolute residuals, as the sigma of a Gaussian [px].
+  [[nodiscard]] double residual_sigma_px() {
+    std::vector<double> residuals;
+    for (const ChosenEdge& edge : chosen_)
+      for (const ObservedEvent& event : edge.events)
+        residuals.push_back(std::abs(edge_residual(moved(event), observed_.camera(), Twist::Zero(),
+                                                   edge.unknowns, nullptr)));
+    return gaussian_sigma(residuals);
+  }
+
+  void correct(WindowAdjustment& result) {
+    std::vector<StampedPose> poses(window_.trajectory->poses().begin(),
+                                   window_.trajectory->poses().end());
+    for (StampedPose& pose : poses)
+      if (pose.t_s >= correction_.time_s(0))
+        pose.world_from_camera = pose.world_from_camera * Rigid3::exp(correction_.at(pose.t_s));
+    result.trajectory = Trajectory(std::move(poses));
+    const Rigid3 now_from_view = result.trajectory.at_clamped(window_.reference_s).inverse() *
+                                 window_.world_from_reference();
+    std::vector<std::optional<FittedEdge>> fitted(edges_.edges.size());
+    parallel_for(
+        fitted.size(),
+        [&](std::size_t k) {
+          if (const auto edge = fitted_to_path(edges_.edges[k]))
+            fitted[k] = transformed(now_from_view, *edge, observed_.camera());
+        },
+        kGrain);
+    result.edges.edges.clear();
+    for (const std::optional<FittedEdge>& edge : fitted)
+      if (edge) result.edges.edges.push_back(*edge);
+  }
+
+  /// The edge in the view as it was, by its events from the corrected path.
+  [[nodiscard]] std::optional<FittedEdge> fitted_to_path(const FittedEdge& fitted) const {
+    std::vector<EdgeObservation> events;
+    for (const ObservedEvent& event : observed_.of(fitted)) events.push_back(moved(event));
+    const auto unknowns = fit_edge(events, observed_.camera(), unknowns_of(fitted),
+                                   prior_of(fitted), EdgeNoise::sigma_px(fitted));
+    if (!unknowns) return std::nullopt;
+    return corrected(fitted, *unknowns);
+  }
+
+  const ViewWindow& window_;
+  const RayEdges& edges_;
+  WindowAdjustmentOptions options_;
+  const WindowPriors& priors_;
+  ProjectedLandmarks landmarks_;
+  NodeCorrection correction_;
+  ObservedEdges observed_;
+  std::vector<ChosenEdge> chosen_;
+  CoarseSurface surface_;
+  ceres::Problem problem_;
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+};
+
+}  // namespace
+
+WindowAdjustment adjust_window(const ViewWindow& window, const RayEdges& edges,
+                               const PinholeCamera& camera, const WindowPriors& priors,
+                               const WindowAdjustmentOptions& options) {
+  return WindowProblem(window, edges, camera, priors, options).solve();
+}
+
+}  // namespace saccade

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "core/camera.h"
+#include "core/trajectory.h"
+#include "estimator/depth/ray_depth.h"
+#include "estimator/edges/landmarks.h"
+#include "estimator/run/view_windows.h"
+
+namespace saccade {
+
+struct WindowAdjustmentOptions {
+  /// What the sigmas of nodes are of: image motion, so that a translation and the rotation that
+  /// looks like it may go together, or each translation and rotation by itself.
+  enum class PriorOf { kImageMotion, kPose };
+
+  double node_spacing_s = 0.04;  ///< the correction of the poses is linear between nodes
+  int edges = 1000;              ///< at most so many, evenly chosen
+  int pairs = 1;                 ///< of an edge's events between two nodes, at most, evenly in time
+  /// The same where the poses are given: there events determine the scale, so more of them count.
+  int given_pairs = 1;
+  int iterations = 10;  ///< of Levenberg-Marquardt, at most
+  /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
+  double landmark_sigma_px = 0.3;      ///< across the edge
+  double landmark_depth_sigma = 0.01;  ///< relative, beside the landmark's own
+  /// Sigmas of a node from the given path and, tighter, from its neighbours.
+  PriorOf prior_of = PriorOf::kImageMotion;
+  double pose_sigma_px = 3;          ///< as image motion
+  double smoothness_sigma_px = 0.3;  ///< between neighbouring nodes
+  double fixed_sigma_px = 0.05;      ///< of poses before the active window
+  double rotation_sigma_ratio = 1;   ///< of kPose: on rotations, where a gyroscope measures them
+  /// Of the edges from a smooth surface (CoarseSurface), relative to the typical inverse depth; 0:
+  /// edges are independent.
+  double surface_sigma = 0;
+  double surface_spacing_px = 15;  ///< of the surface's nodes
+};
+
+/// A time before all others.
+inline constexpr double kNoGivenPoses = std::numeric_limits<double>::lowest();
+
+/// What is known before the window's events.
+struct WindowPriors {
+  double fixed_until_s = 0;              ///< poses until then are fixed; the active window begins
+  double given_until_s = kNoGivenPoses;  ///< those until then are exact
+  double typical_depth_m = 1;
+  std::span<const Landmark> landmarks;
+};
+
+struct WindowAdjustment {
+  Trajectory trajectory;  ///< the path of before, corrected
+  RayEdges edges;         ///< all of those given that still fit, in the view's corrected pose
+  double residual_before_px = 0;  ///< robust standard deviation of the events
+  double residual_after_px = 0;
+  bool ok = false;  ///< false: too little to adjust; nothing is changed
+};
+
+/// Bundle adjustment over a sliding window (Triggs et al., 2000), edges in place of points: a
+/// NodeCorrection of the path, and of every edge the inverse depth, offset, tilt and hysteresis. It
+/// minimises the residual of edge_residual.h with the noise model of edge_noise.h, by Ceres with
+/// the edges eliminated first (Schur). The fixed poses and the landmarks on which edges lie
+/// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic;
+/// one thread.
+[[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const RayEdges& edges,
+                                             const PinholeCamera& camera,
+                                             const WindowPriors& priors,
+                                             const WindowAdjustmentOptions& options);
+
+}  // namespace saccade

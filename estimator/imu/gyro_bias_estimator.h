@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/imu_sample.h"
+#include "estimator/imu/rest_detector.h"
+
+namespace saccade {
+
+/// Noise of a gyroscope, in Kalibr's meaning.
+struct GyroscopeNoise {
+  double density = 1e-3;      ///< [rad/s/sqrt(Hz)]
+  double random_walk = 2e-5;  ///< [rad/s^2/sqrt(Hz)]
+  double bias_sigma = 0.1;    ///< of one component of the bias at the start [rad/s]
+};
+
+/// The bias of a gyroscope, measured while the sensor is at rest (thesis 3.1.3), window by window:
+///   bias <- bias + alpha_bias (w - bias)                                                    (3.17)
+/// (printed without the previous bias). With P the variance of the bias and R that of the window's
+/// mean, alpha_bias = P / (P + R), the gain of a Kalman filter: the estimate is the mean over the
+/// rest so far, and later windows change it less and less.
+class GyroBiasEstimator {
+ public:
+  explicit GyroBiasEstimator(const GyroscopeNoise& noise);
+
+  /// Adds a sample that holds for `dt_s` > 0.
+  void add(const ImuSample& sample, double dt_s);
+
+  /// Discards the unfinished window, as after a gap.
+  void interrupt() { rest_.interrupt(); }
+
+  [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]
+  [[nodiscard]] double sigma() const;                                  ///< of one component [rad/s]
+  [[nodiscard]] bool is_at_rest() const { return rest_.is_at_rest(); }  ///< in the last window
+
+ private:
+  GyroscopeNoise noise_;
+  RestDetector rest_;
+  Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
+  double variance_;  ///< P [rad^2/s^2]
+};
+
+}  // namespace saccade

@@ -1,0 +1,128 @@
+#include "estimator/odometry/presets.h"
+
+#include "core/config/method_table.h"
+
+namespace saccade {
+namespace {
+
+/// Tracking by keyframes: the accurate setting of `saccade run track`; `event_map_ratio` is r of
+/// (4.21).
+TrackerOptions tracking_by_keyframes(double event_map_ratio) {
+  TrackerOptions tracking;
+  tracking.templates.redraw_px = 8;
+  tracking.event_frame.ratio = event_map_ratio;
+  tracking.motion.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  tracking.motion.agility_px = 1000;
+  return tracking;
+}
+
+/// Depth of keyframes by regression over event rays. Less certain points than those of `saccade run
+/// depth` (configs/depth/best.yaml: 1.5 %, two neighbours, 2 %) are kept: the camera is tracked by
+/// their number more than by their precision.
+DepthConfig depth_of_keyframes() {
+  DepthConfig depth;
+  depth.method = DepthConfig::Method::kRays;
+  depth.limits = {.near_m = 0.3, .far_m = 50};
+  depth.rays.refiner.max_sigma = 0.03;
+  depth.rays.fusion.min_neighbours = 1;
+  depth.rays.fusion.max_sigma = 0.05;
+  return depth;
+}
+
+/// Images of keyframes: the best reconstruction of `saccade run reconstruct`
+/// (configs/reconstruction/best.yaml).
+void set_equations(ReconstructionConfig& image) {
+  image.method = ReconstructionConfig::Method::kEquations;
+  EquationOptions& equations = image.equations;
+  LevelOptions& levels = equations.levels;
+  levels.event_sigma = 0.075;
+  levels.track_events = 12;
+  levels.still = true;
+  levels.still_px = 0.7;
+  levels.still_turns = 4;
+  levels.still_events = 40;
+  levels.beyond = 0.4;
+  levels.places.redraw_px = 8;
+  levels.places.parallax_px = 1.4;
+  levels.places.step_margin_px = 1;
+  equations.smoothness = 0.05;
+  equations.tolerance = 0.005;
+  equations.bound_sigma = 0.3;
+  equations.thin_px = 0.9;
+}
+
+/// The thesis's reconstruction (chapter 6; configs/reconstruction/thesis.yaml).
+void set_gradient(ReconstructionConfig& image) {
+  image.method = ReconstructionConfig::Method::kGradient;
+  image.depth.propagation = DepthSourceOptions::Propagation::kSplat;
+  image.gradient.boundary = Boundary::kDirichlet;
+  LevelOptions& levels = image.gradient.levels;
+  levels.event_sigma = 0.1;
+  levels.still = true;
+  levels.still_px = 2;
+  levels.places.redraw_px = 4;
+}
+
+/// Keyframes of edges with depth, each adjusted together with the poses of its window.
+OdometryOptions edges() {
+  OdometryOptions options;
+  options.keyframe = {.distance = 0.05, .active_window_s = 0.4, .active = 3};
+  options.tracker = tracking_by_keyframes(0.1);
+  MappingOptions& mapping = options.mapping;
+  mapping.depth = depth_of_keyframes();
+  set_equations(mapping.reconstruction);
+  // The window is 0.65 s long however many events that is.
+  mapping.events = 2000000;
+  mapping.duration_s = 0.65;
+  mapping.view = MappingOptions::View::kMiddle;
+  mapping.edges = MappingOptions::Edges::kDepth;
+  mapping.min_edges = 600;
+  mapping.smoothing_s = 0.01;
+  mapping.adjust_rounds = 1;
+  WindowAdjustmentOptions& adjustment = mapping.adjustment;
+  adjustment.node_spacing_s = 0.02;
+  adjustment.edges = 800;
+  // Only from given poses do events say how far away an edge is in metres.
+  adjustment.given_pairs = 5;
+  adjustment.pose_sigma_px = 1;
+  adjustment.smoothness_sigma_px = 0.1;
+  adjustment.fixed_sigma_px = 0.02;
+  adjustment.landmark_sigma_px = 0.1;
+  adjustment.landmark_depth_sigma = 0.003;
+  return options;
+}
+
+/// The loop of the thesis (fig. 7.1): a keyframe of depth (chapter 5) and reconstruction (chapter
+/// 6), backwards from the newest event, replaces the one before.
+OdometryOptions thesis() {
+  OdometryOptions options;
+  options.keyframe = {.distance = 0.1, .active_window_s = 0.1, .active = 1};
+  options.relocation = Relocation::kNever;
+  options.tracker = tracking_by_keyframes(0.3);
+  MappingOptions& mapping = options.mapping;
+  mapping.depth.method = DepthConfig::Method::kThesis;
+  mapping.depth.limits = {.near_m = 0.5, .far_m = 50};
+  // A keyframe's window is short: points count at three times the usual sigma.
+  mapping.depth.thesis.filter.converged = 0.1;
+  set_gradient(mapping.reconstruction);
+  mapping.events = 300000;
+  mapping.duration_s = 0.4;
+  mapping.view = MappingOptions::View::kEnd;
+  mapping.edges = MappingOptions::Edges::kGradient;
+  // After a short start the gradient of what moved fast is wide and outweighs everything else.
+  mapping.steep.thin = true;
+  return options;
+}
+
+constexpr OdometryMethod kMethods[] = {{.name = "edges", .preset = edges},
+                                       {.name = "thesis", .preset = thesis}};
+
+}  // namespace
+
+std::span<const OdometryMethod> odometry_methods() { return kMethods; }
+
+OdometryOptions odometry_preset(std::string_view method) {
+  return config::find_method(odometry_methods(), method).preset();
+}
+
+}  // namespace saccade

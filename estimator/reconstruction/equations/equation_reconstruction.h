@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/config/fields.h"
+#include "estimator/reconstruction/image_estimator.h"
+
+namespace saccade {
+
+struct EquationOptions {
+  /// Thresholds of real pixels drift, so that an offset is trusted for a few events; that costs ideal
+  /// data next to nothing (docs/reconstruction.md).
+  ObservationOptions observations{
+      .event_sigma = 0.075,
+      .run_events = 12,
+      .no_event_spacing_px = 0.7,
+      .no_event_stride = 4,
+      .dense_events_per_px = 40,
+      .expected_fraction = 0.4,
+      .reprojection = {
+          .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
+  double merge_radius_px = 0.9;
+  double smoothness_sigma = 0.05;
+  double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]
+  double tolerance = 0.005;
+};
+
+void describe(config::Fields& fields, EquationOptions& options);
+
+/// Every event is one linear equation of the reference view's log intensity: at the instant of its
+/// k-th event a pixel observes it exactly, but for an offset of its own,
+///   L(reprojection at t_k) = c_pixel + sum_(i <= k) p_i C,
+/// the left side bilinear between pixels. With no-event constraints and total variation as a prior
+/// they are a sparse linear least-squares problem for image and offsets, solved with iteratively
+/// reweighted least squares; no gradient is linearised and none integrated.
+class EquationReconstruction : public ImageSolver {
+ public:
+  explicit EquationReconstruction(const EquationOptions& options) : options_(options) {}
+  [[nodiscard]] Reconstruction solve(ObservationSource& source, std::span<const Event> events,
+                                     const Trajectory& world_from_camera, const ReferenceGrid& grid,
+                                     const ProgressCallback& progress) const override;
+
+ private:
+  EquationOptions options_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/camera.h"
+#include "estimator/depth/ray_depth.h"
+
+namespace saccade {
+
+struct RefinedDepth {
+  DepthResult result;      ///< fused, as `saccade run depth` fuses
+  std::size_t edges = 0;   ///< that were adjusted
+  double cost_before = 0;  ///< sum over the edges
+  double cost_after = 0;
+};
+
+/// The optimum of every edge's inverse depth, offset, tilt and hysteresis over all events of the
+/// window that pass near it (edge_residual.h, edge_noise.h), poses fixed, by Ceres; the sigma of the
+/// depth is that of its covariance. `start`: a run's points in the window's view; edges near them
+/// are kept and begin there. `depth` finds and fuses the edges. Deterministic; thread-safe.
+[[nodiscard]] RefinedDepth refine_depth_of(const ViewWindow& window,
+                                           std::span<const EdgeDepth> start,
+                                           const PinholeCamera& camera, const RayDepth& depth,
+                                           int slabs);
+
+}  // namespace saccade

@@ -1,0 +1,190 @@
+#include "estimator/refinement/joint/refine_joint.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/io/covariance_file.h"
+#include "core/io/keyframe_list.h"
+#include "core/median.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/stopwatch.h"
+#include "estimator/edges/batch/batch_windows.h"
+#include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/odometry/metric_world.h"
+#include "estimator/odometry/odometry_config.h"
+#include "estimator/odometry/odometry_output.h"
+#include "estimator/run/run_input.h"
+#include "estimator/tracking/pose_output.h"
+
+namespace saccade {
+namespace {
+
+/// The whole run as its refinement needs it.
+struct BatchRun {
+  OdometryConfig odometry;
+  std::vector<TrackedPose> poses;
+  std::vector<KeyframeEntry> keyframes;
+  Events events;
+  RunRecord::Window window;
+  BatchInput start;
+};
+
+BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun& run) {
+  BatchRun input;
+  input.odometry = run.config<OdometryConfig>();
+  input.poses = run.poses();
+  input.keyframes = read_keyframe_list(run.folder / "keyframes.yaml");
+  if (input.keyframes.empty())
+    throw InputError((run.folder / "keyframes.yaml").string(),
+                     "holds no keyframe: nothing to refine");
+  const bool has_truth = input.odometry.start.truth_s > 0;
+  if (!run.record.window || (has_truth && dataset.groundtruth().empty()))
+    throw InputError(run.folder.string(), "does not say where its given start ends");
+  // The run's window begins where the given start ends; the events of the start belong to it.
+  input.events = load_events(request, dataset);
+  input.window = *run.record.window;
+  const double first_s = seconds_from_ns(input.events.front().t_ns);
+  BatchInput& start = input.start;
+  std::vector<StampedPose> given;
+  for (StampedPose pose : dataset.groundtruth().poses()) {
+    if (!has_truth) break;
+    pose.t_s += input.odometry.start.time_offset_s;
+    if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) given.push_back(pose);
+  }
+  std::vector<StampedPose> found =
+      known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
+                 run.folder.string());
+  // Without given poses the first that was found fixes the position.
+  if (!has_truth) given.assign(1, found.front());
+  start.is_metric = has_truth;
+  start.path = given;
+  for (const StampedPose& pose : found)
+    if (start.path.empty() || pose.t_s > start.path.back().t_s) start.path.push_back(pose);
+  start.given = std::move(given);
+  std::vector<double> depths;
+  for (const KeyframeEntry& keyframe : input.keyframes) {
+    start.keyframe_s.push_back(keyframe.t_s);
+    depths.push_back(keyframe.typical_depth_m);
+  }
+  start.typical_depth_m = median(std::move(depths));
+  return input;
+}
+
+/// The poses of the run, replaced by those of the path, and their covariances.
+std::vector<StampedCovariance> replace_poses(const BatchAdjustment& result,
+                                             std::vector<TrackedPose>& poses) {
+  for (TrackedPose& pose : poses) {
+    pose.world_from_camera = result.path.at_clamped(seconds_from_ns(pose.t_ns));
+    pose.status = TrackStatus::kOk;
+    pose.iterations = static_cast<int>(result.costs.steps().size());
+    pose.inlier_ratio = 1;
+    pose.residual = result.residual_px;
+  }
+  if (result.covariance.size() == 0) return {};
+  return set_sigmas(poses, [&](double t_s) { return result.covariance_at(t_s); });
+}
+
+/// The path in metres and a world whose z axis points up.
+void transform_to_metric_world(BatchAdjustment& result) {
+  std::vector<StampedPose> poses(result.path.poses().begin(), result.path.poses().end());
+  for (StampedPose& pose : poses)
+    pose.world_from_camera = in_metric_world(*result.inertial, pose.world_from_camera);
+  result.path = Trajectory(std::move(poses));
+  for (Eigen::Index i = 0; i < result.covariance.rows(); ++i) {
+    if (i % PathCorrection::kSize >= 3) continue;
+    result.covariance.row(i) *= result.inertial->scale;
+    result.covariance.col(i) *= result.inertial->scale;
+  }
+}
+
+/// The run's keyframes with their depth on the refined path.
+std::vector<Keyframe> keyframes_on(const BatchRun& run, const Trajectory& path,
+                                   const PinholeCamera& camera, const RayDepth& depth,
+                                   double window_s) {
+  std::vector<Keyframe> keyframes(run.keyframes.size());
+  parallel_for(keyframes.size(), [&](std::size_t k) {
+    Keyframe& keyframe = keyframes[k];
+    keyframe.t_s = run.keyframes[k].t_s;
+    keyframe.world_from_camera = path.at_clamped(keyframe.t_s);
+    keyframe.start_s = std::max(path.start_s(), keyframe.t_s - window_s / 2);
+    keyframe.end_s = std::min(path.end_s(), keyframe.t_s + window_s / 2);
+    keyframe.depth =
+        depth.estimate({events_of_view(run.events, keyframe.t_s, window_s), &path, keyframe.t_s});
+    keyframe.edges = points_in_world(keyframe.depth, camera, keyframe.world_from_camera);
+  });
+  return keyframes;
+}
+
+}  // namespace
+
+RunSummary refine_joint(const RunRequest& request, const RefinementConfig& config,
+                        const Dataset& dataset, const SourceRun& run, RunWriter& writer) {
+  RunTiming timing;
+  std::optional<ScopedTimer> io(timing.io_s);
+  BatchRun input = load(request, dataset, run);
+  if (config.joint.use_imu) input.start.imu = load_mounted_imu(dataset, "joint.use_imu");
+  io.reset();
+  const DepthConfig& method = input.odometry.odometry.mapping.depth;
+  const PinholeCamera camera = input.odometry.camera.of(dataset.camera());
+  const RayDepth depth(method.rays, method.limits, camera);
+  BatchAdjustment result;
+  Progress progress("refine", config.joint.steps() * static_cast<std::size_t>(request.repeat),
+                    "steps");
+  for (int i = 0; i < request.repeat; ++i) {
+    double wall_s = 0;
+    {
+      const ScopedTimer clock(wall_s);
+      result = adjust_batch(input.events, input.start, camera, depth, config.joint,
+                            [&](std::size_t n) { progress.add(n); });
+    }
+    timing.wall_s.push_back(wall_s);
+  }
+  const bool is_scaled = result.inertial && !input.start.is_metric;
+  if (is_scaled) {
+    transform_to_metric_world(result);
+    for (KeyframeEntry& keyframe : input.keyframes)
+      keyframe.typical_depth_m *= result.inertial->scale;
+  }
+  double depth_s = 0;
+  std::vector<Keyframe> keyframes;
+  {
+    const ScopedTimer clock(depth_s);
+    keyframes =
+        keyframes_on(input, result.path, camera.undistorted(), depth, config.joint.window_s);
+  }
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    KeyframeEntry& entry = input.keyframes[k];
+    entry.world_from_camera = keyframes[k].world_from_camera;
+    entry.points = entry.edges = static_cast<std::int64_t>(keyframes[k].edges.size());
+  }
+  timing.stages_s = {{"adjustment", timing.wall_s.back()}, {"depth", depth_s}};
+  timing.events = input.events.size();
+  timing.poses = input.poses.size();
+  timing.sequence_s = input.window.end_s - input.window.start_s;
+
+  io.emplace(timing.io_s);
+  const auto covariances = replace_poses(result, input.poses);
+  write_poses(writer.path(), input.poses);
+  if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
+  if (result.inertial)
+    write_inertial_alignment(writer.path() / "inertial.yaml", *result.inertial, is_scaled);
+  result.costs.save(writer.path() / "cost.csv");
+  write_keyframes(writer.path(), camera.undistorted(), keyframes, input.keyframes);
+  io.reset();
+  writer.finish("refine", request, dataset, input.window, config.seed, config::print(config),
+                timing);
+
+  RunSummary summary;
+  summary.events = input.events.size();
+  summary.poses = input.poses.size();
+  summary.found =
+      fmt::format("{} poses and {} keyframes by {} events, residual {:.3f} px", summary.poses,
+                  input.keyframes.size(), result.observations, result.residual_px);
+  summary.wall_s = median(timing.wall_s);
+  return summary;
+}
+
+}  // namespace saccade

@@ -1,0 +1,253 @@
+#include "estimator/tracking/intensity/intensity_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "estimator/mean_time.h"
+#include "estimator/tracking/pose_solver.h"
+
+namespace saccade {
+namespace {
+
+/// Fewer do not make a pose before a silence.
+constexpr std::size_t kFewEvents = 100;
+/// Pixels are said to be known as well at the start as after this many corrections.
+constexpr float kKnownCorrections = 10;
+/// Gauss-Newton steps of a pose, always all of them: from the prediction they suffice.
+constexpr int kIterations = 4;
+/// Neighbouring residuals err alike: their information counts by this fraction.
+constexpr double kInformation = 0.1;
+/// Lost below this fraction of the mean inlier ratio, ...
+constexpr double kInlierDrop = 0.75;
+/// ... and where the camera should have moved so far without an event.
+constexpr double kSilence_px = 2;
+
+}  // namespace
+
+void describe(config::Fields& fields, IntensityOptions& options) {
+  fields
+      .value("events", options.events,
+             "Events per pose; ~ takes 1000, times (width / 240 px)^1.5 on a wider sensor. More of "
+             "them cost less time per second of recording and follow the motion more coarsely.")
+      .range(1, 1e6);
+  fields
+      .value(
+          "no_event_ratio", options.no_event_ratio,
+          "No-event constraints per aligned event: pixels between their events, which are within "
+          "a threshold of their last value. 0 disables them, which helps in dark scenes.")
+      .range(0, 1000);
+  fields
+      .value(
+          "correction_fraction", options.correction_fraction,
+          "Least fraction of its residual by which a pixel is corrected at each of its events. A "
+          "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
+      .range(0, 1);
+  fields
+      .value(
+          "map_blur_px", options.map.blur_px,
+          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
+          "0 disables it.")
+      .range(0, 10);
+}
+
+IntensityTracker::IntensityTracker(const IntensityOptions& options,
+                                   const MotionModelOptions& motion, const EventContrast& contrast,
+                                   const PinholeCamera& camera, const IntensityMap& map,
+                                   EdgeTracker edges)
+    : Tracker(motion, camera.fx, map.world_from_map()),
+      options_(options),
+      camera_(camera.undistorted()),
+      residuals_(options, contrast, camera, map),
+      fallback_(std::move(edges)) {}
+
+void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
+  motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);
+  timing_ = {};
+  last_event_ns_ = t_ns;
+  mean_inlier_ratio_ = 0;
+  misfits_ = 0;
+  judged_ = {};
+  judged_events_ = 0;
+  attempts_ = 0;
+  is_lost_ = false;
+  residuals_.reset_views_drawn();
+  restart_pixels(kKnownCorrections);
+}
+
+void IntensityTracker::restart_pixels(float corrections) {
+  const ScopedTimer clock(timing_.template_s);
+  residuals_.restart(motion_.pose(), corrections);
+}
+
+std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
+                                                 const TrackProgress& progress) {
+  Poses poses;
+  std::span<const Event> events = recording.events;
+  const std::size_t count = events_per_pose();
+  while (events.size() >= count) {
+    std::size_t done = 0;
+    if (is_lost_) {
+      done = relocalise(events, poses);
+      if (done == 0) break;  // too few events are left
+    } else {
+      done = before_silence(events.first(count));
+      if (done == count || done >= kFewEvents) poses.push_back(track_batch(events.first(done)));
+      if (done < count) lose();
+    }
+    if (done > 0) last_event_ns_ = events[done - 1].t_ns;
+    events = events.subspan(done);
+    if (progress) progress(done);
+  }
+  return poses;
+}
+
+std::size_t IntensityTracker::events_per_pose() const {
+  if (options_.events) return static_cast<std::size_t>(*options_.events);
+  constexpr double kEvents = 1000;
+  constexpr double kWidth = 240;
+  // Of the same motion an edge's length gives proportionally more events and its passage over more
+  // pixels as many again; but more pixels also tell more of the pose.
+  constexpr double kPower = 1.5;
+  const double wider = std::max(1.0, camera_.width / kWidth);
+  return static_cast<std::size_t>(std::lround(kEvents * std::pow(wider, kPower)));
+}
+
+std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
+  // However fast the camera seems to move: a velocity from few events may be anything.
+  constexpr double kShortest_s = 0.005;
+  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
+  TimeNs before_ns = last_event_ns_;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const double gap_s = seconds_from_ns(events[i].t_ns - before_ns);
+    if (gap_s > kShortest_s && gap_s * speed_px > kSilence_px) return i;
+    before_ns = events[i].t_ns;
+  }
+  return events.size();
+}
+
+bool IntensityTracker::fits_worse(const Sums& sums, std::size_t events) {
+  // Few events say little: those of several poses are judged together.
+  constexpr std::size_t kEnough = 1000;
+  constexpr double kUnknowns = 6;
+  judged_.visible += sums.visible;
+  judged_.inliers += sums.inliers;
+  judged_events_ += events;
+  if (judged_events_ < kEnough) return false;
+  judged_events_ = 0;
+  const Sums evidence = std::exchange(judged_, {});
+  if (evidence.visible < kUnknowns) return true;  // the map is not in view
+  const double inlier_ratio = evidence.inliers / evidence.visible;
+  constexpr int kPatience = 5;
+  constexpr double kLearningRate = 0.01;
+  // While the pixels are still uncertain fewer residuals fit.
+  constexpr int kUncertain = 50;
+  constexpr double kUncertainDrop = 0.6;
+  if (mean_inlier_ratio_ == 0) mean_inlier_ratio_ = inlier_ratio;
+  const bool is_certain = attempts_ == 0;
+  const double drop = kInlierDrop * (is_certain ? 1 : kUncertainDrop);
+  if (inlier_ratio < drop * mean_inlier_ratio_) return ++misfits_ >= kPatience;
+  misfits_ = 0;
+  if (is_certain) mean_inlier_ratio_ += kLearningRate * (inlier_ratio - mean_inlier_ratio_);
+  if (!is_certain && ++fits_ >= kUncertain) attempts_ = 0;
+  return false;
+}
+
+void IntensityTracker::lose() {
+  if (attempts_ == 0) lost_at_ = motion_.pose();
+  is_lost_ = true;
+  misfits_ = 0;
+  judged_ = {};
+  judged_events_ = 0;
+}
+
+Rigid3 IntensityTracker::candidate_pose(TimeNs t_ns) const {
+  // Where it should be by now, where it was, and then around it in growing circles.
+  const double gap_s = seconds_from_ns(t_ns - last_event_ns_);
+  if (attempts_ == 1) return lost_at_ * Rigid3::exp(motion_.velocity() * gap_s);
+  if (attempts_ == 2) return lost_at_;
+  constexpr int kDirections = 8;
+  constexpr double kRingSpacing_px = 6;
+  const int ring = 1 + (attempts_ - 3) / kDirections;
+  const double angle = 2 * std::numbers::pi * (attempts_ - 3) / kDirections;
+  const double rotation = kRingSpacing_px * ring / camera_.fx;
+  Twist offset = Twist::Zero();
+  offset.tail<3>() << rotation * std::sin(angle), rotation * std::cos(angle), 0;
+  return lost_at_ * Rigid3::exp(offset);
+}
+
+std::size_t IntensityTracker::relocalise(std::span<const Event> events, Poses& poses) {
+  const TimeNs t_ns = events.front().t_ns;
+  ++attempts_;
+  fallback_.reset_near(t_ns, world_from_map_ * candidate_pose(t_ns));
+  const std::size_t known = poses.size();
+  const std::size_t done = fallback_.follow(events, poses, timing_);
+  for (std::size_t i = known; i < poses.size(); ++i) poses[i].status = TrackStatus::kLost;
+  if (done == 0 || !fallback_.fits()) return done;
+  is_lost_ = false;
+  fits_ = 0;
+  motion_ = fallback_.motion();
+  restart_pixels(1);
+  return done;
+}
+
+EventResidualBatch::Motion IntensityTracker::motion_at(const Rigid3& map_from_camera) const {
+  const Rigid3 camera_from_map = map_from_camera.inverse();
+  return {camera_from_map.rotation_matrix().cast<float>(),
+          camera_from_map.translation().cast<float>(), motion_.velocity().cast<float>()};
+}
+
+TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
+  TrackedPose pose;
+  pose.first_ns = events.front().t_ns;
+  pose.last_ns = events.back().t_ns;
+  pose.t_ns = mean_time(events);
+  const PosePrediction predicted = motion_.predict(pose.t_ns, residuals_.typical_depth_m());
+  load(events, pose.t_ns, predicted.map_from_camera);
+  const PoseEstimate<Sums> estimate = align(predicted);
+  if (estimate.is_valid) {
+    motion_.update(estimate.map_from_camera, estimate.information);
+    const ScopedTimer clock(timing_.align_s);
+    residuals_.correct();
+  }
+  pose.iterations = kIterations;
+  pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
+  if (fits_worse(estimate.sums, events.size())) {
+    lose();
+    pose.status = TrackStatus::kLost;
+  }
+  pose.residual =
+      estimate.sums.weight > 0 ? std::sqrt(estimate.sums.squares / estimate.sums.weight) : 0;
+  write_pose(pose);
+  return pose;
+}
+
+void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
+                            const Rigid3& map_from_camera) {
+  {
+    const ScopedTimer clock(timing_.template_s);
+    residuals_.prepare_view(map_from_camera);
+  }
+  const ScopedTimer clock(timing_.event_frame_s);
+  residuals_.load(events, t_ns, motion_at(map_from_camera));
+}
+
+auto IntensityTracker::align(const PosePrediction& predicted) -> PoseEstimate<Sums> {
+  const ScopedTimer clock(timing_.align_s);
+  constexpr double kSigma = LogIntensityResiduals::kSigma;
+  PoseSolver pose(predicted, kInformation / (kSigma * kSigma));
+  PoseEstimate<Sums> estimate;
+  for (int i = 0; i <= kIterations; ++i) {
+    estimate.map_from_camera = pose.map_from_camera();
+    estimate.sums = residuals_.evaluate(motion_at(estimate.map_from_camera));
+    // The last round is for the evidence.
+    if (i < kIterations && !pose.step(estimate.sums)) return estimate;
+  }
+  estimate.information = pose.information(estimate.sums);
+  estimate.is_valid = true;
+  return estimate;
+}
+
+}  // namespace saccade

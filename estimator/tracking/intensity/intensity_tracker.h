@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "estimator/tracking/edges/edge_fallback.h"
+#include "estimator/tracking/intensity/event_residual_batch.h"
+#include "estimator/tracking/intensity/intensity_options.h"
+#include "estimator/tracking/intensity/log_intensity_residuals.h"
+#include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/tracker.h"
+
+namespace saccade {
+
+/// 6-DoF pose of an event camera against a map of log intensity. At the instant of an event its
+/// pixel's log intensity is known: the first value plus the thresholds of all its events. The pose
+/// is sought at which the map shows the same there:
+///   r_k = l_k - L(W(u_k; pose at t_k)),   pose(t) = pose exp((t - t_0) velocity)
+/// and beside the events no-event constraints of some pixels between theirs, which are known to
+/// within a threshold, by Gauss-Newton with Cauchy weights and the prediction's precision as a
+/// prior. It is lost where fewer residuals than on average are inliers, or no event came although
+/// the camera moves: the pixels' state is worthless then, the edges of the map are sought around
+/// the expected pose until they fit, and the pixels start anew there.
+class IntensityTracker : public Tracker {
+ public:
+  /// `camera` may be distorted; `map` outlives the tracker, `edges` finds the pose again.
+  IntensityTracker(const IntensityOptions& options, const MotionModelOptions& motion,
+                   const EventContrast& contrast, const PinholeCamera& camera,
+                   const IntensityMap& map, EdgeTracker edges);
+
+  void reset(TimeNs t_ns, const Rigid3& world_from_camera) override;
+  [[nodiscard]] std::vector<TrackedPose> track(const Recording& recording,
+                                               const TrackProgress& progress = {}) override;
+
+  [[nodiscard]] std::size_t templates_drawn() const { return residuals_.views_drawn(); }
+
+ private:
+  using Sums = EventResidualBatch::Sums;
+  using Poses = std::vector<TrackedPose>;
+
+  [[nodiscard]] std::size_t before_silence(std::span<const Event> events) const;
+  [[nodiscard]] bool fits_worse(const Sums& sums, std::size_t events);
+  std::size_t relocalise(std::span<const Event> events, Poses& poses);
+  void lose();
+  [[nodiscard]] Rigid3 candidate_pose(TimeNs t_ns) const;
+  void restart_pixels(float corrections);
+  void load(std::span<const Event> events, TimeNs t_ns, const Rigid3& map_from_camera);
+  [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
+  [[nodiscard]] std::size_t events_per_pose() const;
+  [[nodiscard]] PoseEstimate<Sums> align(const PosePrediction& predicted);
+  [[nodiscard]] EventResidualBatch::Motion motion_at(const Rigid3& map_from_camera) const;
+
+  IntensityOptions options_;
+  PinholeCamera camera_;  ///< undistorted
+  LogIntensityResiduals residuals_;
+  EdgeFallback fallback_;
+  TimeNs last_event_ns_ = 0;
+  double mean_inlier_ratio_ = 0;  ///< running mean while it is tracked; 0: not known
+  Sums judged_;                   ///< evidence since the last judgement, of so many events
+  std::size_t judged_events_ = 0;
+  int misfits_ = 0;  ///< judgements in a row that it fits worse than on average
+  bool is_lost_ = false;
+  int attempts_ = 0;  ///< to find the pose again, since it was tracked for long
+  int fits_ = 0;      ///< judgements since it was found that it fits
+  Rigid3 lost_at_;    ///< the last pose before
+};
+
+}  // namespace saccade

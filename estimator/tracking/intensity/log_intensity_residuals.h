@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/event.h"
+#include "estimator/tracking/intensity/event_residual_batch.h"
+#include "estimator/tracking/intensity/intensity_options.h"
+#include "estimator/tracking/intensity/pixel_log_intensity.h"
+#include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/map_view.h"
+
+namespace saccade {
+
+/// The residuals of the intensity tracker. Two kinds of observations say what log intensity a pixel
+/// sees: each event, at its instant, and beside them no-event constraints of pixels between their
+/// events, which are known to within a threshold C: l + p C/2 with p the polarity of the last
+/// event, with the uniform standard deviation C / sqrt(12) around it. Holds the pixels' state and
+/// the view of the map.
+class LogIntensityResiduals {
+ public:
+  /// sigma of an observation [log units]: texture between the map's point samples, noise.
+  static constexpr double kSigma = 0.05;
+
+  /// `camera` may be distorted; `map` outlives this.
+  LogIntensityResiduals(const IntensityOptions& options, const EventContrast& contrast,
+                        const PinholeCamera& camera, const IntensityMap& map);
+
+  /// Reads all pixels from the map at a pose, with the confidence of so many corrections.
+  void restart(const Rigid3& map_from_camera, float corrections);
+
+  /// Renders the map anew if the view has moved too far since.
+  void prepare_view(const Rigid3& map_from_camera);
+
+  /// Takes a batch of events in, in order of time. `t_ns` is the time of the pose that is sought,
+  /// `motion` the expected one.
+  void load(std::span<const Event> events, TimeNs t_ns, const EventResidualBatch::Motion& motion);
+
+  /// Residuals and their normal equations at a pose, over all that was loaded.
+  [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
+
+  /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate().
+  void correct();
+
+  [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
+  [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
+  void reset_views_drawn() { views_drawn_ = 0; }
+
+ private:
+  void draw_view(const Rigid3& map_from_camera);
+  void list_steep_pixels();
+  void read_pixels_from_map(float corrections);
+  /// Some `count` no-event constraints, at the time of the pose.
+  void load_no_event_constraints(std::size_t count, const EventResidualBatch::Motion& motion);
+  /// `pixel`: the one that correct() will correct.
+  void add(const LogIntensityObservation& observation, const MapSample& at, std::uint32_t pixel);
+  void prefetch(const Event& event, bool is_aligned) const;
+  /// The map's sample at a node of the view; nullptr where it is not visible.
+  [[nodiscard]] const MapSample* sample_at(const Eigen::Vector2f& pixel) const;
+  /// The map's sample under a pixel at a time; nullptr where it is not visible.
+  [[nodiscard]] const MapSample* find_sample(const Eigen::Vector2f& pixel, float time_s,
+                                             const EventResidualBatch::Motion& motion) const;
+
+  IntensityOptions options_;
+  PinholeCamera camera_;  ///< undistorted
+  UndistortionTable undistortion_;
+  const IntensityMap& map_;
+  MapView view_;
+  PixelLogIntensity pixels_;
+  float no_event_weight_;  ///< of a no-event constraint, relative to an event
+  std::vector<EventResidualBatch> batches_;
+  std::size_t batch_count_ = 0;
+  std::vector<std::uint32_t> loaded_pixels_;  ///< of all in the batches, in order
+  std::vector<std::uint32_t> steep_pixels_;   ///< where the rendered map is steep
+  std::size_t first_steep_pixel_ = 0;         ///< of them that was loaded
+  std::size_t views_drawn_ = 0;
+};
+
+}  // namespace saccade

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+
+#include "core/rigid3.h"
+
+namespace saccade {
+
+/// The freedom that is taken out of an estimate before it is compared with the truth.
+enum class Alignment { kNone, kSe3, kSim3 };
+
+/// An estimated pose and the true one at the same time.
+struct PosePair {
+  Rigid3 estimated;  ///< world_from_camera
+  Rigid3 truth;      ///< world_from_camera
+};
+
+/// truth ~ scale * rotation * estimate + translation. Orientations are rotated, not scaled.
+struct Similarity {
+  double scale = 1;
+  Rigid3 rigid;
+
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return scale * (rigid.rotation() * point) + rigid.translation();
+  }
+  [[nodiscard]] Rigid3 operator*(const Rigid3& pose) const {
+    return {rigid.rotation() * pose.rotation(), *this * pose.translation()};
+  }
+};
+
+/// Least-squares alignment of the positions (Umeyama, PAMI 13(4), 1991):
+///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
+/// with U D V^T the singular value decomposition of the covariance of truth and estimate,
+///   R = U diag(1, 1, det U det V) V^T,  s = tr(R^T covariance) / variance(estimate) (1 for SE(3)).
+/// What of R the positions leave open is arbitrary. An estimate that stands still, or that makes
+/// the best scale zero, keeps scale 1. No pairs, or Alignment::kNone: the identity.
+[[nodiscard]] Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment);
+
+/// The same for poses. Where the positions leave the rotation open, the orientations decide the
+/// rest by their chordal mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a
+/// standstill, the roll about the main direction on a path that is straight (one singular value) or
+/// bends by less than ten times the error of the positions, so that they would say the roll to
+/// no better than a tenth radian.
+[[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
+
+}  // namespace saccade

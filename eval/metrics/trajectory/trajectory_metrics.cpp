@@ -1,0 +1,146 @@
+#include "eval/metrics/trajectory/trajectory_metrics.h"
+
+#include <algorithm>
+
+#include "eval/metrics/statistics.h"
+#include "eval/metrics/trajectory/relative_error.h"
+
+namespace saccade {
+namespace {
+
+/// True error from which tracking counts as lost.
+constexpr double kLostDepthPercent = 5;
+constexpr double kLostDeg = 5;
+
+ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>& mean_depth_m) {
+  ErrorSeries series;
+  series.t_s = samples.t_s;
+  for (std::size_t i = 0; i < samples.t_s.size(); ++i) {
+    const Rigid3& estimated = samples.estimated[i];
+    const Rigid3& truth = samples.truth[i];
+    const double error_m = (estimated.translation() - truth.translation()).norm();
+    series.dt_m.push_back(error_m);
+    if (mean_depth_m) series.dt_rel_percent.push_back(100 * error_m / *mean_depth_m);
+    series.dtheta_deg.push_back(kDegreesPerRadian *
+                                angle_between(estimated.rotation(), truth.rotation()));
+  }
+  return series;
+}
+
+void set_aligned(Metrics& metrics, const std::string& key, std::span<const PosePair> pairs,
+                 Alignment alignment) {
+  // The smallest error of the positions; a rotation about a straight path leaves them alone.
+  const Similarity by_positions = align_positions(pairs, alignment);
+  const Similarity by_poses = align(pairs, alignment);
+  std::vector<double> trans_m, rot_deg;
+  for (const PosePair& pair : pairs) {
+    trans_m.push_back(
+        (by_positions * pair.estimated.translation() - pair.truth.translation()).norm());
+    rot_deg.push_back(kDegreesPerRadian *
+                      angle_between((by_poses * pair.estimated).rotation(), pair.truth.rotation()));
+  }
+  std::optional<double> ate, rot, scale;
+  if (!pairs.empty()) {
+    ate = statistics_of(trans_m).rmse;
+    rot = statistics_of(rot_deg).rmse;
+    scale = by_positions.scale;
+  }
+  metrics.set(key + ".ate_rmse_m", ate);
+  metrics.set(key + ".rot_rmse_deg", rot);
+  metrics.set(key + ".scale", scale);
+}
+
+/// Of the protocol of Rebecq et al. (BMVC 2017): SE(3) by the poses of the first 5 s alone.
+std::optional<double> error_after_begin_percent(const TrajectoryScoreInput& input,
+                                                const ScoredTime& interval,
+                                                std::span<const PosePair> pairs, double path_m) {
+  constexpr double kBeginS = 5;
+  if (interval.duration() <= kBeginS || path_m <= 0) return std::nullopt;
+  std::size_t begin = 0;
+  for (const StampedPose& pose : input.estimate.poses())
+    if (pose.t_s >= interval.start_s && pose.t_s <= interval.start_s + kBeginS) ++begin;
+  if (begin == 0) return std::nullopt;
+  const Similarity truth_from_estimate = align_positions(pairs.first(begin), Alignment::kSe3);
+  double sum_m = 0;
+  for (const PosePair& pair : pairs)
+    sum_m += (truth_from_estimate * pair.estimated.translation() - pair.truth.translation()).norm();
+  return 100 * sum_m / static_cast<double>(pairs.size()) / path_m;
+}
+
+std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
+  if (series.dt_rel_percent.empty()) return std::nullopt;
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < series.t_s.size(); ++i)
+    if (series.dt_rel_percent[i] > kLostDepthPercent || series.dtheta_deg[i] > kLostDeg) ++lost;
+  return duration_s * static_cast<double>(lost) / static_cast<double>(series.t_s.size());
+}
+
+}  // namespace
+
+ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
+}
+
+ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
+  return series_of(scored_samples(input), input.mean_depth_m);
+}
+
+std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
+  std::vector<PosePair> pairs;
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  if (!interval) return pairs;
+  for (const StampedPose& pose : input.estimate.poses())
+    if (pose.t_s >= interval->start_s && pose.t_s <= interval->end_s)
+      pairs.push_back({pose.world_from_camera, input.truth.at_clamped(pose.t_s)});
+  return pairs;
+}
+
+double reported_lost_s(const std::vector<PoseStatus>& reported, const ScoredTime& interval) {
+  double lost = 0;
+  for (std::size_t i = 0; i < reported.size(); ++i) {
+    if (!reported[i].is_lost) continue;
+    const double until = i + 1 < reported.size() ? reported[i + 1].t_s : interval.end_s;
+    lost += std::max(0.0,
+                     std::min(until, interval.end_s) - std::max(reported[i].t_s, interval.start_s));
+  }
+  return lost;
+}
+
+Metrics score_trajectory(const TrajectoryScoreInput& input) {
+  Metrics metrics;
+  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  const ScoredSamples samples = scored_samples(input);
+  const ErrorSeries series = series_of(samples, input.mean_depth_m);
+  set_statistics(metrics, "trajectory.dt_rel_percent", series.dt_rel_percent);
+  set_statistics(metrics, "trajectory.dt_m", series.dt_m);
+  set_statistics(metrics, "trajectory.dtheta_deg", series.dtheta_deg);
+
+  const std::vector<PosePair> pairs = associate(input);
+  set_aligned(metrics, "trajectory.none", pairs, Alignment::kNone);
+  set_aligned(metrics, "trajectory.se3", pairs, Alignment::kSe3);
+  set_aligned(metrics, "trajectory.sim3", pairs, Alignment::kSim3);
+  set_relative_errors(metrics, samples);
+  metrics.set("trajectory.drift_percent", drift_percent(samples));
+
+  metrics.set("trajectory.poses", static_cast<double>(input.estimate.size()));
+  metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
+  std::optional<double> covered, duration, path, lost, reported, after_begin;
+  if (interval) {
+    duration = interval->duration();
+    covered = coverage(input.estimate, *interval);
+    if (!samples.t_s.empty()) path = path_lengths(samples).back();
+    lost = lost_s(series, *duration);
+    after_begin = error_after_begin_percent(input, *interval, pairs, path.value_or(0));
+    if (input.reported) reported = reported_lost_s(*input.reported, *interval);
+  }
+  metrics.set("trajectory.se3_5s.mean_percent", after_begin);
+  metrics.set("trajectory.coverage", covered);
+  metrics.set("trajectory.duration_s", duration);
+  metrics.set("trajectory.path_length_m", path);
+  metrics.set("trajectory.lost_s", lost);
+  metrics.set("trajectory.reported_lost_s", reported);
+  return metrics;
+}
+
+}  // namespace saccade

@@ -1,0 +1,106 @@
+#include "eval/picture/chart/bar_chart.h"
+
+#include <algorithm>
+
+#include "eval/number_text.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/chart/chart_elements.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kPlotWidth = 250;
+constexpr int kBar = 13;
+constexpr int kRowGap = 12;
+constexpr int kAbovePlots = 36;
+constexpr int kBelowPlots = 30;
+constexpr int kPanelGap = 70;  ///< between panels: room for the longest value
+
+int row_height(const BarChart& chart) {
+  return kBar * static_cast<int>(std::max<std::size_t>(1, chart.names.size())) + kRowGap;
+}
+
+int label_width(const BarChart& chart) {
+  int width = 0;
+  for (const std::string& category : chart.categories)
+    width = std::max(width, Canvas::text_width(category, kChartLetters));
+  return width + 28;
+}
+
+std::vector<double> values(const BarChart::Panel& panel) {
+  std::vector<double> all;
+  for (const auto& category : panel.bars)
+    for (const auto& bar : category)
+      if (bar) all.insert(all.end(), {bar->value, bar->low, bar->high});
+  return all;
+}
+
+void draw_rectangle(Canvas& canvas, double left, double right, int top, const Rgb8& colour) {
+  const int width = std::max(1, static_cast<int>(right - left));
+  canvas.paste(ImageRgb8(width, kBar - 2, colour), static_cast<int>(left), top);
+}
+
+class BarPlot {
+ public:
+  BarPlot(Canvas& canvas, const BarChart& chart, const BarChart::Panel& panel, double left,
+          const Theme& theme)
+      : canvas_(canvas), left_(left), theme_(theme), axis_(values(panel), true) {
+    const int rows = static_cast<int>(chart.categories.size()) * row_height(chart);
+    draw_frame(panel.title, rows);
+    for (std::size_t category = 0; category < panel.bars.size(); ++category)
+      for (std::size_t name = 0; name < panel.bars[category].size(); ++name)
+        if (const std::optional<ChartValue>& bar = panel.bars[category][name])
+          draw_bar(*bar, name,
+                   kAbovePlots + static_cast<int>(category) * row_height(chart) + kRowGap / 2 +
+                       static_cast<int>(name) * kBar);
+  }
+
+ private:
+  [[nodiscard]] double column(double value) const {
+    return left_ + kPlotWidth * axis_.position(value);
+  }
+
+  void draw_frame(const std::string& title, int rows) {
+    canvas_.text(title, {left_, kAbovePlots - 14.0}, theme_.text, kChartLetters + 1);
+    draw_x_axis(canvas_, axis_, {left_, static_cast<double>(kAbovePlots)},
+                {static_cast<double>(kPlotWidth), static_cast<double>(rows)}, kChartLetters - 1,
+                theme_);
+  }
+
+  void draw_bar(const ChartValue& bar, std::size_t name, int top) {
+    const double base = axis_.is_logarithmic() ? axis_.ticks().front() : 0;
+    const double from = column(base), to = column(bar.value);
+    draw_rectangle(canvas_, std::min(from, to), std::max(from, to), top, series_colour(name));
+    const double middle = top + (kBar - 2) / 2.0;
+    if (bar.low < bar.high)
+      canvas_.line({column(bar.low), middle}, {column(bar.high), middle}, theme_.text, 1);
+    canvas_.text(rounded(bar.value), {std::max(to, column(bar.high)) + 5, middle + 4}, theme_.text,
+                 kChartLetters - 1);
+  }
+
+  Canvas& canvas_;
+  double left_;
+  const Theme& theme_;
+  Axis axis_;
+};
+
+}  // namespace
+
+ImageRgb8 draw(const BarChart& chart, const Theme& theme) {
+  const int labels = label_width(chart);
+  const int rows = static_cast<int>(chart.categories.size()) * row_height(chart);
+  const int width = labels + static_cast<int>(chart.panels.size()) * (kPlotWidth + kPanelGap);
+  const int plots = kAbovePlots + rows + kBelowPlots;
+  Canvas canvas(width, plots + legend_height(chart.names, width), theme.background);
+  for (std::size_t i = 0; i < chart.categories.size(); ++i) {
+    const double middle = kAbovePlots + (static_cast<double>(i) + 0.5) * row_height(chart);
+    canvas.text(chart.categories[i], {14, middle + 4}, theme.text, kChartLetters);
+  }
+  for (std::size_t i = 0; i < chart.panels.size(); ++i)
+    const BarPlot plot(canvas, chart, chart.panels[i],
+                       labels + static_cast<double>(i) * (kPlotWidth + kPanelGap), theme);
+  draw_legend(canvas, chart.names, plots, theme);
+  return canvas.image();
+}
+
+}  // namespace saccade

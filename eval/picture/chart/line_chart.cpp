@@ -1,0 +1,99 @@
+#include "eval/picture/chart/line_chart.h"
+
+#include <algorithm>
+
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/chart/chart_elements.h"
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr int kPanelWidth = 400;
+constexpr int kPanelHeight = 330;
+/// From the panel's edges to the frame of its plot.
+constexpr double kLeft = 62, kRight = 18, kTop = 34, kBottom = 46;
+
+/// One panel with its two axes.
+class LinePlot {
+ public:
+  LinePlot(Canvas& canvas, const LineChart& chart, const LineChart::Panel& panel, double left,
+           const Theme& theme)
+      : canvas_(canvas),
+        panel_(panel),
+        left_(left + kLeft),
+        theme_(theme),
+        x_(values(panel, false), false),
+        y_(values(panel, true), true) {
+    draw_frame(panel.x_label.empty() ? chart.x_label : panel.x_label);
+    for (std::size_t i = 0; i < panel.lines.size(); ++i) draw_line(i);
+  }
+
+ private:
+  static std::vector<double> values(const LineChart::Panel& panel, bool of_y) {
+    std::vector<double> all;
+    for (const auto& line : panel.lines)
+      for (const LineChart::Point& point : line) {
+        if (of_y)
+          all.insert(all.end(), {point.y.value, point.y.low, point.y.high});
+        else
+          all.push_back(point.x);
+      }
+    return all;
+  }
+
+  [[nodiscard]] static double width() { return kPanelWidth - kLeft - kRight; }
+  [[nodiscard]] static double height() { return kPanelHeight - kTop - kBottom; }
+  [[nodiscard]] double column(double x) const { return left_ + width() * x_.position(x); }
+  [[nodiscard]] double row(double y) const { return kTop + height() * (1 - y_.position(y)); }
+
+  void draw_frame(const std::string& x_label) {
+    const double right = left_ + width(), bottom = kTop + height();
+    const Rgb8 grey = tick_colour(theme_);
+    for (const double tick : y_.ticks()) {
+      canvas_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
+      const std::string text = Axis::text(tick);
+      canvas_.text(text, {left_ - 6 - Canvas::text_width(text, kChartLetters), row(tick) + 4}, grey,
+                   kChartLetters);
+    }
+    draw_x_axis(canvas_, x_, {left_, kTop}, {width(), height()}, kChartLetters, theme_);
+    canvas_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
+    const double middle = left_ + width() / 2 - Canvas::text_width(x_label, kChartLetters) / 2.0;
+    canvas_.text(x_label, {middle, bottom + 36}, theme_.text, kChartLetters);
+  }
+
+  void draw_line(std::size_t index) {
+    const Rgb8 colour = series_colour(index);
+    std::vector<Vector2d> points;
+    for (const LineChart::Point& point : panel_.lines[index]) {
+      points.emplace_back(column(point.x), row(point.y.value));
+      canvas_.line({column(point.x), row(point.y.low)}, {column(point.x), row(point.y.high)},
+                   mix(theme_.background, colour, 0.5), 2);
+    }
+    canvas_.polyline(points, colour, 2);
+    for (const Vector2d& point : points) canvas_.disc(point, 3.2, colour);
+  }
+
+  Canvas& canvas_;
+  const LineChart::Panel& panel_;
+  double left_;
+  const Theme& theme_;
+  Axis x_;
+  Axis y_;
+};
+
+}  // namespace
+
+ImageRgb8 draw(const LineChart& chart, const Theme& theme) {
+  const int width = kPanelWidth * std::max(1, static_cast<int>(chart.panels.size()));
+  const int plots = chart.panels.empty() ? 0 : kPanelHeight;
+  Canvas canvas(width, plots + legend_height(chart.names, width), theme.background);
+  for (std::size_t i = 0; i < chart.panels.size(); ++i)
+    const LinePlot plot(canvas, chart, chart.panels[i], static_cast<double>(i) * kPanelWidth,
+                        theme);
+  draw_legend(canvas, chart.names, plots, theme);
+  return canvas.image();
+}
+
+}  // namespace saccade

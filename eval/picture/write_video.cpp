@@ -1,0 +1,31 @@
+#include "eval/picture/write_video.h"
+
+#include "core/progress.h"
+#include "eval/picture/video_writer.h"
+
+namespace saccade {
+
+void write_video(const std::filesystem::path& output, std::size_t count, double fps, int crf,
+                 const std::function<ImageRgb8(std::size_t)>& frame) {
+  const ImageRgb8 first = frame(0);
+  VideoWriter video(output, first.width(), first.height(), fps, crf);
+  Progress progress("rendering", count, "frames");
+  for (std::size_t i = 0; i < count; ++i) {
+    video.add(i == 0 ? first : frame(i));
+    progress.add(1);
+  }
+  video.finish();
+}
+
+void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
+                             const RenderOptions& options,
+                             const std::function<ImageRgb8(double)>& frame) {
+  constexpr double kFps = 30;
+  const double fps = options.fps.value_or(kFps);
+  const double step_s = 1 / (fps * options.slow_motion);
+  const auto count = static_cast<std::size_t>((span.end_s - span.start_s) / step_s) + 1;
+  write_video(output, count, fps, options.crf,
+              [&](std::size_t i) { return frame(span.start_s + static_cast<double>(i) * step_s); });
+}
+
+}  // namespace saccade

@@ -1,0 +1,277 @@
+#include "eval/sweep/plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "core/check.h"
+#include "core/shell.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// A text as part of a file name: other characters become single dashes.
+std::string file_name_part(std::string_view text) {
+  std::string part = text.starts_with('-') ? "-" : "";  // the sign of a number
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                       std::string_view("._+").find(c) != std::string_view::npos;
+    if (plain)
+      part += c;
+    else if (!part.empty() && part.back() != '-')
+      part += '-';
+  }
+  while (part.ends_with('-')) part.pop_back();
+  if (part.empty()) return "_";
+  return part.starts_with('.') ? "_" + part : part;
+}
+
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+/// "samples" of "align.samples"; the whole key where two axes end in the same word.
+std::string short_key(const std::string& key, const Grid& grid) {
+  const auto has_same_end = [&](const GridAxis& axis) {
+    return last_part(axis.key) == last_part(key);
+  };
+  return std::count_if(grid.begin(), grid.end(), has_same_end) > 1 ? key : last_part(key);
+}
+
+/// Makes names unique, ignoring upper and lower case.
+class UniqueNames {
+ public:
+  std::string unique(const std::string& wanted) {
+    std::string name = wanted;
+    for (int i = 2; !taken_.insert(folded(name)).second; ++i)
+      name = fmt::format("{}.{}", wanted, i);
+    return name;
+  }
+
+ private:
+  static std::string folded(std::string name) {
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+  }
+
+  std::set<std::string> taken_;
+};
+
+void append(Words& words, const Settings& settings) {
+  for (const Setting& setting : settings)
+    words.insert(words.end(), {"--set", setting.key + "=" + setting.value});
+}
+
+void append(Words& words, const char* option, const std::string& value) {
+  words.insert(words.end(), {option, value});
+}
+
+void append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
+
+/// Independent of the working directory, so that a job is recognised in later calls.
+fs::path fixed_path(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
+
+/// The seeds, or one nullopt: the seed that the file states.
+std::vector<std::optional<std::uint64_t>> seeds_or_default(
+    const std::vector<std::uint64_t>& seeds) {
+  if (seeds.empty()) return {std::nullopt};
+  return {seeds.begin(), seeds.end()};
+}
+
+/// Every combination of the values; the last axis changes fastest. One empty combination without
+/// axes.
+std::vector<std::vector<std::string>> combinations(const Grid& grid) {
+  std::vector<std::vector<std::string>> all{{}};
+  for (const GridAxis& axis : grid) {
+    std::vector<std::vector<std::string>> longer;
+    for (const std::vector<std::string>& begin : all)
+      for (const std::string& value : axis.values) {
+        longer.push_back(begin);
+        longer.back().push_back(value);
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+class Planner {
+ public:
+  Planner(const SweepConfig& sweep, const fs::path& folder) : sweep_(sweep), folder_(folder) {
+    for (const GridAxis& axis : sweep.grid) plan_.axes.push_back(axis.key);
+  }
+
+  SweepPlan plan() {
+    if (sweep_.generate) add_generated(*sweep_.generate);
+    for (const SweepDataset& dataset : sweep_.datasets)
+      for (const auto& seed : seeds_or_default(dataset.seeds)) {
+        SweepJob base = dataset_job(dataset, seed);
+        if (!sweep_.configurations.empty()) add_runs(base);
+      }
+    return std::move(plan_);
+  }
+
+ private:
+  /// Adds the simulation, if the dataset is one. Returns the common part of the runs over it.
+  SweepJob dataset_job(const SweepDataset& dataset, const std::optional<std::uint64_t>& seed) {
+    SweepJob base;
+    base.point.dataset = dataset.name;
+    base.point.dataset_seed = seed;
+    base.name = file_name_part(dataset.name);
+    if (seed && dataset.seeds.size() > 1) base.name += fmt::format("-{}", *seed);
+    if (dataset.path) {
+      base.dataset = fixed_path(*dataset.path);
+      return base;
+    }
+    SweepJob simulation = base;
+    simulation.name = names_.unique(base.name);
+    simulation.config = fixed_path(*dataset.simulate);
+    simulation.output = folder_ / "data" / simulation.name;
+    Words settings;
+    append(settings, dataset.set);
+    if (seed) append(settings, "--seed", std::to_string(*seed));
+    Words call{"simulate", simulation.config.string(), "-o", simulation.output.string()};
+    if (sweep_.cache) call.emplace_back("--cached");
+    append(call, settings);
+    simulation.commands = {call};
+    simulation.settings = "simulate " + shell_line(settings);
+    base.dataset = simulation.output;
+    base.made_by = plan_.simulations.size();
+    plan_.simulations.push_back(std::move(simulation));
+    return base;
+  }
+
+  /// Generated datasets go to the folder of the sweep and not into the cache: other sweeps do not
+  /// reuse them.
+  void add_generated(const GenerateConfig& generate) {
+    for (int i = 0; i < generate.count; ++i) {
+      const GeneratedDataset dataset =
+          generated_dataset(generate, generate.first + static_cast<std::uint64_t>(i));
+      SweepJob job;
+      job.point.dataset = dataset.name;
+      job.point.dataset_seed = dataset.seed;
+      job.name = file_name_part(dataset.name);
+      job.config = fixed_path(dataset.scene->simulate);
+      job.output = folder_ / "data" / job.name;
+      Words settings;
+      append(settings, dataset.settings);
+      append(settings, "--seed", std::to_string(dataset.seed));
+      job.settings = "simulate " + shell_line(settings);
+      Words call{"simulate", job.config.string(), "-o", job.output.string()};
+      append(call, "--threads", std::to_string(sweep_.threads));
+      append(call, settings);
+      job.commands = {call};
+      plan_.simulations.push_back(std::move(job));
+    }
+  }
+
+  void add_runs(const SweepJob& base) {
+    std::vector<SweepVariant> variants = sweep_.variants;
+    if (variants.empty()) variants.emplace_back();
+    for (const SweepConfiguration& configuration : sweep_.configurations) {
+      if (!configuration.runs_over(base.point.dataset)) continue;
+      for (const SweepVariant& variant : variants)
+        for (const std::vector<std::string>& values : combinations(sweep_.grid))
+          for (const auto& seed : seeds_or_default(sweep_.seeds_of(configuration))) {
+            SweepJob job = base;
+            job.point.module = module_of(configuration);
+            job.point.configuration = configuration.name;
+            job.point.variant = variant.name;
+            job.point.grid = values;
+            job.point.seed = seed;
+            finish_run(job, configuration, variant);
+            plan_.runs.push_back(std::move(job));
+          }
+    }
+  }
+
+  [[nodiscard]] const std::string& module_of(const SweepConfiguration& configuration) const {
+    return configuration.module.empty() ? sweep_.module : configuration.module;
+  }
+
+  /// Passes the run of another configuration at the same point to the job.
+  void add_source(const std::string& configuration, const char* option, SweepJob& job,
+                  Words& call) {
+    if (configuration.empty()) return;
+    const auto is_source = [&](const SweepJob& run) {
+      return run.point.configuration == configuration && run.point.dataset == job.point.dataset &&
+             run.point.dataset_seed == job.point.dataset_seed &&
+             run.point.variant == job.point.variant && run.point.grid == job.point.grid &&
+             run.point.seed == job.point.seed;
+    };
+    const auto found = std::find_if(plan_.runs.begin(), plan_.runs.end(), is_source);
+    SACCADE_CHECK(found != plan_.runs.end());
+    append(call, option, found->output.string());
+    job.sources.push_back(static_cast<std::size_t>(found - plan_.runs.begin()));
+    job.source_runs.push_back(found->output);
+    job.stage = std::max(job.stage, found->stage + 1);
+  }
+
+  void finish_run(SweepJob& job, const SweepConfiguration& configuration,
+                  const SweepVariant& variant) {
+    job.name = names_.unique(run_name(job));
+    job.output = folder_ / "runs" / job.name;
+    if (configuration.file) job.config = fixed_path(*configuration.file);
+    if (configuration.adapter) job.config = fixed_path(*configuration.adapter);
+    Words settings;
+    append(settings, configuration.set);
+    append(settings, variant.set);
+    for (std::size_t i = 0; i < sweep_.grid.size(); ++i)
+      append(settings, "--set", sweep_.grid[i].key + "=" + job.point.grid[i]);
+    if (job.point.seed) append(settings, "--seed", std::to_string(*job.point.seed));
+    if (sweep_.start_s) append(settings, "--start-s", fmt::format("{}", *sweep_.start_s));
+    if (sweep_.duration_s) append(settings, "--duration-s", fmt::format("{}", *sweep_.duration_s));
+    append(settings, "--repeat", std::to_string(configuration.repeat.value_or(sweep_.repeat)));
+    append(settings, "--threads", std::to_string(sweep_.threads));
+    const std::string called = configuration.adapter ? "external" : job.point.module;
+    Words call{"run", called, "--data", job.dataset.string(), "-o", job.output.string()};
+    if (!job.config.empty()) append(call, "-c", job.config.string());
+    add_source(configuration.from, "--from", job, call);
+    add_source(configuration.poses_from, "--poses-from", job, call);
+    add_source(configuration.depth_from, "--depth-from", job, call);
+    append(call, settings);
+    job.commands = {call,
+                    {"eval", job.output.string(), "--threads", std::to_string(sweep_.threads)}};
+    job.settings = "run " + called + " " + shell_line(settings);
+  }
+
+  [[nodiscard]] std::string run_name(const SweepJob& job) const {
+    std::string name = job.name + "_" + file_name_part(job.point.configuration);
+    if (!job.point.variant.empty()) name += "_" + file_name_part(job.point.variant);
+    for (std::size_t i = 0; i < sweep_.grid.size(); ++i)
+      name += fmt::format("_{}-{}", file_name_part(short_key(sweep_.grid[i].key, sweep_.grid)),
+                          file_name_part(job.point.grid[i]));
+    if (job.point.seed) name += fmt::format("_seed-{}", *job.point.seed);
+    constexpr std::size_t kMaxLength = 200;  // file systems permit 255 bytes
+    return name.substr(0, kMaxLength);
+  }
+
+  const SweepConfig& sweep_;
+  fs::path folder_;
+  SweepPlan plan_;
+  UniqueNames names_;
+};
+
+}  // namespace
+
+bool SweepPoint::differs_in_seed_only(const SweepPoint& other) const {
+  return dataset == other.dataset && configuration == other.configuration &&
+         variant == other.variant && grid == other.grid;
+}
+
+int SweepPlan::stages() const {
+  int last = 0;
+  for (const SweepJob& job : runs) last = std::max(last, job.stage);
+  return last + 1;
+}
+
+SweepPlan plan_sweep(const SweepConfig& sweep, const fs::path& folder) {
+  return Planner(sweep, fixed_path(folder)).plan();
+}
+
+}  // namespace saccade

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/fields.h"
+#include "eval/sweep/launch/slurm_options.h"
+#include "eval/sweep/plan/generate.h"
+#include "eval/sweep/plan/settings.h"
+
+namespace saccade {
+
+/// An existing dataset folder, or a simulation that makes one dataset per seed.
+struct SweepDataset {
+  std::string name;
+  std::optional<std::filesystem::path> path;
+  std::optional<std::filesystem::path> simulate;
+  Settings set;
+  std::vector<std::uint64_t> seeds;  ///< empty: the one that the simulation states
+};
+
+/// A method with its parameters: a module's configuration file, or an external program's adapter.
+struct SweepConfiguration {
+  std::string name;
+  std::string module;                         ///< empty: the sweep's
+  std::optional<std::filesystem::path> file;  ///< nullopt: the module's default values
+  std::optional<std::filesystem::path> adapter;
+  Settings set;
+  std::vector<std::string> datasets;  ///< empty: all
+  std::vector<std::uint64_t> seeds;   ///< empty: the sweep's
+  std::optional<int> repeat;          ///< nullopt: the sweep's
+  /// Earlier configurations whose run at the same dataset, variant, grid point and seed is passed
+  /// as --from, --poses-from and --depth-from. Empty: none.
+  std::string from, poses_from, depth_from;
+
+  [[nodiscard]] bool runs_over(const std::string& dataset) const;
+};
+
+/// A bound that a metric must keep, as the mean over the seeds (of a speed the median).
+struct ExpectedMetric {
+  std::string configuration;
+  std::vector<std::string> datasets;  ///< empty: all that the configuration runs over
+  std::string metric;
+  std::optional<double> at_most;
+  std::optional<double> at_least;
+};
+
+/// Named overrides: one row of an ablation.
+struct SweepVariant {
+  std::string name;
+  Settings set;
+};
+
+/// A sweep file: every configuration x variant x grid point x seed runs over every dataset. Without
+/// configurations the datasets are only simulated.
+struct SweepConfig {
+  std::string title;
+  std::string module = "track";
+  std::vector<SweepDataset> datasets;
+  std::optional<GenerateConfig> generate;  ///< in place of `datasets`
+  std::vector<SweepConfiguration> configurations;
+  std::vector<SweepVariant> variants;
+  Grid grid;
+  std::vector<std::uint64_t> seeds;  ///< empty: the one that the configuration states
+  int repeat = 1;
+  bool timing = false;
+  int threads = 1;
+  bool cache = true;
+  std::optional<double> start_s;
+  std::optional<double> duration_s;
+  std::vector<std::string> metrics;  ///< empty: the usual ones
+  SlurmOptions slurm;
+  std::vector<ExpectedMetric> expected;
+
+  [[nodiscard]] const std::vector<std::uint64_t>& seeds_of(
+      const SweepConfiguration& configuration) const {
+    return configuration.seeds.empty() ? seeds : configuration.seeds;
+  }
+};
+
+void describe(config::Fields& fields, SweepConfig& sweep);
+
+}  // namespace saccade

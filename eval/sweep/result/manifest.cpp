@@ -1,0 +1,138 @@
+#include "eval/sweep/result/manifest.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+
+#include "core/config/convert.h"
+#include "core/io/atomic_file.h"
+#include "core/io/csv_file.h"
+#include "core/io/dataset_record.h"
+#include "core/io/sha256.h"
+#include "core/version.h"
+#include "eval/sweep/plan/generate.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSampledKey = "drawn";
+
+const char* status_text(JobState state) {
+  if (state == JobState::kFailed) return "failed";
+  return state == JobState::kPending ? "waiting" : "ok";
+}
+
+/// A number where the text is one, an integer where it is written as one.
+Json json_value(const std::string& text) {
+  const auto number = config::number_of(config::Node::scalar(text, false));
+  if (!number) return text;
+  const bool whole = text.find_first_not_of("-0123456789") == std::string::npos;
+  return whole ? Json(static_cast<std::int64_t>(*number)) : Json(*number);
+}
+
+std::uintmax_t bytes_in(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
+}
+
+void add_facts(const fs::path& folder, Json& row) {
+  const DatasetRecord record = read_dataset_record(folder / "dataset.yaml");
+  const DatasetRecord::Counts counts = record.counts.value_or(DatasetRecord::Counts{});
+  const std::int64_t events = counts.events_on + counts.events_off;
+  row["width"] = record.width;
+  row["height"] = record.height;
+  row["duration_s"] = record.duration_s;
+  row["events"] = events;
+  row["events_on"] = counts.events_on;
+  row["events_off"] = counts.events_off;
+  row["mean_rate_hz"] = static_cast<double>(events) / record.duration_s;
+  row["frames"] = counts.frames;
+  row["depth_maps"] = counts.depth_maps;
+  row["flow_maps"] = counts.flow_maps;
+  row["imu_samples"] = counts.imu_samples;
+  row["path_length_m"] = record.path_length_m ? Json(*record.path_length_m) : Json();
+  row["mean_scene_depth_m"] = record.mean_scene_depth_m ? Json(*record.mean_scene_depth_m) : Json();
+  row["bytes"] = bytes_in(folder);
+  row["dataset_yaml_sha256"] = sha256_of_file(folder / "dataset.yaml");
+  row["config_sha256"] = sha256(std::as_bytes(std::span(record.config_yaml)));
+}
+
+Json manifest_row(const GeneratedDataset& dataset, const SweepJob& job, const fs::path& folder) {
+  Json row;
+  row["index"] = dataset.index;
+  row["name"] = job.name;
+  row["path"] = job.output.lexically_relative(fs::absolute(folder).lexically_normal()).string();
+  row["status"] = status_text(job.state);
+  row["scene"] = dataset.scene->name;
+  row["seed"] = dataset.seed;
+  row[kSampledKey] = Json::object();
+  for (const auto& [key, value] : dataset.sampled) row[kSampledKey][key] = json_value(value);
+  if (job.state == JobState::kDone || job.state == JobState::kSkipped) add_facts(job.output, row);
+  return row;
+}
+
+CsvTable::Cell cell_of(const Json& row, const std::string& key) {
+  const auto value = row.find(key);
+  if (value == row.end() || value->is_null()) return std::string();
+  if (value->is_number_integer()) return value->get<long long>();
+  if (value->is_number()) return value->get<double>();
+  return value->get<std::string>();
+}
+
+/// The keys of all rows, in the order of their first occurrence.
+std::vector<std::string> keys_of(const std::vector<Json>& rows) {
+  std::vector<std::string> keys;
+  std::set<std::string> known;
+  for (const Json& row : rows)
+    for (const auto& [key, value] : row.items())
+      if (known.insert(key).second) keys.push_back(key);
+  return keys;
+}
+
+/// One table; the sampled parameters are the last columns.
+CsvTable manifest_csv(const Json& datasets) {
+  std::vector<Json> rows, sampled;
+  for (Json row : datasets) {
+    sampled.push_back(row[kSampledKey]);
+    row.erase(kSampledKey);
+    rows.push_back(std::move(row));
+  }
+  const std::vector<std::string> row_keys = keys_of(rows), sampled_keys = keys_of(sampled);
+  std::vector<std::string> columns = row_keys;
+  columns.insert(columns.end(), sampled_keys.begin(), sampled_keys.end());
+  CsvTable table(columns);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::vector<CsvTable::Cell> cells;
+    for (const std::string& key : row_keys) cells.push_back(cell_of(rows[i], key));
+    for (const std::string& key : sampled_keys) cells.push_back(cell_of(sampled[i], key));
+    table.add(cells);
+  }
+  return table;
+}
+
+}  // namespace
+
+void write_manifest(const SweepConfig& sweep, const SweepPlan& plan, const fs::path& folder) {
+  Json manifest;
+  manifest["format_version"] = 1;
+  manifest["title"] = sweep.title;
+  manifest["tool_version"] = version();
+  manifest["seed"] = sweep.generate->seed;
+  manifest["datasets"] = Json::array();
+  for (std::size_t i = 0; i < plan.simulations.size(); ++i)
+    manifest["datasets"].push_back(
+        manifest_row(generated_dataset(*sweep.generate, sweep.generate->first + i),
+                     plan.simulations[i], folder));
+  write_atomically(folder / "manifest.json", manifest.dump(1) + "\n");
+  manifest_csv(manifest["datasets"]).save(folder / "manifest.csv");
+}
+
+}  // namespace saccade

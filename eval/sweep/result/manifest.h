@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "eval/sweep/plan/plan.h"
+
+namespace saccade {
+
+/// Writes FOLDER/manifest.json and FOLDER/manifest.csv. They list of each generated dataset its
+/// index, name, path (relative to FOLDER), scene, seed, status ("ok", "failed", "waiting") and
+/// sampled parameters, and of those that exist their counts, duration [s], size [bytes], mean rate
+/// [events/s] and the SHA-256 of dataset.yaml (which holds those of all other files) and of the
+/// resolved configuration.
+void write_manifest(const SweepConfig& sweep, const SweepPlan& plan,
+                    const std::filesystem::path& folder);
+
+}  // namespace saccade

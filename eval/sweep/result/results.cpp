@@ -1,0 +1,153 @@
+#include "eval/sweep/result/results.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "core/config/suggest.h"
+#include "core/io/atomic_file.h"
+#include "core/io/dataset_record.h"
+#include "core/median.h"
+#include "core/progress.h"
+#include "eval/evaluate.h"
+#include "eval/run_folder.h"
+#include "eval/sweep/metric_info.h"
+#include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/tables.h"
+
+namespace saccade {
+namespace {
+
+Metrics dataset_metrics(const std::filesystem::path& folder) {
+  const DatasetRecord record = read_dataset_record(folder / "dataset.yaml");
+  Metrics facts;
+  if (record.counts)
+    facts.set("dataset.events",
+              static_cast<double>(record.counts->events_on + record.counts->events_off));
+  facts.set("dataset.duration_s", record.duration_s);
+  facts.set("dataset.mean_scene_depth_m", record.mean_scene_depth_m);
+  facts.set("dataset.path_length_m", record.path_length_m);
+  facts.set("dataset.rays_per_event", record.rays_per_event);
+  facts.set("dataset.time_bound_us", record.time_bound_us);
+  return facts;
+}
+
+SweepRow read_row(const SweepJob& job) {
+  SweepRow row{&job, false, {}, {}, {}};
+  if (job.is_simulation()) {
+    row.metrics = dataset_metrics(job.output);
+    return row;
+  }
+  const RunRecord record = read_run_record(job.output / "run.yaml");
+  row.problem = record.problem();
+  row.metrics = read_json_metrics(job.output / "metrics.json");
+  row.machine = record.machine;
+  row.tool_version = record.tool_version;
+  return row;
+}
+
+bool any_has(const std::vector<SweepRow>& rows, const std::string& key) {
+  return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
+    return speed_value(row.metrics, key).has_value();
+  });
+}
+
+std::vector<std::string> known_keys(const std::vector<SweepRow>& rows) {
+  std::set<std::string> keys;
+  for (const SweepRow& row : rows)
+    for (const auto& [key, value] : row.metrics.values()) keys.insert(key);
+  return {keys.begin(), keys.end()};
+}
+
+/// A metric that no job has is reported, and the table is written all the same.
+void warn_of_unknown(const SweepResults& results) {
+  const std::vector<std::string> keys = known_keys(results.rows);
+  for (const std::string& metric : results.metrics)
+    if (!keys.empty() && !any_has(results.rows, metric))
+      show_notice("metrics: no job has '" + metric + "'; " +
+                  config::suggestion(metric, keys, "metrics"));
+}
+
+bool applies_to(const ExpectedMetric& expected, const SweepPoint& point) {
+  const std::vector<std::string>& datasets = expected.datasets;
+  return point.configuration == expected.configuration &&
+         (datasets.empty() ||
+          std::find(datasets.begin(), datasets.end(), point.dataset) != datasets.end());
+}
+
+ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group) {
+  ExpectationResult result{&expected, group.point.dataset, std::nullopt, false};
+  const std::optional<MetricSummary> summary = summarise(group, expected.metric);
+  if (!summary) return result;
+  result.value = summary->value;
+  result.met = summary->count == group.rows.size() &&
+               (!expected.at_most || summary->value <= *expected.at_most) &&
+               (!expected.at_least || summary->value >= *expected.at_least);
+  return result;
+}
+
+SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
+  SweepResults results{sweep, plan, {}, {}, sweep.metrics};
+  for (const SweepJob& job : plan.rows())
+    results.rows.push_back(job.state == JobState::kFailed ? SweepRow{&job, true, {}, {}, {}}
+                                                          : read_row(job));
+  results.groups = group_by_seed(results.rows);
+  if (sweep.metrics.empty())
+    for (const MetricInfo& metric : usual_metrics())
+      if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
+  return results;
+}
+
+}  // namespace
+
+std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
+  std::vector<SweepGroup> groups;
+  for (const SweepRow& row : rows) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const SweepGroup& group) {
+      return group.point.differs_in_seed_only(row.job->point);
+    });
+    if (same == groups.end())
+      groups.push_back({row.job->point, {&row}});
+    else
+      same->rows.push_back(&row);
+  }
+  return groups;
+}
+
+std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
+  std::vector<double> values;
+  for (const SweepRow* row : group.rows) {
+    if (!row->problem.empty()) continue;  // the time until a crash is not a speed
+    if (const std::optional<double> value = speed_value(row->metrics, key))
+      values.push_back(*value);
+  }
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
+  return MetricSummary{metric_info(key).is_speed ? median(values) : mean, values.front(),
+                       values.back(), n};
+}
+
+std::vector<ExpectationResult> check_expectations(const SweepResults& results) {
+  std::vector<ExpectationResult> found;
+  for (const ExpectedMetric& expected : results.sweep.expected)
+    for (const SweepGroup& group : results.groups)
+      if (applies_to(expected, group.point)) found.push_back(check(expected, group));
+  return found;
+}
+
+std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const std::filesystem::path& folder) {
+  const SweepResults results = collect_results(sweep, plan);
+  warn_of_unknown(results);
+  sweep_csv(results).save(folder / "sweep.csv");
+  const std::vector<std::string> charts = write_charts(results, folder);
+  const std::vector<ExpectationResult> expectations = check_expectations(results);
+  write_atomically(folder / "sweep.md", sweep_markdown(results, charts, expectations));
+  return static_cast<std::size_t>(
+      std::count_if(expectations.begin(), expectations.end(),
+                    [](const ExpectationResult& expectation) { return !expectation.met; }));
+}
+
+}  // namespace saccade

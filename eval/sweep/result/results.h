@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/metrics/metrics.h"
+#include "eval/sweep/plan/plan.h"
+
+namespace saccade {
+
+/// A job with its result.
+struct SweepRow {
+  const SweepJob* job;
+  bool failed = false;
+  Metrics metrics;      ///< of metrics.json, or properties of the dataset ("dataset.events")
+  std::string machine;  ///< empty where unknown
+  std::string tool_version;
+  /// Why an external program returned no poses, although the job itself succeeded.
+  std::string problem = {};
+};
+
+/// Rows that differ in their seeds alone, in the order of the plan.
+struct SweepGroup {
+  SweepPoint point;  ///< of the first
+  std::vector<const SweepRow*> rows;
+};
+[[nodiscard]] std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows);
+
+/// A metric over the rows of a group that have it and no problem.
+struct MetricSummary {
+  double value = 0;  ///< mean; of a speed the median
+  double low = 0;
+  double high = 0;
+  std::size_t count = 0;
+};
+/// nullopt where no row has the metric. A `key` without a value stands for key.median.
+[[nodiscard]] std::optional<MetricSummary> summarise(const SweepGroup& group,
+                                                     const std::string& key);
+
+/// The input of the tables and charts of a sweep.
+struct SweepResults {
+  const SweepConfig& sweep;
+  const SweepPlan& plan;
+  std::vector<SweepRow> rows;
+  std::vector<SweepGroup> groups;
+  std::vector<std::string> metrics;  ///< keys that the sweep states, or the usual ones that it has
+};
+
+/// An expected metric and its value on one dataset.
+struct ExpectationResult {
+  const ExpectedMetric* expected;
+  std::string dataset;
+  std::optional<double> value;  ///< over all seeds; nullopt where nothing was measured
+  bool met = false;             ///< false without a value, and where the run of a seed failed
+};
+
+/// One result per expected metric and group of its configuration.
+[[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
+
+/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (one row per
+/// group with `metrics`, and the expected metrics) and FOLDER/*.png. Returns the number of expected
+/// metrics that were missed.
+std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const std::filesystem::path& folder);
+
+}  // namespace saccade

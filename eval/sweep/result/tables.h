@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/io/csv_file.h"
+#include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/results.h"
+
+namespace saccade {
+
+/// One row per job: its coordinates in the sweep, its status, and every metric that any job has.
+/// Cells without a value are empty.
+[[nodiscard]] CsvTable sweep_csv(const SweepResults& results);
+
+/// The page of a sweep: for each dataset (and module, where there are several) a table with a row
+/// per group, the best value of a column in bold; then the expected metrics, the charts and the
+/// jobs that failed.
+[[nodiscard]] std::string sweep_markdown(const SweepResults& results,
+                                         std::span<const std::string> charts,
+                                         std::span<const ExpectationResult> expectations);
+
+}  // namespace saccade

@@ -1,0 +1,73 @@
+#include "simulator/scene/light/illumination.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace saccade {
+namespace {
+
+/// The path from a point to a light; one length of `direction` ends at a point light.
+struct LightPath {
+  Eigen::Vector3d direction;
+  double distance;  ///< [length of direction]
+  double irradiance;
+};
+
+LightPath path_to(const LightOptions& light, const LitPoint& point) {
+  const bool is_point = light.type == LightType::kPoint;
+  const Eigen::Vector3d direction = is_point ? Eigen::Vector3d(light.position - point.position)
+                                             : Eigen::Vector3d(-light.direction);
+  const double squared = direction.squaredNorm();
+  const double along_normal = point.shading_normal.dot(direction) / std::sqrt(squared);
+  return {direction, is_point ? 1.0 : std::numeric_limits<double>::infinity(),
+          light.intensity * along_normal / (is_point ? squared : 1.0)};
+}
+
+}  // namespace
+
+Illumination::Illumination(double ambient, const std::vector<LightOptions>& lights,
+                           double shadow_offset)
+    : ambient_(ambient), lights_(lights), shadow_offset_(shadow_offset) {
+  SACCADE_CHECK(lights.size() <= kMaxLights);
+  for (LightOptions& light : lights_) light.direction.normalize();
+}
+
+void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
+                                          const Visibility& blockers,
+                                          std::span<LightSet> lights) const {
+  std::fill(lights.begin(), lights.end(), LightSet{0});
+  std::array<Ray, kPacket> rays;
+  std::array<float, kPacket> distances;
+  std::array<std::size_t, kPacket> owners;
+  std::array<bool, kPacket> blocked;
+  for (std::size_t index = 0; index < lights_.size(); ++index) {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const LitPoint& point = points[i];
+      const LightPath path = path_to(lights_[index], point);
+      if (!(path.irradiance > 0) || point.plane_normal.dot(path.direction) <= 0) continue;
+      rays[n] = {point.position + shadow_offset_ * point.plane_normal, path.direction,
+                 point.time_s};
+      distances[n] = static_cast<float>(path.distance);
+      owners[n++] = i;
+    }
+    blocked.fill(false);
+    if (lights_[index].shadows)
+      blockers.find_blocked({rays.data(), n}, {distances.data(), n}, {blocked.data(), n});
+    for (std::size_t k = 0; k < n; ++k)
+      if (!blocked[k]) lights[owners[k]] |= LightSet{1} << index;
+  }
+}
+
+double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
+  double sum = ambient_;
+  for (std::size_t index = 0; index < lights_.size(); ++index)
+    if ((lights >> index & 1) != 0) sum += std::max(0.0, path_to(lights_[index], point).irradiance);
+  return sum;
+}
+
+}  // namespace saccade

@@ -1,0 +1,114 @@
+#include "simulator/scene/mesh/file_source.h"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "core/error.h"
+#include "core/io/input_log.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kInside = "!/";
+
+struct CloseFile {
+  void operator()(zip_file_t* file) const { zip_fclose(file); }
+};
+
+/// Name of an archive's member: archives always separate by '/', and know no "..".
+std::string member_name(const fs::path& file) {
+  return file.lexically_normal().relative_path().generic_string();
+}
+
+std::optional<Bytes> read_from_disk(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string(), "cannot be opened for reading");
+  Bytes bytes(std::istreambuf_iterator<char>(stream), {});
+  if (stream.bad()) throw InputError(file.string(), "cannot be read to its end");
+  InputLog::note(file.string(), std::as_bytes(std::span(bytes)));
+  return bytes;
+}
+
+}  // namespace
+
+FileLocation FileLocation::parse(const fs::path& path) {
+  const std::string text = path.string();
+  const std::size_t inside = text.find(kInside);
+  if (inside == std::string::npos) return {{}, path};
+  return {text.substr(0, inside), text.substr(inside + kInside.size())};
+}
+
+std::string FileLocation::text() const {
+  return archive.empty() ? file.string()
+                         : archive.string() + std::string(kInside) + file.generic_string();
+}
+
+struct FileSource::Zip {
+  explicit Zip(const fs::path& file) {
+    int code = 0;
+    archive = zip_open(file.c_str(), ZIP_RDONLY, &code);
+    if (archive != nullptr) return;
+    zip_error_t error;
+    zip_error_init_with_code(&error, code);
+    const std::string problem = zip_error_strerror(&error);
+    zip_error_fini(&error);
+    throw InputError(file.string(), "cannot be opened as a zip archive: " + problem);
+  }
+  ~Zip() { zip_discard(archive); }
+  Zip(const Zip&) = delete;
+  Zip& operator=(const Zip&) = delete;
+
+  zip_t* archive = nullptr;
+};
+
+FileSource::FileSource(const fs::path& archive) : archive_(archive) {
+  if (archive.empty()) return;
+  const std::string problem = missing_file_problem(archive);
+  if (!problem.empty()) throw InputError(archive.string(), problem);
+  zip_ = std::make_unique<Zip>(archive);
+}
+
+FileSource::~FileSource() = default;
+FileSource::FileSource(FileSource&&) noexcept = default;
+FileSource& FileSource::operator=(FileSource&&) noexcept = default;
+
+bool FileSource::contains(const fs::path& file) const {
+  if (!zip_) return fs::is_regular_file(file);
+  return zip_name_locate(zip_->archive, member_name(file).c_str(), 0) >= 0;
+}
+
+std::optional<Bytes> FileSource::read(const fs::path& file) const {
+  if (!zip_) return read_from_disk(file);
+  const std::string name = member_name(file);
+  zip_stat_t stat;
+  if (zip_stat(zip_->archive, name.c_str(), 0, &stat) != 0) return std::nullopt;
+  const std::unique_ptr<zip_file_t, CloseFile> member(
+      zip_fopen_index(zip_->archive, stat.index, 0));
+  Bytes bytes(stat.size);
+  if (!member ||
+      zip_fread(member.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()))
+    throw InputError(FileLocation{archive_, name}.text(), "is damaged in its archive");
+  InputLog::note(FileLocation{archive_, name}.text(), std::as_bytes(std::span(bytes)));
+  return bytes;
+}
+
+std::string missing_file_problem(const fs::path& path) {
+  const FileLocation location = FileLocation::parse(path);
+  const fs::path& file = location.archive.empty() ? location.file : location.archive;
+  if (fs::is_regular_file(file)) return {};
+  if (file.string().starts_with("/usr/share/sweethome3d"))
+    return fmt::format(
+        "{} is missing: install the furniture with apt-get install sweethome3d-furniture",
+        file.string());
+  return fmt::format("{} {}", file.string(), fs::exists(file) ? "is not a file" : "does not exist");
+}
+
+}  // namespace saccade

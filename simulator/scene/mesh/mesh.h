@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "simulator/scene/texture/texture.h"
+
+namespace saccade {
+
+/// How a surface reflects: grey albedo in linear light.
+struct Material {
+  double albedo = 0.5;                     ///< without a texture
+  std::shared_ptr<const Texture> texture;  ///< replaces the albedo; multiplied by `factor`
+  double factor = 1;
+  std::shared_ptr<const Texture> opacity;  ///< cut out where below 0.5
+};
+
+struct Triangle {
+  std::array<std::uint32_t, 3> corners;  ///< indices into the mesh's vertices
+  std::uint32_t material;                ///< index into the mesh's materials
+};
+
+/// Triangles in the coordinates of their file. The attributes have one entry per vertex, or none.
+struct Mesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3d> normals;  ///< for shading; empty: each triangle is flat
+  std::vector<Eigen::Vector2d> uvs;      ///< v upwards; needed where a material has a texture
+  std::vector<double> colours;           ///< linear grey; replaces the albedo without a texture
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;
+};
+
+}  // namespace saccade

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "simulator/scene/mesh/file_source.h"
+#include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/texture/texture_library.h"
+
+namespace saccade {
+
+/// Reads meshes through assimp, from disk or from within zip archives, with their materials and
+/// textures. Vertices keep the axes and units of their file; nodes are flattened, polygons
+/// triangulated, points, lines and wholly transparent surfaces left out. Files without normals are
+/// shaded smoothly where faces meet at less than 40 degrees. A texture replaces the material's
+/// colour (whose value beside one means nothing in most files), except in glTF, which defines their
+/// product. A *.relief.yaml on disk is a surface of generate_relief(). Archives stay open and
+/// textures loaded as long as the importer lives. Not thread-safe.
+class MeshImporter {
+ public:
+  /// Throws InputError naming the file, its material library or its texture: missing or unreadable,
+  /// of a format that assimp does not know, without triangles, with a vertex that is not finite, or
+  /// with a texture but no texture coordinates.
+  [[nodiscard]] Mesh read(const std::filesystem::path& file);
+
+ private:
+  [[nodiscard]] Mesh read_relief(const FileLocation& location, const FileSource& source);
+
+  std::map<std::filesystem::path, FileSource> sources_;
+  TextureLibrary textures_;
+};
+
+}  // namespace saccade

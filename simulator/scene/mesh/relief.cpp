@@ -1,0 +1,145 @@
+#include "simulator/scene/mesh/relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/config/config.h"
+#include "core/random.h"
+
+namespace saccade {
+namespace {
+
+/// Who draws random numbers; the octaves of the swell follow from kSwell on.
+enum ReliefStream : std::uint64_t { kBend, kCrest, kSwell = 16 };
+
+/// A function of one variable and its derivative.
+struct Slope {
+  double value, derivative;
+};
+
+/// From 0 at t = 0 to 1 at t = 1; the first two derivatives vanish at both ends.
+Slope fade(double t) {
+  return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
+}
+
+/// One period of a dune: up over the first `rise` of it, down over the rest.
+Slope profile(double phase, double rise) {
+  const double t = phase - std::floor(phase);
+  const bool rising = t < rise;
+  const double length = rising ? rise : rise - 1;
+  const Slope side = fade(rising ? t / rise : (1 - t) / (1 - rise));
+  return {side.value, side.derivative / length};
+}
+
+ReliefOptions checked(const ReliefOptions& options) {
+  config::check(options);
+  return options;
+}
+
+Eigen::Vector2d vector_of(const std::array<double, 2>& values) { return {values[0], values[1]}; }
+
+}  // namespace
+
+SmoothNoise::SmoothNoise(std::uint64_t seed, std::uint64_t stream, const Eigen::Vector2d& size,
+                         double wavelength_m)
+    : frequency_(1 / wavelength_m),
+      columns_(static_cast<int>(size.x() * frequency_) + 2),
+      rows_(static_cast<int>(size.y() * frequency_) + 2) {
+  const Random random(seed);
+  values_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = 2 * random.uniform(stream, i) - 1;
+}
+
+Elevation SmoothNoise::at(const Eigen::Vector2d& point) const {
+  const double x = point.x() * frequency_;
+  const double y = point.y() * frequency_;
+  const int i = std::clamp(static_cast<int>(x), 0, columns_ - 2);
+  const int j = std::clamp(static_cast<int>(y), 0, rows_ - 2);
+  const Slope fx = fade(x - i);
+  const Slope fy = fade(y - j);
+  const double* row = &values_[static_cast<std::size_t>(j * columns_ + i)];
+  const double* next = row + columns_;
+  const double across = row[1] - row[0];
+  const double next_across = next[1] - next[0];
+  const double low = row[0] + fx.value * across;
+  const double high = next[0] + fx.value * next_across;
+  return {low + fy.value * (high - low),
+          frequency_ * Eigen::Vector2d(fx.derivative * (across + fy.value * (next_across - across)),
+                                       fy.derivative * (high - low))};
+}
+
+Relief::Relief(const ReliefOptions& options)
+    : options_(checked(options)),
+      size_(vector_of(options.size_m)),
+      across_(vector_of(options.dunes.across).normalized()),
+      bend_(options.seed, kBend, size_, options.dunes.bend_wavelength_m),
+      crest_(options.seed, kCrest, size_, options.dunes.bend_wavelength_m) {
+  const auto& [shortest, longest] = options.swell.wavelength_m;
+  double total = 0;
+  for (double length = longest; length >= shortest; length /= 2) {
+    swell_.push_back({SmoothNoise(options.seed, kSwell + swell_.size(), size_, length), length});
+    total += length;
+  }
+  for (Octave& octave : swell_) octave.height_m *= options.swell.height_m / total;
+}
+
+Elevation Relief::at(const Eigen::Vector2d& point) const {
+  const Eigen::Vector2d from_corner = point + 0.5 * size_;
+  Elevation sum = dunes(from_corner);
+  for (const Octave& octave : swell_) {
+    const Elevation part = octave.noise.at(from_corner);
+    sum.height += octave.height_m * part.height;
+    sum.slope += octave.height_m * part.slope;
+  }
+  return sum;
+}
+
+Elevation Relief::dunes(const Eigen::Vector2d& point) const {
+  const auto& dunes = options_.dunes;
+  const Elevation bend = bend_.at(point);
+  const Elevation crest = crest_.at(point);
+  const double phase = (across_.dot(point) + dunes.bend_m * bend.height) / dunes.wavelength_m;
+  const Eigen::Vector2d phase_slope = (across_ + dunes.bend_m * bend.slope) / dunes.wavelength_m;
+  const Slope shape = profile(phase, dunes.rise);
+  const double height = dunes.height_m * (0.75 + 0.25 * crest.height);
+  return {height * shape.value, height * shape.derivative * phase_slope +
+                                    0.25 * dunes.height_m * shape.value * crest.slope};
+}
+
+Mesh generate_relief(const ReliefOptions& options, std::shared_ptr<const Texture> texture) {
+  const Relief relief(options);
+  const auto& [width, height] = options.size_m;
+  const double cells = 0.5 * static_cast<double>(options.triangles);
+  const auto columns = static_cast<std::uint32_t>(
+      std::clamp(std::round(std::sqrt(cells * width / height)), 1.0, cells));
+  const auto rows = static_cast<std::uint32_t>(std::max(std::round(cells / columns), 1.0));
+
+  Mesh mesh;
+  mesh.materials.push_back({options.albedo, std::move(texture), 1, nullptr});
+  const std::size_t vertices = (std::size_t{columns} + 1) * (std::size_t{rows} + 1);
+  mesh.vertices.reserve(vertices);
+  mesh.normals.reserve(vertices);
+  mesh.uvs.reserve(vertices);
+  mesh.triangles.reserve(2 * std::size_t{columns} * std::size_t{rows});
+  for (std::uint32_t j = 0; j <= rows; ++j)
+    for (std::uint32_t i = 0; i <= columns; ++i) {
+      const Eigen::Vector2d uv(static_cast<double>(i) / columns, static_cast<double>(j) / rows);
+      const Eigen::Vector2d ground((uv.x() - 0.5) * width, (uv.y() - 0.5) * height);
+      const Elevation elevation = relief.at(ground);
+      mesh.vertices.emplace_back(ground.x(), ground.y(), elevation.height);
+      mesh.normals.push_back(
+          Eigen::Vector3d(-elevation.slope.x(), -elevation.slope.y(), 1).normalized());
+      mesh.uvs.push_back(uv);
+    }
+  for (std::uint32_t j = 0; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::uint32_t corner = j * (columns + 1) + i;
+      const std::uint32_t above = corner + columns + 1;
+      mesh.triangles.push_back({{corner, corner + 1, above + 1}, 0});
+      mesh.triangles.push_back({{corner, above + 1, above}, 0});
+    }
+  return mesh;
+}
+
+}  // namespace saccade

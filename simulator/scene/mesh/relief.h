@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/mesh/relief_options.h"
+
+namespace saccade {
+
+/// Height over a point of the ground and how it changes there.
+struct Elevation {
+  double height = 0;                                ///< [m]
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< d height / d (x, y)
+};
+
+/// Smooth noise: random values in [-1, 1] on a square lattice, between them interpolated with
+/// f(t) = t^3 (6 t^2 - 15 t + 10), whose first and second derivatives vanish at both ends; hence
+/// C2.
+class SmoothNoise {
+ public:
+  /// Covers [0, size] with values from `stream` of `seed`.
+  SmoothNoise(std::uint64_t seed, std::uint64_t stream, const Eigen::Vector2d& size,
+              double wavelength_m);
+
+  [[nodiscard]] Elevation at(const Eigen::Vector2d& point) const;
+
+ private:
+  double frequency_;  ///< [1/m]
+  int columns_, rows_;
+  std::vector<double> values_;
+};
+
+/// The height function of a relief:
+///   h(p) = H a(p) f(phase(p)) + sum_k H_k N_k(p)
+///   phase(p) = (p . across + bend N_b(p)) / wavelength
+/// where f rises smoothly from 0 to 1 over the fraction `rise` of a period and falls over the rest,
+/// a in [0.5, 1] lets crests rise and sink, and all N are SmoothNoise. C2. Uses additions and
+/// products alone, so that builds without fused operations agree to the bit.
+class Relief {
+ public:
+  /// Throws InputError when an option is out of range.
+  explicit Relief(const ReliefOptions& options);
+
+  /// `point`: within [-size / 2, size / 2].
+  [[nodiscard]] Elevation at(const Eigen::Vector2d& point) const;
+
+ private:
+  [[nodiscard]] Elevation dunes(const Eigen::Vector2d& point) const;
+
+  struct Octave {
+    SmoothNoise noise;
+    double height_m;
+  };
+  ReliefOptions options_;
+  Eigen::Vector2d size_, across_;
+  SmoothNoise bend_, crest_;
+  std::vector<Octave> swell_;
+};
+
+/// Tessellates the relief: shared vertices with the exact normals, texture coordinates that lay one
+/// texture over the whole. `texture` may be null. Throws InputError when an option is out of range.
+[[nodiscard]] Mesh generate_relief(const ReliefOptions& options,
+                                   std::shared_ptr<const Texture> texture = nullptr);
+
+}  // namespace saccade

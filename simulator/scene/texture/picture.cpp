@@ -1,0 +1,106 @@
+#include "simulator/scene/texture/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/error.h"
+#include "core/io/exr_file.h"
+#include "core/io/image_file.h"
+#include "core/srgb.h"
+
+namespace saccade {
+namespace {
+
+std::span<const std::byte> as_bytes(const Bytes& bytes) { return std::as_bytes(std::span(bytes)); }
+
+std::string lower_extension(const std::string& source_name) {
+  std::string extension = std::filesystem::path(source_name).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+template <class Pixel, class Convert>
+ImageF converted(const Image<Pixel>& image, const Convert& convert) {
+  ImageF result(image.width(), image.height());
+  std::ranges::transform(image.pixels(), result.data(), convert);
+  return result;
+}
+
+ImageF grey_of(const ImageRgbF& image) {
+  return converted(image, [](const RgbF& p) { return luminance(p[0], p[1], p[2]); });
+}
+
+ImageF grey_of(const ImageRgba8& image) {
+  std::array<float, 256> linear;
+  for (int code = 0; code < 256; ++code)
+    linear[static_cast<std::size_t>(code)] = linear_from_srgb8(static_cast<std::uint8_t>(code));
+  return converted(
+      image, [&](const Rgba8& p) { return luminance(linear[p[0]], linear[p[1]], linear[p[2]]); });
+}
+
+ImageF alpha_of(const ImageRgba8& image) {
+  return converted(image, [](const Rgba8& p) { return static_cast<float>(p[3]) / 255; });
+}
+
+ImageRgbF decode_hdr(const Bytes& bytes, const std::string& source_name) {
+  cv::Mat decoded;
+  try {
+    decoded = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& error) {
+    throw InputError(source_name, fmt::format("cannot be decoded: {}", error.err));
+  }
+  if (decoded.type() != CV_32FC3) throw InputError(source_name, "is not a Radiance HDR picture");
+  ImageRgbF image(decoded.cols, decoded.rows);
+  for (int y = 0; y < decoded.rows; ++y)
+    for (int x = 0; x < decoded.cols; ++x) {
+      const auto& bgr = decoded.at<cv::Vec3f>(y, x);
+      image(x, y) = {bgr[2], bgr[1], bgr[0]};
+    }
+  return image;
+}
+
+void check_light(const ImageF& image, const std::string& source_name) {
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      if (!(image(x, y) >= 0 && std::isfinite(image(x, y))))
+        throw InputError(source_name,
+                         fmt::format("texel ({}, {}) is {}, but light is finite and not negative",
+                                     x, y, image(x, y)));
+}
+
+}  // namespace
+
+Picture decode_picture(const Bytes& bytes, const std::string& source_name) {
+  const std::string extension = lower_extension(source_name);
+  Picture picture;
+  if (extension == ".exr") {
+    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name));
+  } else if (extension == ".hdr") {
+    picture.grey = grey_of(decode_hdr(bytes, source_name));
+  } else {
+    const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
+    picture.grey = grey_of(image);
+    picture.opacity = alpha_of(image);
+    if (std::ranges::all_of(picture.opacity.pixels(), [](float a) { return a >= 0.5F; }))
+      picture.opacity = {};
+  }
+  check_light(picture.grey, source_name);
+  return picture;
+}
+
+ImageF decode_opacity(const Bytes& bytes, const std::string& source_name) {
+  const std::string extension = lower_extension(source_name);
+  if (extension == ".exr" || extension == ".hdr") return decode_picture(bytes, source_name).grey;
+  const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
+  if (std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p[3] != 255; }))
+    return alpha_of(image);
+  return converted(image, [](const Rgba8& p) { return luminance(p[0], p[1], p[2]) / 255.0F; });
+}
+
+}  // namespace saccade

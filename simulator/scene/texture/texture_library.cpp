@@ -1,0 +1,61 @@
+#include "simulator/scene/texture/texture_library.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/error.h"
+#include "simulator/scene/texture/picture.h"
+#include "simulator/scene/texture/texture_generator.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+Bytes read_texture(const FileSource& source, const fs::path& file, const std::string& user) {
+  std::optional<Bytes> bytes = source.read(file);
+  if (!bytes) {
+    const std::string name = FileLocation{source.archive(), file}.text();
+    throw InputError(user, fmt::format("its texture {} does not exist", name));
+  }
+  return std::move(*bytes);
+}
+
+Picture load_colour(const FileSource& source, const fs::path& file, const std::string& user) {
+  const std::string place = FileLocation{source.archive(), file}.text();
+  const Bytes bytes = read_texture(source, file, user);
+  if (!place.ends_with(".texture.yaml")) return decode_picture(bytes, place);
+  if (!source.archive().empty())
+    throw InputError(place, "texture parameters cannot be read from within an archive");
+  return {generate_texture(read_texture_options(file)), {}};
+}
+
+}  // namespace
+
+TexturePair make_textures(Picture picture, const WrapModes& wrap) {
+  TexturePair pair{std::make_shared<Texture>(std::move(picture.grey), wrap.u, wrap.v), nullptr};
+  if (!picture.opacity.empty())
+    pair.opacity = std::make_shared<Texture>(std::move(picture.opacity), wrap.u, wrap.v);
+  return pair;
+}
+
+TexturePair TextureLibrary::colour(const FileSource& source, const fs::path& file,
+                                   const WrapModes& wrap, const std::string& user) {
+  const Key key{FileLocation{source.archive(), file}.text(), wrap};
+  const auto known = colours_.find(key);
+  if (known != colours_.end()) return known->second;
+  return colours_[key] = make_textures(load_colour(source, file, user), wrap);
+}
+
+std::shared_ptr<const Texture> TextureLibrary::opacity(const FileSource& source,
+                                                       const fs::path& file, const WrapModes& wrap,
+                                                       const std::string& user) {
+  const std::string place = FileLocation{source.archive(), file}.text();
+  const auto known = opacities_.find({place, wrap});
+  if (known != opacities_.end()) return known->second;
+  ImageF image = decode_opacity(read_texture(source, file, user), place);
+  return opacities_[{place, wrap}] = std::make_shared<Texture>(std::move(image), wrap.u, wrap.v);
+}
+
+}  // namespace saccade

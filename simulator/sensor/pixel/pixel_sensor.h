@@ -1,0 +1,331 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "simulator/sensor/pixel/crossing.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/pixel/pixel_traits.h"
+#include "simulator/sensor/pixel/sensed_event.h"
+
+namespace saccade {
+
+/// A pixel at work: turns intervals of its signal, one after the other, into events.
+/// `Emit(t_s, polarity, origin, log_intensity)`.
+template <class Signal, class Emit>
+class PixelSensor {
+ public:
+  using Sample = typename Signal::Sample;
+
+  PixelSensor(const Signal& signal, const PixelTraits& traits, double log_eps, PixelState& state,
+              Thresholds& thresholds, const Emit& emit)
+      : signal_(signal),
+        traits_(traits),
+        log_eps_(log_eps),
+        state_(state),
+        thresholds_(thresholds),
+        emit_(emit) {}
+
+  /// The ideal pixel, up to its leak. Returns the widest final bracket around a crossing [s].
+  double sense(const Sample& lo, const Sample& hi) {
+    Sample a = lo;
+    while (a.t_s < hi.t_s) {
+      const auto exit = first_exit(signal_, thresholds_, a, hi);
+      if (!exit) break;
+      a = cross(*exit, true).after;
+    }
+    return widest_s_;
+  }
+
+  /// With refractory period, shot noise and hot pixels.
+  double sense(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+
+  /// The same behind the photoreceptor's low pass.
+  double sense_filtered(const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                        NoisyState& noisy, int depth = 0);
+
+ private:
+  struct Crossing {
+    double t_s;
+    Sample after;  ///< within the tolerance
+  };
+
+  /// Locates the crossing and fires: once, or for every threshold that the bracket crosses.
+  Crossing cross(const Bracket<Sample>& exit, bool repeatedly);
+  void fire(double t_s, int polarity, double log_intensity);
+  /// The reference becomes the signal.
+  void reset(double t_s, double signal);
+  /// Takes the candidate that is due, if there is one; whether the pixel fires at it.
+  bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
+                          NoisyState& noisy);
+  /// What advance() of an interval has come to.
+  enum class Reached { kCrossing, kCandidate, kEnd };
+  class RawInterval;
+  class FilteredInterval;
+
+  /// The one loop of a pixel with imperfections, whatever its signal: at most up to the next
+  /// spontaneous candidate, with the refractory period after every event.
+  template <class AnyInterval>
+  void sense_interval(AnyInterval& interval, const PixelNoise& noise, NoisyState& noisy);
+  void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+  /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
+  /// stays, prove that nothing happens over an interval.
+  [[nodiscard]] bool proves_no_event(const RadianceRange& range, double from_s, double to_s,
+                                     const NoisyState& noisy) const;
+  /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
+  [[nodiscard]] bool proves_no_event(const FilteredPiece& piece, const LinearPiece& input,
+                                     const NoisyState& noisy) const;
+  /// Drops the candidates that fall into the blind time.
+  void skip_candidates(double until_s, const PixelNoise& noise, NoisyState& noisy) const {
+    while (noisy.spontaneous.next_s() < until_s)
+      (void)noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+  }
+  /// Whether values from `low` to `high` stay within the band, however the leak moves it meanwhile.
+  [[nodiscard]] bool is_within_band(double low, double from_s, double high, double to_s) const {
+    // Rounding may not make a certificate of what is exactly at a threshold.
+    constexpr double kGuard = 1e-12;
+    const Band& band = state_.reference.band();
+    return low + traits_.drift_per_s * from_s > band.lower + kGuard &&
+           high + traits_.drift_per_s * to_s < band.upper - kGuard;
+  }
+  void update_thresholds() {
+    thresholds_ =
+        Thresholds(state_.reference.band(), traits_.drift_per_s, log_eps_, state_.reference_s);
+  }
+
+  const Signal& signal_;
+  const PixelTraits& traits_;
+  double log_eps_;
+  PixelState& state_;
+  Thresholds& thresholds_;
+  const Emit& emit_;
+  double widest_s_ = 0;
+};
+
+/// The greatest error of the linear pieces that the low pass is given, where they are no steps [log
+/// units].
+constexpr double kPieceError = 1e-3;
+/// The greatest change within a piece, for which its cutoff is constant [log units].
+constexpr double kPieceChange = 0.05;
+/// An interval in which nothing happens is passed over up to what the filter remembers at its end,
+/// where it is so many times as long as that.
+constexpr double kLongMemories = 1.5;
+
+template <class Signal, class Emit>
+auto PixelSensor<Signal, Emit>::cross(const Bracket<Sample>& exit, bool repeatedly) -> Crossing {
+  const Band band = thresholds_.band();
+  const int polarity = thresholds_.signal(exit.hi) >= band.upper ? 1 : -1;
+  const double level = polarity > 0 ? band.upper : band.lower;
+  const Bracket<Sample> bracket = refine(signal_, thresholds_, exit, level);
+  widest_s_ = std::max(widest_s_, bracket.width_s());
+  const double t_s = bracket.crossing_s(thresholds_, level);
+  do {
+    fire(t_s, polarity, bracket.hi.log_intensity);
+  } while (repeatedly &&
+           (polarity > 0 ? thresholds_.signal(bracket.hi) >= state_.reference.band().upper
+                         : thresholds_.signal(bracket.hi) <= state_.reference.band().lower));
+  update_thresholds();
+  return {t_s, bracket.hi};
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::fire(double t_s, int polarity, double log_intensity) {
+  const double leaked = traits_.drift_per_s * (t_s - state_.reference_s);
+  const bool is_leak = polarity > 0 && leaked > 0.5 * traits_.contrast.on;
+  state_.reference.fire(polarity, traits_.contrast);
+  state_.reference_s = t_s;
+  emit_(t_s, polarity, is_leak ? EventOrigin::kLeak : EventOrigin::kSignal, log_intensity);
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::reset(double t_s, double signal) {
+  state_.reference.reset(signal, traits_.contrast);
+  state_.reference_s = t_s;
+  update_thresholds();
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::fire_spontaneously(double t_s, double log_intensity, double signal,
+                                                   const PixelNoise& noise, NoisyState& noisy) {
+  const SpontaneousCandidate candidate =
+      noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+  if (!noise.spontaneous.accepts(candidate, log_intensity)) return false;
+  emit_(t_s, candidate.polarity, candidate.origin, log_intensity);
+  reset(t_s, signal);
+  return true;
+}
+
+template <class Signal, class Emit>
+template <class AnyInterval>
+void PixelSensor<Signal, Emit>::sense_interval(AnyInterval& interval, const PixelNoise& noise,
+                                               NoisyState& noisy) {
+  while (interval.t_s() < interval.end_s()) {
+    if (noisy.refractory_until_s >= interval.t_s()) {
+      if (noisy.refractory_until_s >= interval.end_s()) break;
+      interval.skip_to(noisy.refractory_until_s);
+      skip_candidates(interval.t_s(), noise, noisy);
+      noisy.refractory_until_s = NoisyState::kNotRefractory;
+      reset(interval.t_s(), interval.signal());
+    }
+    const Reached reached = interval.advance(noisy.spontaneous.next_s());
+    const bool fires = reached == Reached::kCrossing ||
+                       (reached == Reached::kCandidate &&
+                        fire_spontaneously(interval.t_s(), interval.log_intensity(),
+                                           interval.signal(), noise, noisy));
+    if (fires && noise.refractory_s > 0)
+      noisy.refractory_until_s = interval.event_s() + noise.refractory_s;
+  }
+}
+
+/// The signal itself, whose crossings are searched by branch and bound.
+template <class Signal, class Emit>
+class PixelSensor<Signal, Emit>::RawInterval {
+ public:
+  /// `repeatedly`: fires for every threshold that a bracket crosses.
+  RawInterval(PixelSensor& pixel, const Sample& lo, const Sample& hi, bool repeatedly)
+      : pixel_(pixel), now_(lo), hi_(hi), repeatedly_(repeatedly), event_s_(lo.t_s) {}
+  [[nodiscard]] double t_s() const { return now_.t_s; }
+  [[nodiscard]] double end_s() const { return hi_.t_s; }
+  [[nodiscard]] double event_s() const { return event_s_; }
+  [[nodiscard]] double signal() const { return pixel_.thresholds_.signal(now_); }
+  [[nodiscard]] double log_intensity() const { return now_.log_intensity; }
+  void skip_to(double t_s) {
+    if (t_s > now_.t_s) now_ = pixel_.signal_.at(t_s, now_, hi_);
+  }
+  [[nodiscard]] Reached advance(double next_s) {
+    const Sample to = next_s <= now_.t_s ? now_
+                      : next_s < hi_.t_s ? pixel_.signal_.at(next_s, now_, hi_)
+                                         : hi_;
+    if (to.t_s > now_.t_s)
+      if (const auto exit = first_exit(pixel_.signal_, pixel_.thresholds_, now_, to)) {
+        const Crossing crossing = pixel_.cross(*exit, repeatedly_);
+        event_s_ = crossing.t_s;
+        now_ = crossing.after;
+        return Reached::kCrossing;
+      }
+    now_ = to;
+    event_s_ = to.t_s;
+    return next_s <= to.t_s ? Reached::kCandidate : Reached::kEnd;
+  }
+
+ private:
+  PixelSensor& pixel_;
+  Sample now_;
+  const Sample& hi_;
+  bool repeatedly_;
+  double event_s_;
+};
+
+template <class Signal, class Emit>
+double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                                        NoisyState& noisy) {
+  RawInterval interval(*this, lo, hi, noise.refractory_s == 0);
+  sense_interval(interval, noise, noisy);
+  return widest_s_;
+}
+
+template <class Signal, class Emit>
+double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample& hi,
+                                                 const PixelNoise& noise, NoisyState& noisy,
+                                                 int depth) {
+  const double length_s = hi.t_s - lo.t_s;
+  if (length_s <= signal_.tolerance_s()) {  // a step
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  const RadianceRange range = signal_.range(lo, hi);
+  if (std::abs(hi.log_intensity - lo.log_intensity) <= kPieceChange &&
+      range.log_error(log_eps_, length_s) <= kPieceError) {
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  const double memory_s = noise.filter.memory_s(range.low);
+  if (length_s > kLongMemories * memory_s && proves_no_event(range, lo.t_s, hi.t_s, noisy)) {
+    const Sample remembered = signal_.at(hi.t_s - memory_s, lo, hi);
+    noisy.filter = PhotoreceptorFilter::settled(remembered.log_intensity);
+    return sense_filtered(remembered, hi, noise, noisy, depth + 1);
+  }
+  const Sample middle = signal_.divide(lo, hi, depth);
+  if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s)) {  // no double left between them
+    sense_piece(lo, hi, noise, noisy);
+    return widest_s_;
+  }
+  sense_filtered(lo, middle, noise, noisy, depth + 1);
+  return sense_filtered(middle, hi, noise, noisy, depth + 1);
+}
+
+/// A piece of the photoreceptor's output, whose crossings follow in closed form.
+template <class Signal, class Emit>
+class PixelSensor<Signal, Emit>::FilteredInterval {
+ public:
+  FilteredInterval(PixelSensor& pixel, const FilteredPiece& piece, double from_s, double to_s)
+      : pixel_(pixel),
+        piece_(piece),
+        drifting_(piece.drifting(pixel.traits_.drift_per_s)),
+        drifted_(pixel.traits_.drift_per_s * from_s),
+        t_s_(from_s),
+        end_s_(to_s) {}
+  [[nodiscard]] double t_s() const { return t_s_; }
+  [[nodiscard]] double end_s() const { return end_s_; }
+  [[nodiscard]] double event_s() const { return t_s_; }
+  [[nodiscard]] double signal() const { return drifting_.value(t_s_) + drifted_; }
+  [[nodiscard]] double log_intensity() const { return piece_.value(t_s_); }
+  void skip_to(double t_s) { t_s_ = t_s; }
+  [[nodiscard]] Reached advance(double next_candidate_s) {
+    const double tolerance_s = pixel_.signal_.tolerance_s();
+    const double next_s = std::max(next_candidate_s, t_s_);
+    const Band& band = pixel_.state_.reference.band();
+    const auto crossing =
+        drifting_.first_crossing(band.lower - drifted_, band.upper - drifted_, t_s_, tolerance_s);
+    if (crossing && crossing->t_s <= next_s) {
+      t_s_ = crossing->t_s;
+      pixel_.widest_s_ = std::max(pixel_.widest_s_, tolerance_s);
+      pixel_.fire(t_s_, crossing->polarity, log_intensity());
+      pixel_.update_thresholds();
+      return Reached::kCrossing;
+    }
+    t_s_ = std::min(next_s, end_s_);
+    return next_s < end_s_ ? Reached::kCandidate : Reached::kEnd;
+  }
+
+ private:
+  PixelSensor& pixel_;
+  const FilteredPiece& piece_;
+  FilteredPiece drifting_;  ///< as a pixel with a leaking reference sees it
+  double drifted_;
+  double t_s_;
+  double end_s_;
+};
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
+                                            const PixelNoise& noise, NoisyState& noisy) {
+  const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
+  const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
+  noisy.filter = piece.end_state();
+  if (proves_no_event(piece, input, noisy)) return;
+  FilteredInterval interval(*this, piece, lo.t_s, hi.t_s);
+  sense_interval(interval, noise, noisy);
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::proves_no_event(const RadianceRange& range, double from_s,
+                                                double to_s, const NoisyState& noisy) const {
+  if (noisy.refractory_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
+  const auto [state_low, state_high] = std::minmax(noisy.filter.first, noisy.filter.output);
+  const double low = std::min(state_low, std::log(log_eps_ + std::max(range.low, 0.0)));
+  const double high = std::max(state_high, std::log(log_eps_ + range.high));
+  return is_within_band(low, from_s, high, to_s);
+}
+
+template <class Signal, class Emit>
+bool PixelSensor<Signal, Emit>::proves_no_event(const FilteredPiece& piece,
+                                                const LinearPiece& input,
+                                                const NoisyState& noisy) const {
+  if (noisy.refractory_until_s >= input.t0_s) return noisy.refractory_until_s >= input.t1_s;
+  if (noisy.spontaneous.next_s() < input.t1_s) return false;
+  const auto [low, high] = piece.bounds();
+  return is_within_band(low, input.t0_s, high, input.t1_s);
+}
+
+}  // namespace saccade

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/camera.h"
+
+namespace saccade {
+
+/// Side of the square of pixels that is traced as one packet [px].
+constexpr int kTileSize = 4;
+constexpr std::size_t kTilePixels = 16;
+/// A task of parallel_for() takes so many tiles.
+constexpr std::size_t kTilesPerTask = 16;
+
+/// A block of at most 4 x 4 pixels; smaller at the right and lower border.
+struct Tile {
+  int x0 = 0, y0 = 0;
+  int width = 0, height = 0;  ///< 1..4 [px]
+
+  [[nodiscard]] std::size_t pixels() const { return static_cast<std::size_t>(width * height); }
+  [[nodiscard]] int x(std::size_t pixel) const { return x0 + static_cast<int>(pixel) % width; }
+  [[nodiscard]] int y(std::size_t pixel) const { return y0 + static_cast<int>(pixel) / width; }
+};
+
+/// Directions (x, y, 1) in the camera frame of every pixel's rays, lens distortion removed once for
+/// all, in tiles. The n x n rays of a pixel lie on a fixed pattern that is stratified in both axes
+/// and along each of them (n = 2: the rotated grid), so that radiance stays a deterministic
+/// function of the pose; one ray goes through the centre.
+class PixelRays {
+ public:
+  /// `rays_per_pixel`: 1, 4 or 16.
+  PixelRays(const PinholeCamera& camera, int rays_per_pixel);
+
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  [[nodiscard]] std::size_t rays_per_pixel() const { return rays_per_pixel_; }
+
+  [[nodiscard]] int tiles_x() const { return tiles_x_; }
+  [[nodiscard]] int tiles_y() const { return tiles_y_; }
+  [[nodiscard]] std::size_t tile_count() const {
+    return static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
+  }
+  /// Tiles are numbered row by row.
+  [[nodiscard]] Tile tile(std::size_t index) const;
+
+  /// Directions through the corners of tile `index`, `margin_px` outside it, in order around it.
+  [[nodiscard]] std::array<Eigen::Vector3d, 4> outline(std::size_t index, double margin_px) const;
+
+  /// Rays of tile `index`: pixel by pixel, row-major, each with all its rays.
+  [[nodiscard]] std::span<const Eigen::Vector3d> rays(std::size_t index) const {
+    return {&directions_[index * kTilePixels * rays_per_pixel_],
+            tile(index).pixels() * rays_per_pixel_};
+  }
+
+  /// How much `direction`, the ray of an image point, differs from those of the next rays to the
+  /// right and below (columns: x and y of the camera frame), when each stands for its fraction of the
+  /// pixel.
+  [[nodiscard]] Eigen::Matrix2d differential(const Eigen::Vector3d& direction) const;
+
+ private:
+  PinholeCamera camera_;
+  std::size_t rays_per_pixel_;
+  int tiles_x_, tiles_y_;
+  std::vector<Eigen::Vector3d> directions_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <span>
+
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
+#include "simulator/sensor/signal/pixel_signal.h"
+
+namespace saccade {
+
+using PixelSet = std::bitset<kTilePixels>;
+
+/// What the rays of a tile see at an instant, pixel by pixel: which triangles, and, where it is
+/// asked for, what of them.
+template <std::size_t kRays>
+struct TileSamples {
+  using Triangles = std::array<TriangleId, kTilePixels * kRays>;
+
+  double t_s;
+  Triangles triangles;
+  bool has_samples;
+  std::array<RaySample, kTilePixels * kRays> samples;
+
+  /// The visible triangles are known.
+  void set_triangles(const Triangles& seen, double at_s) {
+    t_s = at_s;
+    triangles = seen;
+    has_samples = false;
+  }
+
+  /// Traces the rays of `pixels`, packet by packet. Of the other pixels nothing is known then.
+  void trace(RayTracer& tracer, std::span<const Eigen::Vector3d> directions, double at_s,
+             const PixelSet& pixels);
+
+  void sample_surfaces(RayTracer& tracer, std::span<const Eigen::Vector3d> directions) {
+    if (has_samples) return;
+    has_samples = true;
+    const std::size_t n = directions.size();
+    tracer.sample(directions, {triangles.data(), n}, t_s, {samples.data(), n});
+  }
+
+  /// Of pixel `i`; needs the samples.
+  [[nodiscard]] PixelSample<kRays> sample(std::size_t i, double log_eps) const {
+    PixelSample<kRays> sample;
+    sample.t_s = t_s;
+    for (std::size_t k = 0; k < kRays; ++k) sample.rays[k] = samples[i * kRays + k];
+    sample.log_intensity = log_intensity(sample.radiance(), log_eps);
+    return sample;
+  }
+};
+
+template <std::size_t kRays>
+void TileSamples<kRays>::trace(RayTracer& tracer, std::span<const Eigen::Vector3d> directions,
+                               double at_s, const PixelSet& pixels) {
+  t_s = at_s;
+  triangles.fill(kNothing);
+  has_samples = false;
+  std::array<Eigen::Vector3d, RayTracer::kPacket> rays;
+  std::array<std::size_t, RayTracer::kPacket> owners;
+  std::array<TriangleId, RayTracer::kPacket> seen;
+  std::size_t n = 0;
+  const auto flush = [&] {
+    tracer.find_triangles({rays.data(), n}, t_s, {seen.data(), n});
+    for (std::size_t m = 0; m < n; ++m) triangles[owners[m]] = seen[m];
+    n = 0;
+  };
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    if (!pixels[k / kRays]) continue;
+    rays[n] = directions[k];
+    owners[n++] = k;
+    if (n == RayTracer::kPacket) flush();
+  }
+  if (n > 0) flush();
+}
+
+}  // namespace saccade

@@ -1,0 +1,211 @@
+#include "simulator/sensor/visibility/visibility_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulator/sensor/visibility/triangle_ray_bounds.h"
+
+namespace saccade {
+namespace {
+
+/// With more triangles than this in reach of a tile, looking at each of them costs more than steps.
+constexpr std::size_t kMaxCandidates = 4096;
+
+/// Whether an edge of one triangle and one of another lie on the same line.
+bool share_edge(const TransitTriangle& a, std::size_t edge_of_a, const TransitTriangle& b,
+                std::size_t edge_of_b) {
+  constexpr double kSame = 1e-9;
+  for (std::size_t m = 0; m < a.at.size(); ++m) {
+    const Eigen::Vector3d& first = a.at[m].edges[edge_of_a];
+    const Eigen::Vector3d& second = b.at[m].edges[edge_of_b];
+    if (first.cross(second).norm() > kSame * first.norm() * second.norm()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool VisibilityPredictor::collect(double farthest_m, double from_s, double to_s) {
+  const bool all = tracer_.collect(outline_, farthest_m, from_s, to_s, kMaxCandidates, candidates_);
+  if (!all) clear();
+  return all;
+}
+
+void VisibilityPredictor::restrict_to(double from_s, double to_s, std::size_t depth) {
+  transits_.clear();
+  culling_.clear();
+  tracer_.set_candidates(std::span<const TriangleId>());
+  if (candidates_.empty()) return;
+  if (candidates_at_depth_.size() <= depth) candidates_at_depth_.resize(depth + 1);
+  const std::vector<TriangleId>& before =
+      depth == 0 ? candidates_ : candidates_at_depth_[depth - 1];
+  std::vector<TriangleId>& now = candidates_at_depth_[depth];
+  now.clear();
+  const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
+  std::array<CameraFrame, 3> cameras;
+  for (std::size_t m = 0; m < cameras.size(); ++m) cameras[m] = tracer_.camera_at(times_s[m]);
+  for (const TriangleId candidate : before) {
+    TransitTriangle transit{candidate, {}};
+    for (std::size_t m = 0; m < cameras.size(); ++m)
+      transit.at[m] =
+          scene_.edge_functions(candidate, cameras[m].position, cameras[m].rotation, times_s[m]);
+    if (transit.misses(outline_)) continue;
+    transits_.push_back(transit);
+    culling_.add(transit);
+    now.push_back(candidate);
+  }
+  tracer_.set_candidates(now);
+}
+
+void VisibilityPredictor::select_rays(std::span<const Eigen::Vector3d> directions) {
+  nearby_.clear();
+  nearby_ids_.clear();
+  for (const Eigen::Vector3d& direction : directions)
+    culling_.visit_candidates(direction, [&](std::size_t k) { nearby_.push_back(k); });
+  if (directions.size() > 1) {
+    std::sort(nearby_.begin(), nearby_.end());
+    nearby_.erase(std::unique(nearby_.begin(), nearby_.end()), nearby_.end());
+  }
+  for (const std::size_t k : nearby_) nearby_ids_.push_back(transits_[k].triangle);
+  tracer_.set_candidates(nearby_ids_);
+}
+
+const TransitTriangle* VisibilityPredictor::find_opaque(TriangleId triangle) const {
+  const auto found = std::find_if(transits_.begin(), transits_.end(),
+                                  [&](const auto& each) { return each.triangle == triangle; });
+  return found == transits_.end() || scene_.is_cut_out(triangle) ? nullptr : &*found;
+}
+
+bool VisibilityPredictor::are_in_front(const Eigen::Vector3d& direction, const TransitTriangle& a,
+                                       const TransitTriangle& b) const {
+  return std::all_of(transits_.begin(), transits_.end(), [&](const TransitTriangle& other) {
+    if (&other == &a || &other == &b) return true;
+    const TriangleRayBounds bounds(other, direction, edge_margin_);
+    return bounds.stays_outside() ||
+           (bounds.stays_behind(a) && (&a == &b || bounds.stays_behind(b)));
+  });
+}
+
+bool VisibilityPredictor::stays_visible(const Eigen::Vector3d& direction,
+                                        TriangleId triangle) const {
+  const TransitTriangle* seen = find_opaque(triangle);
+  return seen != nullptr && TriangleRayBounds(*seen, direction, edge_margin_).stays_inside() &&
+         are_in_front(direction, *seen, *seen);
+}
+
+double VisibilityPredictor::change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
+                                     const VisibleTriangle& to) const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const TransitTriangle* a = find_opaque(from.triangle);
+  const TransitTriangle* b = find_opaque(to.triangle);
+  if (a == nullptr || b == nullptr) return kUnknown;
+  const TriangleRayBounds before(*a, direction, edge_margin_);
+  const TriangleRayBounds after(*b, direction, edge_margin_);
+  const auto out = before.edge_crossed(false);
+  const auto in = after.edge_crossed(true);
+  const bool is_single = out && in ? share_edge(*a, *out, *b, *in)
+                         : out     ? after.stays_inside() && after.stays_behind(*a)
+                               : in.has_value() && before.stays_inside() && before.stays_behind(*b);
+  if (!is_single || !are_in_front(direction, *a, *b)) return kUnknown;
+  return tracer_.change_s(direction, from, to, 0.1 * tolerance_s_);
+}
+
+void VisibilityPredictor::find_transits(const Eigen::Vector3d& direction,
+                                        const StampedRaySample& lo, const StampedRaySample& hi,
+                                        std::vector<double>& times_s) const {
+  const bool is_open = lo.sample.surface.distance == 0 || hi.sample.surface.distance == 0 ||
+                       scene_.is_cut_out(lo.sample.triangle) ||
+                       scene_.is_cut_out(hi.sample.triangle);
+  const double occluded_beyond =
+      is_open ? std::numeric_limits<double>::infinity()
+              : std::max(lo.sample.surface.distance, hi.sample.surface.distance);
+  const double length_s = hi.t_s - lo.t_s;
+  for (const std::size_t index : nearby_) {
+    const TransitTriangle& transit = transits_[index];
+    const bool at_lo = transit.triangle == lo.sample.triangle;
+    const bool at_hi = transit.triangle == hi.sample.triangle;
+    if (at_lo && at_hi && transit.leaves(direction)) times_s.push_back(lo.t_s + 0.5 * length_s);
+    const bool is_cut_out = scene_.is_cut_out(transit.triangle);
+    if ((at_lo || at_hi) && !is_cut_out) continue;
+    if (transit.is_occluded(direction, occluded_beyond)) continue;
+    transit.find_transits(direction, [&](double begin, double end) {
+      const double from_s = lo.t_s + begin * length_s;
+      const double to_s = lo.t_s + end * length_s;
+      if (is_cut_out)
+        find_gaps(direction, transit.triangle, from_s, to_s, lo, hi, times_s);
+      else
+        find_visible_times(direction, transit.triangle, from_s, to_s, times_s);
+    });
+  }
+}
+
+void VisibilityPredictor::find_gaps(const Eigen::Vector3d& direction, TriangleId triangle,
+                                    double from_s, double to_s, const StampedRaySample& lo,
+                                    const StampedRaySample& hi,
+                                    std::vector<double>& times_s) const {
+  for (const OpacityInterval& interval :
+       tracer_.find_opacity_intervals(direction, triangle, from_s, to_s)) {
+    const bool is_known = (triangle == lo.sample.triangle && interval.from_s == lo.t_s) ||
+                          (triangle == hi.sample.triangle && interval.to_s == hi.t_s);
+    if (interval.is_opaque && !is_known)
+      find_visible_times(direction, triangle, interval.from_s, interval.to_s, times_s);
+    if (!interval.is_opaque && interval.from_s > lo.t_s && interval.to_s < hi.t_s)
+      times_s.push_back(0.5 * (interval.from_s + interval.to_s));
+  }
+}
+
+void VisibilityPredictor::find_visible_times(const Eigen::Vector3d& direction, TriangleId triangle,
+                                             double from_s, double to_s,
+                                             std::vector<double>& times_s) const {
+  for (const double fraction : {0.02, 0.5, 0.98}) {
+    const double t_s = from_s + fraction * (to_s - from_s);
+    if (tracer_.is_nearest(direction, triangle, nearby_ids_, t_s)) times_s.push_back(t_s);
+  }
+}
+
+void VisibilityPredictor::find_shadows(const Eigen::Vector3d& direction,
+                                       const VisibleTriangle& from, const VisibleTriangle& to,
+                                       std::vector<double>& times_s) {
+  if (from.triangle == to.triangle) {
+    find_shadows_on(direction, from.triangle, from.t_s, to.t_s, times_s);
+    return;
+  }
+  const double change_s = tracer_.change_s(direction, from, to, 0.1 * tolerance_s_);
+  const bool is_known = !std::isnan(change_s);
+  find_shadows_on(direction, from.triangle, from.t_s, is_known ? change_s : to.t_s, times_s);
+  find_shadows_on(direction, to.triangle, is_known ? change_s : from.t_s, to.t_s, times_s);
+}
+
+void VisibilityPredictor::find_shadows_on(const Eigen::Vector3d& direction, TriangleId triangle,
+                                          double from_s, double to_s,
+                                          std::vector<double>& times_s) {
+  const PatchLighting* lighting = tracer_.lighting_of(triangle);
+  if (lighting == nullptr || lighting->partly_occluded.empty()) return;
+  const double length_s = to_s - from_s;
+  if (!(length_s > 2 * tolerance_s_)) return;
+  std::array<Eigen::Vector3d, 3> points;
+  for (std::size_t m = 0; m < points.size(); ++m)
+    points[m] =
+        tracer_.point_at(direction, triangle, from_s + 0.5 * static_cast<double>(m) * length_s) +
+        lighting->shadow_offset;
+  if (!std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); }))
+    return;
+  for (const PartlyOccludedLight& light : lighting->partly_occluded) {
+    double before = -1;  // the last change
+    const auto change = [&](double at) {
+      if (!(at > 0 && at < 1)) return;
+      const double t_s = from_s + at * length_s;
+      if (before >= 0) times_s.push_back(from_s + 0.5 * (before + at) * length_s);
+      times_s.push_back(t_s - 0.45 * tolerance_s_);
+      times_s.push_back(t_s + 0.45 * tolerance_s_);
+      before = at;
+    };
+    shadows_.find(light, points, [&](double begin, double end) {
+      change(begin);
+      change(end);
+    });
+  }
+}
+
+}  // namespace saccade

@@ -1,0 +1,98 @@
+#include "core/io/events/events_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+#include "tests/support/error_of.h"
+#include "tests/unit/core/io/events/random_events.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::kSensor;
+using testing::TemporaryFolder;
+
+Events parse_events(const std::string& text, TimeWindow window = {}) {
+  const TemporaryFolder folder;
+  return read_events_text(folder.write("events.txt", text), kSensor, window);
+}
+
+std::string parse_error(const std::string& text) {
+  return error_of([&] { return parse_events(text); });
+}
+
+TEST(EventsText, ReadsBothPolarityConventions) {
+  const Events events =
+      parse_events("# t x y p\n0.000000001 1 2 1\n0.5 3 4 0\n1468939993.123456789 5 6 -1\n");
+  EXPECT_EQ(events,
+            (Events{{1, 1, 2, 1}, {500'000'000, 3, 4, -1}, {1'468'939'993'123'456'789, 5, 6, -1}}));
+}
+
+TEST(EventsText, SortsTies) {
+  EXPECT_EQ(parse_events("1 5 1 1\n1 4 1 1\n1 4 0 1\n1 4 0 0\n"),
+            (Events{{1'000'000'000, 4, 0, -1},
+                    {1'000'000'000, 4, 0, 1},
+                    {1'000'000'000, 4, 1, 1},
+                    {1'000'000'000, 5, 1, 1}}));
+}
+
+TEST(EventsText, WindowIsHalfOpen) {
+  const std::string text = "1 0 0 1\n2 0 0 1\n3 0 0 1\n4 0 0 1\n";
+  const Events events = parse_events(text, {2'000'000'000, 4'000'000'000});
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events.front().t_ns, 2'000'000'000);
+  EXPECT_EQ(events.back().t_ns, 3'000'000'000);
+}
+
+TEST(EventsText, NamesTheLineOfWhatIsWrong) {
+  EXPECT_THAT(parse_error("1 0 0 1\n0.5 0 0 1\n"), HasSubstr("events.txt:2: time goes back: 0.5"));
+  EXPECT_THAT(parse_error("1 240 0 1\n"),
+              HasSubstr("events.txt:1: x = 240 lies outside the sensor; it must be 0 ... 239"));
+  EXPECT_THAT(parse_error("1 0 180 1\n"), HasSubstr("y = 180"));
+  EXPECT_THAT(parse_error("1 -1 0 1\n"), HasSubstr("x = -1"));
+  EXPECT_THAT(parse_error("1 0 0 2\n"), HasSubstr("events.txt:1: polarity 2"));
+  EXPECT_THAT(parse_error("1 0 0\n"), HasSubstr("events.txt:1: p: expected a whole number"));
+  EXPECT_THAT(parse_error("1 0 0 1 1\n"), HasSubstr("events.txt:1: more fields"));
+  EXPECT_THAT(parse_error("nan 0 0 1\n"), HasSubstr("events.txt:1: t: expected a time"));
+  EXPECT_THAT(parse_error("1 1.5 0 1\n"), HasSubstr("x: expected a whole number, found '1.5'"));
+}
+
+TEST(EventsText, EmptyFileHoldsNoEvents) {
+  EXPECT_TRUE(parse_events("").empty());
+  EXPECT_TRUE(parse_events("# nothing\n").empty());
+}
+
+TEST(EventsText, RoundTripIsExact) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "events.txt";
+  const Events events = testing::random_events(100'000, 1'468'939'993'000'000'000);
+  EventTextWriter writer(file);
+  writer.append(std::span(events).first(5));
+  writer.append(std::span(events).subspan(5));
+  EXPECT_FALSE(fs::exists(file));
+  writer.close();
+  EXPECT_EQ(writer.count(), events.size());
+  Events sorted = events;
+  sort_ties(sorted);
+  EXPECT_EQ(read_events_text(file, kSensor), sorted);
+  const EventFileInfo info = read_events_text_info(file);
+  EXPECT_EQ(info.count, events.size());
+  EXPECT_EQ(info.first_ns, events.front().t_ns);
+  EXPECT_EQ(info.last_ns, events.back().t_ns);
+}
+
+TEST(EventsText, WithoutCloseNothingIsWritten) {
+  const TemporaryFolder folder;
+  {
+    EventTextWriter writer(folder.path() / "events.txt");
+    writer.append(testing::random_events(10));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace saccade

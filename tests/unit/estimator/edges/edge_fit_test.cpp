@@ -1,0 +1,82 @@
+#include "estimator/edges/edge_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace saccade {
+namespace {
+
+constexpr double kInverse = 0.4;
+constexpr double kOffset_px = 0.3;
+constexpr double kLag_px = 0.2;
+
+PinholeCamera davis_camera() {
+  PinholeCamera camera;
+  camera.width = 240;
+  camera.height = 180;
+  camera.fx = camera.fy = 200;
+  camera.cx = 119.5;
+  camera.cy = 89.5;
+  return camera;
+}
+
+/// Events of an upright edge by a camera that glides sideways: those rays that pass it exactly.
+std::vector<EdgeObservation> observations(int count) {
+  const PinholeCamera camera = davis_camera();
+  std::vector<EdgeObservation> events;
+  for (int i = 0; i < count; ++i) {
+    EdgeObservation event;
+    event.view_from_camera = {Eigen::Quaterniond::Identity(),
+                              {0.3 * (i / (count - 1.0) - 0.5), 0, 0}};
+    event.pixel = {120, 80};
+    event.normal = {1, 0};
+    event.lag = i % 2 == 0 ? 1 : -1;
+    const double x = 120 + kOffset_px + kLag_px * event.lag -
+                     camera.fx * kInverse * event.view_from_camera.translation().x();
+    event.ray = camera.ray({x, 80 + 0.1 * (i % 5)});
+    events.push_back(event);
+  }
+  return events;
+}
+
+const EdgePrior kPrior{{0.5, 0, 0, 0}, {0.5, 2, 0.3, 0.5}};
+
+TEST(EdgeFit, FindsTheEdgeThatItsEventsSaw) {
+  const auto edge = fit_edge(observations(40), davis_camera(), kPrior.mean, kPrior, 0.01);
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR((*edge)[0], kInverse, 1e-3);
+  EXPECT_NEAR((*edge)[1], kOffset_px, 1e-2);
+  EXPECT_NEAR((*edge)[3], kLag_px, 1e-2);
+}
+
+TEST(EdgeFit, AFewOutliersChangeLittle) {
+  std::vector<EdgeObservation> events = observations(40);
+  for (const std::size_t i : {3U, 17U, 30U}) events[i].ray.x() += 0.01;
+  const auto edge = fit_edge(events, davis_camera(), {0.42, 0.2, 0, 0.1}, kPrior, 0.05);
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR((*edge)[0], kInverse, 4e-3);
+}
+
+TEST(EdgeFit, ThePriorHoldsWhatTheEventsDoNotTell) {
+  // Without parallax: any depth fits.
+  std::vector<EdgeObservation> events = observations(40);
+  for (EdgeObservation& event : events) event.view_from_camera = Rigid3();
+  const EdgePrior prior{{0.37, 0, 0, 0}, {0.01, 2, 0.3, 0.5}};
+  const auto edge = fit_edge(events, davis_camera(), {0.4, 0, 0, 0}, prior, 0.01);
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR((*edge)[0], 0.37, 1e-9);
+}
+
+TEST(EdgeFit, AnEdgeBehindTheViewIsNone) {
+  std::vector<EdgeObservation> events = observations(40);
+  // Mirrored parallax: as if seen at a negative depth.
+  for (EdgeObservation& event : events)
+    event.view_from_camera = {Eigen::Quaterniond::Identity(),
+                              -event.view_from_camera.translation()};
+  EXPECT_FALSE(fit_edge(events, davis_camera(), kPrior.mean, kPrior, 0.01));
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,64 @@
+#include "estimator/odometry/start/extrapolated_path.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/imu_sample.h"
+
+namespace saccade {
+namespace {
+
+const Twist kVelocity = (Twist() << 0.5, -0.1, 0.2, 0.1, -0.3, 0.2).finished();
+
+/// Steady from the identity on, a pose every 5 ms.
+Trajectory steady(double end_s) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i * 5e-3 <= end_s + 1e-9; ++i)
+    poses.push_back({i * 5e-3, Rigid3::exp(i * 5e-3 * kVelocity)});
+  return Trajectory(std::move(poses));
+}
+
+TEST(CarriedPath, ASteadyMotionGoesOnAsItIs) {
+  const Trajectory path = extrapolated(steady(0.05), 0.12, {});
+  EXPECT_GE(path.end_s(), 0.12);
+  EXPECT_LE(path.end_s(), 0.12 + kPoseSpacing_s);
+  for (const StampedPose& pose : path.poses())
+    EXPECT_LT((Rigid3::exp(pose.t_s * kVelocity).inverse() * pose.world_from_camera).log().norm(),
+              1e-9);
+}
+
+TEST(CarriedPath, ThePosesBeforeAreKept) {
+  const Trajectory before = steady(0.05);
+  const Trajectory path = extrapolated(before, 0.06, {});
+  ASSERT_GT(path.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(path.poses()[i].t_s, before.poses()[i].t_s);
+    EXPECT_EQ(path.poses()[i].world_from_camera.translation(),
+              before.poses()[i].world_from_camera.translation());
+  }
+}
+
+TEST(CarriedPath, APathShorterThanTheLookBackTellsItsVelocity) {
+  const Trajectory path = extrapolated(steady(0.005), 0.02, {});
+  const StampedPose last = path.poses().back();
+  EXPECT_LT((Rigid3::exp(last.t_s * kVelocity).inverse() * last.world_from_camera).log().norm(),
+            1e-9);
+}
+
+TEST(CarriedPath, AGyroscopeTellsTheTurnBeyond) {
+  std::vector<ImuSample> readings(2);
+  readings[1].t_ns = ns_from_seconds(1.0);
+  const Eigen::Vector3d rate(0, 0, 2);
+  for (ImuSample& reading : readings) reading.angular_velocity = rate;
+  const Gyroscope gyroscope(readings, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  const Trajectory before = steady(0.05);
+  const Trajectory path = extrapolated(before, 0.1, gyroscope);
+  const StampedPose last = path.poses().back();
+  const Eigen::Quaterniond expected =
+      before.poses().back().world_from_camera.rotation() * so3_exp((last.t_s - 0.05) * rate);
+  EXPECT_LT(angle_between(last.world_from_camera.rotation(), expected), 1e-6);
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,119 @@
+#include "estimator/reconstruction/equations/intensity_system.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/random.h"
+#include "estimator/reconstruction/observations/reference_grid.h"
+
+namespace saccade {
+namespace {
+
+constexpr int kWidth = 12, kHeight = 10;
+
+std::vector<std::vector<GridObservation>> random_tracks(const ReferenceGrid& grid) {
+  const Random random(3);
+  std::uint64_t draw = 0;
+  const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
+  std::vector<std::vector<GridObservation>> runs(80);
+  for (auto& run : runs)
+    for (int k = 0; k < 6; ++k)
+      run.push_back({grid.at((kWidth - 1) * uniform(), (kHeight - 1) * uniform()), uniform(),
+                     0.5F + uniform()});
+  return runs;
+}
+
+Eigen::VectorXd without_mean(const Eigen::VectorXd& values) {
+  return values.array() - values.mean();
+}
+
+Eigen::VectorXd without_mean(const ImageF& image) {
+  return without_mean(Eigen::VectorXd(
+      Eigen::Map<const Eigen::VectorXf>(image.data(), static_cast<Eigen::Index>(image.size()))
+          .cast<double>()));
+}
+
+/// The same least-squares problem with image and offsets as dense unknowns.
+Eigen::VectorXd dense_solution(const std::vector<std::vector<GridObservation>>& runs) {
+  const auto pixels = kWidth * kHeight;
+  const auto size = pixels + static_cast<int>(runs.size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
+  for (std::size_t t = 0; t < runs.size(); ++t)
+    for (const GridObservation& observation : runs[t]) {
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
+      for (std::size_t k = 0; k < 4; ++k)
+        row[observation.point.index[k]] += static_cast<double>(observation.point.weight[k]);
+      row[pixels + static_cast<int>(t)] = -1;
+      a += static_cast<double>(observation.weight) * row * row.transpose();
+      b += static_cast<double>(observation.weight * observation.log_intensity) * row;
+    }
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x + 1 < kWidth; ++x) {
+      const int i = y * kWidth + x;
+      a(i, i) += 0.1;
+      a(i + 1, i + 1) += 0.1;
+      a(i, i + 1) -= 0.1;
+      a(i + 1, i) -= 0.1;
+    }
+  a(0, 0) += 1;  // The constant that observations leave undetermined.
+  return without_mean(a.ldlt().solve(b).head(pixels));
+}
+
+TEST(IntensitySystem, EqualsTheDenseProblemWithOffsets) {
+  const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F));
+  const auto runs = random_tracks(grid);
+  IntensitySystem system(kWidth, kHeight);
+  for (const auto& run : runs) system.add_run(run);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x + 1 < kWidth; ++x)
+      system.add_smoothness_term(y * kWidth + x + 1, y * kWidth + x, 0.1F);
+  const GridSolution solution = system.solve(500, 1e-6);
+  const Eigen::VectorXd found = without_mean(solution.image), expected = dense_solution(runs);
+  for (int i = 0; i < kWidth * kHeight; ++i) EXPECT_NEAR(found[i], expected[i], 2e-3) << i;
+  // Started from its solution it has converged.
+  EXPECT_LE(system.solve(500, 1e-4, solution.image).iterations, 3);
+}
+
+/// Where the columns of an image that goes around begin makes no difference.
+TEST(IntensitySystem, HasNoSeamWhereItWraps) {
+  const ReferenceGrid grid(Panorama{kWidth, 0, 0, kWidth, kWidth / 2});
+  const Random random(5);
+  const auto solve = [&](int shift) {
+    IntensitySystem system(grid.width(), grid.height(), true);
+    std::uint64_t draw = 0;
+    const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
+    for (int t = 0; t < 60; ++t) {
+      std::vector<GridObservation> run;
+      for (int k = 0; k < 6; ++k) {
+        const float x = kWidth * uniform() + static_cast<float>(shift);
+        const float y = (kWidth / 2 - 1) * uniform();
+        const float observation = uniform();
+        run.push_back({grid.at(x, y), observation, 0.5F + uniform()});
+      }
+      system.add_run(run);
+    }
+    for (int y = 0; y < grid.height(); ++y)
+      for (int x = 0; x < grid.width(); ++x) {
+        system.add_smoothness_term(y * kWidth + x, grid.right_of(x, y), 0.2F);
+        if (y + 1 < grid.height())
+          system.add_smoothness_term(y * kWidth + x, grid.below(x, y), 0.2F);
+      }
+    return without_mean(system.solve(400, 1e-7).image);
+  };
+  const Eigen::VectorXd plain = solve(0), shifted = solve(5), turned = solve(kWidth);
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      const int row = y * kWidth;
+      EXPECT_NEAR(shifted[row + (x + 5) % kWidth], plain[row + x], 2e-3) << x << " " << y;
+      EXPECT_NEAR(turned[row + x], plain[row + x], 2e-3) << x << " " << y;
+    }
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,46 @@
+#include "estimator/reconstruction/observations/intensity_observations.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+namespace saccade {
+namespace {
+
+TEST(SurfaceObservations, ConstrainsPixelsWithoutEventsInTurn) {
+  const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
+  const ImageF reference(24, 18, 1);
+  // 4 px of motion along x in 0.1 s, and one event at each end.
+  const Trajectory motion(
+      {{0, Rigid3()}, {0.1, Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.2, 0, 0))}});
+  Events events;
+  for (int i = 0; i <= 4096; ++i) events.push_back({i * 100'000'000LL / 4096, 0, 0, 1});
+  for (const int stride : {1, 3}) {
+    ObservationOptions options;
+    options.no_event_spacing_px = 0.5;
+    options.reprojection.redraw_motion_px = 1;
+    options.no_event_stride = stride;
+    SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
+    std::vector<IntensityObservation> observations;
+    source.observe(events, motion, observations);
+    std::set<std::uint32_t> runs;
+    int constraints = 0;
+    for (const IntensityObservation& observation : observations) {
+      const float slack = source.kinds()[observation.kind()].slack;
+      if (slack == 0) continue;
+      runs.insert(observation.run());
+      ++constraints;
+      EXPECT_FLOAT_EQ(slack, 0.2F);
+    }
+    // 8 constraints by each of the 20 to 24 columns of 18 pixels that stay in the view, give or take one.
+    EXPECT_NEAR(constraints * stride, 22 * 18 * 8, 22 * 18 * 8 / 5) << stride;
+    EXPECT_GE(runs.size(), 20U * 18U) << stride;
+  }
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,156 @@
+#include "eval/metrics/trajectory/align.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace saccade {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
+
+Quaterniond about(const Vector3d& axis, double angle) {
+  return Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
+}
+
+/// Pairs whose truth is `s` applied to poses at `positions`, each turned differently.
+std::vector<PosePair> transformed(const std::vector<Vector3d>& positions, const Similarity& s) {
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Rigid3 pose(about({1, 0.5, -2}, 0.3 * static_cast<double>(i)), positions[i]);
+    pairs.push_back({pose, s * pose});
+  }
+  return pairs;
+}
+
+void expect_same(const Similarity& a, const Similarity& b, double tolerance = 1e-9) {
+  EXPECT_NEAR(a.scale, b.scale, tolerance);
+  EXPECT_LT((a.rigid.translation() - b.rigid.translation()).norm(), tolerance);
+  EXPECT_LT(angle_between(a.rigid.rotation(), b.rigid.rotation()), tolerance);
+}
+
+const Similarity kTurnedAndScaled{2.5, Rigid3(about({1, 2, 3}, 2.0), {4, -5, 6})};
+const Similarity kTurned{1, kTurnedAndScaled.rigid};
+const std::vector<Vector3d> kSpread{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {-1, 1, 1}};
+
+TEST(Align, RecoversASimilarityExactly) {
+  expect_same(align(transformed(kSpread, kTurnedAndScaled), Alignment::kSim3), kTurnedAndScaled);
+  expect_same(align(transformed(kSpread, kTurned), Alignment::kSe3), kTurned);
+}
+
+TEST(Align, NoneIsTheIdentity) {
+  expect_same(align(transformed(kSpread, kTurnedAndScaled), Alignment::kNone), {});
+  expect_same(align({}, Alignment::kSim3), {});
+}
+
+TEST(Align, PositionsInAPlaneAreEnough) {
+  const std::vector<Vector3d> plane{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {3, 1, 0}};
+  expect_same(align(transformed(plane, kTurnedAndScaled), Alignment::kSim3), kTurnedAndScaled);
+}
+
+TEST(Align, OnALineTheOrientationsDecideTheRoll) {
+  const std::vector<Vector3d> line{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}};
+  expect_same(align(transformed(line, kTurnedAndScaled), Alignment::kSim3), kTurnedAndScaled);
+}
+
+TEST(Align, OnANearlyStraightPathTheOrientationsDecideTheRoll) {
+  // A path that bends by less than its positions are off by, in other directions.
+  std::vector<PosePair> pairs;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 0.1 * i - 1;
+    const Rigid3 pose(about({1, 0.5, -2}, 0.05 * i), {x, 0.003 * x * x, 0});
+    Rigid3 truth = kTurnedAndScaled * pose;
+    truth = Rigid3(truth.rotation(),
+                   kTurnedAndScaled * Vector3d(x, 0.001 * std::sin(7 * x), 0.003 * x * x));
+    pairs.push_back({pose, truth});
+  }
+  const Similarity found = align(pairs, Alignment::kSim3);
+  EXPECT_LT(angle_between(found.rigid.rotation(), kTurnedAndScaled.rigid.rotation()), 0.01);
+  EXPECT_NEAR(found.scale, kTurnedAndScaled.scale, 1e-3);
+}
+
+TEST(Align, PositionsAloneAreAlignedBetterThanWithTheirOrientations) {
+  // Two equal bends with errors across them: the orientations say another roll.
+  std::vector<PosePair> pairs;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 0.1 * i - 1;
+    pairs.push_back({Rigid3(about({1, 0, 0}, 0.2), {x, 0.01 * x * x, 0}),
+                     Rigid3(Quaterniond::Identity(), {x, 0.01 * x * x, 0.004 * std::sin(5 * x)})});
+  }
+  const auto squares = [&](const Similarity& s) {
+    double sum = 0;
+    for (const PosePair& pair : pairs)
+      sum += (s * pair.estimated.translation() - pair.truth.translation()).squaredNorm();
+    return sum;
+  };
+  EXPECT_LT(squares(align_positions(pairs, Alignment::kSe3)),
+            squares(align(pairs, Alignment::kSe3)));
+  expect_same(align_positions(transformed(kSpread, kTurnedAndScaled), Alignment::kSim3),
+              kTurnedAndScaled);
+  expect_same(align_positions({}, Alignment::kSim3), {});
+}
+
+TEST(Align, WhereThePathBendsThePositionsDecideAlone) {
+  std::vector<PosePair> pairs = transformed(kSpread, kTurnedAndScaled);
+  for (PosePair& pair : pairs)
+    pair.estimated =
+        Rigid3(about({0, 1, 0}, 0.5) * pair.estimated.rotation(), pair.estimated.translation());
+  expect_same(align(pairs, Alignment::kSim3), kTurnedAndScaled);
+}
+
+TEST(Align, AtAStandstillTheOrientationsDecideAlone) {
+  const std::vector<Vector3d> point{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+  expect_same(align(transformed(point, kTurned), Alignment::kSim3), kTurned);
+  expect_same(align(transformed({{1, 2, 3}}, kTurned), Alignment::kSe3), kTurned);
+}
+
+TEST(Align, NeverReturnsAReflection) {
+  std::vector<PosePair> pairs;
+  for (const Vector3d& p : kSpread)
+    pairs.push_back({Rigid3(Quaterniond::Identity(), p),
+                     Rigid3(Quaterniond::Identity(), Vector3d(p.x(), p.y(), -p.z()))});
+  for (PosePair& pair : pairs)
+    pair.truth = Rigid3(Quaterniond::Identity(), pair.truth.translation());
+  const Similarity s = align(pairs, Alignment::kSe3);
+  EXPECT_NEAR(s.rigid.rotation_matrix().determinant(), 1, 1e-12);
+}
+
+TEST(Align, LeastSquaresOfAHandComputedCase) {
+  // Estimate (-1, 0), (1, 0), (0, -1), (0, 1) in a plane; truth the same times 2, except that the
+  // third point is 3 (not 2) away. Means (0, -1/4): covariance diag(4, 5) / 4, variance 4/4.
+  const std::vector<Vector3d> estimate{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
+  const std::vector<Vector3d> truth{{-2, 0, 0}, {2, 0, 0}, {0, -3, 0}, {0, 2, 0}};
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i < 4; ++i)
+    pairs.push_back(
+        {Rigid3(Quaterniond::Identity(), estimate[i]), Rigid3(Quaterniond::Identity(), truth[i])});
+  const Similarity s = align(pairs, Alignment::kSim3);
+  EXPECT_NEAR(s.scale, 9.0 / 4, 1e-12);
+  EXPECT_LT((s.rigid.translation() - Vector3d(0, -0.25, 0)).norm(), 1e-12);
+  EXPECT_LT(angle_between(s.rigid.rotation(), Quaterniond::Identity()), 1e-9);
+}
+
+TEST(Align, AnEstimateThatStandsStillKeepsScaleOne) {
+  std::vector<PosePair> pairs = transformed(kSpread, kTurned);
+  for (PosePair& pair : pairs)
+    pair.estimated = Rigid3(pair.estimated.rotation(), Vector3d(7, 7, 7));
+  const Similarity s = align(pairs, Alignment::kSim3);
+  EXPECT_EQ(s.scale, 1);
+  EXPECT_TRUE(s.rigid.translation().allFinite());
+}
+
+TEST(Align, TurnsOrientationsByItsRotationAlone) {
+  const Rigid3 pose(about({0, 0, 1}, kPi / 6), {1, 0, 0});
+  const Similarity s{3, Rigid3(about({0, 0, 1}, kPi / 2), {0, 0, 1})};
+  const Rigid3 moved = s * pose;
+  EXPECT_LT((moved.translation() - Vector3d(0, 3, 1)).norm(), 1e-12);
+  EXPECT_LT(angle_between(moved.rotation(), about({0, 0, 1}, 2 * kPi / 3)), 1e-12);
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,101 @@
+#include "eval/sweep/plan/generate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "eval/sweep/plan/calibration_run.h"
+#include "tests/support/error_of.h"
+#include "tests/unit/eval/sweep/sweep_files.h"
+
+namespace saccade {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::read_sweep;
+using testing::TemporaryFolder;
+
+const std::string kGenerate =
+    "generate:\n"
+    "  name: some\n"
+    "  count: 3\n"
+    "  first: 416\n"
+    "  set: {duration_s: 0.1, b: 1}\n"
+    "  draw: {a: {uniform: [0, 1]}, c: [{integer: [5, 5]}]}\n"
+    "  scenes:\n"
+    "    - {simulate: walls.yaml, set: {b: 2}, draw: {a: {integer: [8, 8]}, d: {choose: [e]}}}\n";
+
+TEST(Generate, PlansADatasetForEachIndex) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(folder, kGenerate);
+  const SweepPlan plan = plan_sweep(sweep, "/out");
+  ASSERT_EQ(plan.simulations.size(), 3U);
+  const SweepJob& job = plan.simulations[1];
+  EXPECT_EQ(job.name, "some-000417");
+  EXPECT_EQ(job.output, "/out/data/some-000417");
+  const std::string seed = std::to_string(*job.point.dataset_seed);
+  EXPECT_THAT(job.commands,
+              ElementsAre(ElementsAre("simulate", folder.path() / "walls.yaml", "-o",
+                                      "/out/data/some-000417", "--threads", "1", "--set",
+                                      "duration_s=0.1", "--set", "b=1", "--set", "b=2", "--set",
+                                      "a=8", "--set", "c=[5]", "--set", "d=e", "--seed", seed)));
+  const GeneratedDataset dataset = generated_dataset(*sweep.generate, 417);
+  EXPECT_THAT(dataset.sampled,
+              ElementsAre(std::pair("a", "8"), std::pair("c.0", "5"), std::pair("d", "e")));
+}
+
+TEST(Generate, ADatasetIsTheSameInEverySubset) {
+  const TemporaryFolder folder;
+  const SweepConfig few = read_sweep(folder, kGenerate);
+  SweepConfig many = few;
+  many.generate->first = 0;
+  many.generate->count = 1000;
+  const SweepPlan plan = plan_sweep(many, "/out");
+  EXPECT_EQ(plan.simulations[417].settings, plan_sweep(few, "/out").simulations[1].settings);
+  EXPECT_NE(plan.simulations[417].settings, plan.simulations[418].settings) << "the seed differs";
+}
+
+TEST(Generate, DrawsScenesByTheirWeights) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(
+      folder,
+      "generate: {count: 1, scenes: [{simulate: walls.yaml, weight: 3}, {simulate: fast.yaml}]}\n");
+  std::map<std::string, int> counts;
+  constexpr int kCount = 2000;
+  for (int i = 0; i < kCount; ++i)
+    ++counts[generated_dataset(*sweep.generate, static_cast<std::uint64_t>(i)).scene->name];
+  EXPECT_NEAR(counts["walls"], 0.75 * kCount, 5 * std::sqrt(kCount * 0.75 * 0.25));
+}
+
+TEST(Generate, SaysWhatIsWrongAndWhere) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& yaml) {
+    return error_of([&] { return read_sweep(folder, yaml).title.empty(); });
+  };
+  const std::string scenes = "scenes: [{simulate: walls.yaml}]";
+  EXPECT_THAT(error("generate: {count: 0, " + scenes + "}\n"),
+              HasSubstr("sweep.yaml:1: generate.count"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + ", draw: {seed: 3}}\n"),
+              HasSubstr("must not hold 'seed'"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\nconfigurations: [{name: a}]\n"),
+              HasSubstr("runs nothing"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\ndatasets: [{path: recorded}]\n"),
+              HasSubstr("takes the place of 'datasets'"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + ",\n draw: {a: {uniform: [2, 1]}}}\n"),
+              HasSubstr("sweep.yaml:2: generate.draw.a.uniform is empty"));
+}
+
+TEST(CalibrationRun, ScalesAMeanWithItsInterval) {
+  const Estimate estimate = scaled_estimate({1, 2, 3}, 100);
+  EXPECT_DOUBLE_EQ(estimate.value, 200);
+  EXPECT_NEAR(estimate.spread, 100 * 4.303 / std::sqrt(3), 1e-9);
+  EXPECT_EQ(scaled_estimate({1, 2, 3}, 3).spread, 0) << "nothing is left to guess";
+  EXPECT_EQ(scaled_estimate({5}, 1).value, 5);
+}
+
+}  // namespace
+}  // namespace saccade

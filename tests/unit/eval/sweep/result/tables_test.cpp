@@ -1,0 +1,179 @@
+#include "eval/sweep/result/tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/io/image_file.h"
+#include "eval/number_text.h"
+#include "eval/sweep/metric_info.h"
+#include "tests/unit/eval/sweep/sweep_files.h"
+
+namespace saccade {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::read_sweep;
+using testing::TemporaryFolder;
+
+/// Two values of the grid, two seeds; the last run failed.
+class SweepTables : public ::testing::Test {
+ protected:
+  void fill(const std::string& axis, const std::string& more = "") {
+    sweep_ = read_sweep(folder_,
+                        "datasets: [{path: recorded}]\nconfigurations: [{file: fast.yaml}]\n"
+                        "grid: {" +
+                            axis + "}\nseeds: [1, 2]\n" + more);
+    plan_ = plan_sweep(sweep_, folder_.path() / "out");
+    const double errors[] = {0.5, 0.7, 0.25, 0};
+    const double speeds[] = {20000, 30000, 12345, 0};
+    for (std::size_t i = 0; i < plan_.runs.size(); ++i) {
+      SweepRow row{&plan_.runs[i], i == 3, {}, "a machine", "0.1"};
+      if (!row.failed) {
+        row.metrics.set("trajectory.dt_rel_percent.mean", errors[i]);
+        row.metrics.set("trajectory.drift_percent", std::nullopt);
+        row.metrics.set("speed.poses_per_s.median", speeds[i]);
+      }
+      results_.rows.push_back(row);
+    }
+    results_.groups = group_by_seed(results_.rows);
+    results_.metrics = {"trajectory.dt_rel_percent.mean", "speed.poses_per_s"};
+  }
+
+  TemporaryFolder folder_;
+  SweepConfig sweep_;
+  SweepPlan plan_;
+  SweepResults results_{sweep_, plan_, {}, {}, {}};
+};
+
+TEST_F(SweepTables, CsvHoldsOneRowForEachJob) {
+  fill("a.b: [1, 2]");
+  EXPECT_EQ(sweep_csv(results_).text(),
+            "job,dataset,dataset_seed,module,configuration,variant,a.b,seed,status,"
+            "speed.poses_per_s.median,trajectory.drift_percent,trajectory.dt_rel_percent.mean\n"
+            "recorded_fast_b-1_seed-1,recorded,,track,fast,,1,1,ok,20000,,0.5\n"
+            "recorded_fast_b-1_seed-2,recorded,,track,fast,,1,2,ok,30000,,0.7\n"
+            "recorded_fast_b-2_seed-1,recorded,,track,fast,,2,1,ok,12345,,0.25\n"
+            "recorded_fast_b-2_seed-2,recorded,,track,fast,,2,2,failed,,,\n");
+}
+
+TEST_F(SweepTables, AnExternalProgramThatCrashedIsARowWithItsReason) {
+  fill("a.b: [1, 2]");
+  results_.rows[0].problem = "timed out: after 3 s";
+  EXPECT_THAT(sweep_csv(results_).text(), HasSubstr("fast,,1,1,timed out,20000"));
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("| 1 | 2 (1 failed) | 0.700 | **30,000** |"),
+                    HasSubstr("- recorded_fast_b-1_seed-1: timed out: after 3 s\n")));
+}
+
+TEST_F(SweepTables, MarkdownAveragesOverSeedsAndMarksTheBest) {
+  fill("a.b: [1, 2]", "repeat: 5\ntiming: true\ntitle: Mine\n");
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("# Mine\n"), HasSubstr("medians of 5 repetitions, one run at a time"),
+                    HasSubstr("| `a.b` | seeds | dt_rel [%] | poses/s |\n|---|---|---:|---:|\n"
+                              "| 1 | 2 | 0.600 (0.500–0.700) | **25,000** |\n"
+                              "| 2 | 2 (1 failed) | **0.250** | 12,300 |\n"),
+                    HasSubstr("- recorded_fast_b-2_seed-2: jobs/"), HasSubstr("a machine")));
+}
+
+TEST_F(SweepTables, TheSpeedOfALostRunIsNotTheBest) {
+  fill("a.b: [1, 2]");
+  results_.rows[0].metrics.set("trajectory.lost_s", 0.2);
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("| 25,000 |"), HasSubstr("| **12,300** |")));
+}
+
+TEST_F(SweepTables, ExpectedMetricsAreMetOrMissed) {
+  fill("a.b: [1]",
+       "expected:\n"
+       "  - {configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 0.61}\n"
+       "  - {configuration: fast, metric: speed.poses_per_s, at_least: 26000}\n"
+       "  - {configuration: fast, metric: trajectory.drift_percent, at_most: 1}\n");
+  const std::vector<ExpectationResult> expectations = check_expectations(results_);
+  ASSERT_EQ(expectations.size(), 3U);
+  EXPECT_TRUE(expectations[0].met) << "the mean of both seeds counts";
+  EXPECT_FALSE(expectations[1].met);
+  EXPECT_FALSE(expectations[2].met) << "nothing measured is nothing met";
+  EXPECT_EQ(expectations[2].value, std::nullopt);
+  EXPECT_THAT(sweep_markdown(results_, {}, expectations),
+              AllOf(HasSubstr("1 of 3 met."),
+                    HasSubstr("| fast | recorded | dt_rel [%] | ≤ 0.61 | 0.600 | met |\n"
+                              "| fast | recorded | poses/s | ≥ 26000 | 25,000 | **missed** |\n")));
+}
+
+TEST_F(SweepTables, ARunThatFailedMeetsNothing) {
+  fill("a.b: [1, 2]",
+       "expected: [{configuration: fast, metric: trajectory.dt_rel_percent.mean, at_most: 9}]\n");
+  const std::vector<ExpectationResult> expectations = check_expectations(results_);
+  ASSERT_EQ(expectations.size(), 2U) << "one for each row";
+  EXPECT_TRUE(expectations[0].met);
+  EXPECT_FALSE(expectations[1].met);
+}
+
+TEST_F(SweepTables, ModulesHaveTablesOfTheirOwn) {
+  fill("a.b: [1, 2]");
+  plan_.runs[2].point.module = plan_.runs[3].point.module = "depth";
+  results_.rows[2].metrics = {};
+  results_.rows[2].metrics.set("depth.rel_median", 0.01);
+  results_.groups = group_by_seed(results_.rows);
+  results_.metrics.emplace_back("depth.rel_median");
+  EXPECT_THAT(sweep_markdown(results_, {}, {}),
+              AllOf(HasSubstr("## recorded\n### track\n| `a.b` | seeds | dt_rel [%] | poses/s |\n"),
+                    HasSubstr("### depth\n| `a.b` | seeds | median depth error |\n")));
+}
+
+TEST_F(SweepTables, NumbersBecomeALineChart) {
+  fill("a.b: [1, 2]");
+  const auto charts = write_charts(results_, folder_.path());
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0], "![Over a.b](over_a_b.png)");
+  EXPECT_GT(std::filesystem::file_size(folder_.path() / "over_a_b.png"), 1000U);
+}
+
+TEST_F(SweepTables, WordsBecomeABarChart) {
+  fill("a.b: [dense, sparse]");
+  const auto charts = write_charts(results_, folder_.path());
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0], "![All rows compared](compared.png)");
+}
+
+TEST_F(SweepTables, ManyDatasetsBecomeRows) {
+  fill("a.b: [dense, sparse]");
+  (void)write_charts(results_, folder_.path());
+  const int of_one_dataset = read_image_rgb(folder_.path() / "compared.png").height();
+  plan_.runs[1].point.dataset = "second";
+  plan_.runs[3].point.dataset = "third";
+  results_.groups = group_by_seed(results_.rows);
+  (void)write_charts(results_, folder_.path());
+  // Three rows for two bars each; two rows for three bars would be lower by the gap of a row.
+  const int of_three = read_image_rgb(folder_.path() / "compared.png").height();
+  EXPECT_EQ(of_three - of_one_dataset, 3 * 38 - 2 * 25);
+}
+
+TEST_F(SweepTables, ASingleRowHasNoChart) {
+  fill("a.b: [1]");
+  EXPECT_TRUE(write_charts(results_, folder_.path()).empty());
+  EXPECT_THAT(sweep_markdown(results_, {}, {}), Not(HasSubstr("**")));
+}
+
+TEST(MetricInfo, KnowsWhatIsBetter) {
+  using Better = MetricInfo::Better;
+  EXPECT_EQ(metric_info("trajectory.dt_rel_percent.max").better, Better::kLower);
+  EXPECT_EQ(metric_info("trajectory.coverage").better, Better::kHigher);
+  EXPECT_EQ(metric_info("speed.events_per_s.median").better, Better::kHigher);
+  EXPECT_EQ(metric_info("speed.wall_s.median").better, Better::kLower);
+  EXPECT_EQ(metric_info("trajectory.rpe.per_second.trans_rmse_m").better, Better::kLower);
+  EXPECT_EQ(metric_info("trajectory.poses").better, Better::kNeither);
+  EXPECT_TRUE(metric_info("speed.wall_s").is_speed);
+}
+
+TEST(NumberText, RoundsToThreeDigits) {
+  EXPECT_EQ(rounded(0.01234), "0.0123");
+  EXPECT_EQ(rounded(1234567.0), "1,230,000");
+  EXPECT_EQ(rounded(999.6), "1000");
+  EXPECT_EQ(rounded(std::nullopt), "–");
+}
+
+}  // namespace
+}  // namespace saccade

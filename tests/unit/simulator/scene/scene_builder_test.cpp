@@ -1,0 +1,135 @@
+#include "simulator/scene/scene_builder.h"
+
+#include <gmock/gmock.h>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/exr_file.h"
+#include "simulator/scene/mesh/world_from_mesh.h"
+#include "tests/unit/simulator/scene/mesh_files.h"
+
+namespace saccade {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class SceneFile : public testing::MeshFiles {
+ protected:
+  SceneOptions options(const std::string& yaml) const {
+    return config::read<SceneOptions>(config::parse(yaml, "scene.yaml", folder_));
+  }
+  std::string error_of(const std::string& yaml) const {
+    try {
+      static_cast<void>(build_scene(options(yaml)));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  static Shade see(const Scene& scene, const Ray& ray) {
+    TriangleId triangle = kNothing;
+    scene.visible({&ray, 1}, {&triangle, 1});
+    return scene.shade(ray, triangle);
+  }
+};
+
+TEST_F(SceneFile, PlacesMeshesAndShowsTheBackground) {
+  write("square.obj", testing::square_obj("square.mtl"));
+  write("square.mtl", "newmtl surface\nKd 1 1 1\n");
+  const Scene scene = build_scene(options(
+      "meshes:\n"
+      "  - {file: square.obj, transform: {translation: [0, 0, 3], scale: 2}}\n"
+      "  - {file: square.obj, transform: {translation: [5, 0, 4], rotation_deg: [0, 0, 90]}}\n"
+      "background: 0.125\n"));
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(see(scene, {{1.9, 1.9, 0}, forward}).distance, 3, 1e-12);
+  EXPECT_NEAR(see(scene, {{1.9, 1.9, 0}, forward}).radiance, 1, 1e-6);
+  EXPECT_NEAR(see(scene, {{4.5, 0.5, 0}, forward}).distance, 4, 1e-12);
+  EXPECT_NEAR(see(scene, {{5.5, 0.5, 0}, forward}).radiance, 0.125, 1e-12);
+}
+
+TEST_F(SceneFile, LambertianLightIsRead) {
+  write("square.obj", testing::square_obj("square.mtl"));
+  write("square.mtl", "newmtl surface\nKd 1 1 1\n");
+  const Scene scene = build_scene(
+      options("meshes: [{file: square.obj}]\nlighting: lambertian\nambient: 0.25\nlights:\n"
+              "  - {type: directional, direction: [0, 0, -2], intensity: 0.5}\n"
+              "  - {type: point, position: [0.5, 0.5, 2], intensity: 4, shadows: false}\n"));
+  EXPECT_NEAR(see(scene, {{0.5, 0.5, 1}, -Eigen::Vector3d::UnitZ()}).radiance, 0.25 + 0.5 + 1,
+              1e-6);
+}
+
+TEST_F(SceneFile, EnvironmentMapIsRead) {
+  write("square.obj", testing::square_obj());
+  write_exr(folder_ / "sky.exr", ImageF(8, 4, 3.5F), "Y");
+  const Scene scene = build_scene(options("meshes: [{file: square.obj}]\nbackground: sky.exr\n"));
+  EXPECT_NEAR(see(scene, {{5, 5, 5}, {1, 2, 3}}).radiance, 3.5, 1e-6);
+}
+
+TEST_F(SceneFile, PrintsWhatItReads) {
+  write("square.obj", testing::square_obj());
+  const std::string yaml =
+      "meshes: [{file: square.obj, size_m: [1, 2, 3], anchor: bottom, transform: {rotation_deg: "
+      "[90, 0, 0]}}, {file: square.obj, transform: {scale: [1, 2, 3]}}]\nbackground: 0.25\n"
+      "lighting: lambertian\nlights: [{type: directional, direction: [1, 0, 0]}]\n";
+  const std::string printed = config::print(options(yaml));
+  EXPECT_EQ(config::print(options(printed)), printed);
+}
+
+TEST_F(SceneFile, MalformedScenesAreErrorsWithTheirPlace) {
+  write("square.obj", testing::square_obj());
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  EXPECT_THAT(error_of("meshes: [{file: nowhere.obj}]"),
+              AllOf(HasSubstr("scene.yaml:1"), HasSubstr("nowhere.obj")));
+  EXPECT_THAT(error_of("meshes: [{file: flat.obj}]"),
+              AllOf(HasSubstr("flat.obj"), HasSubstr("area")));
+  EXPECT_THAT(error_of("meshes: []"), HasSubstr("scene.yaml:1"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj, transform: {scale: 0}}]"), HasSubstr("scale"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj, size_m: [1, 0, 1]}]"), HasSubstr("size_m"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj, size_m: [1, 1, 1], transform: {scale: 2}}]"),
+              HasSubstr("size_m"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nbackground: -1"), HasSubstr("background"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nbackground: sky.exr"), HasSubstr("sky.exr"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nlighting: bright"), HasSubstr("lambertian"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nambient: 1"), HasSubstr("lambertian"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nlighting: lambertian\nlights: [{type: "
+                       "directional, direction: [0, 0, 0]}]"),
+              HasSubstr("direction"));
+}
+
+TEST_F(SceneFile, MissingFurnitureSaysHowToGetIt) {
+  EXPECT_THAT(error_of("meshes: [{file: '/usr/share/sweethome3d/nowhere.sh3f!/desk.obj'}]"),
+              AllOf(HasSubstr("scene.yaml:1"), HasSubstr("apt-get install sweethome3d-furniture")));
+}
+
+TEST(WorldFromMesh, ScalesThenRotatesThenTranslates) {
+  MeshOptions options;
+  options.transform.scale = {2, 3, 4};
+  options.transform.rotation_deg = {90, 0, 90};
+  options.transform.translation = {10, 20, 30};
+  const Eigen::Affine3d placed = world_from_mesh(options, {});
+  // x stays under Rx and becomes y under Rz; y becomes z; z becomes -y, then x.
+  EXPECT_LT((placed * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(10, 22, 30)).norm(), 1e-12);
+  EXPECT_LT((placed * Eigen::Vector3d(0, 1, 0) - Eigen::Vector3d(10, 20, 33)).norm(), 1e-12);
+  EXPECT_LT((placed * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(14, 20, 30)).norm(), 1e-12);
+}
+
+TEST(WorldFromMesh, SizeIsThatOfTheBoxAndAnchorsTakeItInPlace) {
+  Mesh mesh;
+  mesh.vertices = {{1, 1, 1}, {3, 1, 1}, {3, 2, 6}};
+  mesh.triangles = {{{0, 1, 2}, 0}};
+  MeshOptions options;
+  options.size_m = Eigen::Vector3d(0.5, 0.5, 0.5);
+  options.transform.rotation_deg = {90, 0, 0};
+  options.transform.translation = {1, 2, 3};
+  options.anchor = Anchor::kBottom;
+  const Eigen::Affine3d placed = world_from_mesh(options, mesh);
+  Eigen::AlignedBox3d box;
+  for (int i = 0; i < 3; ++i) box.extend(placed * mesh.vertices[static_cast<std::size_t>(i)]);
+  EXPECT_LT((box.min() - Eigen::Vector3d(0.75, 1.75, 3)).norm(), 1e-12);
+  EXPECT_LT((box.max() - Eigen::Vector3d(1.25, 2.25, 3.5)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace saccade
