@@ -39,7 +39,7 @@ bool is_foreign(const EvalOptions& options) {
 }
 
 void evaluate_foreign_depth(const EvalOptions& options) {
-  ForeignDepth depth;
+  ExternalDepth depth;
   depth.is_cloud = options.depth.empty();
   depth.file = depth.is_cloud ? options.cloud : options.depth;
   depth.at_s = options.at_s;

@@ -14,7 +14,7 @@
 #include "core/io/files/atomic_file.h"
 #include "core/process/progress.h"
 #include "eval/gate/baseline_file.h"
-#include "eval/gate/build_race.h"
+#include "eval/gate/paired_benchmark.h"
 #include "eval/gate/comparison.h"
 #include "eval/gate/gate_report.h"
 #include "eval/store/result_store.h"
@@ -89,9 +89,9 @@ void race_builds(const GateVerbOptions& options) {
     throw InputError("--build", "say what both are to do: --build A --build B -- ARGUMENTS");
   for (const std::filesystem::path& build : options.builds)
     if (!std::filesystem::exists(build)) throw InputError(build.string(), "does not exist");
-  const BuildRace race{options.builds[0], options.builds[1], options.words, options.repeats};
-  Progress progress("running", race_order(race.repeats).size(), "runs");
-  const RaceTimes times = run_race(race, [&](const RaceTurn&) { progress.add(1); });
+  const PairedBenchmark race{options.builds[0], options.builds[1], options.words, options.repeats};
+  Progress progress("running", repetition_order(race.repeats).size(), "runs");
+  const PairedTimes times = run_paired_benchmark(race, [&](const Repetition&) { progress.add(1); });
   progress.finish();
   finish(options, compare_times(times.first_s, times.second_s, options.gate));
 }

@@ -4,7 +4,7 @@
 
 #include "core/config/config.h"
 #include "estimator/registry.h"
-#include "eval/sweep/sweep_config.h"
+#include "eval/sweep/plan/sweep_config.h"
 #include "simulator/simulation_config.h"
 
 namespace saccade {

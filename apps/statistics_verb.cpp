@@ -11,7 +11,7 @@
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
-#include "eval/statistics_report.h"
+#include "eval/statistics/statistics_report.h"
 
 namespace saccade {
 namespace {

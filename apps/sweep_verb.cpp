@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/process/progress.h"
 #include "eval/sweep/sweep.h"
-#include "eval/sweep/sweep_config.h"
+#include "eval/sweep/plan/sweep_config.h"
 
 namespace saccade {
 namespace {

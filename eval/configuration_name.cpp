@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "core/io/sha256.h"
-#include "core/shell.h"
+#include "core/io/files/sha256.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 
 namespace saccade {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "eval/metrics/depth_metrics.h"
 #include "eval/metrics/metrics.h"

@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/event_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "eval/evaluate.h"
-#include "eval/picture/sensor_view.h"
+#include "eval/picture/view/sensor_view.h"
 #include "eval/run_folder.h"
 #include "eval/table/number_text.h"
 

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/covariance_file.h"
 #include "core/io/imu_file.h"
-#include "core/io/keyframe_list.h"
+#include "core/io/run/keyframe_list.h"
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"

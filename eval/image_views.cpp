@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/view_list.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/run/view_list.h"
 #include "core/srgb.h"
 #include "eval/metrics/depth_truth.h"
-#include "eval/picture/image_picture.h"
+#include "eval/picture/image/image_picture.h"
 
 namespace saccade {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/io/keyframe_list.h"
+#include "core/io/run/keyframe_list.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
 #include "eval/run_folder.h"

@@ -10,9 +10,9 @@
 #include <Eigen/SVD>
 
 #include "core/error.h"
-#include "core/io/panorama_file.h"
+#include "core/io/images/panorama_file.h"
 #include "core/io/trajectory_file.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "eval/image_views.h"
 
 namespace saccade {

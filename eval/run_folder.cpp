@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/io/csv_reader.h"
-#include "core/io/folder_name.h"
-#include "core/io/text_table.h"
+#include "core/io/tables/csv_reader.h"
+#include "core/io/files/folder_name.h"
+#include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
 
 namespace saccade {

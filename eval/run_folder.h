@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/io/covariance_file.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/io/ply_file.h"
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/trajectory/trajectory_metrics.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/sha256.h"
+#include "core/io/files/sha256.h"
 #include "core/version.h"
 #include "eval/metrics/metrics.h"
 

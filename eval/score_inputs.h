@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 
 namespace saccade {
 

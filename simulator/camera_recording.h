@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/io/dataset_writer.h"
-#include "core/spline.h"
+#include "core/io/dataset/dataset_writer.h"
+#include "core/spline/spline.h"
 #include "simulator/event_log.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulation_config.h"

@@ -8,8 +8,8 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/file_bytes.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/files/file_bytes.h"
 
 namespace saccade {
 namespace {

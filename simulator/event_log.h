@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/io/block_journal.h"
+#include "core/io/files/block_journal.h"
 #include "simulator/sensor/event_tile.h"
 #include "simulator/sensor/pixel/sensed_event.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/sensor/image_renderer.h"
 
 namespace saccade {

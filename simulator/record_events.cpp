@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "core/io/labels_h5.h"
-#include "core/progress.h"
+#include "core/io/events/labels_h5.h"
+#include "core/process/progress.h"
 #include "simulator/recording_loop.h"
 #include "simulator/sensor/event_labels.h"
 #include "simulator/sensor/frame_camera.h"

@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "core/io/exr_file.h"
+#include "core/io/images/exr_file.h"
 #include "core/panorama.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 #include "simulator/exposure.h"
 #include "simulator/sensor/image_renderer.h"
 #include "simulator/sensor/sample_times.h"

@@ -8,9 +8,9 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/sha256.h"
-#include "core/program.h"
-#include "core/progress.h"
+#include "core/io/files/sha256.h"
+#include "core/process/program.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 namespace {

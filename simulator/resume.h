@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/io/input_log.h"
-#include "core/io/resumable_folder.h"
+#include "core/io/files/input_log.h"
+#include "core/io/files/resumable_folder.h"
 #include "simulator/event_log.h"
 #include "simulator/simulation_config.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "core/io/dataset_writer.h"
+#include "core/io/dataset/dataset_writer.h"
 #include "simulator/motion/motion.h"
 #include "simulator/record_events.h"
 #include "simulator/record_groundtruth.h"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/dataset_record.h"
+#include "core/io/dataset/dataset_record.h"
 #include "simulator/sensor/event_tile.h"
 #include "simulator/simulation_config.h"
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
 #include "core/io/ply_file.h"
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "core/time_search.h"
 
 namespace saccade {

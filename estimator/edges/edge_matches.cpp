@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
@@ -12,10 +12,10 @@ constexpr double kReach_px = 2;
 constexpr double kDepthTolerance = 0.1;  ///< relative
 constexpr float kMinCosine = 0.966F;     ///< of 15 degrees
 
-std::vector<Landmark> landmarks_of(std::span<const FittedEdge> edges, const PinholeCamera& camera) {
+std::vector<Landmark> landmarks_of(std::span<const FittedEdgel> edges, const PinholeCamera& camera) {
   std::vector<Landmark> landmarks;
   landmarks.reserve(edges.size());
-  for (const FittedEdge& fitted : edges) {
+  for (const FittedEdgel& fitted : edges) {
     const auto rho = static_cast<double>(fitted.edge.inverse_depth);
     landmarks.push_back({camera.ray(fitted.edge.pixel.cast<double>()) / rho,
                          static_cast<double>(fitted.sigma) / rho});
@@ -25,9 +25,9 @@ std::vector<Landmark> landmarks_of(std::span<const FittedEdge> edges, const Pinh
 
 }  // namespace
 
-std::optional<FittedEdge> transformed(const Rigid3& other_from_view, FittedEdge fitted,
+std::optional<FittedEdgel> transformed(const Rigid3& other_from_view, FittedEdgel fitted,
                                       const PinholeCamera& camera) {
-  RayEdge& edge = fitted.edge;
+  Edgel& edge = fitted.edge;
   const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
   const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {
     return other_from_view * (depth_m * camera.ray(pixel.cast<double>()));
@@ -44,14 +44,14 @@ std::optional<FittedEdge> transformed(const Rigid3& other_from_view, FittedEdge 
   return fitted;
 }
 
-EdgeMatcher::EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+EdgeMatcher::EdgeMatcher(std::span<const FittedEdgel> edges, const Rigid3& other_from_view,
                          const PinholeCamera& camera)
     : edges_(edges),
       other_from_view_(other_from_view),
       camera_(camera),
       landmarks_(landmarks_of(edges, camera), other_from_view, camera) {}
 
-std::optional<std::size_t> EdgeMatcher::match(const RayEdge& edge) const {
+std::optional<std::size_t> EdgeMatcher::match(const Edgel& edge) const {
   const ProjectedLandmarks::Projection* nearest =
       landmarks_.nearest(edge, kReach_px, kDepthTolerance);
   if (nearest == nullptr) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<std::size_t> EdgeMatcher::match(const RayEdge& edge) const {
 
 std::vector<std::vector<KeyframeEdge>> reobservations(std::span<const KeyframeEdge> edges,
                                                       std::span<const ViewWindow> windows,
-                                                      std::span<const RayEdges> found,
+                                                      std::span<const WindowEdgels> found,
                                                       double apart_s, const PinholeCamera& camera) {
   std::vector<std::vector<KeyframeEdge>> observations(edges.size());
   const auto find = [&](std::size_t keyframe) {

@@ -7,16 +7,16 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
-#include "estimator/depth/event_ownership.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/event_assignment.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/landmarks.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
 
 /// The edge in another view; nullopt for behind it. `camera` is undistorted.
-[[nodiscard]] std::optional<FittedEdge> transformed(const Rigid3& other_from_view,
-                                                    FittedEdge fitted, const PinholeCamera& camera);
+[[nodiscard]] std::optional<FittedEdgel> transformed(const Rigid3& other_from_view,
+                                                    FittedEdgel fitted, const PinholeCamera& camera);
 
 /// Data association of edges between two views: which edge of the other view is an edge of this
 /// one. The match lies within 2 px of the reprojection, within a tenth of the inverse depth and
@@ -25,14 +25,14 @@ class EdgeMatcher {
  public:
   /// `other_from_view`: from the view of `edges` to that of the edges that are matched. `edges`
   /// outlive the matcher; `camera` is undistorted.
-  EdgeMatcher(std::span<const FittedEdge> edges, const Rigid3& other_from_view,
+  EdgeMatcher(std::span<const FittedEdgel> edges, const Rigid3& other_from_view,
               const PinholeCamera& camera);
 
   /// The index of the edge's match; nullopt for none.
-  [[nodiscard]] std::optional<std::size_t> match(const RayEdge& edge) const;
+  [[nodiscard]] std::optional<std::size_t> match(const Edgel& edge) const;
 
  private:
-  std::span<const FittedEdge> edges_;
+  std::span<const FittedEdgel> edges_;
   Rigid3 other_from_view_;
   PinholeCamera camera_;
   ProjectedLandmarks landmarks_;
@@ -41,7 +41,7 @@ class EdgeMatcher {
 /// An edge that a keyframe's window shows.
 struct KeyframeEdge {
   std::size_t keyframe;
-  std::size_t edge;  ///< in the keyframe's RayEdges
+  std::size_t edge;  ///< in the keyframe's WindowEdgels
 };
 
 /// Observations of each of these edges by later keyframes at least `apart_s` away, in order of
@@ -49,6 +49,6 @@ struct KeyframeEdge {
 /// keyframes.
 [[nodiscard]] std::vector<std::vector<KeyframeEdge>> reobservations(
     std::span<const KeyframeEdge> edges, std::span<const ViewWindow> windows,
-    std::span<const RayEdges> found, double apart_s, const PinholeCamera& camera);
+    std::span<const WindowEdgels> found, double apart_s, const PinholeCamera& camera);
 
 }  // namespace saccade

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "estimator/depth/event_ownership.h"
+#include "estimator/depth/rays/event_assignment.h"
 #include "estimator/edges/edge_residual.h"
 
 namespace saccade {
@@ -22,7 +22,7 @@ struct EdgeNoise {
 
   /// Standard deviation of an edge's events: what the regression left of them, but no less than the
   /// sensor's own.
-  [[nodiscard]] static double sigma_px(const FittedEdge& edge) {
+  [[nodiscard]] static double sigma_px(const FittedEdgel& edge) {
     return std::max(kMinSigma_px, static_cast<double>(edge.residual_px));
   }
 

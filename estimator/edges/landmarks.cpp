@@ -22,7 +22,7 @@ ProjectedLandmarks::ProjectedLandmarks(std::span<const Landmark> landmarks,
   }
 }
 
-const ProjectedLandmarks::Projection* ProjectedLandmarks::nearest(const RayEdge& edge,
+const ProjectedLandmarks::Projection* ProjectedLandmarks::nearest(const Edgel& edge,
                                                                   double reach_px,
                                                                   double tolerance) const {
   const Eigen::Vector2d at = edge.pixel.cast<double>();

@@ -9,7 +9,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
-#include "estimator/depth/ray_gather.h"
+#include "estimator/depth/rays/ray_gatherer.h"
 
 namespace saccade {
 
@@ -35,7 +35,7 @@ class ProjectedLandmarks {
 
   /// The one nearest to an edge, within `reach_px` of its pixel and within a relative `tolerance`
   /// of its inverse depth; nullptr for none.
-  [[nodiscard]] const Projection* nearest(const RayEdge& edge, double reach_px,
+  [[nodiscard]] const Projection* nearest(const Edgel& edge, double reach_px,
                                           double tolerance) const;
 
  private:

@@ -8,7 +8,7 @@
 
 #include "core/check.h"
 #include "core/config/suggest.h"
-#include "core/shell.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"

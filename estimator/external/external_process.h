@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/child_process.h"
+#include "core/process/child_process.h"
 
 namespace saccade {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/rigid3.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "estimator/imu/velocity_chain.h"
 
 namespace saccade {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "core/imu_sample.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 
 namespace saccade {
 

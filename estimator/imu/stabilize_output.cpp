@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/io/events_h5.h"
-#include "core/io/file_list.h"
-#include "core/io/image_file.h"
-#include "core/parallel.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/files/file_list.h"
+#include "core/io/images/image_file.h"
+#include "core/process/parallel.h"
 #include "core/srgb.h"
 
 namespace saccade {
@@ -43,7 +43,7 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
                              std::span<const std::vector<StabilizedEvent>> stabilized) {
   std::filesystem::create_directories(folder);
   EventH5Writer events(folder / "events.h5", TimestampUnit::kNanoseconds);
-  StabilizedPlaces places;
+  StabilizedCoordinates places;
   for (const std::vector<StabilizedEvent>& window : stabilized) {
     Events batch;
     for (const auto& [event, exact] : within_image(window, camera)) {
@@ -56,7 +56,7 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
     events.append(batch);
   }
   events.close();
-  write_stabilized_places(folder / "places.h5", places);
+  write_stabilized_coordinates(folder / "places.h5", places);
   write_stabilized_windows(folder / "windows.csv", windows);
 }
 

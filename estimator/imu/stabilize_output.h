@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
-#include "core/io/stabilized_events.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
+#include "core/io/events/stabilized_events.h"
 #include "core/trajectory.h"
 #include "estimator/imu/stabilizer.h"
 

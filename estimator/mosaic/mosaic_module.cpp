@@ -10,11 +10,11 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
-#include "core/io/panorama_file.h"
+#include "core/io/images/panorama_file.h"
 #include "core/io/trajectory_file.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/mosaic/mosaic_config.h"
@@ -64,7 +64,7 @@ Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
   return panorama_around(FieldOfView(camera), orientations_of(poses, events), resolution);
 }
 
-/// The orientations without the rate offset that the events imply; then levelled again with the
+/// The orientations without the rate offset that the events imply; then gravity_aligned again with the
 /// accelerometer, if there is one.
 Trajectory corrected(const Trajectory& world_from_camera, std::span<const Event> events,
                      const MosaicSource& source, const PinholeCamera& camera,
@@ -73,7 +73,7 @@ Trajectory corrected(const Trajectory& world_from_camera, std::span<const Event>
       events, camera, world_from_camera, resolution_of(camera, config), config.rate_offset);
   const Trajectory without_offset =
       without_rate(world_from_camera, rate, seconds_from_ns(events.front().t_ns));
-  return source.imu ? levelled(without_offset, *source.imu) : without_offset;
+  return source.imu ? gravity_aligned(without_offset, *source.imu) : without_offset;
 }
 
 /// Everything but reading and writing.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/panorama.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/reconstruction/observations/panorama_projector.h"
 #include "estimator/reconstruction/observations/pose_table.h"
 

@@ -42,7 +42,7 @@ std::vector<Landmark> EdgeMap::landmarks(double before_s, const Rigid3& world_fr
   std::vector<Landmark> landmarks;
   for (const std::size_t i : most_visible(std::move(older), world_from_camera)) {
     const Keyframe& keyframe = keyframes_[i];
-    for (const EdgeDepth& point : keyframe.depth.points) {
+    for (const EdgePoint& point : keyframe.depth.points) {
       const double depth_m = 1 / static_cast<double>(point.inverse_depth);
       landmarks.push_back(
           {keyframe.world_from_camera * (depth_m * camera_.ray({point.x_px, point.y_px})),

@@ -5,7 +5,7 @@ namespace saccade {
 MapPoints points_in_world(const DepthResult& depth, const PinholeCamera& camera,
                           const Rigid3& world_from_camera, double max_sigma) {
   MapPoints points;
-  for (const EdgeDepth& point : depth.points) {
+  for (const EdgePoint& point : depth.points) {
     if (!(point.sigma < static_cast<float>(max_sigma) * point.inverse_depth)) continue;
     const Eigen::Vector3d in_world = world_from_camera * (camera.ray({point.x_px, point.y_px}) /
                                                           static_cast<double>(point.inverse_depth));

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/random.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "core/time_search.h"
-#include "estimator/depth/sweep_depth.h"
-#include "estimator/reconstruction/point_surface.h"
+#include "estimator/depth/sweep/sweep_depth.h"
+#include "estimator/reconstruction/surface/point_surface.h"
 
 namespace saccade {
 namespace {
@@ -20,7 +20,7 @@ double median_depth(const DepthResult& result, double otherwise) {
   if (result.points.empty()) return otherwise;
   std::vector<float> inverse;
   inverse.reserve(result.points.size());
-  for (const EdgeDepth& point : result.points) inverse.push_back(point.inverse_depth);
+  for (const EdgePoint& point : result.points) inverse.push_back(point.inverse_depth);
   const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
   std::nth_element(inverse.begin(), middle, inverse.end());
   return 1 / static_cast<double>(*middle);
@@ -30,7 +30,7 @@ double median_depth(const DepthResult& result, double otherwise) {
 std::vector<SurfacePoint> surface_points(const DepthResult& result, const PinholeCamera& camera) {
   std::vector<SurfacePoint> points;
   points.reserve(result.points.size());
-  for (const EdgeDepth& point : result.points) {
+  for (const EdgePoint& point : result.points) {
     const double depth = 1 / static_cast<double>(point.inverse_depth);
     points.push_back({depth * camera.ray({point.x_px, point.y_px}),
                       static_cast<double>(point.sigma / point.inverse_depth)});
@@ -117,7 +117,7 @@ Mapping Mapper::map_once(std::span<const Event> events, const KnownPath& path) c
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;
   const double expected_m = path.typical_depth_m ? *path.typical_depth_m : sweep_depth(window);
-  const std::optional<RayEdges> edges = adjust_path(window, adjusted, path, expected_m);
+  const std::optional<WindowEdgels> edges = adjust_path(window, adjusted, path, expected_m);
   mapping.world_from_before =
       adjusted.at_clamped(keyframe.end_s) * smooth.at_clamped(keyframe.end_s).inverse();
   for (const StampedPose& pose : adjusted.poses())
@@ -157,12 +157,12 @@ RayDepth Mapper::rays() const {
   return RayDepth(options_.depth.rays, options_.depth.limits, camera_);
 }
 
-std::optional<RayEdges> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
+std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
                                             const KnownPath& known, double typical_depth_m) const {
-  std::optional<RayEdges> edges;
+  std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
-    edges = depth.find_edges(window);
+    edges = depth.find_edgels(window);
     WindowAdjustment adjustment =
         adjust_window(window, *edges, camera_,
                       {known.fixed_until_s, known.given_until_s, typical_depth_m, known.landmarks},

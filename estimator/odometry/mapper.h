@@ -89,7 +89,7 @@ class Mapper {
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.
-  [[nodiscard]] std::optional<RayEdges> adjust_path(ViewWindow& window, Trajectory& path,
+  [[nodiscard]] std::optional<WindowEdgels> adjust_path(ViewWindow& window, Trajectory& path,
                                                     const KnownPath& known,
                                                     double typical_depth_m) const;
   [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;

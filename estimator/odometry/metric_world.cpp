@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 #include "core/config/config.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 #include "core/median.h"
 #include "estimator/run/run_writer.h"
 
@@ -25,8 +25,8 @@ void describe(config::Fields& fields, InertialRecord& record) {
   fields.choice("status", found.status,
                 {{"ok", Status::kOk},
                  {"no_readings", Status::kNoReadings},
-                 {"even_motion", Status::kEvenMotion},
-                 {"disagrees", Status::kDisagrees}},
+                 {"even_motion", Status::kUnobservableScale},
+                 {"disagrees", Status::kInconsistent}},
                 "whether the readings say what the scale is");
   fields.value("applied", record.applied, "the run is in metres, its world's z axis points up");
   fields.value("scale", found.scale, "metres in the unit that the path was found in");
@@ -60,9 +60,9 @@ InertialAlignment align_odometry(std::span<const TrackedPose> poses,
 }
 
 Rigid3 in_metric_world(const InertialAlignment& found, const Rigid3& world_from_camera) {
-  const Eigen::Quaterniond level = found.level();
-  return {level * world_from_camera.rotation(),
-          level * (found.scale * world_from_camera.translation())};
+  const Eigen::Quaterniond gravity_alignment = found.gravity_alignment();
+  return {gravity_alignment * world_from_camera.rotation(),
+          gravity_alignment * (found.scale * world_from_camera.translation())};
 }
 
 void transform_to_metric_world(const InertialAlignment& found, std::span<TrackedPose> poses,
@@ -79,11 +79,11 @@ void transform_to_metric_world(const InertialAlignment& found, std::span<Tracked
     one.covariance.leftCols<3>() *= found.scale;
   }
   const auto scale = static_cast<float>(found.scale);
-  const Eigen::Matrix3f metres = scale * found.level().toRotationMatrix().cast<float>();
+  const Eigen::Matrix3f metres = scale * found.gravity_alignment().toRotationMatrix().cast<float>();
   for (Keyframe& keyframe : keyframes) {
     keyframe.world_from_camera = in_metric_world(found, keyframe.world_from_camera);
     keyframe.typical_depth_m *= found.scale;
-    for (EdgeDepth& point : keyframe.depth.points) {
+    for (EdgePoint& point : keyframe.depth.points) {
       point.inverse_depth /= scale;
       point.sigma /= scale;
     }

@@ -7,7 +7,7 @@
 #include "core/io/covariance_file.h"
 #include "estimator/imu/inertial_alignment.h"
 #include "estimator/odometry/keyframe.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/edges/least_squares/path_covariance.h"
@@ -119,7 +119,7 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
 void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
   const bool may_be_lost = pose.status == TrackStatus::kLost ||
-                           (options_.relocation == Relocation::kInconsistent && !tracker_.fits());
+                           (options_.relocation == Relocation::kInconsistent && !tracker_.is_consistent());
   if (may_be_lost && options_.relocation != Relocation::kNever &&
       now_s >= last_search_s_ + kSearchInterval_s) {
     last_search_s_ = now_s;

@@ -19,7 +19,7 @@
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
 #include "estimator/odometry/start/first_map.h"
-#include "estimator/tracking/tracker.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
 
@@ -39,7 +39,7 @@ enum class OdometryMode {
 };
 
 /// When the camera is searched for at the keyframes: never, when it is lost, or also when the events
-/// are inconsistent with the map (Tracker::fits()).
+/// are inconsistent with the map (EdgeTracker::fits()).
 enum class Relocation { kNever, kLost, kInconsistent };
 
 /// Whether path and edges are adjusted together after the last event, and by what (kOffline, where
@@ -52,7 +52,7 @@ struct OdometryOptions {
   KeyframeOptions keyframe;
   Relocation relocation = Relocation::kLost;
   MappingOptions mapping;
-  TrackerOptions tracker;
+  EdgeTrackerOptions tracker;
   BatchMode batch_adjustment = BatchMode::kNone;
 };
 
@@ -145,7 +145,7 @@ class Odometry {
   PinholeCamera camera_;
   Mapper mapper_;
   EdgeMap map_;
-  Tracker tracker_;
+  EdgeTracker tracker_;
   std::vector<StampedPose> known_;  ///< the start, then what was tracked, as last adjusted
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;

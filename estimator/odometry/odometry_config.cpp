@@ -145,18 +145,18 @@ void describe_parts(config::Fields& fields, OdometryOptions& options) {
   fields.group(
       "tracking",
       [&](Fields& f) {
-        PredictionOptions& motion = options.tracker.motion;
+        MotionModelOptions& motion = options.tracker.motion;
         f.value("event_map_ratio", options.tracker.event_frame.ratio,
                 "Events per frame and template pixel, r of (4.21). Smaller ratios make more and "
                 "shorter frames of fewer events.")
             .range(1e-4, 100);
         f.choice("prediction", motion.prediction,
-                 {{"none", PredictionOptions::Prediction::kNone},
-                  {"constant_velocity", PredictionOptions::Prediction::kConstantVelocity},
-                  {"imu", PredictionOptions::Prediction::kImu}},
+                 {{"none", MotionModelOptions::Prediction::kNone},
+                  {"constant_velocity", MotionModelOptions::Prediction::kConstantVelocity},
+                  {"imu", MotionModelOptions::Prediction::kImu}},
                  "First guess of the next pose: the last one, that at constant velocity, or that "
                  "with the rotation measured by the gyroscope.");
-        if (motion.prediction == PredictionOptions::Prediction::kImu)
+        if (motion.prediction == MotionModelOptions::Prediction::kImu)
           f.value("gyro_bias", motion.gyro_bias,
                   "Bias of the gyroscope, which is subtracted from its readings, in rad/s in the "
                   "sensor's axes.")

@@ -9,7 +9,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"

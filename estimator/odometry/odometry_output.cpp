@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/reconstruction/reconstruction_output.h"
 #include "estimator/tracking/pose_output.h"

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/camera.h"
-#include "core/io/keyframe_list.h"
+#include "core/io/run/keyframe_list.h"
 #include "estimator/odometry/odometry.h"
 
 namespace saccade {

@@ -7,11 +7,11 @@ namespace {
 
 /// Tracking by keyframes: the accurate setting of `saccade run track`; `event_map_ratio` is r of
 /// (4.21).
-TrackerOptions tracking_by_keyframes(double event_map_ratio) {
-  TrackerOptions tracking;
+EdgeTrackerOptions tracking_by_keyframes(double event_map_ratio) {
+  EdgeTrackerOptions tracking;
   tracking.templates.redraw_px = 8;
   tracking.event_frame.ratio = event_map_ratio;
-  tracking.motion.prediction = PredictionOptions::Prediction::kConstantVelocity;
+  tracking.motion.prediction = MotionModelOptions::Prediction::kConstantVelocity;
   tracking.motion.agility_px = 1000;
   return tracking;
 }

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/config/fields.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 
 namespace saccade {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/view_list.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/run/view_list.h"
 
 namespace saccade {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "estimator/reconstruction/image_estimator.h"
 #include "estimator/reconstruction/snapshots.h"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/io/image_file.h"
-#include "core/parallel.h"
+#include "core/io/images/image_file.h"
+#include "core/process/parallel.h"
 #include "estimator/reconstruction/reconstruction_output.h"
 
 namespace saccade {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/io/exr_file.h"
-#include "core/io/view_list.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/run/view_list.h"
 #include "estimator/reconstruction/gradient/poisson.h"
 #include "estimator/reconstruction/surface/depth_source.h"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "estimator/reconstruction/image_estimator.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/config/fields.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "estimator/edges/batch/batch_adjustment.h"
 #include "estimator/refinement/poses/pose_refinement.h"
 #include "estimator/refinement/source_run.h"

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/io/csv_reader.h"
+#include "core/io/tables/csv_reader.h"
 #include "core/io/trajectory_file.h"
 #include "estimator/run/run_writer.h"
 

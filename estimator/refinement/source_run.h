@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "estimator/run/run_request.h"
 #include "estimator/tracking/tracker.h"

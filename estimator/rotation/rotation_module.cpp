@@ -7,7 +7,7 @@
 
 #include "core/config/config.h"
 #include "core/io/trajectory_file.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/rotation/rate_fusion.h"

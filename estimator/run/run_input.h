@@ -2,8 +2,8 @@
 
 #include "core/config/config.h"
 #include "core/event.h"
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "estimator/run/run_request.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/check.h"
-#include "core/io/sha256.h"
+#include "core/io/files/sha256.h"
 #include "core/median.h"
 #include "core/version.h"
 

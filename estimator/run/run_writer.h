@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/atomic_file.h"
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {

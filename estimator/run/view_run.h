@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/event.h"
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "core/trajectory.h"
 #include "estimator/run/repeat.h"

@@ -5,7 +5,7 @@
 
 #include "core/config/fields.h"
 #include "core/event.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "core/trajectory.h"
 

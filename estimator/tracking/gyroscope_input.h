@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "estimator/tracking/gyroscope.h"
 #include "estimator/tracking/motion_model.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/csv_file.h"
+#include "core/io/tables/csv_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"
 

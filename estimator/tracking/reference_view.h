@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "core/image.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 
 namespace saccade {

@@ -10,7 +10,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"

@@ -4,7 +4,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 
 namespace saccade {
 namespace {

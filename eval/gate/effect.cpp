@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
 
 namespace saccade {
 namespace {
@@ -15,17 +15,17 @@ namespace {
 /// With fewer repetitions the scatter of the times is unknown.
 constexpr double kMinRepetitions = 5;
 
-std::vector<GateMetric> judged_metrics(const GateOptions& options) {
-  std::vector<GateMetric> metrics(gate_metrics().begin(), gate_metrics().end());
+std::vector<MetricInfo> judged_metrics(const GateOptions& options) {
+  std::vector<MetricInfo> metrics(gate_metrics().begin(), gate_metrics().end());
   for (const std::string& key : options.metrics) {
     if (metric_info(key).better == MetricInfo::Better::kNeither)
       throw InputError("--metric",
                        "'" + key + "' cannot be judged: neither lower nor higher is better");
     if (std::none_of(metrics.begin(), metrics.end(),
-                     [&](const GateMetric& metric) { return metric.key == key; }))
-      metrics.push_back(gate_metric(key));
+                     [&](const MetricInfo& metric) { return metric.key == key; }))
+      metrics.push_back(metric_info(key));
   }
-  if (options.speed) metrics.push_back(gate_metric(std::string(kGateTime)));
+  if (options.speed) metrics.push_back(metric_info(std::string(kGateTime)));
   return metrics;
 }
 
@@ -91,7 +91,7 @@ void add_effects(const std::string& module, const Sequences& sequences,
 }
 
 std::map<std::string, Sequences> sequences_of(std::span<const GatePair> pairs,
-                                              const GateMetric& metric, GateResult& result) {
+                                              const MetricInfo& metric, GateResult& result) {
   std::map<std::string, Sequences> modules;
   for (const GatePair& pair : pairs) {
     if (!pair.before->get(metric.key) || !pair.after->get(metric.key)) continue;
@@ -131,7 +131,7 @@ std::vector<Effect> collect_effects(std::span<const GatePair> pairs, const GateO
   const std::vector<GatePair> timed =
       options.speed ? pairs_on_one_machine(pairs, result) : std::vector<GatePair>{};
   std::vector<Effect> effects;
-  for (const GateMetric& metric : judged_metrics(options)) {
+  for (const MetricInfo& metric : judged_metrics(options)) {
     const bool is_time = metric.key == kGateTime;
     const auto modules =
         sequences_of(is_time ? std::span<const GatePair>(timed) : pairs, metric, result);

@@ -11,7 +11,7 @@ namespace saccade {
 
 /// The change of one metric over the pairs of one scope.
 struct Effect {
-  GateMetric metric;
+  MetricInfo metric;
   std::string scope;
   bool pooled = false;             ///< over several sequences
   std::vector<double> log_ratios;  ///< one per pair (worsening()); above 0 is worse

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "eval/number_text.h"
+#include "eval/table/number_text.h"
 #include "eval/report/html.h"
 #include "eval/table/table.h"
 

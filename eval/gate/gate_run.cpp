@@ -3,8 +3,8 @@
 #include <array>
 
 #include "core/error.h"
-#include "core/io/folder_name.h"
-#include "core/shell.h"
+#include "core/io/files/folder_name.h"
+#include "core/process/shell.h"
 #include "eval/configuration_name.h"
 
 namespace saccade {

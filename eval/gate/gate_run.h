@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "eval/metrics/metrics.h"
 
 namespace saccade {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/image.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 
 namespace saccade {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/camera.h"
-#include "core/io/event_file.h"
-#include "core/parallel.h"
+#include "core/io/events/event_file.h"
+#include "core/process/parallel.h"
 #include "core/time_search.h"
 
 namespace saccade {
@@ -19,7 +19,7 @@ void draw(ImageF& image, const Eigen::Vector2d& pixel) {
 StabilizedRun load_stabilized(const std::filesystem::path& folder) {
   StabilizedRun run;
   run.events = read_events(folder / "events.h5", {});
-  run.places = read_stabilized_places(folder / "places.h5", run.events.size());
+  run.places = read_stabilized_coordinates(folder / "places.h5", run.events.size());
   run.windows = read_stabilized_windows(folder / "windows.csv");
   return run;
 }

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/image.h"
-#include "core/io/dataset.h"
-#include "core/io/stabilized_events.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/stabilized_events.h"
 #include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
 
@@ -14,7 +14,7 @@ namespace saccade {
 /// windows.csv of one folder.
 struct StabilizedRun {
   Events events;            ///< at the nearest pixel, in order of time
-  StabilizedPlaces places;  ///< of the same
+  StabilizedCoordinates places;  ///< of the same
   std::vector<StabilizedWindow> windows;
 };
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/io/image_file.h"
-#include "eval/metrics/scored_samples.h"
+#include "core/io/images/image_file.h"
+#include "eval/metrics/trajectory/scored_samples.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/trajectory_picture.h"
 #include "eval/picture/view/mosaic_picture.h"

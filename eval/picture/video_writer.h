@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/image.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 
 namespace saccade {
 

@@ -1,6 +1,6 @@
 #include "eval/picture/write_video.h"
 
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/picture/video_writer.h"
 
 namespace saccade {

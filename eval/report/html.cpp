@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/io/image_file.h"
-#include "core/io/webp_file.h"
-#include "eval/picture/canvas.h"
+#include "core/io/images/image_file.h"
+#include "core/io/images/webp_file.h"
+#include "eval/picture/canvas/canvas.h"
 
 namespace saccade {
 std::string escape_html(std::string_view text) {

@@ -11,9 +11,9 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 #include "core/version.h"
 #include "eval/report/assets.h"
 #include "eval/report/charts/page_data.h"

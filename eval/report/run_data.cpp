@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/io/event_file.h"
-#include "core/io/sha256.h"
+#include "core/io/events/event_file.h"
+#include "core/io/files/sha256.h"
 #include "eval/configuration_name.h"
 #include "eval/evaluate.h"
 #include "eval/refined_ratio.h"

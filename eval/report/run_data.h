@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "eval/keyframe_history.h"
 #include "eval/metrics/trajectory/reprojection.h"
 #include "eval/run_folder.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/event_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 
 namespace saccade {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/event.h"
-#include "core/io/event_file.h"
+#include "core/io/events/event_file.h"
 #include "eval/statistics/log_histogram.h"
 
 namespace saccade {

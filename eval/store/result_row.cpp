@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/folder_name.h"
-#include "core/io/run_record.h"
-#include "core/io/sha256.h"
+#include "core/io/files/folder_name.h"
+#include "core/io/run/run_record.h"
+#include "core/io/files/sha256.h"
 #include "eval/configuration_name.h"
 
 namespace saccade {

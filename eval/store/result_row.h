@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "core/io/csv_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/metrics/metrics.h"
 
 namespace saccade {

@@ -12,7 +12,7 @@
 
 #include "core/config/suggest.h"
 #include "core/error.h"
-#include "core/io/csv_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/metrics/catalogue.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"

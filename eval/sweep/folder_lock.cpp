@@ -7,7 +7,7 @@
 #include <cerrno>
 
 #include "core/error.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 
 namespace saccade {
 

@@ -12,9 +12,9 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/progress.h"
-#include "core/shell.h"
+#include "core/io/files/atomic_file.h"
+#include "core/process/progress.h"
+#include "core/process/shell.h"
 #include "eval/sweep/folder_lock.h"
 #include "eval/sweep/plan/calibration_run.h"
 #include "eval/sweep/plan/job_record.h"

@@ -7,8 +7,8 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/csv_file.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/motion/motion_options.h"
 
 namespace saccade {

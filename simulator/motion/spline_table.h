@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "core/spline.h"
+#include "core/spline/spline.h"
 
 namespace saccade {
 

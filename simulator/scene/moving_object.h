@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/motion/spline_table.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/background.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"

@@ -7,7 +7,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/scene/moving_object.h"
 #include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/motion/object_motion.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/scene/moving_object.h"
 #include "simulator/sensor/motion/image_motion.h"
 

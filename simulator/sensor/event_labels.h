@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "core/io/labels_h5.h"
-#include "core/spline.h"
+#include "core/io/events/labels_h5.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/pixel/sensed_event.h"
 #include "simulator/sensor/rays/pixel_rays.h"

@@ -2,7 +2,7 @@
 
 #include "core/config/fields.h"
 #include "core/event.h"
-#include "core/io/event_file.h"
+#include "core/io/events/event_file.h"
 #include "simulator/sensor/noise/noise_options.h"
 #include "simulator/sensor/noise/sensor_presets.h"
 #include "simulator/sensor/pixel/event_pixel.h"

@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/motion/object_motion.h"
 #include "simulator/sensor/rays/tile_trace.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/camera.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_delivery.h"
 #include "simulator/sensor/event_options.h"

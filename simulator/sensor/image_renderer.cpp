@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/motion/object_motion.h"
 #include "simulator/sensor/rays/tile_trace.h"

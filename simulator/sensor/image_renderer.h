@@ -5,8 +5,8 @@
 
 #include "core/camera.h"
 #include "core/image.h"
-#include "core/io/exr_file.h"
-#include "core/spline.h"
+#include "core/io/images/exr_file.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/rays/pixel_rays.h"

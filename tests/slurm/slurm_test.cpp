@@ -124,7 +124,7 @@ class OnSlurm : public ::testing::Test {
             "configurations: [{file: " +
             shipped_config("tracking/fast.yaml") +
             "}]\n"
-            "grid: {align.samples: [" +
+            "grid: {edges.samples: [" +
             samples +
             "]}\n"
             "seeds: [1, 2]\n"

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/image_renderer.h"
 #include "simulator/sensor/pixel/event_pixel.h"

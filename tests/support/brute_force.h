@@ -5,7 +5,7 @@
 
 #include "core/camera.h"
 #include "core/event.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/event_tile.h"

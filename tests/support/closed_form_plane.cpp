@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/io/exr_file.h"
+#include "core/io/images/exr_file.h"
 
 namespace saccade::testing {
 namespace {

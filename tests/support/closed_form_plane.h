@@ -6,7 +6,7 @@
 #include "core/camera.h"
 #include "core/event.h"
 #include "core/image.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 
 namespace saccade::testing {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/scratch_folder.h"
+#include "core/io/files/scratch_folder.h"
 
 namespace saccade::testing {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/imu_sample.h"
-#include "core/io/dataset_writer.h"
-#include "core/io/exr_file.h"
+#include "core/io/dataset/dataset_writer.h"
+#include "core/io/images/exr_file.h"
 #include "core/rigid3.h"
 
 namespace saccade::testing {

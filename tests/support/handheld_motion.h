@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/imu_sample.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 
 namespace saccade::testing {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/image.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/mesh/mesh.h"
 
 namespace saccade::testing {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "core/io/trajectory_file.h"
 
 namespace saccade::testing {

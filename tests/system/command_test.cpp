@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/io/dataset_record.h"
+#include "core/io/dataset/dataset_record.h"
 #include "core/random.h"
 #include "tests/system/saccade_command.h"
 

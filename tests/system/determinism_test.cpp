@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/dataset_record.h"
+#include "core/io/dataset/dataset_record.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

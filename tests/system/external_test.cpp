@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/io/csv_reader.h"
+#include "core/io/tables/csv_reader.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "tests/support/html_page.h"
 #include "tests/system/saccade_command.h"
 

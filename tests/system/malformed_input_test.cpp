@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "tests/support/command.h"
 
 namespace saccade::testing {
@@ -232,9 +232,9 @@ const std::vector<Case>& cases() {
       {"WindowWithoutEvents", nothing, track({"--start-s", "0.5"}), {"data", "no events"}},
       {"UnknownTrackingKey",
        nothing,
-       track({"--set", "align.sampels=3"}),
-       {"align.sampels", "did you mean 'samples'"}},
-      {"NoSamples", nothing, track({"--set", "align.samples=0"}), {"--set align.samples", "0"}},
+       track({"--set", "edges.sampels=3"}),
+       {"edges.sampels", "did you mean 'samples'"}},
+      {"NoSamples", nothing, track({"--set", "edges.samples=0"}), {"--set edges.samples", "0"}},
       {"NegativeSeed", nothing, simulate({"--seed", "-1"}), {"--seed", "-1", "whole number"}},
       {"NotANumberOption", nothing, track({"--duration-s", "nan"}), {"--duration-s", "nan"}},
       {"ConfigIncludesItself",

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/io/dataset.h"
-#include "core/io/image_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/images/image_file.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/io/dataset_record.h"
+#include "core/io/dataset/dataset_record.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/io/csv_reader.h"
+#include "core/io/tables/csv_reader.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {
@@ -40,7 +40,7 @@ fs::path write_sweep(const TemporaryFolder& folder, const std::string& samples) 
           "  - file: " +
           shipped_config("tracking/fast.yaml") +
           "\n"
-          "grid: {align.samples: [" +
+          "grid: {edges.samples: [" +
           samples +
           "]}\n"
           "seeds: [1, 2]\n");
@@ -69,14 +69,14 @@ TEST(Sweep, MakesATableAndGoesOnWhereItWas) {
               HasSubstr("5 jobs done, 0 done before, 0 failed"));
   const CsvColumns csv(fs::path(out) / "sweep.csv");
   ASSERT_EQ(csv.rows(), 4U);
-  EXPECT_EQ(csv.number(2, csv.require("align.samples")), 50);
+  EXPECT_EQ(csv.number(2, csv.require("edges.samples")), 50);
   EXPECT_GT(csv.number(0, csv.require("speed.poses_per_s.median")), 0);
   for (std::size_t row = 0; row < csv.rows(); ++row)
     EXPECT_LT(csv.number(row, csv.require("trajectory.dt_rel_percent.mean")), 5);
   EXPECT_THAT(read_file(out + "/sweep.md"),
-              AllOf(HasSubstr("# Tiny"), HasSubstr("| `align.samples` | seeds | dt_rel [%]"),
-                    HasSubstr("| 20 | 2 |"), HasSubstr("](over_align_samples.png)")));
-  EXPECT_TRUE(fs::exists(out + "/over_align_samples.png"));
+              AllOf(HasSubstr("# Tiny"), HasSubstr("| `edges.samples` | seeds | dt_rel [%]"),
+                    HasSubstr("| 20 | 2 |"), HasSubstr("](over_edges_samples.png)")));
+  EXPECT_TRUE(fs::exists(out + "/over_edges_samples.png"));
   EXPECT_THAT(read_file(out + "/jobs/walls_fast_samples-20_seed-1/log.txt"),
               AllOf(HasSubstr("$ saccade run track"), HasSubstr("$ saccade eval")));
   EXPECT_TRUE(hidden_files(out).empty());
@@ -98,7 +98,7 @@ TEST(Sweep, AFailingJobIsReportedAndTheOthersGoOn) {
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("job walls_fast_samples--3_seed-1 failed with exit code 2"),
                     HasSubstr("saccade run track --data "),
-                    HasSubstr("saccade: --set align.samples: -3 is below"),
+                    HasSubstr("saccade: --set edges.samples: -3 is below"),
                     HasSubstr("2 jobs done, 0 done before, 1 failed"), HasSubstr("1 job failed;")));
   EXPECT_THAT(read_file(out + "/sweep.csv"),
               AllOf(HasSubstr(",20,1,ok,"), HasSubstr(",-3,1,failed,")));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/image.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/depth/rays/ray_votes.h"
 
 namespace saccade {

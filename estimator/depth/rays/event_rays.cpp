@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/image.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/depth/rays/edgel_index.h"
 

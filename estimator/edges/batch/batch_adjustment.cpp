@@ -13,7 +13,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/time_search.h"
 #include "estimator/edges/batch/batch_windows.h"
 #include "estimator/edges/batch/path_edge_cost.h"
@@ -70,7 +70,7 @@ struct BatchEdge {
 class BatchProblem {
  public:
   BatchProblem(const Trajectory& path, const std::vector<ViewWindow>& windows,
-               const std::vector<RayEdges>& found, const BatchInput& start,
+               const std::vector<WindowEdgels>& found, const BatchInput& start,
                const PinholeCamera& camera, const BatchAdjustmentOptions& options)
       : path_(path),
         windows_(windows),
@@ -151,8 +151,8 @@ class BatchProblem {
   /// Residuals of an edge by some of the events of `observation`: of itself, or of its match in
   /// another keyframe.
   void add_events(BatchEdge& edge, const KeyframeEdge& observation, const auto& choose) {
-    const RayEdges& found = found_[observation.keyframe];
-    const FittedEdge& observed = found.edges[observation.edge];
+    const WindowEdgels& found = found_[observation.keyframe];
+    const FittedEdgel& observed = found.edges[observation.edge];
     std::vector<std::uint32_t> events(found.events.event.begin() + observed.first,
                                       found.events.event.begin() + observed.last);
     std::sort(events.begin(), events.end());
@@ -193,7 +193,7 @@ class BatchProblem {
   void add_event(BatchEdge& batch_edge, const Event& event, double run_offset, double sigma_px) {
     const auto& [keyframe, number] = batch_edge.found;
     const ViewWindow& view = windows_[keyframe];
-    const RayEdge& edge = found_[keyframe].edges[number].edge;
+    const Edgel& edge = found_[keyframe].edges[number].edge;
     const double t_s = seconds_from_ns(event.t_ns);
     EdgeObservation observation;
     observation.view_from_camera = view.world_from_reference().inverse() * path_.at_clamped(t_s);
@@ -285,7 +285,7 @@ class BatchProblem {
 
   const Trajectory& path_;
   const std::vector<ViewWindow>& windows_;
-  const std::vector<RayEdges>& found_;
+  const std::vector<WindowEdgels>& found_;
   const PinholeCamera& camera_;
   PinholeCamera undistorted_;
   const BatchAdjustmentOptions& options_;
@@ -329,8 +329,8 @@ BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& st
     std::vector<ViewWindow> windows;
     for (const double t_s : views)
       windows.push_back({events_of_view(events, t_s, options.window_s), &before, t_s});
-    std::vector<RayEdges> found(windows.size());
-    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edges(windows[k]); });
+    std::vector<WindowEdgels> found(windows.size());
+    parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edgels(windows[k]); });
     BatchProblem problem(before, windows, found, start, camera, options);
     problem.solve(result.costs, [&] { advance_to(done + 1); });
     if (i + 1 == options.rounds) problem.judge(result);

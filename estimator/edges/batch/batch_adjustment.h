@@ -8,7 +8,7 @@
 
 #include "core/camera.h"
 #include "core/trajectory.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/batch/inertial_factors.h"
 #include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/least_squares/cost_log.h"

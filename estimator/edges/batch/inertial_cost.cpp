@@ -66,7 +66,7 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   const Vector3 gravity = frame_.gravity_at(shared.head<2>());
   const ImuBias other{bias.head<3>(), bias.tail<3>()};
   const Eigen::Quaterniond rotation_error =
-      sum_.turn_with(other).conjugate() * Eigen::Quaterniond(rotation);
+      sum_.rotation_with(other).conjugate() * Eigen::Quaterniond(rotation);
   const Vector3 turned = so3_log(rotation_error);
   const Vector3 gained = back * (v_j - v_i - t_s * gravity);
   const Vector3 moved = back * (scale * baseline - t_s * v_i - 0.5 * t_s * t_s * gravity);
@@ -105,11 +105,11 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   by_v_j.middleRows<3>(3) = back;
   write_block(jacobians[n], Eigen::Matrix<double, 9, 3>(root_ * by_v_i));
   write_block(jacobians[n + 1], Eigen::Matrix<double, 9, 3>(root_ * by_v_j));
-  Rows6 by_bias = -sum_.by_bias;
-  const Vector3 drift = sum_.by_bias.topLeftCorner<3, 3>() * Vector3(other.gyro - sum_.bias.gyro);
-  by_bias.topRows<3>() =
-      -so3_left_jacobian_inverse(turned) * so3_left_jacobian(-drift) * sum_.by_bias.topRows<3>();
-  write_block(jacobians[n + 2], Rows6(root_ * by_bias));
+  Rows6 bias_jacobian = -sum_.bias_jacobian;
+  const Vector3 drift = sum_.bias_jacobian.topLeftCorner<3, 3>() * Vector3(other.gyro - sum_.bias.gyro);
+  bias_jacobian.topRows<3>() =
+      -so3_left_jacobian_inverse(turned) * so3_left_jacobian(-drift) * sum_.bias_jacobian.topRows<3>();
+  write_block(jacobians[n + 2], Rows6(root_ * bias_jacobian));
   Eigen::Matrix<double, 9, InertialFrame::kSize> by_frame;
   by_frame.setZero();
   const Eigen::Matrix<double, 3, 2> falling = back * frame_.by_turn(shared.head<2>());

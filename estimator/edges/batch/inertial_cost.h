@@ -8,7 +8,7 @@
 #include <ceres/cost_function.h>
 
 #include "core/rigid3.h"
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/imu/preintegration.h"
 
 namespace saccade {

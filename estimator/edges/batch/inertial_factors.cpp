@@ -55,7 +55,7 @@ InertialFactors::InertialFactors(const Trajectory& path, const SplineKnots& knot
   for (const InertialNode& node : nodes_) {
     // The sensor's velocity; motion is the camera's.
     const Eigen::Vector3d in_camera =
-        scale * node.motion.head<3>() + node.motion.tail<3>().cross(start.imu.place);
+        scale * node.motion.head<3>() + node.motion.tail<3>().cross(start.imu.position_in_camera);
     const Eigen::Vector3d velocity = node.given.rotation() * in_camera;
     unknowns_.insert(unknowns_.end(), velocity.begin(), velocity.end());
   }
@@ -91,7 +91,7 @@ void InertialFactors::add_to(ceres::Problem& problem, PathCorrection& correction
                              ceres::ParameterBlockOrdering& ordering) {
   for (const Link& link : links_) {
     auto* cost = new InertialCost({nodes_[link.node], nodes_[link.node + 1]}, link.sum,
-                                  start_.imu.place, frame_, root_of(link.sum));
+                                  start_.imu.position_in_camera, frame_, root_of(link.sum));
     std::vector<double*> blocks;
     for (std::size_t k = 0; k < cost->controls(); ++k)
       blocks.push_back(correction.data(cost->first_control() + k));

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "core/trajectory.h"
 
 namespace saccade {

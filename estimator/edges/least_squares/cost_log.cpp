@@ -2,7 +2,7 @@
 
 #include <ceres/iteration_callback.h>
 
-#include "core/io/csv_file.h"
+#include "core/io/tables/csv_file.h"
 
 namespace saccade {
 

@@ -12,7 +12,7 @@ constexpr double kMeanLag = 0.25;
 
 }  // namespace
 
-ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
+ObservedEdges::ObservedEdges(const ViewWindow& window, const WindowEdgels& edges,
                              const PinholeCamera& camera, const NodeCorrection& correction,
                              const std::function<int(double)>& max_pairs)
     : window_(window),
@@ -32,7 +32,7 @@ ObservedEdges::ObservedEdges(const ViewWindow& window, const RayEdges& edges,
   }
 }
 
-std::vector<ObservedEvent> ObservedEdges::of(const FittedEdge& edge) const {
+std::vector<ObservedEvent> ObservedEdges::of(const FittedEdgel& edge) const {
   std::vector<std::uint32_t> events(edges_.events.event.begin() + edge.first,
                                     edges_.events.event.begin() + edge.last);
   std::sort(events.begin(), events.end());
@@ -55,7 +55,7 @@ std::vector<ObservedEvent> ObservedEdges::of(const FittedEdge& edge) const {
   return chosen;
 }
 
-ObservedEvent ObservedEdges::observed(const FittedEdge& edge, double mean_position,
+ObservedEvent ObservedEdges::observed(const FittedEdgel& edge, double mean_position,
                                       std::uint32_t index) const {
   const Event& event = window_.events[index];
   const double t_s = seconds_from_ns(event.t_ns);

@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/edges/window/window_costs.h"
 #include "estimator/run/view_windows.h"
@@ -18,20 +18,20 @@ class ObservedEdges {
  public:
   /// `max_pairs`: the most pairs of an edge's events between two nodes of the correction, by the
   /// time of the earlier. All but `camera`, which may have a lens, outlive it.
-  ObservedEdges(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+  ObservedEdges(const ViewWindow& window, const WindowEdgels& edges, const PinholeCamera& camera,
                 const NodeCorrection& correction, const std::function<int(double)>& max_pairs);
 
   /// In order of time, evenly spread.
-  [[nodiscard]] std::vector<ObservedEvent> of(const FittedEdge& edge) const;
+  [[nodiscard]] std::vector<ObservedEvent> of(const FittedEdgel& edge) const;
   /// Undistorted.
   [[nodiscard]] const PinholeCamera& camera() const { return undistorted_; }
 
  private:
-  [[nodiscard]] ObservedEvent observed(const FittedEdge& edge, double mean_position,
+  [[nodiscard]] ObservedEvent observed(const FittedEdgel& edge, double mean_position,
                                        std::uint32_t index) const;
 
   const ViewWindow& window_;
-  const RayEdges& edges_;
+  const WindowEdgels& edges_;
   PinholeCamera camera_;
   PinholeCamera undistorted_;
   const NodeCorrection& correction_;

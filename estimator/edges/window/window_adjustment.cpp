@@ -11,7 +11,7 @@
 
 #include <ceres/ceres.h>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/edges/edge_fit.h"
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_noise.h"
@@ -29,12 +29,12 @@ namespace {
 constexpr std::size_t kMinEdges = 30;  ///< fewer do not constrain a path
 constexpr std::size_t kGrain = 16;     ///< edges that a thread takes at a time
 
-EdgeUnknowns unknowns_of(const FittedEdge& edge) {
+EdgeUnknowns unknowns_of(const FittedEdgel& edge) {
   return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};
 }
 
-FittedEdge corrected(FittedEdge fitted, const EdgeUnknowns& unknowns) {
-  RayEdge& edge = fitted.edge;
+FittedEdgel corrected(FittedEdgel fitted, const EdgeUnknowns& unknowns) {
+  Edgel& edge = fitted.edge;
   const Eigen::Vector2f tangent = edge.tangent();
   const auto inverse_depth = static_cast<float>(unknowns[0]);
   edge.pixel += static_cast<float>(unknowns[1]) * edge.normal;
@@ -46,7 +46,7 @@ FittedEdge corrected(FittedEdge fitted, const EdgeUnknowns& unknowns) {
 
 class WindowProblem {
  public:
-  WindowProblem(const ViewWindow& window, const RayEdges& edges, const PinholeCamera& camera,
+  WindowProblem(const ViewWindow& window, const WindowEdgels& edges, const PinholeCamera& camera,
                 const WindowPriors& priors, const WindowAdjustmentOptions& options)
       : window_(window),
         edges_(edges),
@@ -99,13 +99,13 @@ class WindowProblem {
     const std::size_t all = edges_.edges.size();
     const std::size_t count = std::min(all, static_cast<std::size_t>(options_.edges));
     chosen_.resize(count);
-    const auto fitted_at = [&](std::size_t k) -> const FittedEdge& {
+    const auto fitted_at = [&](std::size_t k) -> const FittedEdgel& {
       return edges_.edges[k * all / count];
     };
     parallel_for(
         count, [&](std::size_t k) { chosen_[k].events = observed_.of(fitted_at(k)); }, kGrain);
     for (std::size_t k = 0; k < count; ++k) {
-      const FittedEdge& fitted = fitted_at(k);
+      const FittedEdgel& fitted = fitted_at(k);
       ChosenEdge& edge = chosen_[k];
       edge.pixel = fitted.edge.pixel.cast<double>();
       edge.unknowns = unknowns_of(fitted);
@@ -136,10 +136,10 @@ class WindowProblem {
   }
 
   /// By the landmark that the edge lies on, where there is one.
-  [[nodiscard]] EdgePrior prior_of(const FittedEdge& fitted) const {
+  [[nodiscard]] EdgePrior prior_of(const FittedEdgel& fitted) const {
     constexpr double kReach_px = 1.5;
     constexpr double kTolerance = 0.1;
-    const RayEdge& edge = fitted.edge;
+    const Edgel& edge = fitted.edge;
     EdgePrior prior{unknowns_of(fitted), EdgeNoise::prior_sigma(edge.inverse_depth)};
     if (options_.landmark_sigma_px <= 0) return prior;
     if (const auto* landmark = landmarks_.nearest(edge, kReach_px, kTolerance)) {
@@ -214,7 +214,7 @@ class WindowProblem {
     result.trajectory = Trajectory(std::move(poses));
     const Rigid3 now_from_view = result.trajectory.at_clamped(window_.reference_s).inverse() *
                                  window_.world_from_reference();
-    std::vector<std::optional<FittedEdge>> fitted(edges_.edges.size());
+    std::vector<std::optional<FittedEdgel>> fitted(edges_.edges.size());
     parallel_for(
         fitted.size(),
         [&](std::size_t k) {
@@ -223,12 +223,12 @@ class WindowProblem {
         },
         kGrain);
     result.edges.edges.clear();
-    for (const std::optional<FittedEdge>& edge : fitted)
+    for (const std::optional<FittedEdgel>& edge : fitted)
       if (edge) result.edges.edges.push_back(*edge);
   }
 
   /// The edge in the view as it was, by its events from the corrected path.
-  [[nodiscard]] std::optional<FittedEdge> fitted_to_path(const FittedEdge& fitted) const {
+  [[nodiscard]] std::optional<FittedEdgel> fitted_to_path(const FittedEdgel& fitted) const {
     std::vector<EdgeObservation> events;
     for (const ObservedEvent& event : observed_.of(fitted)) events.push_back(moved(event));
     const auto unknowns = fit_edge(events, observed_.camera(), unknowns_of(fitted),
@@ -238,7 +238,7 @@ class WindowProblem {
   }
 
   const ViewWindow& window_;
-  const RayEdges& edges_;
+  const WindowEdgels& edges_;
   WindowAdjustmentOptions options_;
   const WindowPriors& priors_;
   ProjectedLandmarks landmarks_;
@@ -253,7 +253,7 @@ class WindowProblem {
 
 }  // namespace
 
-WindowAdjustment adjust_window(const ViewWindow& window, const RayEdges& edges,
+WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edges,
                                const PinholeCamera& camera, const WindowPriors& priors,
                                const WindowAdjustmentOptions& options) {
   return WindowProblem(window, edges, camera, priors, options).solve();

@@ -5,7 +5,7 @@
 
 #include "core/camera.h"
 #include "core/trajectory.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/landmarks.h"
 #include "estimator/run/view_windows.h"
 
@@ -50,7 +50,7 @@ struct WindowPriors {
 
 struct WindowAdjustment {
   Trajectory trajectory;  ///< the path of before, corrected
-  RayEdges edges;         ///< all of those given that still fit, in the view's corrected pose
+  WindowEdgels edges;         ///< all of those given that still fit, in the view's corrected pose
   double residual_before_px = 0;  ///< robust standard deviation of the events
   double residual_after_px = 0;
   bool ok = false;  ///< false: too little to adjust; nothing is changed
@@ -62,7 +62,7 @@ struct WindowAdjustment {
 /// the edges eliminated first (Schur). The fixed poses and the landmarks on which edges lie
 /// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic;
 /// one thread.
-[[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const RayEdges& edges,
+[[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edges,
                                              const PinholeCamera& camera,
                                              const WindowPriors& priors,
                                              const WindowAdjustmentOptions& options);

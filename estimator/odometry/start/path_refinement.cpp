@@ -7,10 +7,10 @@
 namespace saccade {
 namespace {
 
-double median_depth(const RayEdges& edges) {
+double median_depth(const WindowEdgels& edges) {
   std::vector<float> inverse;
   inverse.reserve(edges.edges.size());
-  for (const FittedEdge& edge : edges.edges) inverse.push_back(edge.edge.inverse_depth);
+  for (const FittedEdgel& edge : edges.edges) inverse.push_back(edge.edge.inverse_depth);
   const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
   std::nth_element(inverse.begin(), middle, inverse.end());
   return 1 / static_cast<double>(*middle);
@@ -50,10 +50,10 @@ FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory&
       (seconds_from_ns(events.front().t_ns) + seconds_from_ns(events.back().t_ns)) / 2;
   for (int i = 0; i < rounds; ++i) {
     const ViewWindow window{events, &result.poses, reference_s};
-    const RayEdges edges = depth_.find_edges(window);
+    const WindowEdgels edges = depth_.find_edgels(window);
     result.edges = edges.edges.size();
     result.events = 0;
-    for (const FittedEdge& edge : edges.edges) result.events += edge.last - edge.first;
+    for (const FittedEdgel& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
     const WindowAdjustment adjustment =
         adjust_window(window, edges, camera_,

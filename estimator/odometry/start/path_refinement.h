@@ -6,7 +6,7 @@
 #include "core/camera.h"
 #include "core/event.h"
 #include "core/trajectory.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/window/window_adjustment.h"
 
 namespace saccade {

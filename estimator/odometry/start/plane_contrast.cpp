@@ -10,10 +10,10 @@ constexpr float kLeastInverseDepth = 0.1F;
 
 }  // namespace
 
-PlaneContrast::PlaneContrast(const PinholeCamera& camera, double blur_px, double burst_share,
+PlaneContrast::PlaneContrast(const PinholeCamera& camera, double blur_px, double burst_fraction,
                              std::size_t max_events)
     : camera_(camera.undistorted()),
-      filter_(camera, burst_share, max_events),
+      filter_(camera, burst_fraction, max_events),
       image_(camera, blur_px) {}
 
 void PlaneContrast::load(std::span<const Event> events) {
@@ -54,7 +54,7 @@ void PlaneContrast::warp(const PlaneMotion& motion) {
     const Eigen::Vector3f point = origin + distance / towards * turned;
     if (!(point.z() > 0)) continue;
     const float u = fx * point.x() / point.z() + cx, v = fy * point.y() / point.z() + cy;
-    if (!image_.reaches(u, v)) continue;
+    if (!image_.contains(u, v)) continue;
     x_[i] = u;
     y_[i] = v;
     turned_[i] = turned;

@@ -68,7 +68,7 @@ PlaneSearch::PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera&
     : options_(options),
       camera_(camera),
       gyroscope_(gyroscope),
-      contrast_(camera, options.blur_px, options.burst_share,
+      contrast_(camera, options.blur_px, options.burst_fraction,
                 static_cast<std::size_t>(options.samples)) {}
 
 std::span<const Event> PlaneSearch::window(std::span<const Event> events, double duration_s) const {
@@ -100,13 +100,13 @@ PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
   RotationOptions options;
   options.samples = options_.samples;
   options.blur_px = options_.blur_px;
-  options.burst_share = options_.burst_share;
+  options.burst_fraction = options_.burst_fraction;
   RotationEstimator estimator(camera_, options);
   const double most = options_.events_per_px * camera_.width * camera_.height;
   std::span<const Event> part =
       events.first(std::min(events.size(), static_cast<std::size_t>(most)));
   PlaneFit fit;
-  Turning guess;
+  AngularMotion guess;
   while (true) {
     const RotationEstimate found = estimator.estimate(part, guess);
     fit.start_s = seconds_from_ns(part.front().t_ns);

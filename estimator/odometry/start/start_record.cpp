@@ -1,7 +1,7 @@
 #include "estimator/odometry/start/start_record.h"
 
 #include "core/config/config.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 
 namespace saccade {
 namespace {

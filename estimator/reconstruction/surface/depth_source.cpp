@@ -6,7 +6,7 @@
 
 #include "core/depth_mesh.h"
 #include "core/error.h"
-#include "core/io/exr_file.h"
+#include "core/io/images/exr_file.h"
 #include "estimator/reconstruction/surface/depth_splat.h"
 #include "estimator/reconstruction/surface/point_surface.h"
 

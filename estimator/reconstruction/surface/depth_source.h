@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/config/fields.h"
-#include "core/io/dataset.h"
-#include "core/io/view_list.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/view_list.h"
 #include "core/trajectory.h"
 #include "estimator/reconstruction/observations/reprojector.h"
 

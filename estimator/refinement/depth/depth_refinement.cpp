@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/depth/event_rays.h"
-#include "estimator/depth/ray_gather.h"
+#include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/ray_gatherer.h"
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/edge_residual.h"
 #include "estimator/edges/least_squares/jacobian_block.h"
@@ -62,8 +62,8 @@ class EdgeOptimizer {
         gatherer_(rays_, {kReach_px, kHalfLength_px}) {}
 
   /// False where too few events say anything, or no optimum is found.
-  bool optimize(FittedEdge& fitted, RefinedDepth& sums) {
-    gatherer_.gather({0, rays_.slab_count(), 1}, fitted.edge, near_);
+  bool optimize(FittedEdgel& fitted, RefinedDepth& sums) {
+    gatherer_.gather({0, rays_.slice_count(), 1}, fitted.edge, near_);
     if (near_.count < kMinEvents) return false;
     EdgeUnknowns unknowns(fitted.edge.inverse_depth, 0, 0, 0);
     ceres::Problem problem;
@@ -89,7 +89,7 @@ class EdgeOptimizer {
   }
 
  private:
-  std::vector<ceres::ResidualBlockId> add_events(const FittedEdge& fitted, EdgeUnknowns& unknowns,
+  std::vector<ceres::ResidualBlockId> add_events(const FittedEdgel& fitted, EdgeUnknowns& unknowns,
                                                  ceres::Problem& problem) {
     const double sigma_px = EdgeNoise::sigma_px(fitted);
     std::vector<ceres::ResidualBlockId> ids;
@@ -127,8 +127,8 @@ class EdgeOptimizer {
     return std::sqrt(of_depth[0] * spread / kInformationRatio);
   }
 
-  static void store(const EdgeUnknowns& x, double sigma, FittedEdge& fitted) {
-    RayEdge& edge = fitted.edge;
+  static void store(const EdgeUnknowns& x, double sigma, FittedEdgel& fitted) {
+    Edgel& edge = fitted.edge;
     const Eigen::Vector2f tangent = edge.tangent();
     edge.pixel += static_cast<float>(x[1]) * edge.normal;
     edge.normal = (edge.normal - static_cast<float>(x[2]) * tangent).normalized();
@@ -148,7 +148,7 @@ class EdgeOptimizer {
 /// A run's points by their pixel.
 class PointsByPixel {
  public:
-  PointsByPixel(std::span<const EdgeDepth> points, const PinholeCamera& camera)
+  PointsByPixel(std::span<const EdgePoint> points, const PinholeCamera& camera)
       : points_(points), width_(camera.width), height_(camera.height) {
     cells_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -160,15 +160,15 @@ class PointsByPixel {
   }
 
   /// The nearest point within reach and of the same depth; nullptr where there is none.
-  [[nodiscard]] const EdgeDepth* near(const RayEdge& edge) const {
+  [[nodiscard]] const EdgePoint* near(const Edgel& edge) const {
     const int reach = static_cast<int>(std::ceil(kNear_px)) + 1;
     const int x0 = static_cast<int>(edge.pixel.x()), y0 = static_cast<int>(edge.pixel.y());
-    const EdgeDepth* nearest = nullptr;
+    const EdgePoint* nearest = nullptr;
     auto least = static_cast<float>(kNear_px);
     for (int y = std::max(0, y0 - reach); y <= std::min(height_ - 1, y0 + reach); ++y)
       for (int x = std::max(0, x0 - reach); x <= std::min(width_ - 1, x0 + reach); ++x)
         for (const std::size_t i : cells_[static_cast<std::size_t>(y * width_ + x)]) {
-          const EdgeDepth& point = points_[i];
+          const EdgePoint& point = points_[i];
           const float away = (edge.pixel - Eigen::Vector2f(point.x_px, point.y_px)).norm();
           const float other = std::abs(point.inverse_depth / edge.inverse_depth - 1);
           if (away > least || other > static_cast<float>(kDepthTolerance)) continue;
@@ -179,22 +179,22 @@ class PointsByPixel {
   }
 
  private:
-  std::span<const EdgeDepth> points_;
+  std::span<const EdgePoint> points_;
   int width_, height_;
   std::vector<std::vector<std::size_t>> cells_;
 };
 
 }  // namespace
 
-RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgeDepth> start,
+RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint> start,
                              const PinholeCamera& camera, const RayDepth& depth, int slabs) {
   RefinedDepth refined;
-  RayEdges edges = depth.find_edges(window);
+  WindowEdgels edges = depth.find_edgels(window);
   const PointsByPixel points(start, camera);
   EdgeOptimizer optimizer(window, camera, slabs);
-  std::vector<FittedEdge> kept;
-  for (FittedEdge& fitted : edges.edges) {
-    const EdgeDepth* point = points.near(fitted.edge);
+  std::vector<FittedEdgel> kept;
+  for (FittedEdgel& fitted : edges.edges) {
+    const EdgePoint* point = points.near(fitted.edge);
     if (point == nullptr) continue;
     fitted.edge.inverse_depth = point->inverse_depth;
     if (optimizer.optimize(fitted, refined)) kept.push_back(fitted);

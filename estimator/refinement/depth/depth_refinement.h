@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/camera.h"
-#include "estimator/depth/ray_depth.h"
+#include "estimator/depth/rays/ray_depth.h"
 
 namespace saccade {
 
@@ -20,7 +20,7 @@ struct RefinedDepth {
 /// depth is that of its covariance. `start`: a run's points in the window's view; edges near them
 /// are kept and begin there. `depth` finds and fuses the edges. Deterministic; thread-safe.
 [[nodiscard]] RefinedDepth refine_depth_of(const ViewWindow& window,
-                                           std::span<const EdgeDepth> start,
+                                           std::span<const EdgePoint> start,
                                            const PinholeCamera& camera, const RayDepth& depth,
                                            int slabs);
 

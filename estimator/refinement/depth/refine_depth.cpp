@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/io/ply_file.h"
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "core/median.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/depth/depth_config.h"
@@ -27,14 +27,14 @@ std::span<const float> scalar(const PointCloud& cloud, const char* name,
 }
 
 /// The run's points, view by view.
-std::vector<std::vector<EdgeDepth>> points_of(const std::filesystem::path& folder,
+std::vector<std::vector<EdgePoint>> points_of(const std::filesystem::path& folder,
                                               std::size_t views) {
   const std::filesystem::path file = folder / "cloud.ply";
   const PointCloud cloud = read_ply(file);
   const auto view = scalar(cloud, "view", file);
   const auto x = scalar(cloud, "x_px", file), y = scalar(cloud, "y_px", file);
   const auto depth = scalar(cloud, "depth_m", file), sigma = scalar(cloud, "sigma_m", file);
-  std::vector<std::vector<EdgeDepth>> points(views);
+  std::vector<std::vector<EdgePoint>> points(views);
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
     if (!(view[i] >= 0 && view[i] < static_cast<float>(views) && depth[i] > 0))
       throw InputError(file.string(), fmt::format("point {} belongs to no view of views.yaml, or "
@@ -97,7 +97,7 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
       const ScopedTimer clock(wall_s);
       parallel_for(windows.size(), [&](std::size_t k) {
         refined[k] =
-            refine_depth_of(windows[k], points[k], dataset.camera(), depth, method.rays.slabs);
+            refine_depth_of(windows[k], points[k], dataset.camera(), depth, method.rays.kTimeSlices);
       });
     }
     timing.wall_s.push_back(wall_s);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/source_run.h"
 #include "estimator/run/run_writer.h"

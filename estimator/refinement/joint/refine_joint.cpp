@@ -6,10 +6,10 @@
 
 #include "core/error.h"
 #include "core/io/covariance_file.h"
-#include "core/io/keyframe_list.h"
+#include "core/io/run/keyframe_list.h"
 #include "core/median.h"
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "core/process/parallel.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/edges/batch/batch_windows.h"
 #include "estimator/edges/least_squares/path_covariance.h"

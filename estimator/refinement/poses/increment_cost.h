@@ -15,7 +15,7 @@ class IncrementCost : public ceres::CostFunction {
  public:
   /// An end of the window.
   struct Instant {
-    SplineKnots::Place time;
+    SplineKnots::LocalBasis time;
     MapSurface::Hit hit;
   };
   struct Observation {

@@ -15,7 +15,7 @@ class LogIntensityCost : public ceres::SizedCostFunction<1, kControlSize, kContr
                                                          kControlSize, kControlSize, 1> {
  public:
   struct Observation {
-    SplineKnots::Place time;
+    SplineKnots::LocalBasis time;
     std::array<Rigid3, 4> controls;  ///< of map_from_camera, before their corrections
     Eigen::Vector3d ray;
     double level = 0;  ///< [log units]

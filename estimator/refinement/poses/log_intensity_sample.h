@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/poses/map_surface.h"
 
 namespace saccade {
@@ -25,7 +25,7 @@ struct LogIntensitySample {
 [[nodiscard]] LogIntensitySample sample_log_intensity(const MapSurface& surface,
                                                       const MapSurface::Hit& hit,
                                                       const Eigen::Vector3d& ray,
-                                                      const SplineKnots::Place& time,
+                                                      const SplineKnots::LocalBasis& time,
                                                       std::span<const Rigid3> controls,
                                                       double const* const* corrections);
 

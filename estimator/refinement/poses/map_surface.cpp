@@ -55,7 +55,7 @@ std::optional<ViewPlane> MapSurface::plane(std::size_t index, const Eigen::Vecto
                    middle + by_x * (camera.cx - x - 0.5) + by_y * (camera.cy - y - 0.5));
 }
 
-std::optional<MapSurface::Hit> MapSurface::intersect(const SeenPlace& seen,
+std::optional<MapSurface::Hit> MapSurface::intersect(const MapSample& seen,
                                                      const Rigid3& map_from_camera,
                                                      const Eigen::Vector3d& ray) const {
   // On a plane the first is exact; a curved surface is met closely enough by the second.

@@ -37,7 +37,7 @@ class MapSurface {
   };
   /// The intersection of a camera's ray with the surface, near a known point of it: the ray meets the
   /// tangent plane there, then the one at that intersection. nullopt where that leaves the surface.
-  [[nodiscard]] std::optional<Hit> intersect(const SeenPlace& seen, const Rigid3& map_from_camera,
+  [[nodiscard]] std::optional<Hit> intersect(const MapSample& seen, const Rigid3& map_from_camera,
                                              const Eigen::Vector3d& ray) const;
 
  private:

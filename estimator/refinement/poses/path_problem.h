@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/edges/least_squares/cost_log.h"
 #include "estimator/refinement/poses/log_intensity_sample.h"
 

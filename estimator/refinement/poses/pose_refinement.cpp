@@ -26,7 +26,7 @@ void refine_by(Residuals& residuals, const PoseRefinementOptions& options, Refin
 }  // namespace
 
 Matrix6 RefinedPath::covariance_at(double t_s) const {
-  const SplineKnots::Place place = map_from_camera.knots.at(t_s);
+  const SplineKnots::LocalBasis place = map_from_camera.knots.at(t_s);
   std::array<Rigid3, 4> controls;
   for (std::size_t k = 0; k < 4; ++k) controls[k] = map_from_camera.poses[place.first + k];
   const PoseOverControls pose = pose_over(place, controls);

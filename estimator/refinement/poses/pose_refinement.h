@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/edges/least_squares/cost_log.h"
 #include "estimator/refinement/poses/increment_images.h"
 #include "estimator/refinement/poses/log_intensity_chains.h"

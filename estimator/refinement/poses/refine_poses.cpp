@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/io/covariance_file.h"
 #include "core/median.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/edges/least_squares/path_covariance.h"
 #include "estimator/run/run_input.h"

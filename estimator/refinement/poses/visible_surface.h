@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/spline_knots.h"
+#include "core/spline/knots.h"
 #include "estimator/refinement/poses/map_surface.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 
 #include "core/config/document.h"
 #include "core/error.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "estimator/tracking/reference_view.h"
 
 namespace saccade {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/srgb.h"
 #include "estimator/tracking/tracker.h"
 

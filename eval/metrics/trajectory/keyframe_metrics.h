@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/io/keyframe_list.h"
+#include "core/io/run/keyframe_list.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/trajectory/trajectory_metrics.h"
 

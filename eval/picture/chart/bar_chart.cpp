@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "eval/number_text.h"
+#include "eval/table/number_text.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/chart/chart_elements.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/camera.h"
 #include "core/image.h"
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "core/trajectory.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/time_search.h"
-#include "eval/metrics/scored_samples.h"
+#include "eval/metrics/trajectory/scored_samples.h"
 #include "eval/picture/overlay/depth_occlusion.h"
 #include "eval/picture/view/sensor_view.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "core/trajectory.h"
 #include "eval/picture/canvas/colour.h"

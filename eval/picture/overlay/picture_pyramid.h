@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "core/image.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 
 namespace saccade {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/picture/image/log_picture.h"
 #include "eval/picture/view/view_pictures.h"
 #include "eval/picture/view/view_render.h"

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "core/time_search.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/depth_picture.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "eval/keyframe_history.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/path_picture.h"

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/io/exr_file.h"
-#include "core/io/view_list.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/run/view_list.h"
 #include "eval/metrics/depth_truth.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/depth_picture.h"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "eval/picture/canvas/colour.h"
 #include "eval/picture/canvas/contact_sheet.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/io/event_file.h"
+#include "core/io/events/event_file.h"
 #include "core/time_search.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/canvas/colour_bar.h"

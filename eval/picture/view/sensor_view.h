@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "core/trajectory.h"
 #include "eval/picture/canvas/colour.h"
 #include "eval/picture/image/image_picture.h"

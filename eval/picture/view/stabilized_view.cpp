@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "core/srgb.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/event_picture.h"

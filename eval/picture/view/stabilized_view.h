@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/dataset.h"
+#include "core/io/dataset/dataset.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/render.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/image_file.h"
-#include "eval/number_text.h"
+#include "core/io/images/image_file.h"
+#include "eval/table/number_text.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/write_video.h"
 

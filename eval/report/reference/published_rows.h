@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/config/document.h"
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 
 namespace saccade {
 

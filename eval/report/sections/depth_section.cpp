@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "eval/depth_views.h"
-#include "eval/picture/canvas.h"
-#include "eval/picture/depth_picture.h"
-#include "eval/picture/derotation_picture.h"
-#include "eval/picture/event_picture.h"
-#include "eval/picture/log_picture.h"
-#include "eval/picture/view_pictures.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/image/depth_picture.h"
+#include "eval/picture/image/derotation_picture.h"
+#include "eval/picture/image/event_picture.h"
+#include "eval/picture/image/log_picture.h"
+#include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
@@ -89,9 +89,9 @@ std::string derotation_pictures(const RunData& data, const EstimatedView& view) 
       "{} events of {:.0f} ms around {:.3f} s", grouped(static_cast<double>(events.size())),
       1e3 * seconds_from_ns(events.back().t_ns - events.front().t_ns), view.t_s);
   return "<div class=\"grid three\">" +
-         upscaled_figure(draw_amount(plain, {}, top), what + ", as they came",
+         upscaled_figure(draw_magnitude(plain, {}, top), what + ", as they came",
                          "events as they came") +
-         upscaled_figure(draw_amount(derotated, {}, top),
+         upscaled_figure(draw_magnitude(derotated, {}, top),
                          what + ", rotated into the view's orientation by the true poses",
                          "derotated events") +
          "</div>\n";

@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/io/file_bytes.h"
-#include "core/io/image_file.h"
-#include "core/io/scratch_folder.h"
-#include "core/io/webp_file.h"
+#include "core/io/files/file_bytes.h"
+#include "core/io/images/image_file.h"
+#include "core/io/files/scratch_folder.h"
+#include "core/io/images/webp_file.h"
 #include "eval/mosaic_view.h"
 #include "eval/picture/render.h"
-#include "eval/picture/sensor_view.h"
-#include "eval/picture/view_pictures.h"
+#include "eval/picture/view/sensor_view.h"
+#include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 
 namespace saccade {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/image_views.h"
-#include "eval/picture/canvas.h"
-#include "eval/picture/log_picture.h"
-#include "eval/picture/view_pictures.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/image/log_picture.h"
+#include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
@@ -58,16 +58,16 @@ std::string view_pictures(const ImageView& view, const Dataset& dataset, const I
       magnitude.pixels()[i] = std::hypot(view.gradient_x.pixels()[i], view.gradient_y.pixels()[i]);
     const ImageF truth = gradient_size(c.truth);
     const float top = quantile(truth, c.mask, 0.99);
-    html += upscaled_figure(draw_amount(truth, {}, top), at + "size of the gradient, truth",
+    html += upscaled_figure(draw_magnitude(truth, {}, top), at + "size of the gradient, truth",
                             "true gradient magnitude") +
-            upscaled_figure(draw_amount(magnitude, {}, quantile(magnitude, c.mask, 0.99)),
+            upscaled_figure(draw_magnitude(magnitude, {}, quantile(magnitude, c.mask, 0.99)),
                             at + "size of the gradient, reconstructed", "gradient magnitude");
   }
   if (!view.covariance_xx.empty()) {
     const ImageF sigma = gradient_sigma(view);
     const float top = quantile(sigma, {}, 0.99);
     html += upscaled_figure(
-        draw_amount(sigma, {}, top),
+        draw_magnitude(sigma, {}, top),
         at + fmt::format("standard deviation of the gradient where it is largest, 0 to {:.2g} "
                          "per px",
                          top),

@@ -10,9 +10,9 @@
 
 #include "eval/keyframe_history.h"
 #include "eval/metrics/trajectory/keyframe_metrics.h"
-#include "eval/picture/depth_picture.h"
-#include "eval/picture/path_picture.h"
-#include "eval/picture/view_pictures.h"
+#include "eval/picture/image/depth_picture.h"
+#include "eval/picture/image/path_picture.h"
+#include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
@@ -57,7 +57,7 @@ std::string keyframe_table(const RunData& data, std::span<const KeyframeEntry> k
 
 std::string path_figure(const RunData& data, std::span<const KeyframeEntry> keyframes) {
   if (data.input.estimate.empty()) return "";
-  const PathPicture path(data.input.truth, data.input.estimate, 640, 480, kLightTheme);
+  const TopDownPath path(data.input.truth, data.input.estimate, 640, 480, kLightTheme);
   std::vector<Eigen::Vector3d> positions;
   for (const KeyframeEntry& keyframe : keyframes)
     positions.push_back(keyframe.world_from_camera.translation());
@@ -78,7 +78,7 @@ std::string depth_figure(const RunData& data, const EstimatedView& view, std::si
 std::string gallery(const RunData& data, const KeyframeHistory& history) {
   constexpr std::size_t kMost = 8;
   std::string depths, images;
-  for (const std::size_t i : evenly_chosen(history.keyframes().size(), kMost)) {
+  for (const std::size_t i : evenly_spaced_indices(history.keyframes().size(), kMost)) {
     depths += depth_figure(data, history.depth(i), i);
     // Only the depth has text in it; the browser enlarges the image.
     if (const ImageView* const image = history.image(i))

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "eval/mosaic_view.h"
-#include "eval/picture/mosaic_picture.h"
+#include "eval/picture/view/mosaic_picture.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/io/trajectory_file.h"
 #include "core/time_search.h"
-#include "eval/picture/line_chart.h"
+#include "eval/picture/chart/line_chart.h"
 #include "eval/report/html.h"
 
 namespace saccade {

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <utility>
 
-#include "core/io/event_file.h"
-#include "core/shell.h"
+#include "core/io/events/event_file.h"
+#include "core/process/shell.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
-#include "eval/picture/sensor_view.h"
+#include "eval/picture/view/sensor_view.h"
 #include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
 #include "eval/report/sections/module_sections.h"

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/io/file_list.h"
-#include "core/io/image_file.h"
+#include "core/io/files/file_list.h"
+#include "core/io/images/image_file.h"
 #include "eval/metrics/sharpness.h"
-#include "eval/picture/canvas.h"
-#include "eval/picture/log_picture.h"
-#include "eval/picture/stabilized_view.h"
+#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/image/log_picture.h"
+#include "eval/picture/view/stabilized_view.h"
 #include "eval/report/html.h"
 
 namespace saccade {

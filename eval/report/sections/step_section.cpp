@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "eval/picture/step_pictures.h"
+#include "eval/picture/view/reconstruction_stages.h"
 #include "eval/report/html.h"
 
 namespace saccade {

@@ -2,7 +2,7 @@
 
 #include "core/config/suggest.h"
 #include "core/error.h"
-#include "core/program.h"
+#include "core/process/program.h"
 #include "eval/sweep/launch/local_launcher.h"
 #include "eval/sweep/launch/slurm_launcher.h"
 

@@ -12,7 +12,7 @@
 #include "core/check.h"
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 #include "eval/sweep/launch/slurm_script.h"
 
 namespace saccade {

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "core/error.h"
-#include "core/shell.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

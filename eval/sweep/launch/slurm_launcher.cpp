@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "core/check.h"
-#include "core/child_process.h"
-#include "core/progress.h"
+#include "core/process/child_process.h"
+#include "core/process/progress.h"
 #include "eval/sweep/launch/slurm_jobs.h"
 
 namespace saccade {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/shell.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -16,11 +16,11 @@
 #include "core/config/convert.h"
 #include "core/config/document.h"
 #include "core/error.h"
-#include "core/io/dataset_record.h"
-#include "core/io/scratch_folder.h"
+#include "core/io/dataset/dataset_record.h"
+#include "core/io/files/scratch_folder.h"
 #include "core/stopwatch.h"
 #include "eval/metrics/statistics.h"
-#include "eval/number_text.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

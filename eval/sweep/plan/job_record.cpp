@@ -8,11 +8,11 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/atomic_file.h"
-#include "core/io/input_log.h"
-#include "core/io/sha256.h"
-#include "core/program.h"
-#include "core/shell.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/files/input_log.h"
+#include "core/io/files/sha256.h"
+#include "core/process/program.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/config/fields.h"
-#include "core/io/resumable_folder.h"
+#include "core/io/files/resumable_folder.h"
 #include "eval/sweep/plan/plan.h"
 
 namespace saccade {

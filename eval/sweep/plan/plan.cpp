@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/check.h"
-#include "core/shell.h"
+#include "core/process/shell.h"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/config/suggest.h"
-#include "core/io/folder_name.h"
+#include "core/io/files/folder_name.h"
 
 namespace saccade {
 namespace {

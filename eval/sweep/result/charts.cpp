@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "core/config/convert.h"
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/picture/chart/bar_chart.h"
 #include "eval/picture/chart/line_chart.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
 
 namespace saccade {
 namespace {

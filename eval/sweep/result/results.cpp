@@ -5,13 +5,13 @@
 #include <set>
 
 #include "core/config/suggest.h"
-#include "core/io/atomic_file.h"
-#include "core/io/dataset_record.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/dataset/dataset_record.h"
 #include "core/median.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/run_folder.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/tables.h"
 
@@ -93,7 +93,7 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
                                                           : read_row(job));
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
-    for (const MetricInfo& metric : usual_metrics())
+    for (const MetricInfo& metric : default_metrics())
       if (any_has(results.rows, metric.key)) results.metrics.push_back(metric.key);
   return results;
 }

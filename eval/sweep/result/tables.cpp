@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "eval/number_text.h"
-#include "eval/sweep/metric_info.h"
+#include "eval/table/number_text.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/table/table.h"
 
 namespace saccade {

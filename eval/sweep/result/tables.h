@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "core/io/csv_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/results.h"
 

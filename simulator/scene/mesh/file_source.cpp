@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/io/input_log.h"
+#include "core/io/files/input_log.h"
 
 namespace saccade {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "core/random.h"
 #include "simulator/scene/texture/texture_shapes.h"
 

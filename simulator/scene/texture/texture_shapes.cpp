@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/config/fields.h"
 #include "core/imu_sample.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 
 namespace saccade {
 

@@ -4,7 +4,7 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
-#include "core/spline.h"
+#include "core/spline/spline.h"
 
 namespace saccade {
 

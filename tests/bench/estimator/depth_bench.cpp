@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/rays/edgel_refiner.h"
 #include "estimator/depth/rays/edgel_seeds.h"

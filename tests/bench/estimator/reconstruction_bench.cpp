@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/depth_mesh.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/reconstruction/equations/intensity_system.h"
 #include "estimator/reconstruction/gradient/poisson.h"
 #include "estimator/reconstruction/observations/intensity_observations.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/scratch_folder.h"
-#include "core/progress.h"
+#include "core/io/files/scratch_folder.h"
+#include "core/process/progress.h"
 #include "simulator/recording_loop.h"
 #include "simulator/sensor/event_camera.h"
 #include "simulator/simulate.h"

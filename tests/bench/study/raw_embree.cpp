@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/mesh/world_from_mesh.h"
 #include "simulator/sensor/rays/pixel_rays.h"

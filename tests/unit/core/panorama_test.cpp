@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using testing::small_camera;
 using testing::sweep;
 
-std::vector<Eigen::Matrix3d> turns(const testing::Turning& turning, double end_s) {
+std::vector<Eigen::Matrix3d> turns(const testing::OrientationFunction& turning, double end_s) {
   std::vector<Eigen::Matrix3d> result;
   for (double t_s = 0; t_s <= end_s; t_s += 0.01) result.push_back(turning(t_s).toRotationMatrix());
   return result;

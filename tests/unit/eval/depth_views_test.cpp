@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "core/io/exr_file.h"
+#include "core/io/images/exr_file.h"
 #include "core/io/ply_file.h"
-#include "core/io/view_list.h"
+#include "core/io/run/view_list.h"
 #include "eval/evaluate.h"
 #include "eval/report/report.h"
 #include "tests/support/error_of.h"

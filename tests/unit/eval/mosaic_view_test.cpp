@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/panorama_file.h"
-#include "core/io/run_record.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/images/panorama_file.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
 #include "eval/picture/render.h"
 #include "eval/report/report.h"
@@ -34,7 +34,7 @@ class MosaicScores : public testing::SharedFolder<MosaicScores> {
   static void fill() { testing::write_sky_dataset(dataset(), turning(), kTurn_s); }
 
  protected:
-  [[nodiscard]] static testing::Turning turning() { return testing::sweep(0.4, 1.5); }
+  [[nodiscard]] static testing::OrientationFunction turning() { return testing::sweep(0.4, 1.5); }
   [[nodiscard]] static fs::path dataset() { return path("sky"); }
 
   /// The true mosaic in a world whose heading is another one, its orientations drifting.

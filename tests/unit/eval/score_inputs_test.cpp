@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "core/io/atomic_file.h"
+#include "core/io/files/atomic_file.h"
 #include "eval/evaluate.h"
 #include "tests/unit/eval/fake_folders.h"
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "core/config/config.h"
-#include "core/io/file_lock.h"
-#include "core/progress.h"
+#include "core/io/files/file_lock.h"
+#include "core/process/progress.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "core/config/config.h"
-#include "core/io/dataset.h"
-#include "core/io/image_file.h"
-#include "core/progress.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/images/image_file.h"
+#include "core/process/progress.h"
 #include "core/srgb.h"
 #include "simulator/simulate.h"
 #include "tests/support/closed_form_plane.h"

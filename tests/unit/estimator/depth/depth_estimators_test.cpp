@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "tests/support/planar_world.h"
 

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <string>
 
-#include "core/io/dataset.h"
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
 #include "core/io/ply_file.h"
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
-#include "core/io/view_list.h"
-#include "core/parallel.h"
+#include "core/io/run/view_list.h"
+#include "core/process/parallel.h"
 #include "estimator/registry.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

@@ -10,8 +10,8 @@ namespace {
 
 const PinholeCamera kCamera{.width = 240, .height = 180, .fx = 200, .fy = 210, .cx = 119, .cy = 89};
 
-FittedEdge edge_at(float x, float y, float angle, float depth_m) {
-  FittedEdge fitted;
+FittedEdgel edge_at(float x, float y, float angle, float depth_m) {
+  FittedEdgel fitted;
   fitted.edge.pixel = {x, y};
   fitted.edge.normal = {std::cos(angle), std::sin(angle)};
   fitted.edge.inverse_depth = 1 / depth_m;
@@ -22,10 +22,10 @@ FittedEdge edge_at(float x, float y, float angle, float depth_m) {
 TEST(TransformedEdge, IsTheSamePointAndLineInTheWorld) {
   const Rigid3 other_from_view =
       Rigid3::exp((Twist() << 0.1, -0.05, 0.2, 0.02, 0.1, 0.3).finished());
-  const FittedEdge edge = edge_at(100, 70, 0.6F, 2.5F);
+  const FittedEdgel edge = edge_at(100, 70, 0.6F, 2.5F);
   const auto seen = transformed(other_from_view, edge, kCamera);
   ASSERT_TRUE(seen);
-  const auto in_space = [](const FittedEdge& fitted, float along) -> Eigen::Vector3d {
+  const auto in_space = [](const FittedEdgel& fitted, float along) -> Eigen::Vector3d {
     const Eigen::Vector2f pixel = fitted.edge.pixel + along * fitted.edge.tangent();
     return kCamera.ray(pixel.cast<double>()) / static_cast<double>(fitted.edge.inverse_depth);
   };
@@ -50,12 +50,12 @@ TEST(TransformedEdge, NothingBehindTheCamera) {
 
 class EdgeMatching : public ::testing::Test {
  protected:
-  [[nodiscard]] std::optional<std::size_t> found(const FittedEdge& edge) const {
+  [[nodiscard]] std::optional<std::size_t> found(const FittedEdgel& edge) const {
     return EdgeMatcher(edges_, other_from_view_, kCamera).match(edge.edge);
   }
 
   Rigid3 other_from_view_ = Rigid3::exp((Twist() << 0.2, 0, 0.1, 0, 0.05, 0.1).finished());
-  std::vector<FittedEdge> edges_ = {edge_at(60, 70, 0.2F, 2), edge_at(100, 80, 1.2F, 2.5F),
+  std::vector<FittedEdgel> edges_ = {edge_at(60, 70, 0.2F, 2), edge_at(100, 80, 1.2F, 2.5F),
                                     edge_at(140, 90, -2, 3)};
 };
 
@@ -72,12 +72,12 @@ TEST_F(EdgeMatching, FindsTheEdgeFromAnotherView) {
 TEST_F(EdgeMatching, NotOneElsewhereAtAnotherDepthOrTheOtherWayRound) {
   const auto seen = transformed(other_from_view_, edges_[1], kCamera);
   ASSERT_TRUE(seen);
-  FittedEdge elsewhere = *seen, nearer = *seen, across = *seen, darker = *seen;
+  FittedEdgel elsewhere = *seen, nearer = *seen, across = *seen, darker = *seen;
   elsewhere.edge.pixel.y() += 3;
   nearer.edge.inverse_depth *= 1.2F;
   across.edge.normal = seen->edge.tangent();
   darker.edge.normal = -seen->edge.normal;
-  for (const FittedEdge& other : {elsewhere, nearer, across, darker}) EXPECT_FALSE(found(other));
+  for (const FittedEdgel& other : {elsewhere, nearer, across, darker}) EXPECT_FALSE(found(other));
   EXPECT_TRUE(found(*seen));
 }
 
@@ -85,7 +85,7 @@ TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterKeyframesThatAreFarEnoughAway)
   const Trajectory path({{0, Rigid3()}, {1, Rigid3()}, {2, other_from_view_.inverse()}});
   std::vector<ViewWindow> windows;
   for (const double t_s : {0.0, 1.0, 2.0}) windows.push_back({{}, &path, t_s});
-  std::vector<RayEdges> found(3);
+  std::vector<WindowEdgels> found(3);
   found[0].edges = found[1].edges = edges_;
   // The last keyframe sees the third edge first, and the second one not at all.
   for (const std::size_t i : {2U, 0U}) {

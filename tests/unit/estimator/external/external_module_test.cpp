@@ -7,10 +7,10 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/run_record.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
-#include "core/progress.h"
+#include "core/process/progress.h"
 #include "tests/support/error_of.h"
 #include "tests/support/fake_run.h"
 #include "tests/support/shared_folder.h"

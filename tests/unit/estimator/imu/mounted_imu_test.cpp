@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/io/dataset_writer.h"
+#include "core/io/dataset/dataset_writer.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 

@@ -5,10 +5,10 @@
 
 #include <string>
 
-#include "core/io/exr_file.h"
-#include "core/io/panorama_file.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/panorama_file.h"
 #include "core/io/trajectory_file.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/registry.h"
 #include "tests/support/command.h"
 #include "tests/support/direction_world.h"

@@ -42,14 +42,14 @@ MosaicOptions options_of(std::string_view method) {
   return options;
 }
 
-Trajectory poses_of(const testing::Turning& turning, double end_s) {
+Trajectory poses_of(const testing::OrientationFunction& turning, double end_s) {
   std::vector<StampedPose> poses;
   for (int i = 0; i <= static_cast<int>(1000 * end_s); ++i)
     poses.push_back({1e-3 * i, {turning(1e-3 * i), Eigen::Vector3d::Zero()}});
   return Trajectory(std::move(poses));
 }
 
-Found find(std::string_view method, const testing::Turning& turning, double end_s) {
+Found find(std::string_view method, const testing::OrientationFunction& turning, double end_s) {
   const DirectionWorld world(small_camera());
   const Events events = world.simulate(turning, end_s, kContrast);
   const Trajectory poses = poses_of(turning, end_s);
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MosaicSeam,
 
 /// A camera that turns over the zenith sees every longitude at once.
 TEST(Mosaic, APoleIsNoWorseThanOtherDirections) {
-  const testing::Turning over_the_top = [](double t_s) {
+  const testing::OrientationFunction over_the_top = [](double t_s) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(-1.0 - 1.2 * t_s, Eigen::Vector3d::UnitY()) *
                               Eigen::AngleAxisd(0.3 * t_s, Eigen::Vector3d::UnitX())) *
            sweep(0, 0)(0);

@@ -73,7 +73,7 @@ TEST(MetricWorld, IsInMetresAndUpright) {
 TEST(MetricWorld, SaysWhatTheReadingsShow) {
   const testing::TemporaryFolder folder;
   InertialAlignment found;
-  found.status = Status::kEvenMotion;
+  found.status = Status::kUnobservableScale;
   write_inertial_alignment(folder.path() / "inertial.yaml", found, false);
   const std::string text = testing::read_file(folder.path() / "inertial.yaml");
   EXPECT_THAT(text, ::testing::HasSubstr("status: even_motion"));

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "core/io/dataset.h"
-#include "core/io/exr_file.h"
-#include "core/io/view_list.h"
-#include "core/parallel.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/run/view_list.h"
+#include "core/process/parallel.h"
 #include "estimator/registry.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

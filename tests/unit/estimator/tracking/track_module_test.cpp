@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/config/document.h"
-#include "core/io/csv_reader.h"
-#include "core/io/image_file.h"
+#include "core/io/tables/csv_reader.h"
+#include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/trajectory_file.h"

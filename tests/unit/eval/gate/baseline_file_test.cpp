@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/io/run_record.h"
+#include "core/io/run/run_record.h"
 #include "eval/metrics/metrics.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

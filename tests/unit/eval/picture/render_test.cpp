@@ -5,11 +5,11 @@
 #include <cstdlib>
 
 #include "core/error.h"
-#include "core/io/dataset.h"
-#include "core/io/events_h5.h"
-#include "core/io/file_list.h"
-#include "core/io/image_file.h"
-#include "core/io/stabilized_events.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/events_h5.h"
+#include "core/io/files/file_list.h"
+#include "core/io/images/image_file.h"
+#include "core/io/events/stabilized_events.h"
 #include "eval/picture/video_writer.h"
 #include "tests/unit/eval/fake_folders.h"
 
@@ -48,7 +48,7 @@ fs::path stabilized_run(const fs::path& run, const fs::path& data, const fs::pat
   fs::create_directories(stabilized);
   const Dataset dataset = Dataset::open(data);
   Events events;
-  StabilizedPlaces places;
+  StabilizedCoordinates places;
   for (const Event& event : dataset.load_events()) {
     if (event.x + 1 >= dataset.camera().width) continue;
     places.source_x.push_back(event.x);
@@ -61,7 +61,7 @@ fs::path stabilized_run(const fs::path& run, const fs::path& data, const fs::pat
   EventH5Writer writer(stabilized / "events.h5", TimestampUnit::kNanoseconds);
   writer.append(events);
   writer.close();
-  write_stabilized_places(stabilized / "places.h5", places);
+  write_stabilized_coordinates(stabilized / "places.h5", places);
   write_stabilized_windows(stabilized / "windows.csv", {});
   write_file_list(stabilized / "images.txt", dataset.frames());
   return folder;

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/io/atomic_file.h"
-#include "core/io/run_record.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/run/run_record.h"
 #include "eval/metrics/metrics.h"
 #include "tests/support/command.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 

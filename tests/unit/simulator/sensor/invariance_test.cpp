@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/event_camera.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "simulator/sensor/event_camera.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/log_eps.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/depth/depth_config.h"
 #include "tests/support/error_of.h"
 #include "tests/support/handheld_motion.h"

@@ -28,13 +28,13 @@ std::map<int, std::size_t> most_after_nodes(int given_pairs) {
   static const Trajectory path = trajectory_of(corner_glide, kEnd_s);
   static const ViewWindow window{events, &path, kEnd_s / 2};
   static const DepthConfig config;
-  static const RayEdges edges =
-      RayDepth(config.rays, config.limits, world.camera()).find_edges(window);
+  static const WindowEdgels edges =
+      RayDepth(config.rays, config.limits, world.camera()).find_edgels(window);
   const NodeCorrection correction(0, kEnd_s, kSpacing_s);
   const ObservedEdges observed(window, edges, world.camera(), correction,
                                [&](double t_s) { return t_s < kGivenUntil_s ? given_pairs : 1; });
   std::map<int, std::size_t> most;
-  for (const FittedEdge& edge : edges.edges) {
+  for (const FittedEdgel& edge : edges.edges) {
     std::map<int, std::size_t> own;
     for (const ObservedEvent& event : observed.of(edge)) ++own[event.node];
     for (const auto& [node, count] : own) most[node] = std::max(most[node], count);

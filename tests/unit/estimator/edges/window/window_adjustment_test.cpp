@@ -62,7 +62,7 @@ WindowAdjustment adjusted(const Trajectory& start, double given_until_s = kKnown
   options.edges = 3000;
   options.node_spacing_s = 0.02;
   options.given_pairs = 5;
-  return adjust_window(window, depth.find_edges(window), keyframe_recording().world.camera(),
+  return adjust_window(window, depth.find_edgels(window), keyframe_recording().world.camera(),
                        {kKnown_s, given_until_s, kCornerDepth_m, {}}, options);
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/imu_sample.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 #include "estimator/odometry/start/extrapolated_path.h"
 #include "tests/support/planar_world.h"
 

@@ -28,10 +28,10 @@ const DepthRecording& depth_recording() {
 }
 
 /// Median of the relative errors, the true depth taken from the nearest pixel.
-double median_error(const std::vector<EdgeDepth>& points) {
+double median_error(const std::vector<EdgePoint>& points) {
   const ImageF truth = depth_recording().world.depth(testing::corner_glide(kDepthEnd_s / 2));
   std::vector<double> errors;
-  for (const EdgeDepth& point : points) {
+  for (const EdgePoint& point : points) {
     const float depth =
         truth(static_cast<int>(std::lround(point.x_px)), static_cast<int>(std::lround(point.y_px)));
     if (depth > 0)
@@ -42,13 +42,13 @@ double median_error(const std::vector<EdgeDepth>& points) {
   return *middle;
 }
 
-RefinedDepth refined(const std::vector<EdgeDepth>& start) {
+RefinedDepth refined(const std::vector<EdgePoint>& start) {
   const DepthRecording& r = depth_recording();
-  return refine_depth_of(r.window(), start, r.world.camera(), r.depth, DepthConfig{}.rays.slabs);
+  return refine_depth_of(r.window(), start, r.world.camera(), r.depth, DepthConfig{}.rays.kTimeSlices);
 }
 
 TEST(DepthRefinement, BringsDisturbedDepthsBack) {
-  std::vector<EdgeDepth> points =
+  std::vector<EdgePoint> points =
       depth_recording().depth.estimate(depth_recording().window()).points;
   ASSERT_GT(points.size(), 200U);
   const double before = median_error(points);
@@ -59,7 +59,7 @@ TEST(DepthRefinement, BringsDisturbedDepthsBack) {
   EXPECT_GT(result.edges, points.size() / 2);
   EXPECT_LT(result.cost_after, 0.9 * result.cost_before);
   EXPECT_LT(median_error(result.result.points), std::max(0.005, 1.2 * before));
-  for (const EdgeDepth& point : result.result.points) EXPECT_GT(point.sigma, 0);
+  for (const EdgePoint& point : result.result.points) EXPECT_GT(point.sigma, 0);
 }
 
 TEST(DepthRefinement, WithoutPointsThereIsNothingToRefine) {

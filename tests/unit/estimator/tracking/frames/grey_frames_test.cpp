@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 

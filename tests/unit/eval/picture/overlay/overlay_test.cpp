@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/io/image_file.h"
+#include "core/io/images/image_file.h"
 #include "eval/picture/render.h"
 #include "tests/support/error_of.h"
 #include "tests/unit/eval/fake_folders.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/io/image_file.h"
-#include "eval/report/keyframe_section.h"
+#include "core/io/images/image_file.h"
+#include "eval/report/sections/module_sections.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {

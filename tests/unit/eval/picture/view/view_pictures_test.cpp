@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
-#include "core/io/view_list.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
+#include "core/io/run/view_list.h"
 #include "eval/picture/image/derotation_picture.h"
 #include "eval/picture/render.h"
 #include "eval/picture/view/reconstruction_stages.h"
-#include "eval/report/step_section.h"
+#include "eval/report/sections/module_sections.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
 #include "tests/unit/eval/fake_folders.h"

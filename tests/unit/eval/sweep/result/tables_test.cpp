@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/io/image_file.h"
-#include "eval/number_text.h"
-#include "eval/sweep/metric_info.h"
+#include "core/io/images/image_file.h"
+#include "eval/table/number_text.h"
+#include "eval/metrics/catalogue.h"
 #include "tests/unit/eval/sweep/sweep_files.h"
 
 namespace saccade {

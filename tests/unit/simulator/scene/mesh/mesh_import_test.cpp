@@ -8,8 +8,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
-#include "core/io/exr_file.h"
-#include "core/io/image_file.h"
+#include "core/io/images/exr_file.h"
+#include "core/io/images/image_file.h"
 #include "core/srgb.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
