@@ -14,9 +14,9 @@
 #include "core/io/files/atomic_file.h"
 #include "core/process/progress.h"
 #include "eval/gate/baseline_file.h"
-#include "eval/gate/paired_benchmark.h"
 #include "eval/gate/comparison.h"
 #include "eval/gate/gate_report.h"
+#include "eval/gate/paired_benchmark.h"
 #include "eval/store/result_store.h"
 
 namespace saccade {

@@ -11,8 +11,8 @@
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "core/process/progress.h"
-#include "eval/sweep/sweep.h"
 #include "eval/sweep/plan/sweep_config.h"
+#include "eval/sweep/sweep.h"
 
 namespace saccade {
 namespace {

@@ -1,14 +1,24 @@
 #include "estimator/registry.h"
 
+#include "core/config/config.h"
 #include "core/error.h"
+#include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_module.h"
+#include "estimator/external/adapter_config.h"
 #include "estimator/external/external_module.h"
+#include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_module.h"
+#include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/mosaic_module.h"
+#include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_module.h"
+#include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_module.h"
+#include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/refinement_module.h"
+#include "estimator/rotation/rotation_config.h"
 #include "estimator/rotation/rotation_module.h"
+#include "estimator/tracking/track_config.h"
 #include "estimator/tracking/track_module.h"
 
 namespace saccade {
@@ -18,46 +28,55 @@ constexpr Module kModules[] = {
     {.name = "track",
      .help = "Pose of the camera against a known map (thesis chapter 4).",
      .run = run_track,
-     .print_config = print_track_config},
+     .print_config = print_track_config,
+     .reference = config::reference<TrackConfig>},
     {.name = "depth",
      .help = "Depth of the edges from events and poses (thesis chapter 5).",
      .takes_poses = true,
      .run = run_depth,
-     .print_config = print_depth_config},
+     .print_config = print_depth_config,
+     .reference = config::reference<DepthConfig>},
     {.name = "reconstruct",
      .help = "Image of a view from events, poses and depth (thesis chapter 6).",
      .takes_poses = true,
      .takes_depth = true,
      .run = run_reconstruction,
-     .print_config = print_reconstruction_config},
+     .print_config = print_reconstruction_config,
+     .reference = config::reference<ReconstructionConfig>},
     {.name = "odometry",
      .help = "Poses and map from events and the poses of a short start (thesis chapter 7).",
      .run = run_odometry,
-     .print_config = print_odometry_config},
+     .print_config = print_odometry_config,
+     .reference = config::reference<OdometryConfig>},
     {.name = "refine",
      .help = "Batch optimum beside a run of track, depth or odometry, which --from names.",
      .takes_poses = true,
      .takes_run = true,
      .run = run_refinement,
-     .print_config = print_refinement_config},
+     .print_config = print_refinement_config,
+     .reference = config::reference<RefinementConfig>},
     {.name = "stabilize",
      .help = "Events and frames as of a camera that does not rotate (thesis chapter 3).",
      .takes_poses = true,
      .run = run_stabilization,
-     .print_config = print_stabilization_config},
+     .print_config = print_stabilization_config,
+     .reference = config::reference<StabilizeConfig>},
     {.name = "mosaic",
      .help = "Panorama from the events of a rotating camera (thesis 3.4.1).",
      .takes_poses = true,
      .run = run_mosaic,
-     .print_config = print_mosaic_config},
+     .print_config = print_mosaic_config,
+     .reference = config::reference<MosaicConfig>},
     {.name = "rotation",
      .help = "Angular velocity of the camera from events, gyroscope or both.",
      .run = run_rotation,
-     .print_config = print_rotation_config},
+     .print_config = print_rotation_config,
+     .reference = config::reference<RotationConfig>},
     {.name = "external",
      .help = "An external program, which an adapter (-c) says how to run.",
      .run = run_external,
-     .print_config = print_external_config},
+     .print_config = print_external_config,
+     .reference = config::reference<AdapterConfig>},
 };
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/config/document.h"
+#include "core/config/reference.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -19,6 +21,8 @@ struct Module {
   RunSummary (*run)(const RunRequest&) = nullptr;
   /// The resolved configuration, documented, as YAML. Throws InputError for a bad one.
   std::string (*print_config)(const config::Document&) = nullptr;
+  /// All keys of the configuration, for docs/reference/.
+  std::vector<config::ReferenceKey> (*reference)() = nullptr;
 };
 
 /// All modules. A new one is a row here and the files of its room.

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/io/tables/csv_file.h"
 #include "core/io/images/exr_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
+#include "core/io/tables/csv_file.h"
 
 namespace saccade {
 namespace {

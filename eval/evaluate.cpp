@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/io/files/atomic_file.h"
 #include "core/io/covariance_file.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/run/keyframe_list.h"
 #include "core/io/trajectory_file.h"

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/io/tables/csv_reader.h"
 #include "core/io/files/folder_name.h"
+#include "core/io/tables/csv_reader.h"
 #include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
 

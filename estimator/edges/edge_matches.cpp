@@ -12,7 +12,8 @@ constexpr double kReach_px = 2;
 constexpr double kDepthTolerance = 0.1;  ///< relative
 constexpr float kMinCosine = 0.966F;     ///< of 15 degrees
 
-std::vector<Landmark> landmarks_of(std::span<const FittedEdgel> edges, const PinholeCamera& camera) {
+std::vector<Landmark> landmarks_of(std::span<const FittedEdgel> edges,
+                                   const PinholeCamera& camera) {
   std::vector<Landmark> landmarks;
   landmarks.reserve(edges.size());
   for (const FittedEdgel& fitted : edges) {
@@ -26,7 +27,7 @@ std::vector<Landmark> landmarks_of(std::span<const FittedEdgel> edges, const Pin
 }  // namespace
 
 std::optional<FittedEdgel> transformed(const Rigid3& other_from_view, FittedEdgel fitted,
-                                      const PinholeCamera& camera) {
+                                       const PinholeCamera& camera) {
   Edgel& edge = fitted.edge;
   const double depth_m = 1 / static_cast<double>(edge.inverse_depth);
   const auto moved = [&](const Eigen::Vector2f& pixel) -> Eigen::Vector3d {

@@ -16,7 +16,8 @@ namespace saccade {
 
 /// The edge in another view; nullopt for behind it. `camera` is undistorted.
 [[nodiscard]] std::optional<FittedEdgel> transformed(const Rigid3& other_from_view,
-                                                    FittedEdgel fitted, const PinholeCamera& camera);
+                                                     FittedEdgel fitted,
+                                                     const PinholeCamera& camera);
 
 /// Data association of edges between two views: which edge of the other view is an edge of this
 /// one. The match lies within 2 px of the reprojection, within a tenth of the inverse depth and

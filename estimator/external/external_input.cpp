@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "core/error.h"
-#include "core/io/files/atomic_file.h"
 #include "core/io/calibration_file.h"
 #include "core/io/events/event_file.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
 #include "estimator/run/run_input.h"

@@ -11,9 +11,9 @@
 #include "core/error.h"
 #include "core/event.h"
 #include "core/io/ply_file.h"
+#include "core/io/run/view_list.h"
 #include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
-#include "core/io/run/view_list.h"
 
 namespace saccade {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/io/dataset/dataset.h"
-#include "core/io/run/run_record.h"
 #include "core/io/events/stabilized_events.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "estimator/imu/stabilizer.h"
 

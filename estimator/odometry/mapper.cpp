@@ -158,7 +158,8 @@ RayDepth Mapper::rays() const {
 }
 
 std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
-                                            const KnownPath& known, double typical_depth_m) const {
+                                                const KnownPath& known,
+                                                double typical_depth_m) const {
   std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
@@ -204,8 +205,7 @@ double Mapper::sweep_depth(const ViewWindow& window) const {
 
 ImageF Mapper::dense_depth(const Keyframe& keyframe) const {
   const PinholeCamera camera = camera_.undistorted();
-  return surface_through(surface_points(keyframe.depth, camera), camera,
-                         options_.reconstruction.depth.planes);
+  return surface_through(surface_points(keyframe.depth, camera), camera);
 }
 
 void Mapper::reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const {

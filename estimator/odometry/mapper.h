@@ -90,8 +90,8 @@ class Mapper {
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.
   [[nodiscard]] std::optional<WindowEdgels> adjust_path(ViewWindow& window, Trajectory& path,
-                                                    const KnownPath& known,
-                                                    double typical_depth_m) const;
+                                                        const KnownPath& known,
+                                                        double typical_depth_m) const;
   [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;
   void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;
   void add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const;

@@ -118,8 +118,9 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
 
 void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
-  const bool may_be_lost = pose.status == TrackStatus::kLost ||
-                           (options_.relocation == Relocation::kInconsistent && !tracker_.is_consistent());
+  const bool may_be_lost =
+      pose.status == TrackStatus::kLost ||
+      (options_.relocation == Relocation::kInconsistent && !tracker_.is_consistent());
   if (may_be_lost && options_.relocation != Relocation::kNever &&
       now_s >= last_search_s_ + kSearchInterval_s) {
     last_search_s_ = now_s;

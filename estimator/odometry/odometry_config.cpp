@@ -146,7 +146,7 @@ void describe_parts(config::Fields& fields, OdometryOptions& options) {
       "tracking",
       [&](Fields& f) {
         MotionModelOptions& motion = options.tracker.motion;
-        f.value("event_map_ratio", options.tracker.event_frame.ratio,
+        f.value("event_map_ratio", options.tracker.event_frame.event_map_ratio,
                 "Events per frame and template pixel, r of (4.21). Smaller ratios make more and "
                 "shorter frames of fewer events.")
             .range(1e-4, 100);

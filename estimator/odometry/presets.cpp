@@ -9,10 +9,7 @@ namespace {
 /// (4.21).
 EdgeTrackerOptions tracking_by_keyframes(double event_map_ratio) {
   EdgeTrackerOptions tracking;
-  tracking.templates.redraw_px = 8;
-  tracking.event_frame.ratio = event_map_ratio;
-  tracking.motion.prediction = MotionModelOptions::Prediction::kConstantVelocity;
-  tracking.motion.agility_px = 1000;
+  tracking.event_frame.event_map_ratio = event_map_ratio;
   return tracking;
 }
 
@@ -29,40 +26,6 @@ DepthConfig depth_of_keyframes() {
   return depth;
 }
 
-/// Images of keyframes: the best reconstruction of `saccade run reconstruct`
-/// (configs/reconstruction/best.yaml).
-void set_equations(ReconstructionConfig& image) {
-  image.method = ReconstructionConfig::Method::kEquations;
-  EquationOptions& equations = image.equations;
-  LevelOptions& levels = equations.levels;
-  levels.event_sigma = 0.075;
-  levels.track_events = 12;
-  levels.still = true;
-  levels.still_px = 0.7;
-  levels.still_turns = 4;
-  levels.still_events = 40;
-  levels.beyond = 0.4;
-  levels.places.redraw_px = 8;
-  levels.places.parallax_px = 1.4;
-  levels.places.step_margin_px = 1;
-  equations.smoothness = 0.05;
-  equations.tolerance = 0.005;
-  equations.bound_sigma = 0.3;
-  equations.thin_px = 0.9;
-}
-
-/// The thesis's reconstruction (chapter 6; configs/reconstruction/thesis.yaml).
-void set_gradient(ReconstructionConfig& image) {
-  image.method = ReconstructionConfig::Method::kGradient;
-  image.depth.propagation = DepthSourceOptions::Propagation::kSplat;
-  image.gradient.boundary = Boundary::kDirichlet;
-  LevelOptions& levels = image.gradient.levels;
-  levels.event_sigma = 0.1;
-  levels.still = true;
-  levels.still_px = 2;
-  levels.places.redraw_px = 4;
-}
-
 /// Keyframes of edges with depth, each adjusted together with the poses of its window.
 OdometryOptions edges() {
   OdometryOptions options;
@@ -70,7 +33,7 @@ OdometryOptions edges() {
   options.tracker = tracking_by_keyframes(0.1);
   MappingOptions& mapping = options.mapping;
   mapping.depth = depth_of_keyframes();
-  set_equations(mapping.reconstruction);
+  mapping.reconstruction.method = ReconstructionConfig::kEquations;
   // The window is 0.65 s long however many events that is.
   mapping.events = 2000000;
   mapping.duration_s = 0.65;
@@ -103,8 +66,9 @@ OdometryOptions thesis() {
   mapping.depth.method = DepthConfig::Method::kThesis;
   mapping.depth.limits = {.near_m = 0.5, .far_m = 50};
   // A keyframe's window is short: points count at three times the usual sigma.
-  mapping.depth.thesis.filter.converged = 0.1;
-  set_gradient(mapping.reconstruction);
+  mapping.depth.thesis.max_sigma = 0.1;
+  mapping.reconstruction.method = ReconstructionConfig::kGradient;
+  mapping.reconstruction.depth.propagation = DepthSourceOptions::Propagation::kSplat;
   mapping.events = 300000;
   mapping.duration_s = 0.4;
   mapping.view = MappingOptions::View::kEnd;

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/files/atomic_file.h"
 #include "core/io/dataset/dataset.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/run/run_record.h"
 #include "estimator/run/run_request.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/io/tables/csv_file.h"
 #include "core/io/ply_file.h"
+#include "core/io/tables/csv_file.h"
 #include "core/io/trajectory_file.h"
 
 namespace saccade {

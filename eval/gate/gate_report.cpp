@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "eval/table/number_text.h"
 #include "eval/report/html.h"
+#include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
 namespace saccade {

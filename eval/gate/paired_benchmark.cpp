@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "core/check.h"
-#include "core/process/child_process.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/files/scratch_folder.h"
+#include "core/process/child_process.h"
 #include "core/stopwatch.h"
 #include "eval/evaluate.h"
 

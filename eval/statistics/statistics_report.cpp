@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/io/tables/csv_file.h"
 #include "core/io/images/image_file.h"
+#include "core/io/tables/csv_file.h"
 #include "eval/picture/chart/line_chart.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"

@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/io/files/folder_name.h"
-#include "core/io/run/run_record.h"
 #include "core/io/files/sha256.h"
+#include "core/io/run/run_record.h"
 #include "eval/configuration_name.h"
 
 namespace saccade {

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/io/files/atomic_file.h"
-#include "core/io/tables/csv_file.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/dataset/dataset_writer.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/images/exr_file.h"
-#include "core/io/run/keyframe_list.h"
 #include "core/io/ply_file.h"
+#include "core/io/run/keyframe_list.h"
 #include "core/io/run/run_record.h"
-#include "core/io/trajectory_file.h"
 #include "core/io/run/view_list.h"
+#include "core/io/tables/csv_file.h"
+#include "core/io/trajectory_file.h"
 #include "core/random.h"
 #include "tests/support/planar_world.h"
 

@@ -201,7 +201,7 @@ class BatchProblem {
     observation.lag = event.polarity;
     observation.pixel = edge.pixel.cast<double>();
     observation.normal = edge.normal.cast<double>();
-    const SplineKnots::Place place = correction_.knots().at(t_s);
+    const SplineKnots::LocalBasis place = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
         new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, place.weight,
                          sigma_px),
@@ -222,7 +222,7 @@ class BatchProblem {
     const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px));
     for (const StampedPose& pose : given) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
-      const SplineKnots::Place place = correction_.knots().at(pose.t_s);
+      const SplineKnots::LocalBasis place = correction_.knots().at(pose.t_s);
       // xi(t) = -log(given^-1 path): the gauge.
       const Twist error = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
       add_prior(root, -error, place.weight, place.first);
@@ -304,7 +304,7 @@ class BatchProblem {
 }  // namespace
 
 Matrix6 BatchAdjustment::covariance_at(double t_s) const {
-  const SplineKnots::Place place = knots.at(t_s);
+  const SplineKnots::LocalBasis place = knots.at(t_s);
   Eigen::Matrix<double, 6, 24> by_twists;
   for (Eigen::Index k = 0; k < 4; ++k)
     by_twists.middleCols<6>(6 * k) = place.weight[k] * Matrix6::Identity();

@@ -106,9 +106,10 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   write_block(jacobians[n], Eigen::Matrix<double, 9, 3>(root_ * by_v_i));
   write_block(jacobians[n + 1], Eigen::Matrix<double, 9, 3>(root_ * by_v_j));
   Rows6 bias_jacobian = -sum_.bias_jacobian;
-  const Vector3 drift = sum_.bias_jacobian.topLeftCorner<3, 3>() * Vector3(other.gyro - sum_.bias.gyro);
-  bias_jacobian.topRows<3>() =
-      -so3_left_jacobian_inverse(turned) * so3_left_jacobian(-drift) * sum_.bias_jacobian.topRows<3>();
+  const Vector3 drift =
+      sum_.bias_jacobian.topLeftCorner<3, 3>() * Vector3(other.gyro - sum_.bias.gyro);
+  bias_jacobian.topRows<3>() = -so3_left_jacobian_inverse(turned) * so3_left_jacobian(-drift) *
+                               sum_.bias_jacobian.topRows<3>();
   write_block(jacobians[n + 2], Rows6(root_ * bias_jacobian));
   Eigen::Matrix<double, 9, InertialFrame::kSize> by_frame;
   by_frame.setZero();

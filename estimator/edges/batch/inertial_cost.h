@@ -34,9 +34,9 @@ struct InertialFrame {
 
 /// An instant of the path at which readings begin or end.
 struct InertialNode {
-  Rigid3 given;              ///< world_from_camera before the correction
-  Twist motion;              ///< of the camera, in its axes [unit/s, rad/s]
-  SplineKnots::Place place;  ///< its four controls in the correction
+  Rigid3 given;                   ///< world_from_camera before the correction
+  Twist motion;                   ///< of the camera, in its axes [unit/s, rad/s]
+  SplineKnots::LocalBasis place;  ///< its four controls in the correction
 };
 
 /// Preintegrated readings between two instants of a path (Forster et al., TRO 2017, with the

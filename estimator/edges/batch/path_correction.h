@@ -25,7 +25,7 @@ class PathCorrection {
     return Eigen::Map<const Twist>(twists_[i].data());
   }
   [[nodiscard]] Twist at(double t_s) const {
-    const SplineKnots::Place place = knots_.at(t_s);
+    const SplineKnots::LocalBasis place = knots_.at(t_s);
     Twist twist = Twist::Zero();
     for (std::size_t k = 0; k < 4; ++k)
       twist += place.weight[static_cast<Eigen::Index>(k)] * control(place.first + k);

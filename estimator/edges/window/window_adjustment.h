@@ -50,7 +50,7 @@ struct WindowPriors {
 
 struct WindowAdjustment {
   Trajectory trajectory;  ///< the path of before, corrected
-  WindowEdgels edges;         ///< all of those given that still fit, in the view's corrected pose
+  WindowEdgels edges;     ///< all of those given that still fit, in the view's corrected pose
   double residual_before_px = 0;  ///< robust standard deviation of the events
   double residual_after_px = 0;
   bool ok = false;  ///< false: too little to adjust; nothing is changed

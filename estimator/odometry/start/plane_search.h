@@ -12,14 +12,14 @@
 namespace saccade {
 
 struct PlaneSearchOptions {
-  double motion_px = 20;       ///< of the image over the window that is searched for
-  double max_window_s = 0.25;  ///< a slower motion ends here
-  double events_per_px = 0.5;  ///< of the first window
-  int samples = 20000;         ///< at most so many events of a window are used
-  double blur_px = 1;          ///< of the image of events
-  double burst_fraction = 0.15;   ///< ratio to the window's length, see BurstFilter
-  double slope_sigma = 3;      ///< of the plane's slope from 0, where the events hardly say
-  int iterations = 40;         ///< of quasi-Newton steps, at most
+  double motion_px = 20;         ///< of the image over the window that is searched for
+  double max_window_s = 0.25;    ///< a slower motion ends here
+  double events_per_px = 0.5;    ///< of the first window
+  int samples = 20000;           ///< at most so many events of a window are used
+  double blur_px = 1;            ///< of the image of events
+  double burst_fraction = 0.15;  ///< ratio to the window's length, see BurstFilter
+  double slope_sigma = 3;        ///< of the plane's slope from 0, where the events hardly say
+  int iterations = 40;           ///< of quasi-Newton steps, at most
 };
 
 /// A motion before a plane that explains a window.

@@ -96,8 +96,8 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
     {
       const ScopedTimer clock(wall_s);
       parallel_for(windows.size(), [&](std::size_t k) {
-        refined[k] =
-            refine_depth_of(windows[k], points[k], dataset.camera(), depth, method.rays.kTimeSlices);
+        refined[k] = refine_depth_of(windows[k], points[k], dataset.camera(), depth,
+                                     method.rays.kTimeSlices);
       });
     }
     timing.wall_s.push_back(wall_s);

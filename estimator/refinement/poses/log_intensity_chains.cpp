@@ -21,14 +21,14 @@ struct PixelChain {
 /// Leaves out chains of one observation and numbers the others anew.
 void drop_single(LogIntensityChains& result) {
   std::vector<std::uint32_t> length(result.chains);
-  for (const LogIntensityObservation& o : result.observations) ++length[o.chain];
+  for (const ChainObservation& o : result.observations) ++length[o.chain];
   std::vector<std::uint32_t> number(result.chains, kNone);
   result.chains = 0;
   for (std::size_t i = 0; i < length.size(); ++i)
     if (length[i] > 1) number[i] = static_cast<std::uint32_t>(result.chains++);
   std::erase_if(result.observations,
-                [&](const LogIntensityObservation& o) { return number[o.chain] == kNone; });
-  for (LogIntensityObservation& o : result.observations) o.chain = number[o.chain];
+                [&](const ChainObservation& o) { return number[o.chain] == kNone; });
+  for (ChainObservation& o : result.observations) o.chain = number[o.chain];
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace saccade {
 /// pixel, the log intensity changed by exactly the difference of their levels,
 ///   L(u, t_k) - L(u, t_j) = level_k - level_j = sum of p C over the events j + 1 .. k.
 /// In chains of two neighbouring events that is p C.
-struct LogIntensityObservation {
+struct ChainObservation {
   double t_s = 0;
   Eigen::Vector2f pixel;  ///< undistorted
   Eigen::Vector3d ray;    ///< of the pixel, z = 1
@@ -26,8 +26,8 @@ struct LogIntensityObservation {
 };
 
 struct LogIntensityChains {
-  std::vector<LogIntensityObservation> observations;  ///< in order of time
-  std::size_t chains = 0;                             ///< each of two observations or more
+  std::vector<ChainObservation> observations;  ///< in order of time
+  std::size_t chains = 0;                      ///< each of two observations or more
 };
 
 /// All events of some of the pixels, chosen by their position alone, about `max_events` > 0 at most,

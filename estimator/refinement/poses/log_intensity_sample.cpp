@@ -11,7 +11,8 @@ Rigid3 corrected(const Rigid3& control, const double* correction) {
 }
 
 LogIntensitySample sample_log_intensity(const MapSurface& surface, const MapSurface::Hit& hit,
-                                        const Eigen::Vector3d& ray, const SplineKnots::LocalBasis& time,
+                                        const Eigen::Vector3d& ray,
+                                        const SplineKnots::LocalBasis& time,
                                         std::span<const Rigid3> controls,
                                         double const* const* corrections) {
   LogIntensitySample seen;

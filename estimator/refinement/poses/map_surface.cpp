@@ -63,9 +63,9 @@ std::optional<MapSurface::Hit> MapSurface::intersect(const MapSample& seen,
   if (!(seen.inverse_depth > 0)) return std::nullopt;
   const int rows = map_.camera().height + 1;
   Hit hit;
-  hit.view = static_cast<std::size_t>(seen.place.y()) / static_cast<std::size_t>(rows);
+  hit.view = static_cast<std::size_t>(seen.atlas_px.y()) / static_cast<std::size_t>(rows);
   const IntensityMap::View& view = map_.views()[hit.view];
-  hit.pixel = seen.place.cast<double>() - Eigen::Vector2d(0, view.first_row);
+  hit.pixel = seen.atlas_px.cast<double>() - Eigen::Vector2d(0, view.first_row);
   const Rigid3 view_from_camera = view.view_from_map * map_from_camera;
   for (int i = 0; i < kSteps; ++i) {
     const std::optional<ViewPlane> touching = plane(hit.view, hit.pixel);

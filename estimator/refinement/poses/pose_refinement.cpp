@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/refinement/poses/chain_residuals.h"
 #include "estimator/refinement/poses/increment_residuals.h"
-#include "estimator/refinement/poses/log_intensity_residuals.h"
 
 namespace saccade {
 namespace {
@@ -53,7 +53,7 @@ RefinedPath refine_path(const MapSurface& surface, const PinholeCamera& camera,
   } else {
     const LogIntensityChains levels =
         observe_log_intensity(events, camera, contrast, options.events, options.chain_events);
-    LogIntensityResiduals residuals(surface, levels, options);
+    ChainResiduals residuals(surface, levels, options);
     refine_by(residuals, options, path);
   }
   return path;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "eval/table/number_text.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/chart/chart_elements.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/io/images/image_file.h"
-#include "eval/table/number_text.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/write_video.h"
+#include "eval/table/number_text.h"
 
 namespace saccade {
 namespace {

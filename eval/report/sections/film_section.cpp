@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/io/files/file_bytes.h"
-#include "core/io/images/image_file.h"
 #include "core/io/files/scratch_folder.h"
+#include "core/io/images/image_file.h"
 #include "core/io/images/webp_file.h"
 #include "eval/mosaic_view.h"
 #include "eval/picture/render.h"

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "core/check.h"
-#include "core/process/child_process.h"
 #include "core/io/files/atomic_file.h"
+#include "core/process/child_process.h"
 #include "core/stopwatch.h"
 
 namespace saccade {

@@ -9,9 +9,9 @@
 #include <set>
 #include <thread>
 
-#include "core/process/child_process.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
+#include "core/process/child_process.h"
 
 namespace saccade {
 namespace {

@@ -39,9 +39,9 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 /// The file that a text of a configuration names, if it exists; of "archive!/member" the archive.
 fs::path file_named_by(const Node& node) {
-  if (node.text.empty() || node.text.size() > 4000 || !node.place.source) return {};
+  if (node.text.empty() || node.text.size() > 4000 || !node.location.source) return {};
   std::error_code error;
-  const fs::path file = node.place.source->folder / node.text.substr(0, node.text.find("!/"));
+  const fs::path file = node.location.source->folder / node.text.substr(0, node.text.find("!/"));
   return fs::is_regular_file(file, error) ? file.lexically_normal() : fs::path();
 }
 

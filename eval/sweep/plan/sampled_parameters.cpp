@@ -24,7 +24,7 @@ constexpr std::uint64_t kNormalAttempts = 1000;
 constexpr double kMaxBoundDistance = 3;  // [sigma]
 
 [[noreturn]] void reject(const Node& node, const std::string& name, const std::string& problem) {
-  throw config::error_at(node.place, name, " ", problem);
+  throw config::error_at(node.location, name, " ", problem);
 }
 
 /// The distribution that a node states; nullptr for a value or a container of values.

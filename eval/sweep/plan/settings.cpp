@@ -26,7 +26,7 @@ Node value_node(const std::string& yaml) {
 }
 
 [[noreturn]] void fail(const Node& node, const std::string& name, const std::string& problem) {
-  throw config::error_at(node.place, name, " ", problem);
+  throw config::error_at(node.location, name, " ", problem);
 }
 
 }  // namespace
@@ -34,8 +34,8 @@ Node value_node(const std::string& yaml) {
 void make_paths_absolute(Node& node) {
   const bool is_path = node.kind == Node::Kind::kScalar &&
                        (node.text.starts_with("./") || node.text.starts_with("../"));
-  if (is_path && node.place.source)
-    node.text = fs::absolute(node.place.source->folder / node.text).lexically_normal().string();
+  if (is_path && node.location.source)
+    node.text = fs::absolute(node.location.source->folder / node.text).lexically_normal().string();
   for (Node& item : node.items) make_paths_absolute(item);
   for (config::Entry& entry : node.entries) make_paths_absolute(entry.value);
 }

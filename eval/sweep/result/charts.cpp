@@ -5,9 +5,9 @@
 
 #include "core/config/convert.h"
 #include "core/io/images/image_file.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/picture/chart/bar_chart.h"
 #include "eval/picture/chart/line_chart.h"
-#include "eval/metrics/catalogue.h"
 
 namespace saccade {
 namespace {

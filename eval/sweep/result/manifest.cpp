@@ -8,10 +8,10 @@
 #include <string>
 
 #include "core/config/convert.h"
-#include "core/io/files/atomic_file.h"
-#include "core/io/tables/csv_file.h"
 #include "core/io/dataset/dataset_record.h"
+#include "core/io/files/atomic_file.h"
 #include "core/io/files/sha256.h"
+#include "core/io/tables/csv_file.h"
 #include "core/version.h"
 #include "eval/sweep/plan/generate.h"
 

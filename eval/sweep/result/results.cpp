@@ -5,13 +5,13 @@
 #include <set>
 
 #include "core/config/suggest.h"
-#include "core/io/files/atomic_file.h"
 #include "core/io/dataset/dataset_record.h"
+#include "core/io/files/atomic_file.h"
 #include "core/median.h"
 #include "core/process/progress.h"
 #include "eval/evaluate.h"
-#include "eval/run_folder.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/run_folder.h"
 #include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/tables.h"
 

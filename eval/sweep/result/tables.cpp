@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "eval/table/number_text.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
 namespace saccade {

@@ -56,7 +56,7 @@ class EdgeMatching : public ::testing::Test {
 
   Rigid3 other_from_view_ = Rigid3::exp((Twist() << 0.2, 0, 0.1, 0, 0.05, 0.1).finished());
   std::vector<FittedEdgel> edges_ = {edge_at(60, 70, 0.2F, 2), edge_at(100, 80, 1.2F, 2.5F),
-                                    edge_at(140, 90, -2, 3)};
+                                     edge_at(140, 90, -2, 3)};
 };
 
 TEST_F(EdgeMatching, FindsTheEdgeFromAnotherView) {

@@ -22,9 +22,7 @@ Landmark landmark_at(double x_px, double y_px, double depth_m) {
   return {depth_m * narrow_camera().ray({x_px, y_px}), 0.01};
 }
 
-Edgel edge_at(float x_px, float y_px, float depth_m) {
-  return {{x_px, y_px}, {1, 0}, 1 / depth_m};
-}
+Edgel edge_at(float x_px, float y_px, float depth_m) { return {{x_px, y_px}, {1, 0}, 1 / depth_m}; }
 
 TEST(ProjectedLandmarks, FindsTheNearestAtTheEdgesDepth) {
   const std::vector<Landmark> landmarks = {landmark_at(20.8, 10, 2), landmark_at(20.3, 10.2, 2),

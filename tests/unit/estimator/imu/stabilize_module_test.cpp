@@ -7,9 +7,9 @@
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/event_file.h"
 #include "core/io/events/events_h5.h"
+#include "core/io/events/stabilized_events.h"
 #include "core/io/files/file_list.h"
 #include "core/io/run/run_record.h"
-#include "core/io/events/stabilized_events.h"
 #include "core/process/parallel.h"
 #include "estimator/imu/stabilize_config.h"
 #include "tests/support/command.h"
@@ -59,7 +59,8 @@ TEST_F(StabilizeModule, PutsEventsWhereTheSteadyCameraWouldSeeThem) {
   EXPECT_EQ(windows.size(), 5U);
   const Events events = read_events(folder / "events.h5", {120, 90});
   ASSERT_GT(events.size(), 1000U);
-  const StabilizedCoordinates places = read_stabilized_coordinates(folder / "places.h5", events.size());
+  const StabilizedCoordinates places =
+      read_stabilized_coordinates(folder / "places.h5", events.size());
   const PinholeCamera camera = Dataset::open(path("corner")).camera();
   std::size_t window = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {

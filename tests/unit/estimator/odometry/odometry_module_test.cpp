@@ -12,10 +12,10 @@
 
 #include "core/config/document.h"
 #include "core/io/covariance_file.h"
-#include "core/io/tables/csv_reader.h"
 #include "core/io/run/keyframe_list.h"
-#include "core/io/trajectory_file.h"
 #include "core/io/run/view_list.h"
+#include "core/io/tables/csv_reader.h"
+#include "core/io/trajectory_file.h"
 #include "core/process/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"

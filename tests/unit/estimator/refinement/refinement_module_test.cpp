@@ -9,11 +9,11 @@
 
 #include "core/config/document.h"
 #include "core/io/covariance_file.h"
-#include "core/io/tables/csv_reader.h"
 #include "core/io/images/image_file.h"
 #include "core/io/run/run_record.h"
-#include "core/io/trajectory_file.h"
 #include "core/io/run/view_list.h"
+#include "core/io/tables/csv_reader.h"
+#include "core/io/trajectory_file.h"
 #include "core/srgb.h"
 #include "estimator/odometry/odometry_module.h"
 #include "estimator/registry.h"

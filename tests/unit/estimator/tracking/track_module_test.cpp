@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/config/document.h"
-#include "core/io/tables/csv_reader.h"
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/ply_file.h"
+#include "core/io/tables/csv_reader.h"
 #include "core/io/trajectory_file.h"
 #include "core/srgb.h"
 #include "tests/support/command.h"

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/events_h5.h"
+#include "core/io/events/stabilized_events.h"
 #include "core/io/files/file_list.h"
 #include "core/io/images/image_file.h"
-#include "core/io/events/stabilized_events.h"
 #include "eval/picture/video_writer.h"
 #include "tests/unit/eval/fake_folders.h"
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/io/images/image_file.h"
-#include "eval/table/number_text.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/table/number_text.h"
 #include "tests/unit/eval/sweep/sweep_files.h"
 
 namespace saccade {

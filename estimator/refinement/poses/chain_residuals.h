@@ -8,12 +8,12 @@
 
 namespace saccade {
 
-/// Residuals of single events, exactly what they say (level_cost.h).
-class LogIntensityResiduals {
+/// Residuals of single events, exactly what they say (log_intensity_cost.h).
+class ChainResiduals {
  public:
   /// `surface` and `levels` outlive this.
-  LogIntensityResiduals(const MapSurface& surface, const LogIntensityChains& levels,
-                        const PoseRefinementOptions& options)
+  ChainResiduals(const MapSurface& surface, const LogIntensityChains& levels,
+                 const PoseRefinementOptions& options)
       : surface_(surface), levels_(levels), options_(options) {}
 
   /// Those of the points visible from the problem's path, and a weak prior of its control poses. This
@@ -23,7 +23,7 @@ class LogIntensityResiduals {
  private:
   /// An observation with what it saw of the map.
   struct Seen {
-    const LogIntensityObservation* observation;
+    const ChainObservation* observation;
     MapSurface::Hit hit;
     double level;  ///< that the map shows
     double sigma;

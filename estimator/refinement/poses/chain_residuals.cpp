@@ -1,4 +1,4 @@
-#include "estimator/refinement/poses/log_intensity_residuals.h"
+#include "estimator/refinement/poses/chain_residuals.h"
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-void LogIntensityResiduals::add_to(PathProblem& problem) {
+void ChainResiduals::add_to(PathProblem& problem) {
   offsets_.assign(levels_.chains, 0);
   length_.assign(levels_.chains, 0);
   seen_.clear();
@@ -23,9 +23,9 @@ void LogIntensityResiduals::add_to(PathProblem& problem) {
                          depth.value_m());
 }
 
-void LogIntensityResiduals::find_surfaces(const SplineControls& path) {
+void ChainResiduals::find_surfaces(const SplineControls& path) {
   VisibleSurface surfaces(surface_, path, PoseRefinementOptions::kRedraw_px);
-  for (const LogIntensityObservation& o : levels_.observations) {
+  for (const ChainObservation& o : levels_.observations) {
     const auto hit = surfaces.at(o.t_s, o.pixel, o.ray);
     if (!hit) continue;
     const SampleWithGradient<double> map = surface_.read(hit->view, hit->pixel);
@@ -36,7 +36,7 @@ void LogIntensityResiduals::find_surfaces(const SplineControls& path) {
   }
 }
 
-void LogIntensityResiduals::start_offsets() {
+void ChainResiduals::start_offsets() {
   // The middle of what the map shows above the levels of a chain.
   std::vector<std::vector<double>> excess(offsets_.size());
   for (const Seen& seen : seen_)
@@ -45,8 +45,8 @@ void LogIntensityResiduals::start_offsets() {
     if (!excess[i].empty()) offsets_[i] = median_of(excess[i]);
 }
 
-void LogIntensityResiduals::add_event(const Seen& seen, PathProblem& problem) {
-  const LogIntensityObservation& o = *seen.observation;
+void ChainResiduals::add_event(const Seen& seen, PathProblem& problem) {
+  const ChainObservation& o = *seen.observation;
   LogIntensityCost::Observation observation;
   observation.time = problem.path().knots.at(o.t_s);
   for (std::size_t k = 0; k < 4; ++k)
