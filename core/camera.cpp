@@ -10,7 +10,8 @@
 namespace saccade {
 namespace {
 
-/// Brown's model on normalised coordinates (Brown, 1966; OpenCV's calib3d); `jacobian`: d result / dp.
+/// Brown's model on normalised coordinates (Brown, 1966; OpenCV's calib3d); `jacobian`: d result /
+/// dp.
 Eigen::Vector2d distort_normalised(const std::array<double, 5>& k, const Eigen::Vector2d& p,
                                    Eigen::Matrix2d& jacobian) {
   const auto [k1, k2, p1, p2, k3] = k;
@@ -69,18 +70,18 @@ PinholeCamera PinholeCamera::undistorted() const {
   return camera;
 }
 
-void PinholeCamera::check(const std::string& place) const {
+void PinholeCamera::check(const std::string& location) const {
   if (width <= 0 || height <= 0)
-    throw InputError(place, "camera has no area: " + std::to_string(width) + " x " +
-                                std::to_string(height) + " px; both sides must be positive");
+    throw InputError(location, "camera has no area: " + std::to_string(width) + " x " +
+                                   std::to_string(height) + " px; both sides must be positive");
   if (width > 65535 || height > 65535)
-    throw InputError(place,
+    throw InputError(location,
                      "camera is wider or higher than 65535 px, the limit of event coordinates");
   if (!(fx > 0) || !(fy > 0) || !std::isfinite(fx) || !std::isfinite(fy))
-    throw InputError(place, "focal lengths fx and fy must be positive and finite");
+    throw InputError(location, "focal lengths fx and fy must be positive and finite");
   bool finite = std::isfinite(cx) && std::isfinite(cy);
   for (const double k : distortion) finite = finite && std::isfinite(k);
-  if (!finite) throw InputError(place, "principal point and distortion must be finite");
+  if (!finite) throw InputError(location, "principal point and distortion must be finite");
 }
 
 Eigen::Matrix<double, 2, 6> interaction_matrix(const PinholeCamera& camera,

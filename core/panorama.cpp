@@ -65,8 +65,8 @@ Eigen::Vector2d Panorama::pixel(const Eigen::Vector3d& direction) const {
   const double latitude = std::atan2(direction.z(), std::hypot(direction.x(), direction.y()));
   const double x = (kPi - longitude) * pixels_per_radian() - 0.5 - left;
   const double y = (kPi / 2 - latitude) * pixels_per_radian() - 0.5 - top;
-  const double turns = std::round((x - 0.5 * (width - 1)) / around);
-  return {x - turns * around, y};
+  const double revolutions = std::round((x - 0.5 * (width - 1)) / around);
+  return {x - revolutions * around, y};
 }
 
 double Panorama::row_width(int y) const {
@@ -79,13 +79,13 @@ double Panorama::solid_angle(int y) const {
   return (std::sin(above) - std::sin(above - 1 / pixels_per_radian())) / pixels_per_radian();
 }
 
-void Panorama::check(const std::string& place) const {
+void Panorama::check(const std::string& location) const {
   if (around < 4 || around % 2 != 0)
-    throw InputError(place, "around must be an even number of pixels, 4 or more");
+    throw InputError(location, "around must be an even number of pixels, 4 or more");
   if (left < 0 || left >= around || width < 2 || width > around)
-    throw InputError(place, "left and width must name 2 or more of the columns around");
+    throw InputError(location, "left and width must name 2 or more of the columns around");
   if (top < 0 || height < 2 || height > around / 2 - top)
-    throw InputError(place, "top and height must name 2 or more rows of half as many as around");
+    throw InputError(location, "top and height must name 2 or more rows of half as many as around");
 }
 
 FieldOfView::FieldOfView(const PinholeCamera& camera)

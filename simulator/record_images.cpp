@@ -2,18 +2,27 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/io/images/exr_file.h"
 #include "core/panorama.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
-#include "simulator/exposure.h"
 #include "simulator/sensor/image_renderer.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {
 namespace {
+
+/// The fastest pixel at `t_s` [px/s].
+double image_speed(const ImageRenderer& renderer, const Spline& motion, double t_s) {
+  const FlowField flow = renderer.flow(motion.state(t_s), t_s);
+  float speed = 0;
+  for (std::size_t i = 0; i < flow.u.size(); ++i)
+    speed = std::max(speed, std::hypot(flow.u.pixels()[i], flow.v.pixels()[i]));
+  return static_cast<double>(speed);
+}
 
 std::vector<StampedPose> exposure_poses(const CameraRecording& recording,
                                         const ImageRenderer& renderer, double t_s) {
@@ -36,6 +45,24 @@ void record_frame(const CameraRecording& recording, const ImageRenderer& rendere
 }
 
 }  // namespace
+
+std::vector<double> exposure_times(const ImageRenderer& renderer, const Spline& world_from_camera,
+                                   double t_s, double exposure_s) {
+  constexpr double kMotion_px = 0.25;
+  constexpr double kMaxTimes = 256;
+  if (exposure_s <= 0) return {t_s};
+  const double from_s = std::max(world_from_camera.start_s(), t_s - 0.5 * exposure_s);
+  const double to_s = std::min(world_from_camera.end_s(), t_s + 0.5 * exposure_s);
+  // At several instants, since the camera may turn round within the exposure.
+  double speed = 0;
+  for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})
+    speed =
+        std::max(speed, image_speed(renderer, world_from_camera, from_s + part * (to_s - from_s)));
+  const double count = std::clamp(std::ceil(speed * (to_s - from_s) / kMotion_px), 1.0, kMaxTimes);
+  std::vector<double> times;
+  for (double k = 0.5; k < count; ++k) times.push_back(from_s + (to_s - from_s) * k / count);
+  return times;
+}
 
 void record_images(const CameraRecording& recording) {
   const ImageRenderer renderer(recording.scene, recording.camera,

@@ -22,7 +22,7 @@ EventLogs logs_in(const std::filesystem::path& folder, std::size_t cameras) {
   return logs;
 }
 
-/// Share of the events' time that is recorded [%].
+/// Fraction of the events' time that is recorded [%].
 double percent_of(const EventLogs& logs, double duration_s) {
   double reached_s = 0;
   for (const auto& log : logs) reached_s += log->statistics() ? duration_s : log->reached_s();

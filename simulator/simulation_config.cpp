@@ -7,23 +7,6 @@ namespace {
 
 constexpr double kHighestRate_hz = 1e6;
 
-/// `gamma: srgb` or a number.
-void describe_gamma(config::Fields& fields, std::optional<double>& gamma) {
-  const char* const help =
-      "Tone curve of the 8-bit frames: srgb, or a number for the power 1 / gamma.";
-  const bool number =
-      fields.reading() ? fields.form("gamma") == config::Form::kNumber : gamma.has_value();
-  if (number) {
-    double value = gamma.value_or(1);
-    fields.value("gamma", value, help).range(0.1, 10);
-    gamma = value;
-  } else {
-    std::string curve = "srgb";
-    fields.value("gamma", curve, help).one_of({"srgb"});
-    if (fields.has("gamma")) gamma.reset();
-  }
-}
-
 }  // namespace
 
 void describe(config::Fields& fields, PinholeCamera& camera) {
@@ -63,9 +46,8 @@ void describe(config::Fields& fields, FrameOptions& options) {
                 "the time of the frame, without blur.");
   fields
       .value("gain", options.tone.gain,
-             "Gain of the 8-bit frames: radiance 1 / gain becomes white.")
+             "Gain of the 8-bit frames: radiance 1 / gain becomes white; the tone curve is sRGB.")
       .range(1e-6, 1e6);
-  describe_gamma(fields, options.tone.gamma);
 }
 
 void describe(config::Fields& fields, RigCameraOptions& options) {
@@ -75,6 +57,7 @@ void describe(config::Fields& fields, RigCameraOptions& options) {
       .value("T_camera0_camera", options.camera0_from_camera,
              "Pose as a 4 x 4 matrix: a point in the first camera is T times the point in this "
              "camera, in metres.")
+      .range(-1e6, 1e6)
       .required();
   fields.section("events", options.events,
                  "Event pixels; the default is those of the first camera.");
@@ -126,9 +109,11 @@ void describe(config::Fields& fields, SimulationConfig& config) {
   fields.section("groundtruth", config.groundtruth, "Rates of the ground truth.");
   fields.value("gravity_m_s2", config.gravity_m_s2, "Gravity in the world, in m/s^2.")
       .range(-1000, 1000);
-  fields.value("seed", config.seed,
-               "Seed of all random numbers of the sensors; another seed gives another realisation "
-               "of their noise.");
+  fields
+      .value("seed", config.seed,
+             "Seed of all random numbers of the sensors; another seed gives another realisation "
+             "of their noise.")
+      .at_least(0);
 }
 
 }  // namespace saccade

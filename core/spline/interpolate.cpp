@@ -20,8 +20,8 @@ std::size_t size(Index i) { return static_cast<std::size_t>(i); }
 /// Interpolation through M poses in terms of the M + 1 increments between the control poses.
 /// Segment i must rotate and move by what lies between poses i and i + 1, which involves increments
 /// i, i + 1, i + 2; the first and the last increment follow from their neighbours by the natural
-/// ends. Increments longer than half a revolution are allowed, so that a spline can swing beyond its
-/// poses.
+/// ends. Increments longer than half a revolution are allowed, so that a spline can swing beyond
+/// its poses.
 class Interpolation {
  public:
   explicit Interpolation(std::span<const double> times)

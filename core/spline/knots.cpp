@@ -18,22 +18,22 @@ SplineKnots SplineKnots::over(double start_s, double end_s, double spacing_s) {
 SplineKnots::LocalBasis SplineKnots::at(double t_s) const {
   static const CumulativeBasis uniform = bases_between(std::vector<double>{0, 1}).front();
   const double x = std::clamp((t_s - start_s) / spacing_s, 0.0, static_cast<double>(segments));
-  LocalBasis place;
-  place.first = std::min(static_cast<std::size_t>(x), segments - 1);
-  place.basis = uniform.value(x - static_cast<double>(place.first));
-  const Eigen::Array4d& b = place.basis;
-  place.weight << 1 - b[0], b[0] - b[1], b[1] - b[2], b[2];
-  return place;
+  LocalBasis local;
+  local.first = std::min(static_cast<std::size_t>(x), segments - 1);
+  local.basis = uniform.value(x - static_cast<double>(local.first));
+  const Eigen::Array4d& b = local.basis;
+  local.weight << 1 - b[0], b[0] - b[1], b[1] - b[2], b[2];
+  return local;
 }
 
-PoseOverControls pose_over(const SplineKnots::LocalBasis& place,
+PoseOverControls pose_over(const SplineKnots::LocalBasis& local,
                            const std::array<Rigid3, 4>& controls) {
   const RotationWithJacobian<12> rotation =
-      rotation_between(place.basis, {controls[0].rotation(), controls[1].rotation(),
+      rotation_between(local.basis, {controls[0].rotation(), controls[1].rotation(),
                                      controls[2].rotation(), controls[3].rotation()});
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k)
-    position += place.weight[static_cast<Eigen::Index>(k)] * controls[k].translation();
+    position += local.weight[static_cast<Eigen::Index>(k)] * controls[k].translation();
   return {Rigid3(rotation.rotation, position), rotation.jacobian};
 }
 

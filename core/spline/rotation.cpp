@@ -30,16 +30,17 @@ RotationWithJacobian<9> rotation_over_segment(const CumulativeBasis& basis,
   const double scale[4] = {-start[1], 1 - start[0], end[1], end[2]};
   const int parameter[4] = {1, 0, 1, 2};
 
-  RotationWithJacobian<9> turn{Eigen::Quaterniond::Identity(), Eigen::Matrix<double, 3, 9>::Zero()};
+  RotationWithJacobian<9> product{Eigen::Quaterniond::Identity(),
+                                  Eigen::Matrix<double, 3, 9>::Zero()};
   Jacobian after = Jacobian::Identity();  // transpose of the product of the factors behind this one
   for (int f = 3; f >= 0; --f) {
     const Eigen::Vector3d angle = scale[f] * increments.col(parameter[f]);
     const Eigen::Quaterniond factor = so3_exp(angle);
-    turn.jacobian.middleCols<3>(3 * parameter[f]) += after * right_jacobian(angle) * scale[f];
-    turn.rotation = factor * turn.rotation;
-    after = turn.rotation.toRotationMatrix().transpose();
+    product.jacobian.middleCols<3>(3 * parameter[f]) += after * right_jacobian(angle) * scale[f];
+    product.rotation = factor * product.rotation;
+    after = product.rotation.toRotationMatrix().transpose();
   }
-  return turn;
+  return product;
 }
 
 RotationWithJacobian<12> rotation_between(const Eigen::Array4d& basis_value,

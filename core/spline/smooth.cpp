@@ -15,8 +15,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Weight of smoothness (second differences of the control poses) against one sample per segment. It
-/// decides where samples are missing and is far below any measurement elsewhere.
+/// Weight of smoothness (second differences of the control poses) against one sample per segment.
+/// It decides where samples are missing and is far below any measurement elsewhere.
 constexpr double kSmoothness = 1e-6;
 
 /// Least squares over uniform knots: samples at (segment, u), control poses 0 .. segments + 2.

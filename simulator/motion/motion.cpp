@@ -53,7 +53,7 @@ std::vector<StampedPose> file_poses(const std::filesystem::path& file, double re
 }
 
 Spline fitted(const MotionOptions& options, std::vector<StampedPose> poses,
-              const std::string& place) {
+              const std::string& location) {
   for (StampedPose& p : poses) {
     p.world_from_camera = placed(options.transform, p.world_from_camera);
   }
@@ -61,7 +61,7 @@ Spline fitted(const MotionOptions& options, std::vector<StampedPose> poses,
     return options.fit == Fit::kSmooth ? Spline::smooth(poses, options.knot_spacing_s)
                                        : Spline::interpolate(poses);
   } catch (const InputError& error) {
-    throw InputError(place, error.what());
+    throw InputError(location, error.what());
   }
 }
 

@@ -5,6 +5,9 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <numbers>
+
+#include "core/config/fields.h"
 
 namespace saccade {
 namespace {
@@ -13,20 +16,18 @@ constexpr double kUnitTolerance = 1e-3;
 /// Ranges that only mistakes leave.
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 36000;
+constexpr double kLargestEntry = 1e10; // of a pose: seconds, metres or a quaternion
 
 /// The keys stand beside those of the position, not in a section of their own.
 void describe_orientation(config::Fields& fields, PresetOrientation& options) {
-  const bool looks =
-      fields.reading() ? fields.has("look_at") || fields.has("up") : options.look_at.has_value();
-  if (looks) {
+  const bool has_target = fields.reading() ? fields.has("look_at") : options.look_at.has_value();
+  if (has_target) {
     fields
         .value("look_at", options.look_at,
-               "Point in the world that stays at the principal point, in metres.")
+               "Point in the world that stays at the principal point, in metres; the world's +z "
+               "points upwards in the image.")
         .range(-kFarthest_m, kFarthest_m)
         .required();
-    fields.value("up", options.up, "Direction in the world that points upwards in the image.")
-        .range(-kFarthest_m, kFarthest_m);
-    fields.expect(options.up.norm() > 0, "up", "must not be zero");
     fields.expect(!fields.has("rotation_deg"), "rotation_deg", "cannot be combined with look_at");
   } else {
     fields
@@ -45,9 +46,6 @@ void describe_slider(config::Fields& fields, SliderOptions& options) {
       .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.direction.norm() > 0, "direction", "must not be zero");
   fields.value("distance_m", options.distance_m, "Length of the path, in metres.").at_least(0);
-  fields.choice("profile", options.profile,
-                {{"constant", SpeedProfile::kConstant}, {"smooth", SpeedProfile::kSmooth}},
-                "Speed over time: constant, or smooth, which starts and ends at rest.");
   describe_orientation(fields, options.orientation);
 }
 
@@ -56,12 +54,7 @@ void describe_circle(config::Fields& fields, CircleOptions& options) {
       .range(-kFarthest_m, kFarthest_m);
   fields.value("normal", options.normal, "Normal of the plane of the circle.")
       .range(-kFarthest_m, kFarthest_m);
-  fields.value("start", options.start, "Direction from the centre to the first position.")
-      .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.normal.norm() > 0, "normal", "must not be zero");
-  fields.expect(options.normal.cross(options.start).norm() >
-                    1e-6 * options.normal.norm() * options.start.norm(),
-                "start", "must not be parallel to the normal");
   fields.value("radius_m", options.radius_m, "Radius of the circle, in metres.").above(0);
   fields
       .value("revolutions", options.revolutions,
@@ -113,16 +106,13 @@ void describe_shake(config::Fields& fields, ShakeOptions& options) {
              "Largest angular velocities about the axes of the camera, in rad/s; with the "
              "amplitudes they fix the frequencies.")
       .above(0);
-  fields
-      .value("translation_amplitude_m", options.translation_amplitude_m,
-             "Amplitudes of the translation along x, y and z, in metres.")
-      .at_least(0);
   describe_orientation(fields, options.orientation);
 }
 
 void describe_random(config::Fields& fields, RandomMotionOptions& options) {
-  fields.value("seed", options.seed,
-               "Seed of the random motion; another seed gives another motion.");
+  fields
+      .value("seed", options.seed, "Seed of the random motion; another seed gives another motion.")
+      .at_least(0);
   fields.value("position", options.position, "Mean position, in metres.")
       .range(-kFarthest_m, kFarthest_m);
   fields
@@ -175,7 +165,8 @@ void describe_control_poses(config::Fields& fields, MotionOptions& options) {
              "spaced times.")
       .required()
       .length(4, config::Rule::kAnyLength)
-      .item_length(7, 8);
+      .item_length(7, 8)
+      .range(-kLargestEntry, kLargestEntry);
   const auto& poses = options.control_poses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     fields.expect(poses[i].size() == poses[0].size(), "control_poses",
@@ -213,7 +204,8 @@ void describe_waypoints(config::Fields& fields, MotionOptions& options) {
              "Waypoints, each t tx ty tz qx qy qz qw, in seconds and metres.")
       .required()
       .length(2, config::Rule::kAnyLength)
-      .item_length(8, 8);
+      .item_length(8, 8)
+      .range(-kLargestEntry, kLargestEntry);
   const auto& poses = options.waypoints;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     expect_none(fields, "waypoints", quaternion_problem(poses[i], i));
@@ -252,6 +244,32 @@ void describe_preset(config::Fields& fields, MotionOptions& options) {
 }
 
 }  // namespace
+
+void describe(config::Fields& fields, TransformOptions& options) {
+  fields.value("translation", options.translation, "Translation, in metres.").range(-1e6, 1e6);
+  fields
+      .value("rotation_deg", options.rotation_deg, "Rotation about x, then y, then z, in degrees.")
+      .range(-36000, 36000);
+  const char* const help = "Scale before the rotation: one factor, or one each for x, y and z.";
+  const Eigen::Vector3d& scale = options.scale;
+  const bool one_number = fields.reading() ? fields.form("scale") != config::Form::kList
+                                           : scale.x() == scale.y() && scale.x() == scale.z();
+  if (one_number) {
+    double factor = scale.x();
+    fields.value("scale", factor, help).above(0);
+    options.scale.setConstant(factor);
+  } else {
+    fields.value("scale", options.scale, help).above(0);
+  }
+}
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& angles_deg) {
+  const Eigen::Vector3d angles = angles_deg * (std::numbers::pi / 180);
+  return (Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
 
 void describe(config::Fields& fields, ViewOptions& options) {
   fields.value("t_s", options.t_s, "Time of the waypoint, in seconds.").range(-1e9, 1e9).required();

@@ -8,17 +8,28 @@
 #include <Eigen/Core>
 
 #include "core/config/fields.h"
-#include "simulator/motion/transform_options.h"
 
 namespace saccade {
 
+/// Scale, then rotation R = Rz Ry Rx, then translation.
+struct TransformOptions {
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< > 0; one number or three
+};
+
+void describe(config::Fields& fields, TransformOptions& options);
+
+/// R = Rz Ry Rx; `angles_deg` about x, y and z.
+[[nodiscard]] Eigen::Matrix3d rotation_of(const Eigen::Vector3d& angles_deg);
+
 /// Orientation of the camera (x right, y down, z forward): a fixed rotation
 ///   world_from_camera = Rz Ry Rx
-/// or towards a point with `up` upwards in the image. [-90, 0, 0] degrees looks level along +y.
+/// or towards a point with the world's +z upwards in the image. [-90, 0, 0] degrees looks level
+/// along +y.
 struct PresetOrientation {
   Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> look_at;  ///< [m], instead of rotation_deg
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// A waypoint by hand.
@@ -28,26 +39,19 @@ struct ViewOptions {
   PresetOrientation orientation;
 };
 
-enum class SpeedProfile {
-  kConstant,
-  kSmooth,  ///< from rest to rest with the least jerk
-};
-
-/// Along a straight line.
+/// Along a straight line at constant speed.
 struct SliderOptions {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();        ///< [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of any length > 0
   double distance_m = 1;
-  SpeedProfile profile = SpeedProfile::kConstant;
   PresetOrientation orientation;
 };
 
-/// At constant speed around `centre` in the plane across `normal`, from the direction `start` on,
-/// counter-clockwise seen from the normal's tip.
+/// At constant speed around `centre` in the plane across `normal`, counter-clockwise seen from the
+/// normal's tip. It starts in the direction of the world's x, or of y where the normal is along x.
 struct CircleOptions {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d start = Eigen::Vector3d::UnitX();
   double radius_m = 1;
   double revolutions = 1;
   PresetOrientation orientation;
@@ -69,14 +73,12 @@ struct LissajousOptions {
 };
 
 /// Mostly rotation, as when a hand trembles: about each camera axis a sine with this amplitude and
-/// greatest rate, which fix its frequency.
+/// greatest rate, which fix its frequency. The translation is a tremor of 1 cm (presets.cpp).
 struct ShakeOptions {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   PresetOrientation orientation;
   Eigen::Vector3d rotation_amplitude_deg{5, 5, 5};
   Eigen::Vector3d peak_rate_rad_s{2, 1.6, 1.2};  ///< > 0
-  Eigen::Vector3d translation_amplitude_m{0.01, 0.01, 0.01};
-  Eigen::Vector3d translation_frequency_hz{3.1, 2.3, 1.7};
 };
 
 /// Smooth random motion about a pose: on every axis a sum of sines with random frequencies within

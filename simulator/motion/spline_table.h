@@ -17,9 +17,10 @@ struct CameraFrame {
   Eigen::Vector3d position;
 };
 
-/// An interval of a spline as cubic Hermite pieces of all twelve entries of [R | p], ten times faster
-/// to evaluate. Pieces are halved until, at the middle of every one, no entry is off the spline by
-/// more than 1e-9 (or a piece is shorter than 5 us), which is 2e-7 px for a focal length of 200 px.
+/// An interval of a spline as cubic Hermite pieces of all twelve entries of [R | p], ten times
+/// faster to evaluate. Pieces are halved until, at the middle of every one, no entry is off the
+/// spline by more than 1e-9 (or a piece is shorter than 5 us), which is 2e-7 px for a focal length
+/// of 200 px.
 class SplineTable {
  public:
   /// `from_s` < `to_s`, within the spline's span.

@@ -196,12 +196,12 @@ TexelHomography Scene::texel_homography(TriangleId triangle, const Eigen::Vector
 
 void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                        std::span<SurfaceSample> samples) const {
-  SACCADE_CHECK(rays.size() <= kPacket && triangles.size() == rays.size() &&
+  SACCADE_CHECK(rays.size() <= kRayPacket && triangles.size() == rays.size() &&
                 samples.size() == rays.size());
   if (!state_->illumination) return;
-  std::array<LitPoint, kPacket> points;
-  std::array<LightSet, kPacket> lights;
-  std::array<std::size_t, kPacket> owners;
+  std::array<LitPoint, kRayPacket> points;
+  std::array<LightSet, kRayPacket> lights;
+  std::array<std::size_t, kRayPacket> owners;
   std::size_t n = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(samples[i].distance > 0)) continue;

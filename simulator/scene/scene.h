@@ -40,7 +40,10 @@ struct Frustum {
   double time_s = 0;                       ///< at which it sees the moving objects
 };
 
-/// Lamps by their place in the list of lights, one bit each.
+/// Rays that are traced or lit at once, at most.
+constexpr std::size_t kRayPacket = 16;
+
+/// Lights by their index in the list, one bit each.
 using LightSet = std::uint64_t;
 constexpr std::size_t kMaxLights = 64;
 
@@ -115,12 +118,13 @@ class Scene {
   /// The same for one ray, in double precision throughout: exact next to edges, but many times
   /// slower. Builds the trees of collect() when first asked.
   [[nodiscard]] TriangleId visible_exactly(const Ray& ray) const;
-  /// The nearest of `triangles` along a ray, in double precision; kNothing where it intersects none.
+  /// The nearest of `triangles` along a ray, in double precision; kNothing where it intersects
+  /// none.
   [[nodiscard]] TriangleId nearest_among(std::span<const TriangleId> triangles,
                                          const Ray& ray) const;
 
-  /// Radiance and distance where `ray` intersects the plane of `triangle` (inside it or, for a ray that
-  /// leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
+  /// Radiance and distance where `ray` intersects the plane of `triangle` (inside it or, for a ray
+  /// that leaves it by a hair, just outside); the background for kNothing. Lights cast shadows.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle) const;
   /// The same with the texture's mean over the ray's footprint.
   [[nodiscard]] Shade shade(const Ray& ray, TriangleId triangle,
@@ -136,13 +140,13 @@ class Scene {
   /// with t the distance, d the direction and n the plane's normal. Continuous in the ray.
   [[nodiscard]] SurfaceSample sample_surface(const Ray& ray, TriangleId triangle,
                                              const RayDifferential& differential) const;
-  /// sample_surface() at once for all rays of a camera at `position`, given in its own frame. `triangle`
-  /// is static.
+  /// sample_surface() at once for all rays of a camera at `position`, given in its own frame.
+  /// `triangle` is static.
   [[nodiscard]] TexelHomography texel_homography(TriangleId triangle,
                                                  const Eigen::Vector3d& position,
                                                  const Eigen::Matrix3d& world_from_camera) const;
-  /// Finds the lights that light the points of at most 16 samples along `rays` at `triangles`, and the
-  /// irradiance: 1 in an unlit scene and for the background.
+  /// Finds the lights that light the points of at most 16 samples along `rays` at `triangles`, and
+  /// the irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
   /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
@@ -175,8 +179,8 @@ class Scene {
   [[nodiscard]] bool collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
                              std::vector<TriangleId>& found) const;
 
-  /// The edge functions of a triangle at `time_s` for all rays of a camera at `position`, given in its
-  /// own frame.
+  /// The edge functions of a triangle at `time_s` for all rays of a camera at `position`, given in
+  /// its own frame.
   [[nodiscard]] EdgeFunctions edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
                                              const Eigen::Matrix3d& world_from_camera,
                                              double time_s) const;
@@ -189,9 +193,9 @@ class Scene {
   /// The double-precision hit test behind visible(), for callers that hold a likely triangle: true
   /// when `ray` passes through `triangle` (edges included). Says nothing about occluders.
   [[nodiscard]] bool intersects(const Ray& ray, TriangleId triangle) const;
-  /// Smallest barycentric coordinate of the point where `ray` intersects the plane of `triangle`: how
-  /// far it passes inside the edges, negative outside. -1 where it does not meet the plane, and for
-  /// kNothing.
+  /// Smallest barycentric coordinate of the point where `ray` intersects the plane of `triangle`:
+  /// how far it passes inside the edges, negative outside. -1 where it does not meet the plane, and
+  /// for kNothing.
   [[nodiscard]] double min_barycentric(const Ray& ray, TriangleId triangle) const;
 
  private:

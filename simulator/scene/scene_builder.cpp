@@ -15,12 +15,29 @@
 #include "core/error.h"
 #include "simulator/motion/motion.h"
 #include "simulator/scene/mesh/mesh_import.h"
-#include "simulator/scene/mesh/world_from_mesh.h"
 #include "simulator/scene/texture/picture.h"
 #include "simulator/scene/triangle_setup.h"
 
 namespace saccade {
 namespace {
+
+Eigen::AlignedBox3d bounding_box(const Mesh& mesh, const Eigen::Matrix3d& linear) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(linear * vertex);
+  return box;
+}
+
+Eigen::Vector3d scale_to_size(const Eigen::Vector3d& size, const Mesh& mesh) {
+  const Eigen::Vector3d extent = bounding_box(mesh, Eigen::Matrix3d::Identity()).sizes();
+  return (extent.array() > 0).select(size.cwiseQuotient(extent), Eigen::Vector3d::Ones());
+}
+
+Eigen::Vector3d anchor_point(Anchor anchor, const Eigen::AlignedBox3d& box) {
+  if (anchor == Anchor::kOrigin) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d center = box.center();
+  return anchor == Anchor::kCenter ? center
+                                   : Eigen::Vector3d(center.x(), center.y(), box.min().z());
+}
 
 /// Shadow rays start this fraction of the largest body's extent above their surface: ten times what
 /// single precision resolves there.
@@ -67,6 +84,16 @@ Background read_background(const SceneOptions& options) {
 }
 
 }  // namespace
+
+Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
+  const Eigen::Vector3d scale =
+      options.size_m ? scale_to_size(*options.size_m, mesh) : options.transform.scale;
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  transform.linear() = rotation_of(options.transform.rotation_deg) * scale.asDiagonal();
+  transform.translation() = options.transform.translation -
+                            anchor_point(options.anchor, bounding_box(mesh, transform.linear()));
+  return transform;
+}
 
 struct SceneBuilder::Body {
   std::optional<Spline> world_from_body;  ///< none: is static
@@ -174,20 +201,20 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
   const auto is_opaque = [&state](const Ray& ray, TriangleId triangle) {
     return state.is_opaque(ray, triangle);
   };
-  const auto caster_of = [&](const Body& body) {
-    return RayCaster({body.opaque.corners, body.first_opaque},
-                     {body.cut_out.corners, body.first_cut_out}, is_opaque);
+  const auto embree_scene_of = [&](const Body& body) {
+    return EmbreeScene({body.opaque.corners, body.first_opaque},
+                       {body.cut_out.corners, body.first_cut_out}, is_opaque);
   };
-  std::optional<RayCaster> still;
-  if (!bodies_.front().is_empty()) still.emplace(caster_of(bodies_.front()));
+  std::optional<EmbreeScene> static_triangles;
+  if (!bodies_.front().is_empty()) static_triangles.emplace(embree_scene_of(bodies_.front()));
   std::vector<MovingObject> objects;
-  std::vector<RayCaster> ray_casters;
+  std::vector<EmbreeScene> embree_scenes;
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
     objects.emplace_back(body.object, *body.world_from_body, roomy(body.box()));
-    ray_casters.push_back(caster_of(body));
+    embree_scenes.push_back(embree_scene_of(body));
   }
-  return {std::move(still), std::move(objects), std::move(ray_casters)};
+  return {std::move(static_triangles), std::move(objects), std::move(embree_scenes)};
 }
 
 Scene build_scene(const SceneOptions& options) {

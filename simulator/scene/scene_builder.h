@@ -15,6 +15,10 @@
 
 namespace saccade {
 
+/// Where `options` puts the mesh: scale (or size), then R = Rz Ry Rx, then the anchor to the
+/// translation. A side of the bounding box without extent keeps its size.
+[[nodiscard]] Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh);
+
 /// Reads all files of `options` and assembles them. Throws InputError naming the file that is
 /// missing or wrong.
 [[nodiscard]] Scene build_scene(const SceneOptions& options);

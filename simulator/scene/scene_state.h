@@ -10,12 +10,12 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/background.h"
+#include "simulator/scene/intersection/triangle_bvh.h"
+#include "simulator/scene/intersection/visibility.h"
 #include "simulator/scene/light/illumination.h"
 #include "simulator/scene/light/patch_lighting.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/visibility/triangle_bvh.h"
-#include "simulator/scene/visibility/visibility.h"
 
 namespace saccade {
 

@@ -20,10 +20,10 @@ constexpr double kShortestSlice_s = 1e-4;
 /// Of tiles around one: from there things come into its view within a slice.
 constexpr int kRings = 2;
 constexpr double kSliceMotion_px = kRings * kTileSize;
-/// Where surfaces slide over one another, at more than this fraction of their motion, one can show for
-/// less than a step behind another's edge; the steps there are shorter.
+/// Where surfaces slide over one another, at more than this fraction of their motion, one can show
+/// for less than a step behind another's edge; the steps there are shorter.
 constexpr double kOccluding = 0.15;
-constexpr double kOccludedRefinement = 2;
+constexpr double kOccludedStepDivisor = 2;
 /// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
 constexpr double kTileRadius_px = 2.83;
 /// To the corners of the tiles around.
@@ -82,7 +82,7 @@ std::string EventCamera::state() const {
   state.value(t_s_);
   for (const auto& tile : tiles_) tile->save(state);
   delivery_.save(state);
-  return state.take();
+  return state.bytes();
 }
 
 void EventCamera::resume(std::string_view bytes) {
@@ -121,7 +121,8 @@ double EventCamera::bound_speeds(double t_s) {
     }
     motions_[i].pixels = speed.fastest;
     motions_[i].farthest_m = 1 / range.low;
-    motions_[i].refinement = speed.parallax > kOccluding * speed.fastest ? kOccludedRefinement : 1;
+    motions_[i].step_divisor =
+        speed.parallax > kOccluding * speed.fastest ? kOccludedStepDivisor : 1;
   });
   double fastest = 0;
   for (const TileMotion& motion : motions_) fastest = std::max(fastest, motion.pixels);

@@ -22,9 +22,10 @@ namespace saccade {
 ///
 /// Time advances in slices of at most 30 ms and 8 px of image motion. Within a slice
 /// a tile of 4 x 4 pixels can see only what is in the tile itself or in the two rings of 24 tiles
-/// around it; the inverse depths there bound the image motion. Every tile divides the slice as far as its pixels need, down to
-/// equal steps of `max_step_px`. Tiles run in parallel and depend on one another only through the
-/// state at the slice's start, so the stream is the same for any number of threads.
+/// around it; the inverse depths there bound the image motion. Every tile divides the slice as far
+/// as its pixels need, down to equal steps of `max_step_px`. Tiles run in parallel and depend on
+/// one another only through the state at the slice's start, so the stream is the same for any
+/// number of threads.
 class EventCamera {
  public:
   /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera;
@@ -51,7 +52,8 @@ class EventCamera {
   /// work(tile, index) for all tiles, in parallel.
   template <class Work>
   void for_each_tile(const Work& work);
-  /// Bound of the image speed of every tile over [t, t + longest slice], into motions_; the largest.
+  /// Bound of the image speed of every tile over [t, t + longest slice], into motions_; the
+  /// largest.
   double bound_speeds(double t_s);
   /// The next time, `duration_s` at the latest, at which an object starts to move or comes to rest.
   [[nodiscard]] double next_motion_change_s(double duration_s) const;

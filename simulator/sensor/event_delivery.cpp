@@ -43,20 +43,20 @@ void sort_events(SensedEvents& events, SensedEvents& spare) {
 
 EventDelivery::EventDelivery(const EventOptions& options, const PinholeCamera& camera,
                              std::uint64_t seed)
-    : step_ns_(options.timestamp_step_ns()),
-      output_(options.noise, options.log_eps, camera.width, camera.height, step_ns_, seed) {}
+    : unit_ns_(options.timestamp_unit_ns()),
+      output_(options.noise, camera.width, camera.height, unit_ns_, seed) {}
 
 void EventDelivery::deliver(double t_s, bool is_last, const Sink& sink) {
   if (is_last) {
-    // The recording is half open: a camera that comes to its start again at the very end intersects its
-    // first thresholds exactly, and the last bit of rounding may not decide whether it fires.
-    const auto end_ns = std::llround(t_s * 1e9 / static_cast<double>(step_ns_)) * step_ns_;
+    // The recording is half open: a camera that comes to its start again at the very end intersects
+    // its first thresholds exactly, and the last bit of rounding may not decide whether it fires.
+    const auto end_ns = std::llround(t_s * 1e9 / static_cast<double>(unit_ns_)) * unit_ns_;
     std::erase_if(pending_, [&](const SensedEvent& event) { return event.t_ns >= end_ns; });
   }
   sort_events(pending_, sorted_);
   // Rounding can put a later event on the tick of t_s or on the one before it.
   const TimeNs complete_ns =
-      is_last ? std::numeric_limits<TimeNs>::max() : ns_from_seconds(t_s) - 2 * step_ns_;
+      is_last ? std::numeric_limits<TimeNs>::max() : ns_from_seconds(t_s) - 2 * unit_ns_;
   const auto end =
       std::partition_point(pending_.begin(), pending_.end(),
                            [&](const SensedEvent& event) { return event.t_ns < complete_ns; });

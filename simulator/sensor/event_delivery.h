@@ -36,7 +36,7 @@ class EventDelivery {
   void load(StateReader& state);
 
  private:
-  TimeNs step_ns_;
+  TimeNs unit_ns_;
   SensedEvents pending_;  ///< found but not yet handed on
   SensorOutput output_;
   SensedEvents sorted_;  ///< scratch memory

@@ -4,10 +4,20 @@
 #include "core/event.h"
 #include "core/io/events/event_file.h"
 #include "simulator/sensor/noise/noise_options.h"
-#include "simulator/sensor/noise/sensor_presets.h"
 #include "simulator/sensor/pixel/event_pixel.h"
 
 namespace saccade {
+
+/// Sensors whose values are known (key `events.preset`).
+enum class SensorModel { kIdeal, kDavis240c, kDvxplorer };
+
+/// What a preset states: the defaults of these keys, which every stated key overrides.
+struct SensorPreset {
+  Contrast contrast;
+  NoiseOptions noise;
+};
+
+[[nodiscard]] SensorPreset sensor_preset(SensorModel sensor);
 
 /// How the signal is sampled.
 enum class Sampling {
@@ -36,7 +46,7 @@ struct EventOptions {
   TextureFilter texture_filter = TextureFilter::kBilinear;
   NoiseOptions noise;
 
-  [[nodiscard]] TimeNs timestamp_step_ns() const {
+  [[nodiscard]] TimeNs timestamp_unit_ns() const {
     return timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1;
   }
 };

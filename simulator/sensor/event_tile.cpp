@@ -127,9 +127,9 @@ class LockstepTile final : public EventTile {
 
   void advance_to(double end_s, const TileMotion& motion) {
     const double step_px = context_.options.max_step_px * (sees_one_triangle_ ? kLongSteps : 1);
-    const double refinement = sees_one_triangle_ || is_predicted_ ? 1 : motion.refinement;
+    const double step_divisor = sees_one_triangle_ || is_predicted_ ? 1 : motion.step_divisor;
     const int count =
-        std::max(1, static_cast<int>(std::ceil(refinement * motion.pixels / step_px)));
+        std::max(1, static_cast<int>(std::ceil(step_divisor * motion.pixels / step_px)));
     TileSamples now, next;
     // Seen again, so that a tile that was loaded goes on exactly as the one that was saved.
     now.set_triangles(triangles_, t_s_);
@@ -255,8 +255,8 @@ class LockstepTile final : public EventTile {
     statistics_.time_bound_s = std::max(statistics_.time_bound_s, width_s);
   }
 
-  /// Collects the times, in order, at which a pixel must be sampled to see what passes between two samples;
-  /// whether there are any.
+  /// Collects the times, in order, at which a pixel must be sampled to see what passes between two
+  /// samples; whether there are any.
   [[nodiscard]] bool any_transit(std::size_t i, const TileSamples& now, const TileSamples& next) {
     transit_times_s_.clear();
     if (!predictor_.has_candidates()) return false;

@@ -36,7 +36,7 @@ struct TimeSlice {
 /// How far points can move around a tile during a slice.
 struct TileMotion {
   double pixels = 0;         ///< image motion, at most [px]
-  double refinement = 1;     ///< that divides the steps
+  double step_divisor = 1;   ///< the steps are that much shorter
   double farthest_m = 0;     ///< of the surfaces around, z depth
   bool has_objects = false;  ///< that move may come into view
 };
@@ -50,7 +50,7 @@ class EventTile {
  public:
   virtual ~EventTile() = default;
 
-  /// Takes the references at time `t_s`, which the poses cover.
+  /// Sets the pixels' references to the signal at `t_s`, which the poses cover.
   virtual void start(const SplineTable& poses, double t_s) = 0;
   /// Senses to the end of the slice, divided down to equal steps of at most `max_step_px` for the
   /// pixels that need it. Where a single triangle provably fills the tile's surroundings all the

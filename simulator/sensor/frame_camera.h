@@ -62,7 +62,8 @@ class FrameCamera {
   struct Instant;
 
   [[nodiscard]] double next_frame_s(double duration_s) const;
-  /// Renders the frame of `t_s` and calls done(tile_state, log intensities) for all tiles, in parallel.
+  /// Renders the frame of `t_s` and calls done(tile_state, log intensities) for all tiles, in
+  /// parallel.
   template <class Done>
   void render(double t_s, const Done& done);
   /// The log intensities of a tile, and how fast what it sees moves.

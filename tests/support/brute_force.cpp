@@ -308,7 +308,7 @@ std::string Agreement::text() const {
       "us; "
       "{:.2f} rays and {:.2f} surface looks per event",
       found, expected, share_10_us(), share_1_us(), rays_per_event(),
-      static_cast<double>(statistics.surface_looks) /
+      static_cast<double>(statistics.surface_samples) /
           static_cast<double>(std::max<std::size_t>(found, 1)));
 }
 

@@ -87,13 +87,13 @@ std::vector<ExrChannel> decode_channels(Imf::InputFile& file) {
   return channels;
 }
 
-std::vector<ExrChannel> decode(std::span<const std::byte> bytes, const std::string& place) {
+std::vector<ExrChannel> decode(std::span<const std::byte> bytes, const std::string& location) {
   try {
-    MemoryStream stream(bytes, place);
+    MemoryStream stream(bytes, location);
     Imf::InputFile file(stream, 0);
     return decode_channels(file);
   } catch (const std::exception& error) {
-    throw InputError(place, std::string("is no OpenEXR picture or is damaged: ") + error.what());
+    throw InputError(location, std::string("is no OpenEXR picture or is damaged: ") + error.what());
   }
 }
 
@@ -103,11 +103,11 @@ const ImageF* find(const std::vector<ExrChannel>& channels, const std::string& n
   return nullptr;
 }
 
-[[noreturn]] void fail_channels(const std::vector<ExrChannel>& channels, const std::string& place,
-                                const std::string& wanted) {
+[[noreturn]] void fail_channels(const std::vector<ExrChannel>& channels,
+                                const std::string& location, const std::string& wanted) {
   std::string names;
   for (const ExrChannel& channel : channels) names += " " + channel.name;
-  throw InputError(place, "needs " + wanted + "; its channels are:" + names);
+  throw InputError(location, "needs " + wanted + "; its channels are:" + names);
 }
 
 /// The plane that stands for the whole picture; nullptr when there is none.
@@ -117,12 +117,12 @@ const ImageF* single_plane(const std::vector<ExrChannel>& channels) {
   return find(channels, "Z");
 }
 
-ImageRgbF rgb_from(const std::vector<ExrChannel>& channels, const std::string& place) {
+ImageRgbF rgb_from(const std::vector<ExrChannel>& channels, const std::string& location) {
   const ImageF* r = find(channels, "R");
   const ImageF* g = find(channels, "G");
   const ImageF* b = find(channels, "B");
   if (r == nullptr || g == nullptr || b == nullptr) r = g = b = single_plane(channels);
-  if (r == nullptr) fail_channels(channels, place, "channels R, G and B or a single one");
+  if (r == nullptr) fail_channels(channels, location, "channels R, G and B or a single one");
   ImageRgbF image(r->width(), r->height());
   for (std::size_t i = 0; i < image.size(); ++i)
     image.pixels()[i] = {r->pixels()[i], g->pixels()[i], b->pixels()[i]};
@@ -153,8 +153,8 @@ ImageRgbF read_exr_rgb(const std::filesystem::path& file) {
   return rgb_from(read_and_decode(file), file.string());
 }
 
-ImageRgbF decode_exr_rgb(std::span<const std::byte> bytes, const std::string& place) {
-  return rgb_from(decode(bytes, place), place);
+ImageRgbF decode_exr_rgb(std::span<const std::byte> bytes, const std::string& location) {
+  return rgb_from(decode(bytes, location), location);
 }
 
 void write_exr(const std::filesystem::path& file, std::span<const ExrChannel> channels) {

@@ -14,8 +14,8 @@
 namespace saccade {
 namespace {
 
-cv::Mat decode(std::span<const std::byte> bytes, const std::string& place, int flags) {
-  if (bytes.empty()) throw InputError(place, "is empty, not a picture");
+cv::Mat decode(std::span<const std::byte> bytes, const std::string& location, int flags) {
+  if (bytes.empty()) throw InputError(location, "is empty, not a picture");
   const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                         const_cast<std::byte*>(bytes.data()));
   cv::Mat decoded;
@@ -24,7 +24,8 @@ cv::Mat decode(std::span<const std::byte> bytes, const std::string& place, int f
   } catch (const cv::Exception&) {
     decoded.release();  // broken headers throw, broken pixels do not; both get the message below
   }
-  if (decoded.empty()) throw InputError(place, "is no picture that can be decoded, or is damaged");
+  if (decoded.empty())
+    throw InputError(location, "is no picture that can be decoded, or is damaged");
   return decoded;
 }
 
@@ -73,8 +74,8 @@ ImageRgba8 read_image_rgba(const std::filesystem::path& file) {
   return rgba_from(read(file, cv::IMREAD_UNCHANGED));
 }
 
-ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes, const std::string& place) {
-  return rgba_from(decode(bytes, place, cv::IMREAD_UNCHANGED));
+ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes, const std::string& location) {
+  return rgba_from(decode(bytes, location, cv::IMREAD_UNCHANGED));
 }
 
 std::string encode_png(const ImageU8& image) {

@@ -54,21 +54,21 @@ hid_t type_in_memory(H5Type type) {
 
 /// The column `name` of a group; it must hold `count` values.
 H5Handle open_column(hid_t file, const std::string& group, const char* name,
-                     const std::string& place, std::uint64_t count) {
+                     const std::string& location, std::uint64_t count) {
   const std::string path = group + "/" + name;
   const bool is_there = H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0 &&
                         H5Lexists(file, path.c_str(), H5P_DEFAULT) > 0;
-  if (!is_there) throw InputError(place, "the dataset is missing");
+  if (!is_there) throw InputError(location, "the dataset is missing");
   H5Handle dataset = {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose};
   const H5Handle space = {H5Dget_space(dataset), H5Sclose};
   const auto length = H5Sget_simple_extent_npoints(space);
   if (H5Sget_simple_extent_ndims(space) != 1 || static_cast<std::uint64_t>(length) != count)
-    throw InputError(place, "has " + std::to_string(length) + " entries for " +
-                                std::to_string(count) + " events");
+    throw InputError(location, "has " + std::to_string(length) + " entries for " +
+                                   std::to_string(count) + " events");
   return dataset;
 }
 
-void read_column(hid_t dataset, const std::string& place, std::uint64_t begin,
+void read_column(hid_t dataset, const std::string& location, std::uint64_t begin,
                  const H5Target& column) {
   const hsize_t first = begin;
   const hsize_t size = column.bytes.size() / bytes_of(column.type);
@@ -77,7 +77,7 @@ void read_column(hid_t dataset, const std::string& place, std::uint64_t begin,
   H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &size, nullptr);
   if (H5Dread(dataset, type_in_memory(column.type), memory, space, H5P_DEFAULT,
               column.bytes.data()) < 0)
-    throw InputError(place, "cannot be read (HDF5: " + h5_reason() + ")");
+    throw InputError(location, "cannot be read (HDF5: " + h5_reason() + ")");
 }
 
 }  // namespace
@@ -173,9 +173,9 @@ void read_h5_table(const std::filesystem::path& name, const std::string& group, 
   if (!file.valid())
     throw InputError(name.string(), "is no HDF5 file, or is damaged (HDF5: " + h5_reason() + ")");
   for (const H5Target& column : columns) {
-    const std::string place = name.string() + ":/" + group + "/" + column.name;
-    const H5Handle dataset = open_column(file, group, column.name, place, count);
-    if (!column.bytes.empty()) read_column(dataset, place, begin, column);
+    const std::string location = name.string() + ":/" + group + "/" + column.name;
+    const H5Handle dataset = open_column(file, group, column.name, location, count);
+    if (!column.bytes.empty()) read_column(dataset, location, begin, column);
   }
 }
 

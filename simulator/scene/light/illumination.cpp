@@ -40,10 +40,10 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
                                           const Visibility& blockers,
                                           std::span<LightSet> lights) const {
   std::fill(lights.begin(), lights.end(), LightSet{0});
-  std::array<Ray, kPacket> rays;
-  std::array<float, kPacket> distances;
-  std::array<std::size_t, kPacket> owners;
-  std::array<bool, kPacket> blocked;
+  std::array<Ray, kRayPacket> rays;
+  std::array<float, kRayPacket> distances;
+  std::array<std::size_t, kRayPacket> owners;
+  std::array<bool, kRayPacket> blocked;
   for (std::size_t index = 0; index < lights_.size(); ++index) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

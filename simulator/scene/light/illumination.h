@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/intersection/visibility.h"
 #include "simulator/scene/scene_options.h"
-#include "simulator/scene/visibility/visibility.h"
 
 namespace saccade {
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "simulator/scene/visibility/triangle_bvh.h"
+#include "simulator/scene/intersection/triangle_bvh.h"
 
 namespace saccade {
 
@@ -78,8 +78,8 @@ class OccluderLanes {
         const float from = at(offsets[0]);
         const float middle = at(offsets[1]);
         const float to = at(offsets[2]);
-        const float turn = 2 * middle - 0.5F * (from + to);
-        const float high = std::max(std::max(from, middle), std::max(to, turn));
+        const float control = 2 * middle - 0.5F * (from + to);
+        const float high = std::max(std::max(from, middle), std::max(to, control));
         beside = high < -block.margin[k][lane] ? 1.0F : beside;
       }
       is_beside[lane] = beside;

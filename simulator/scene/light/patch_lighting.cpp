@@ -131,8 +131,8 @@ Occluder point_light_occluder(TriangleId triangle, const EdgeFunctions& pass,
                         std::abs(pass.w.dot(patch - position)));
 }
 
-/// In parallel light from the direction `to_light`: where the path there intersects the plane, each form
-/// is what it is at the path's foot plus the path's fraction of it.
+/// In parallel light from the direction `to_light`: where the path there intersects the plane, each
+/// form is what it is at the path's foot plus the path's fraction of it.
 Occluder directional_light_occluder(TriangleId triangle, const TriangleSurface& surface,
                                     const TriangleInterior& interior,
                                     const Eigen::Vector3d& to_light) {

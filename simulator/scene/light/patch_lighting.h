@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/intersection/triangle_bvh.h"
 #include "simulator/scene/light/occluder_lanes.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/visibility/triangle_bvh.h"
 
 namespace saccade {
 

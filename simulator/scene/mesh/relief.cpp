@@ -10,8 +10,17 @@
 namespace saccade {
 namespace {
 
+constexpr double kMaxTriangles = 4e6;
+constexpr double kMaxWaves = 2048;
+
 /// Who draws random numbers; the octaves of the swell follow from kSwell on.
 enum ReliefStream : std::uint64_t { kBend, kCrest, kSwell = 16 };
+
+// The shape of dunes, as wind from one side makes them.
+const Eigen::Vector2d kAcross(0.45, 1);    // from crest to crest; of any length
+constexpr double kRise = 0.58;             // fraction of a wavelength on the gentle side
+constexpr double kBend_m = 0.75;           // largest displacement of crests from straight lines
+constexpr double kBendWavelength_m = 2.6;  // of that displacement and of the crests' height
 
 /// A function of one variable and its derivative.
 struct Slope {
@@ -23,12 +32,12 @@ Slope fade(double t) {
   return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
 }
 
-/// One period of a dune: up over the first `rise` of it, down over the rest.
-Slope profile(double phase, double rise) {
+/// One period of a dune: up over the first kRise of it, down over the rest.
+Slope profile(double phase) {
   const double t = phase - std::floor(phase);
-  const bool rising = t < rise;
-  const double length = rising ? rise : rise - 1;
-  const Slope side = fade(rising ? t / rise : (1 - t) / (1 - rise));
+  const bool rising = t < kRise;
+  const double length = rising ? kRise : kRise - 1;
+  const Slope side = fade(rising ? t / kRise : (1 - t) / (1 - kRise));
   return {side.value, side.derivative / length};
 }
 
@@ -37,9 +46,62 @@ ReliefOptions checked(const ReliefOptions& options) {
   return options;
 }
 
-Eigen::Vector2d vector_of(const std::array<double, 2>& values) { return {values[0], values[1]}; }
-
 }  // namespace
+
+void describe(config::Fields& fields, ReliefOptions& options) {
+  fields.value("size_m", options.size_m, "Size along x and y, in metres.").above(0);
+  fields
+      .value("triangles", options.triangles,
+             "Approximate number of triangles; the shape does not depend on it.")
+      .range(2, kMaxTriangles);
+  fields
+      .value("seed", options.seed,
+             "Seed; another seed gives another relief with the same statistics.")
+      .at_least(0);
+  fields.path("texture", options.texture, "Picture or *.texture.yaml that covers the whole relief.")
+      .must_exist();
+  fields.value("albedo", options.albedo, "Albedo without a texture, in linear light.").range(0, 1);
+  const double side = std::max(options.size_m[0], options.size_m[1]);
+  const auto expect_few_waves = [side](config::Fields& group, std::string_view key,
+                                       double wavelength) {
+    group.expect(side / wavelength <= kMaxWaves, key, "must fit at most 2048 times into size_m");
+  };
+  fields.group(
+      "dunes",
+      [&](config::Fields& group) {
+        auto& dunes = options.dunes;
+        group
+            .value(
+                "height_m", dunes.height_m,
+                "Height of the highest crests above the troughs, in metres. 0 disables the dunes.")
+            .at_least(0);
+        group.value("wavelength_m", dunes.wavelength_m, "Distance from crest to crest, in metres.")
+            .above(0);
+        expect_few_waves(group, "wavelength_m", dunes.wavelength_m);
+      },
+      "Rows of dunes whose crests bend, rise and sink.");
+  fields.group(
+      "swell",
+      [&](config::Fields& group) {
+        auto& swell = options.swell;
+        group
+            .value("height_m", swell.height_m,
+                   "Largest height of the swell, in metres. 0 disables the swell.")
+            .at_least(0);
+        group
+            .value("wavelength_m", swell.wavelength_m,
+                   "Shortest and longest wavelength of the swell, in metres.")
+            .above(0);
+        group.expect(swell.wavelength_m[0] <= swell.wavelength_m[1], "wavelength_m",
+                     "must not fall: the smaller number comes first");
+        expect_few_waves(group, "wavelength_m", swell.wavelength_m[0]);
+      },
+      "Smooth bumps of many sizes.");
+}
+
+ReliefOptions read_relief_options(const std::filesystem::path& file) {
+  return config::read<ReliefOptions>(config::load(file));
+}
 
 SmoothNoise::SmoothNoise(std::uint64_t seed, std::uint64_t stream, const Eigen::Vector2d& size,
                          double wavelength_m)
@@ -71,10 +133,10 @@ Elevation SmoothNoise::at(const Eigen::Vector2d& point) const {
 
 Relief::Relief(const ReliefOptions& options)
     : options_(checked(options)),
-      size_(vector_of(options.size_m)),
-      across_(vector_of(options.dunes.across).normalized()),
-      bend_(options.seed, kBend, size_, options.dunes.bend_wavelength_m),
-      crest_(options.seed, kCrest, size_, options.dunes.bend_wavelength_m) {
+      size_(options.size_m[0], options.size_m[1]),
+      across_(kAcross.normalized()),
+      bend_(options.seed, kBend, size_, kBendWavelength_m),
+      crest_(options.seed, kCrest, size_, kBendWavelength_m) {
   const auto& [shortest, longest] = options.swell.wavelength_m;
   double total = 0;
   for (double length = longest; length >= shortest; length /= 2) {
@@ -99,9 +161,9 @@ Elevation Relief::dunes(const Eigen::Vector2d& point) const {
   const auto& dunes = options_.dunes;
   const Elevation bend = bend_.at(point);
   const Elevation crest = crest_.at(point);
-  const double phase = (across_.dot(point) + dunes.bend_m * bend.height) / dunes.wavelength_m;
-  const Eigen::Vector2d phase_slope = (across_ + dunes.bend_m * bend.slope) / dunes.wavelength_m;
-  const Slope shape = profile(phase, dunes.rise);
+  const double phase = (across_.dot(point) + kBend_m * bend.height) / dunes.wavelength_m;
+  const Eigen::Vector2d phase_slope = (across_ + kBend_m * bend.slope) / dunes.wavelength_m;
+  const Slope shape = profile(phase);
   const double height = dunes.height_m * (0.75 + 0.25 * crest.height);
   return {height * shape.value, height * shape.derivative * phase_slope +
                                     0.25 * dunes.height_m * shape.value * crest.slope};

@@ -1,13 +1,45 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "simulator/scene/mesh/mesh.h"
-#include "simulator/scene/mesh/relief_options.h"
 
 namespace saccade {
+
+namespace config {
+class Fields;
+}
+
+/// A smooth relief: rows of dunes whose crests bend, and swells of many sizes. Its height is a
+/// twice continuously differentiable function of the place that does not depend on `triangles`, so
+/// the same relief comes in any fineness. It lies around the origin, z up.
+struct ReliefOptions {
+  std::array<double, 2> size_m{10, 10};
+  std::uint64_t triangles = 40'000;
+  std::uint64_t seed = 1;
+  std::optional<std::filesystem::path> texture;
+  double albedo = 0.5;
+
+  struct Dunes {
+    double height_m = 0.6;
+    double wavelength_m = 3;
+  } dunes;
+  struct Swell {
+    double height_m = 0.3;
+    std::array<double, 2> wavelength_m{0.8, 4};
+  } swell;
+};
+
+void describe(config::Fields& fields, ReliefOptions& options);
+
+/// Reads a *.relief.yaml. Throws InputError with its position.
+[[nodiscard]] ReliefOptions read_relief_options(const std::filesystem::path& file);
 
 /// Height over a point of the ground and how it changes there.
 struct Elevation {
@@ -35,7 +67,7 @@ class SmoothNoise {
 /// The height function of a relief:
 ///   h(p) = H a(p) f(phase(p)) + sum_k H_k N_k(p)
 ///   phase(p) = (p . across + bend N_b(p)) / wavelength
-/// where f rises smoothly from 0 to 1 over the fraction `rise` of a period and falls over the rest,
+/// where f rises smoothly from 0 to 1 over the fraction kRise of a period and falls over the rest,
 /// a in [0.5, 1] lets crests rise and sink, and all N are SmoothNoise. C2. Uses additions and
 /// products alone, so that builds without fused operations agree to the bit.
 class Relief {

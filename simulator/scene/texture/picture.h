@@ -15,8 +15,8 @@ struct Picture {
 };
 
 /// Decodes 8-bit pictures (sRGB), OpenEXR and Radiance HDR (linear) by the file's ending.
-/// InputError naming `source_name` when the bytes are no such picture or hold NaN, infinite or negative
-/// light.
+/// InputError naming `source_name` when the bytes are no such picture or hold NaN, infinite or
+/// negative light.
 [[nodiscard]] Picture decode_picture(const Bytes& bytes, const std::string& source_name);
 
 /// The plane that says how opaque a picture used as an alpha map is: its alpha channel, else its

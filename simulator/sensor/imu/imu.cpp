@@ -1,17 +1,58 @@
 #include "simulator/sensor/imu/imu.h"
 
+#include <cmath>
+
+#include "core/check.h"
 #include "core/config/rigid3_node.h"
-#include "simulator/sensor/imu/imu_noise.h"
+#include "core/random.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {
+namespace {
+
+enum class Draw : std::uint64_t { kWhite, kWalk };
+
+/// Streams of their own, far from those of pixels.
+std::uint64_t stream_of(ImuTriad triad, Draw draw, int axis) {
+  constexpr std::uint64_t kImu = 0x494D55ULL << 40;
+  const std::uint64_t kind =
+      2 * static_cast<std::uint64_t>(triad) + static_cast<std::uint64_t>(draw);
+  return kImu + 3 * kind + static_cast<std::uint64_t>(axis);
+}
+
+}  // namespace
+
+std::vector<TriadError> triad_errors(const TriadNoise& noise, const Eigen::Vector3d& turn_on_bias,
+                                     double dt_s, std::uint64_t seed, ImuTriad triad,
+                                     std::size_t count) {
+  SACCADE_CHECK(dt_s > 0);
+  const Random random(seed);
+  const double white_sigma = noise.density / std::sqrt(dt_s);
+  const double walk_sigma = noise.random_walk * std::sqrt(dt_s);
+  const auto draw = [&](double sigma, Draw kind, std::size_t k) -> Eigen::Vector3d {
+    if (sigma == 0) return Eigen::Vector3d::Zero();
+    Eigen::Vector3d v;
+    for (int axis = 0; axis < 3; ++axis)
+      v[axis] = sigma * random.normal(stream_of(triad, kind, axis), k);
+    return v;
+  };
+  std::vector<TriadError> errors(count);
+  Eigen::Vector3d bias = turn_on_bias;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k > 0) bias += draw(walk_sigma, Draw::kWalk, k);
+    errors[k] = {bias, draw(white_sigma, Draw::kWhite, k)};
+  }
+  return errors;
+}
 
 void describe(config::Fields& fields, ImuOptions& options) {
   fields.value("rate_hz", options.rate_hz, "Number of IMU samples per second. 0 disables the IMU.")
       .range(0, 1e6);
-  fields.value(
-      "T_camera_imu", options.camera_from_imu,
-      "Pose as a 4 x 4 matrix: a point in the camera is T times the point in the IMU, in metres.");
+  fields
+      .value("T_camera_imu", options.camera_from_imu,
+             "Pose as a 4 x 4 matrix: a point in the camera is T times the point in the IMU, in "
+             "metres.")
+      .range(-1e6, 1e6);
   fields
       .value("gyro_noise_density", options.gyroscope.density,
              "White noise density of the gyroscope, in rad/s/sqrt(Hz). 0 disables it.")

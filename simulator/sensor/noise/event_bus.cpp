@@ -33,9 +33,9 @@ void describe(config::Fields& fields, ReadoutOptions& options) {
                 "must be above 0 for rows and capacity");
 }
 
-EventBus::EventBus(const ReadoutOptions& options, int height, TimeNs step_ns)
+EventBus::EventBus(const ReadoutOptions& options, int height, TimeNs unit_ns)
     : options_(options),
-      step_ns_(step_ns),
+      unit_ns_(unit_ns),
       service_ns_(options.on() ? kNsPerSecond / options.rate_hz : 0),
       lines_(line_count(options, height)) {}
 
@@ -69,7 +69,7 @@ void EventBus::serve_before(TimeNs t_ns) {
 
 void EventBus::serve(const Service& service, double start_ns) {
   std::deque<Request>& line = lines_[service.second];
-  const TimeNs stamp_ns = step_ns_ * std::llround(start_ns / static_cast<double>(step_ns_));
+  const TimeNs stamp_ns = unit_ns_ * std::llround(start_ns / static_cast<double>(unit_ns_));
   double busy_ns = 0;
   do {
     served_.push_back(line.front().event);
@@ -83,10 +83,10 @@ void EventBus::serve(const Service& service, double start_ns) {
   if (!line.empty()) service_order_.push({line.front().number, service.second});
 }
 
-void EventBus::take(TimeNs complete_ns, SensedEvents& out) {
+void EventBus::release(TimeNs complete_ns, SensedEvents& out) {
   serve_before(complete_ns);
   // A service at or after this multiple of the step is stamped with it or a later one.
-  const TimeNs below_ns = complete_ns - complete_ns % step_ns_;
+  const TimeNs below_ns = complete_ns - complete_ns % unit_ns_;
   const auto end = std::ranges::partition_point(
       served_, [below_ns](const SensedEvent& e) { return e.t_ns < below_ns; });
   std::sort(served_.begin(), end, SensedEventOrder{});

@@ -34,10 +34,10 @@ void describe(config::Fields& fields, ReadoutOptions& options);
 /// SensedEventOrder. All times are exact; only the stamp is rounded to the step.
 class EventBus final : public OutputStage {
  public:
-  EventBus(const ReadoutOptions& options, int height, TimeNs step_ns);
+  EventBus(const ReadoutOptions& options, int height, TimeNs unit_ns);
 
   void push(std::span<const SensedEvent> events) override;
-  void take(TimeNs complete_ns, SensedEvents& out) override;
+  void release(TimeNs complete_ns, SensedEvents& out) override;
 
   /// Events that met a full queue.
   [[nodiscard]] std::uint64_t lost() const override { return lost_; }
@@ -46,8 +46,8 @@ class EventBus final : public OutputStage {
   void load(StateReader& state) override;
 
  private:
-  /// The first request of a line of the queue: its number, counted from the first one, and the line.
-  /// Served in the order of the numbers, which are unique.
+  /// The first request of a line of the queue: its number, counted from the first one, and the
+  /// line. Served in the order of the numbers, which are unique.
   using Service = std::pair<std::uint64_t, std::size_t>;
   struct Request {
     std::uint64_t number;
@@ -60,7 +60,7 @@ class EventBus final : public OutputStage {
   void serve(const Service& service, double start_ns);
 
   ReadoutOptions options_;
-  TimeNs step_ns_;
+  TimeNs unit_ns_;
   double service_ns_;
   double free_ns_ = 0;          ///< when the bus is free again
   std::uint64_t requests_ = 0;  ///< accepted so far

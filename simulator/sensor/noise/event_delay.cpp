@@ -5,7 +5,6 @@
 
 #include "core/config/fields.h"
 #include "simulator/sensor/noise/pixel_random.h"
-#include "simulator/sensor/noise/radiance.h"
 
 namespace saccade {
 namespace {
@@ -24,30 +23,22 @@ void describe(config::Fields& fields, LatencyOptions& options) {
              "Delay of every time stamp behind the crossing, in microseconds.")
       .range(0, kLongest_us);
   fields
-      .value("intensity_us", options.intensity_us,
-             "Additional delay at radiance 1, in microseconds; it grows as the pixel gets darker.")
-      .range(0, kLongest_us);
-  fields
       .value("jitter_us", options.jitter_us,
              "Standard deviation of the delay from event to event, in microseconds.")
       .range(0, kLongest_us);
 }
 
-EventDelay::EventDelay(const LatencyOptions& options, double log_eps, int width, int height,
-                       TimeNs step_ns, std::uint64_t seed)
+EventDelay::EventDelay(const LatencyOptions& options, int width, int height, TimeNs unit_ns,
+                       std::uint64_t seed)
     : options_(options),
-      log_eps_(log_eps),
       width_(width),
-      step_ns_(step_ns),
+      unit_ns_(unit_ns),
       random_(seed),
       pixels_(options.on() ? static_cast<std::size_t>(width) * static_cast<std::size_t>(height)
                            : 0) {}
 
 double EventDelay::latency_ns(const SensedEvent& event, std::uint32_t index) const {
   double latency_us = options_.mean_us;
-  if (options_.intensity_us > 0)
-    latency_us += options_.intensity_us * (1 + options_.dark_radiance) /
-                  (radiance_from_log(event.log_intensity, log_eps_) + options_.dark_radiance);
   if (options_.jitter_us > 0) {
     const double z = random_.normal(noise_stream(NoiseStream::kLatency, event.x, event.y), index);
     latency_us += options_.jitter_us * std::clamp(z, -kLongestJitter, kLongestJitter);
@@ -56,12 +47,12 @@ double EventDelay::latency_ns(const SensedEvent& event, std::uint32_t index) con
 }
 
 void EventDelay::push(std::span<const SensedEvent> events) {
-  const auto step = static_cast<double>(step_ns_);
+  const auto unit = static_cast<double>(unit_ns_);
   for (SensedEvent event : events) {
     Pixel& pixel =
         pixels_[static_cast<std::size_t>(event.y) * static_cast<std::size_t>(width_) + event.x];
-    event.t_ns += step_ns_ * std::llround(latency_ns(event, pixel.events) / step);
-    const TimeNs after = pixel.polarity != event.polarity ? step_ns_ : 0;
+    event.t_ns += unit_ns_ * std::llround(latency_ns(event, pixel.events) / unit);
+    const TimeNs after = pixel.polarity != event.polarity ? unit_ns_ : 0;
     if (pixel.events > 0) event.t_ns = std::max(event.t_ns, pixel.last_ns + after);
     pixel = {event.t_ns, pixel.events + 1, event.polarity};
     waiting_.push_back(event);
@@ -69,7 +60,7 @@ void EventDelay::push(std::span<const SensedEvent> events) {
   }
 }
 
-void EventDelay::take(TimeNs complete_ns, SensedEvents& out) {
+void EventDelay::release(TimeNs complete_ns, SensedEvents& out) {
   while (!waiting_.empty() && waiting_.front().t_ns < complete_ns) {
     std::ranges::pop_heap(waiting_, comes_later);
     out.push_back(waiting_.back());

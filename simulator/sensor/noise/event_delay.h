@@ -14,17 +14,14 @@ class Fields;
 }
 
 /// Time from the crossing to the request at the bus:
-///   latency = max(0, mean_us + intensity_us (1 + dark_radiance) / (I + dark_radiance)
-///                    + jitter_us z),   z ~ N(0, 1) cut at +-4
-/// Reciprocal in the radiance as Lichtsteiner et al. 2008 measured. The bandwidth model brings a
-/// latency of its own; state only the rest here when both are on.
+///   latency = max(0, mean_us + jitter_us z),   z ~ N(0, 1) cut at +-4
+/// The bandwidth model brings a latency of its own, which grows in the dark; state only the rest
+/// here when both are on.
 struct LatencyOptions {
   double mean_us = 0;
-  double intensity_us = 0;
-  double dark_radiance = 0.08;
   double jitter_us = 0;
 
-  [[nodiscard]] bool on() const { return mean_us > 0 || intensity_us > 0 || jitter_us > 0; }
+  [[nodiscard]] bool on() const { return mean_us > 0 || jitter_us > 0; }
 };
 void describe(config::Fields& fields, LatencyOptions& options);
 
@@ -33,13 +30,13 @@ void describe(config::Fields& fields, LatencyOptions& options);
 /// a pixel fired can be read from the stream. The jitter's draw is that of the pixel's n-th event.
 class EventDelay final : public OutputStage {
  public:
-  /// Times are multiples of `step_ns`; so are the delayed ones (nearest). `log_eps`: eps of
-  /// L = ln(eps + I). With `options` off only load() and save() may be called.
-  EventDelay(const LatencyOptions& options, double log_eps, int width, int height, TimeNs step_ns,
+  /// Times are multiples of `unit_ns`; so are the delayed ones (nearest). With `options` off only
+  /// load() and save() may be called.
+  EventDelay(const LatencyOptions& options, int width, int height, TimeNs unit_ns,
              std::uint64_t seed);
 
   void push(std::span<const SensedEvent> events) override;
-  void take(TimeNs complete_ns, SensedEvents& out) override;
+  void release(TimeNs complete_ns, SensedEvents& out) override;
 
   void save(StateWriter& state) const override;
   void load(StateReader& state) override;
@@ -55,9 +52,8 @@ class EventDelay final : public OutputStage {
   [[nodiscard]] double latency_ns(const SensedEvent& event, std::uint32_t index) const;
 
   LatencyOptions options_;
-  double log_eps_;
   int width_;
-  TimeNs step_ns_;
+  TimeNs unit_ns_;
   Random random_;
   std::vector<Pixel> pixels_;
   SensedEvents waiting_;  ///< a heap, the first event in SensedEventOrder at the front

@@ -100,7 +100,7 @@ std::optional<double> FilteredPiece::first_extremum() const {
 }
 
 /// e^a times the second stage's slope is s e^a + P - Q a. Its own slope s e^a - Q vanishes where
-/// the first stage extrema, so on either side of that time the output turns at most once.
+/// an extremum of the first stage, so on either side of that time the output has at most one.
 FilteredPiece::Extrema FilteredPiece::extrema() const {
   Extrema extrema;
   const std::optional<double> first = first_extremum();
@@ -117,13 +117,13 @@ FilteredPiece::Extrema FilteredPiece::extrema() const {
   return extrema;
 }
 
-/// The turn of a second-order output strictly between two times after t0, if there is one.
+/// The extremum of a second-order output strictly between two times after t0, if there is one.
 void FilteredPiece::add_extremum(double from_s, double to_s, Extrema& extrema) const {
-  double turn = 0;
+  double extremum_s = 0;
   if (slope_ == 0) {
     // In closed form, because the slope's sign at the end of a long piece underflows.
-    turn = (state_.first - state_.output) / (rate_ * (state_.first - input_));
-    if (!(turn > from_s && turn < to_s)) return;
+    extremum_s = (state_.first - state_.output) / (rate_ * (state_.first - input_));
+    if (!(extremum_s > from_s && extremum_s < to_s)) return;
   } else {
     const double slope_from = slope_after(from_s);
     const double slope_to = slope_after(to_s);
@@ -133,11 +133,11 @@ void FilteredPiece::add_extremum(double from_s, double to_s, Extrema& extrema) c
       const double at = slope_after(tau_s);
       return ValueAndSlope{sign * at, sign * rate_ * (first_slope_after(tau_s) - at)};
     };
-    // The value at a turn is exact to the square of this.
+    // The value at an extremum is exact to the square of this.
     constexpr double kTimeFraction = 1e-12;
-    turn = close_bracket(slope, from_s, to_s, kTimeFraction * (to_s - from_s));
+    extremum_s = close_bracket(slope, from_s, to_s, kTimeFraction * (to_s - from_s));
   }
-  extrema.t_s[static_cast<std::size_t>(extrema.count++)] = turn;
+  extrema.t_s[static_cast<std::size_t>(extrema.count++)] = extremum_s;
 }
 
 std::optional<FilterCrossing> FilteredPiece::first_crossing(double lower, double upper,

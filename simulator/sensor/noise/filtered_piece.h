@@ -45,13 +45,13 @@ class FilteredPiece {
   /// What the next piece is entered with.
   [[nodiscard]] FilterState end_state() const { return state_after(whole_); }
 
-  /// The lowest and the highest value between which the output provably stays. Every stage averages its input with positive
-  /// weights, so within the hull [l, h] of the first stage and the input
+  /// The lowest and the highest value between which the output provably stays. Every stage averages
+  /// its input with positive weights, so within the hull [l, h] of the first stage and the input
   ///   y0 + min(0, l - y0)(1 - e^-a) <= y <= y0 + max(0, h - y0)(1 - e^-a)   with a of the end.
   [[nodiscard]] std::pair<double, double> bounds() const;
 
-  /// The times inside the piece at which the output turns, ascending; at most 1 for order 1, at
-  /// most 2 for order 2.
+  /// The times inside the piece at which the output has an extremum, ascending; at most 1 for order
+  /// 1, at most 2 for order 2.
   struct Extrema {
     std::array<double, 2> t_s;
     int count = 0;
@@ -59,7 +59,7 @@ class FilteredPiece {
   [[nodiscard]] Extrema extrema() const;
 
   /// The first time from `from_s` to the piece's end at which the output is not between `lower` and
-  /// `upper`; `from_s` itself where it is outside already. Rigorous: between two turns the output
+  /// `upper`; `from_s` itself where it is outside already. Rigorous: between two extrema the output
   /// is monotonic, so it crosses at most once and its end tells.
   [[nodiscard]] std::optional<FilterCrossing> first_crossing(double lower, double upper,
                                                              double from_s,
@@ -87,7 +87,7 @@ class FilteredPiece {
   }
   [[nodiscard]] double slope_after(double tau_s) const;
   [[nodiscard]] double first_slope_after(double tau_s) const;
-  /// Where the first stage turns, if it does in any time.
+  /// Where the first stage has its extremum, if it ever has one.
   [[nodiscard]] std::optional<double> first_extremum() const;
   void add_extremum(double from_s, double to_s, Extrema& extrema) const;
 

@@ -21,9 +21,9 @@ struct MismatchOptions {
 };
 void describe(config::Fields& fields, MismatchOptions& options);
 
-/// Least threshold of a pixel as a fraction of the nominal one. A smaller draw becomes this value, so
-/// that no pixel fires without end; at sigma 0.2 that is a fraction of 3e-6 of the pixels, at the
-/// allowed maximum 0.5 one of 28, which also raises the mean threshold by 0.7 % there.
+/// Least threshold of a pixel as a fraction of the nominal one. A smaller draw becomes this value,
+/// so that no pixel fires without end; at sigma 0.2 that is a fraction of 3e-6 of the pixels, at
+/// the allowed maximum 0.5 one of 28, which also raises the mean threshold by 0.7 % there.
 constexpr double kLeastContrast = 0.1;
 
 /// The thresholds of a pixel for its whole life (formula at MismatchOptions), ON and OFF drawn

@@ -23,12 +23,12 @@ void apply(const NoiseOptions& options, std::uint64_t seed, PixelTraits& traits)
 }
 
 std::unique_ptr<OutputStage> make_delay(const OutputStageInput& input) {
-  return std::make_unique<EventDelay>(input.noise.latency, input.log_eps, input.width, input.height,
-                                      input.step_ns, input.seed);
+  return std::make_unique<EventDelay>(input.noise.latency, input.width, input.height, input.unit_ns,
+                                      input.seed);
 }
 
 std::unique_ptr<OutputStage> make_bus(const OutputStageInput& input) {
-  return std::make_unique<EventBus>(input.noise.readout, input.height, input.step_ns);
+  return std::make_unique<EventBus>(input.noise.readout, input.height, input.unit_ns);
 }
 
 constexpr NoiseModel kModels[] = {

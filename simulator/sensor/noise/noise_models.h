@@ -12,9 +12,8 @@ namespace saccade {
 /// What every part of the sensor behind the pixels is made from.
 struct OutputStageInput {
   const NoiseOptions& noise;
-  double log_eps;  ///< eps of L = ln(eps + I)
   int width, height;
-  TimeNs step_ns;  ///< all times are multiples of it
+  TimeNs unit_ns;  ///< all times are multiples of it
   std::uint64_t seed;
 };
 

@@ -10,8 +10,8 @@
 
 namespace saccade {
 
-/// The imperfections of an event sensor (section `events.noise`), all off. Each model's file has its
-/// options; noise_models() has one row for each member.
+/// The imperfections of an event sensor (section `events.noise`), all off. Each model's file has
+/// its options; noise_models() has one row for each member.
 struct NoiseOptions {
   MismatchOptions mismatch;
   RefractoryOptions refractory;

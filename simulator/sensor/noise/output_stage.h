@@ -20,7 +20,7 @@ class OutputStage {
   virtual void push(std::span<const SensedEvent> events) = 0;
   /// Appends the events whose new time stamp is before `complete_ns` to `out`, in SensedEventOrder
   /// over all calls. Contract: every event that is pushed later has t_ns >= complete_ns.
-  virtual void take(TimeNs complete_ns, SensedEvents& out) = 0;
+  virtual void release(TimeNs complete_ns, SensedEvents& out) = 0;
   /// Number of events that the stage has dropped so far.
   [[nodiscard]] virtual std::uint64_t lost() const { return 0; }
   /// Everything that later output depends on. Also saved while the model is off, so that the layout

@@ -25,10 +25,10 @@ void describe(config::Fields& fields, BandwidthOptions& options);
 ///   order 1: y' = w (x - y)        order 2: y1' = w (x - y1),  y' = w (y1 - y)
 /// on the log intensity x, which is given in pieces that are linear in time; a piece has the cutoff
 /// of its middle. Each piece is solved in closed form, so the result depends on the pieces' error
-/// alone: where the pieces are within d of the true signal and the cutoff within a fraction r of the
-/// true one, the output is within d + r max|x - y| per stage of the exact one, since every stage
-/// averages its input with positive weights. For the same reason the output never leaves the hull
-/// of the state and the inputs since. A jump of the signal is a gap between the values of two
+/// alone: where the pieces are within d of the true signal and the cutoff within a fraction r of
+/// the true one, the output is within d + r max|x - y| per stage of the exact one, since every
+/// stage averages its input with positive weights. For the same reason the output never leaves the
+/// hull of the state and the inputs since. A jump of the signal is a gap between the values of two
 /// pieces. Thread-safe.
 class PhotoreceptorFilter {
  public:

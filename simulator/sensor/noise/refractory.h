@@ -5,9 +5,9 @@ namespace config {
 class Fields;
 }
 
-/// After an event the pixel is blind for `period_us`; at the end the reference is the signal of
-/// that time (the reset of the differencing amplifier; Lichtsteiner et al. 2008). A ramp of slope s
-/// fires at 1 / (T + C / s).
+/// After an event the pixel cannot fire for the refractory period `period_us`; at its end the
+/// reference is the signal of that time (the reset of the differencing amplifier; Lichtsteiner et
+/// al. 2008). A ramp of slope s fires at 1 / (T + C / s).
 struct RefractoryOptions {
   double period_us = 0;
 

@@ -4,9 +4,9 @@
 
 namespace saccade {
 
-SensorOutput::SensorOutput(const NoiseOptions& options, double log_eps, int width, int height,
-                           TimeNs step_ns, std::uint64_t seed) {
-  const OutputStageInput input{options, log_eps, width, height, step_ns, seed};
+SensorOutput::SensorOutput(const NoiseOptions& options, int width, int height, TimeNs unit_ns,
+                           std::uint64_t seed) {
+  const OutputStageInput input{options, width, height, unit_ns, seed};
   for (const NoiseModel& model : noise_models())
     if (model.make_stage != nullptr)
       stages_.push_back({model.make_stage(input), model.is_on(options)});
@@ -19,7 +19,7 @@ void SensorOutput::push(std::span<const SensedEvent> events, TimeNs complete_ns,
     if (!each.is_on) continue;
     each.stage->push(events);
     held.clear();
-    each.stage->take(complete_ns, held);
+    each.stage->release(complete_ns, held);
     events = held;
   }
   recorded_ += events.size();
@@ -39,7 +39,7 @@ std::string SensorOutput::state() const {
   state.value(fired_);
   state.value(recorded_);
   for (const Stage& each : stages_) each.stage->save(state);
-  return state.take();
+  return state.bytes();
 }
 
 void SensorOutput::load(std::string_view state) {

@@ -20,8 +20,8 @@ class SensorOutput {
   /// Receives events in SensedEventOrder over all calls.
   using Sink = std::function<void(std::span<const SensedEvent> events)>;
 
-  /// All times are multiples of `step_ns`. `log_eps`: eps of L = ln(eps + I).
-  SensorOutput(const NoiseOptions& options, double log_eps, int width, int height, TimeNs step_ns,
+  /// All times are multiples of `unit_ns`.
+  SensorOutput(const NoiseOptions& options, int width, int height, TimeNs unit_ns,
                std::uint64_t seed);
 
   /// Takes `events`, in SensedEventOrder over all calls, and hands out what no later event can

@@ -55,8 +55,8 @@ SpontaneousState SpontaneousEvents::start(std::uint16_t x, std::uint16_t y, doub
   return state;
 }
 
-SpontaneousCandidate SpontaneousEvents::take(SpontaneousState& state, std::uint16_t x,
-                                             std::uint16_t y) const {
+SpontaneousCandidate SpontaneousEvents::next_candidate(SpontaneousState& state, std::uint16_t x,
+                                                       std::uint16_t y) const {
   SACCADE_CHECK(std::isfinite(state.next_s()));
   if (state.next_hot_s < state.next_shot_s) {
     const double t = state.next_hot_s;
@@ -74,7 +74,7 @@ SpontaneousCandidate SpontaneousEvents::take(SpontaneousState& state, std::uint1
 double SpontaneousEvents::shot_rate_hz(double log_intensity) const {
   const double brightness =
       std::min(1.0, radiance_from_log(log_intensity, log_eps_) / shot_.bright_radiance);
-  return shot_.rate_hz * (1 - (1 - shot_.bright_share) * brightness);
+  return shot_.rate_hz * (1 - (1 - shot_.bright_fraction) * brightness);
 }
 
 bool SpontaneousEvents::accepts(const SpontaneousCandidate& candidate, double log_intensity) const {

@@ -14,12 +14,12 @@ class Fields;
 struct NoiseOptions;
 
 /// Shot noise: a Poisson process per pixel, ON and OFF equally likely, whose rate falls from
-/// rate_hz in the dark linearly with the radiance to bright_share of it (v2e, Hu et al. 2021;
+/// rate_hz in the dark linearly with the radiance to bright_fraction of it (v2e, Hu et al. 2021;
 /// measured by Graca et al., "Shining light on the DVS pixel", 2023):
-///   rate(I) = rate_hz (1 - (1 - bright_share) min(1, I / bright_radiance))
+///   rate(I) = rate_hz (1 - (1 - bright_fraction) min(1, I / bright_radiance))
 struct ShotOptions {
   double rate_hz = 0;
-  double bright_share = 0.25;  ///< of the rate, that remains at bright_radiance and above
+  double bright_fraction = 0.25;  ///< of the rate, that remains at bright_radiance and above
   double bright_radiance = 1;
 
   [[nodiscard]] bool on() const { return rate_hz > 0; }
@@ -73,7 +73,8 @@ class SpontaneousEvents {
   /// The processes of a pixel from `t_s` on.
   [[nodiscard]] SpontaneousState start(std::uint16_t x, std::uint16_t y, double t_s) const;
   /// The candidate at state.next_s(), which must be finite; moves the state behind it.
-  SpontaneousCandidate take(SpontaneousState& state, std::uint16_t x, std::uint16_t y) const;
+  SpontaneousCandidate next_candidate(SpontaneousState& state, std::uint16_t x,
+                                      std::uint16_t y) const;
   /// Whether the pixel fires at the candidate. `log_intensity`: of the signal at its time.
   [[nodiscard]] bool accepts(const SpontaneousCandidate& candidate, double log_intensity) const;
 

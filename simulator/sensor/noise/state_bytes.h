@@ -30,7 +30,7 @@ class StateWriter {
     value(std::uint64_t{text.size()});
     bytes_.append(text);
   }
-  [[nodiscard]] std::string take() { return std::move(bytes_); }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
  private:
   std::string bytes_;

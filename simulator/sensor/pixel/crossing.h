@@ -82,8 +82,8 @@ struct Bracket {
 /// is safe, else bisection (Chandrupatla, Advances in Engineering Software 28, 1997), so a jump
 /// costs no more than a bisection and a smooth signal four or five evaluations.
 template <class Signal, class Sample>
-[[nodiscard]] Bracket<Sample> refine(const Signal& signal, const Thresholds& thresholds,
-                                     Bracket<Sample> bracket, double level) {
+[[nodiscard]] Bracket<Sample> narrow_bracket(const Signal& signal, const Thresholds& thresholds,
+                                             Bracket<Sample> bracket, double level) {
   const auto residual = [&](const Sample& s) { return thresholds.signal(s) - level; };
   const double tolerance_s = signal.tolerance_s();
   const bool rising = residual(bracket.hi) >= 0 && residual(bracket.lo) < 0;
@@ -120,10 +120,10 @@ template <class Signal, class Sample>
 }
 
 /// The first part of (lo, hi] at whose end the signal is outside the band, if there is one: branch
-/// and bound. An interval is done when the bounds of its radiance prove that it stays inside, when it
-/// is monotone, so that its ends tell, or when it is shorter than the tolerance; else it is divided
-/// where the signal says. Needs of `signal`: range(lo, hi), divide(lo, hi, depth), at(t, lo, hi),
-/// tolerance_s().
+/// and bound. An interval is done when the bounds of its radiance prove that it stays inside, when
+/// it is monotone, so that its ends tell, or when it is shorter than the tolerance; else it is
+/// divided where the signal says. Needs of `signal`: range(lo, hi), divide(lo, hi, depth), at(t,
+/// lo, hi), tolerance_s().
 template <class Signal, class Sample>
 [[nodiscard]] std::optional<Bracket<Sample>> find_exit(const Signal& signal,
                                                        const Thresholds& thresholds,

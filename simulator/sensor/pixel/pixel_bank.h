@@ -38,8 +38,7 @@ class PixelBank {
   [[nodiscard]] bool is_noisy() const { return !noisy_.empty(); }
   /// Whether only a crossing could make pixel `i` fire between two times.
   [[nodiscard]] bool is_idle(std::size_t i, double from_s, double to_s) const {
-    return noisy_.empty() || (!noise_.filter.on() && noisy_[i].refractory_until_s < from_s &&
-                              noisy_[i].spontaneous.next_s() >= to_s);
+    return noisy_.empty() || (!noise_.filter.on() && noisy_[i].is_idle(from_s, to_s));
   }
   /// What pixel `i` fires at.
   [[nodiscard]] const Thresholds& thresholds(std::size_t i) const { return pixels_[i].thresholds; }
@@ -66,7 +65,7 @@ class PixelBank {
   void update_thresholds(Pixel& pixel) const;
   void record(const PixelTraits& pixel, double t_s, int polarity, EventOrigin origin,
               double log_intensity) {
-    const TimeNs unit_ns = options_.timestamp_step_ns();
+    const TimeNs unit_ns = options_.timestamp_unit_ns();
     const auto units = static_cast<TimeNs>(std::llround(t_s * 1e9 / static_cast<double>(unit_ns)));
     events_.push_back({units * unit_ns, pixel.x, pixel.y, static_cast<std::int8_t>(polarity),
                        origin, static_cast<float>(log_intensity)});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "simulator/sensor/event_options.h"
@@ -8,7 +9,23 @@
 
 namespace saccade {
 
-/// The imperfections within the pixels, as all pixels share them.
+/// What a pixel with imperfections remembers besides its reference: the states of the models that
+/// act within it in time. Trivially copyable, without padding.
+struct NoisyState {
+  static constexpr double kNotRefractory = -std::numeric_limits<double>::infinity();
+
+  double refractory_until_s = kNotRefractory;  ///< the reference is reset then
+  SpontaneousState spontaneous;
+  FilterState filter;
+
+  /// Whether only a crossing of the (filtered) signal could make the pixel fire or reset it from
+  /// `from_s` up to `to_s`. Every model that acts at a time of its own has its condition here.
+  [[nodiscard]] bool is_idle(double from_s, double to_s) const {
+    return refractory_until_s < from_s && spontaneous.next_s() >= to_s;
+  }
+};
+
+/// The models that act within the pixels in time, as all pixels share them.
 struct PixelNoise {
   double refractory_s;
   SpontaneousEvents spontaneous;
@@ -21,17 +38,13 @@ struct PixelNoise {
 
   /// Whether a pixel needs a NoisyState.
   [[nodiscard]] bool on() const { return refractory_s > 0 || spontaneous.on() || filter.on(); }
-};
 
-/// What a pixel with imperfections remembers besides its reference. Trivially copyable, without
-/// padding.
-struct NoisyState {
-  static constexpr double kNotRefractory = -std::numeric_limits<double>::infinity();
-
-  double refractory_until_s =
-      kNotRefractory;  ///< its refractory period's end, when the reference is reset
-  SpontaneousState spontaneous;
-  FilterState filter;
+  /// The state of a pixel that has seen `log_intensity` for long at `t_s`.
+  [[nodiscard]] NoisyState start(std::uint16_t x, std::uint16_t y, double log_intensity,
+                                 double t_s) const {
+    return {NoisyState::kNotRefractory, spontaneous.start(x, y, t_s),
+            PhotoreceptorFilter::settled(log_intensity)};
+  }
 };
 
 }  // namespace saccade

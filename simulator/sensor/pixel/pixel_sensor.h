@@ -55,7 +55,7 @@ class PixelSensor {
   void fire(double t_s, int polarity, double log_intensity);
   /// The reference becomes the signal.
   void reset(double t_s, double signal);
-  /// Takes the candidate that is due, if there is one; whether the pixel fires at it.
+  /// Draws the candidate that is due; whether the pixel fires at it.
   bool fire_spontaneously(double t_s, double log_intensity, double signal, const PixelNoise& noise,
                           NoisyState& noisy);
   /// What advance() of an interval has come to.
@@ -75,10 +75,10 @@ class PixelSensor {
   /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
   [[nodiscard]] bool proves_no_event(const FilteredPiece& piece, const LinearPiece& input,
                                      const NoisyState& noisy) const;
-  /// Drops the candidates that fall into the blind time.
+  /// Drops the candidates that fall into the refractory period.
   void skip_candidates(double until_s, const PixelNoise& noise, NoisyState& noisy) const {
     while (noisy.spontaneous.next_s() < until_s)
-      (void)noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+      (void)noise.spontaneous.next_candidate(noisy.spontaneous, traits_.x, traits_.y);
   }
   /// Whether values from `low` to `high` stay within the band, however the leak moves it meanwhile.
   [[nodiscard]] bool is_within_band(double low, double from_s, double high, double to_s) const {
@@ -102,8 +102,8 @@ class PixelSensor {
   double widest_s_ = 0;
 };
 
-/// The greatest error of the linear pieces that the low pass is given, where they are no steps [log
-/// units].
+/// The greatest error of the linear pieces that the low pass is given, where the signal does not
+/// jump [log units].
 constexpr double kPieceError = 1e-3;
 /// The greatest change within a piece, for which its cutoff is constant [log units].
 constexpr double kPieceChange = 0.05;
@@ -116,7 +116,7 @@ auto PixelSensor<Signal, Emit>::cross(const Bracket<Sample>& exit, bool repeated
   const Band band = thresholds_.band();
   const int polarity = thresholds_.signal(exit.hi) >= band.upper ? 1 : -1;
   const double level = polarity > 0 ? band.upper : band.lower;
-  const Bracket<Sample> bracket = refine(signal_, thresholds_, exit, level);
+  const Bracket<Sample> bracket = narrow_bracket(signal_, thresholds_, exit, level);
   widest_s_ = std::max(widest_s_, bracket.width_s());
   const double t_s = bracket.crossing_s(thresholds_, level);
   do {
@@ -148,7 +148,7 @@ template <class Signal, class Emit>
 bool PixelSensor<Signal, Emit>::fire_spontaneously(double t_s, double log_intensity, double signal,
                                                    const PixelNoise& noise, NoisyState& noisy) {
   const SpontaneousCandidate candidate =
-      noise.spontaneous.take(noisy.spontaneous, traits_.x, traits_.y);
+      noise.spontaneous.next_candidate(noisy.spontaneous, traits_.x, traits_.y);
   if (!noise.spontaneous.accepts(candidate, log_intensity)) return false;
   emit_(t_s, candidate.polarity, candidate.origin, log_intensity);
   reset(t_s, signal);
@@ -311,7 +311,7 @@ void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
 template <class Signal, class Emit>
 bool PixelSensor<Signal, Emit>::proves_no_event(const RadianceRange& range, double from_s,
                                                 double to_s, const NoisyState& noisy) const {
-  if (noisy.refractory_until_s >= from_s || noisy.spontaneous.next_s() < to_s) return false;
+  if (!noisy.is_idle(from_s, to_s)) return false;
   const auto [state_low, state_high] = std::minmax(noisy.filter.first, noisy.filter.output);
   const double low = std::min(state_low, std::log(log_eps_ + std::max(range.low, 0.0)));
   const double high = std::max(state_high, std::log(log_eps_ + range.high));
@@ -323,7 +323,7 @@ bool PixelSensor<Signal, Emit>::proves_no_event(const FilteredPiece& piece,
                                                 const LinearPiece& input,
                                                 const NoisyState& noisy) const {
   if (noisy.refractory_until_s >= input.t0_s) return noisy.refractory_until_s >= input.t1_s;
-  if (noisy.spontaneous.next_s() < input.t1_s) return false;
+  if (!noisy.is_idle(input.t0_s, input.t1_s)) return false;
   const auto [low, high] = piece.bounds();
   return is_within_band(low, input.t0_s, high, input.t1_s);
 }

@@ -57,8 +57,8 @@ class PixelRays {
   }
 
   /// How much `direction`, the ray of an image point, differs from those of the next rays to the
-  /// right and below (columns: x and y of the camera frame), when each stands for its fraction of the
-  /// pixel.
+  /// right and below (columns: x and y of the camera frame), when each stands for its fraction of
+  /// the pixel.
   [[nodiscard]] Eigen::Matrix2d differential(const Eigen::Vector3d& direction) const;
 
  private:

@@ -37,7 +37,7 @@ RaySample with_rates(const SurfaceSample& now, const SurfaceSample& soon, double
 void EventStatistics::add(const EventStatistics& other) {
   rays += other.rays;
   lit_points += other.lit_points;
-  surface_looks += other.surface_looks;
+  surface_samples += other.surface_samples;
   lost += other.lost;
   time_bound_s = std::max(time_bound_s, other.time_bound_s);
 }
@@ -79,7 +79,7 @@ double RayTracer::difference_s(double t_s) const {
 
 RaySample RayTracer::sample_unlit(const Eigen::Vector3d& direction, TriangleId triangle,
                                   double t_s) {
-  ++statistics_.surface_looks;
+  ++statistics_.surface_samples;
   const double soon_s = difference_s(t_s);
   return with_rates(sample_surface(direction, triangle, poses_->at(t_s), t_s),
                     sample_surface(direction, triangle, poses_->at(t_s + soon_s), t_s + soon_s),
@@ -117,10 +117,10 @@ Eigen::Vector3d RayTracer::point_at(const Eigen::Vector3d& direction, TriangleId
 }
 
 void RayTracer::illuminate(std::span<const Ray> rays, std::span<RaySample> samples) {
-  std::array<Ray, kPacket> unknown;
-  std::array<TriangleId, kPacket> triangles;
-  std::array<SurfaceSample, kPacket> surfaces;
-  std::array<std::size_t, kPacket> owners;
+  std::array<Ray, kRayPacket> unknown;
+  std::array<TriangleId, kRayPacket> triangles;
+  std::array<SurfaceSample, kRayPacket> surfaces;
+  std::array<std::size_t, kRayPacket> owners;
   std::size_t n = 0;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     SurfaceSample& surface = samples[k].surface;
@@ -143,9 +143,9 @@ void RayTracer::illuminate(std::span<const Ray> rays, std::span<RaySample> sampl
 
 void RayTracer::find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
                                std::span<TriangleId> triangles) {
-  SACCADE_CHECK(directions.size() <= kPacket && triangles.size() == directions.size());
+  SACCADE_CHECK(directions.size() <= kRayPacket && triangles.size() == directions.size());
   const CameraFrame camera = poses_->at(t_s);
-  std::array<Ray, kPacket> rays;
+  std::array<Ray, kRayPacket> rays;
   for (std::size_t k = 0; k < directions.size(); ++k)
     rays[k] = {camera.position, camera.rotation * directions[k], t_s};
   scene_.visible({rays.data(), directions.size()}, triangles);
@@ -154,7 +154,7 @@ void RayTracer::find_triangles(std::span<const Eigen::Vector3d> directions, doub
 
 void RayTracer::trace(std::span<const Eigen::Vector3d> directions, double t_s,
                       std::span<RaySample> samples) {
-  std::array<TriangleId, kPacket> triangles;
+  std::array<TriangleId, kRayPacket> triangles;
   const std::span<TriangleId> seen(triangles.data(), directions.size());
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Ray ray = ray_at(directions[k], t_s);
@@ -190,9 +190,9 @@ void RayTracer::sample(std::span<const Eigen::Vector3d> directions,
     samples[k] = plane->at(directions[k]);
   }
   if (!scene_.is_lit()) return;
-  std::array<Ray, kPacket> rays;
-  for (std::size_t first = 0; first < directions.size(); first += kPacket) {
-    const std::size_t n = std::min(kPacket, directions.size() - first);
+  std::array<Ray, kRayPacket> rays;
+  for (std::size_t first = 0; first < directions.size(); first += kRayPacket) {
+    const std::size_t n = std::min(kRayPacket, directions.size() - first);
     for (std::size_t k = 0; k < n; ++k)
       rays[k] = {camera.position, camera.rotation * directions[first + k], t_s};
     illuminate({rays.data(), n}, samples.subspan(first, n));

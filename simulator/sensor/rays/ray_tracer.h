@@ -20,11 +20,11 @@ namespace saccade {
 
 /// What was spent and reached.
 struct EventStatistics {
-  std::uint64_t rays = 0;           ///< visibility rays
-  std::uint64_t lit_points = 0;     ///< whose light was found, with a shadow ray to each light
-  std::uint64_t surface_looks = 0;  ///< evaluations of a known triangle, without a visibility ray
-  std::uint64_t lost = 0;           ///< events that met a full readout
-  double time_bound_s = 0;          ///< widest final bracket around a crossing
+  std::uint64_t rays = 0;             ///< visibility rays
+  std::uint64_t lit_points = 0;       ///< shaded points, with a shadow ray to each light
+  std::uint64_t surface_samples = 0;  ///< samples of a known triangle, without a visibility ray
+  std::uint64_t lost = 0;             ///< events that met a full readout
+  double time_bound_s = 0;            ///< widest final bracket around a crossing
 
   void add(const EventStatistics& other);
 };
@@ -40,10 +40,9 @@ struct VisibleTriangle {
 class RayTracer {
  public:
   /// Rays that are traced together at most.
-  static constexpr std::size_t kPacket = 16;
 
-  /// All outlive the tracer. With `footprints` textures are filtered over the fraction of a pixel that
-  /// each of its rays stands for; nullptr: they are seen at points.
+  /// All outlive the tracer. With `footprints` textures are filtered over the fraction of a pixel
+  /// that each of its rays stands for; nullptr: they are seen at points.
   RayTracer(const Scene& scene, EventStatistics& statistics, const PixelRays* footprints = nullptr)
       : scene_(scene), statistics_(statistics), footprints_(footprints) {}
 
@@ -60,14 +59,14 @@ class RayTracer {
 
   [[nodiscard]] bool is_lit() const { return scene_.is_lit(); }
 
-  /// How the lights light what is seen of a triangle there; nullptr where that is not known, and for
-  /// kNothing. Valid until the next call.
+  /// How the lights light what is seen of a triangle there; nullptr where that is not known, and
+  /// for kNothing. Valid until the next call.
   [[nodiscard]] const PatchLighting* lighting_of(TriangleId triangle);
   /// The point of the triangle's plane that a ray intersects; NaN where it intersects none.
   [[nodiscard]] Eigen::Vector3d point_at(const Eigen::Vector3d& direction, TriangleId triangle,
                                          double t_s) const;
 
-  /// The visible triangles of at most kPacket rays of one instant.
+  /// The visible triangles of at most kRayPacket rays of one instant.
   void find_triangles(std::span<const Eigen::Vector3d> directions, double t_s,
                       std::span<TriangleId> triangles);
   /// What rays of one instant see, found in double precision: the nearest of the triangles within
@@ -115,24 +114,25 @@ class RayTracer {
 
   /// What a ray sees of a triangle, taken to be visible.
   [[nodiscard]] RaySample sample(const Eigen::Vector3d& direction, TriangleId triangle, double t_s);
-  /// The same if just these lights light the place: without shadow rays.
+  /// The same if just these lights light the point: without shadow rays.
   [[nodiscard]] RaySample sample(const Eigen::Vector3d& direction, TriangleId triangle,
                                  LightSet lights, double t_s);
   /// The same with irradiance 1.
   [[nodiscard]] RaySample sample_unlit(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s);
 
-  /// When the visible triangle changes between two visible triangles, to `tolerance_s`, if through an edge
-  /// the first is left or else the second entered; NaN if neither.
+  /// When a ray's visible triangle changes from `from` to `to`, within `tolerance_s`: where the ray
+  /// leaves the first or else enters the second; NaN if neither.
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
                                 const VisibleTriangle& to, double tolerance_s) const;
 
-  /// Whether at every time between two visible triangles a ray intersects one of both triangles or the other, so
-  /// that nothing behind them shows in between.
+  /// Whether at every time between `from` and `to` the ray intersects at least one of the two
+  /// triangles, so that nothing behind them shows in between.
   [[nodiscard]] bool is_covered(const Eigen::Vector3d& direction, const VisibleTriangle& from,
                                 const VisibleTriangle& to, double tolerance_s) const;
 
-  /// Whether a ray intersects the edges of both triangles in one point, as with neighbours in a mesh.
+  /// Whether a ray intersects the edges of both triangles in one point, as with neighbours in a
+  /// mesh.
   [[nodiscard]] bool is_crease(const Eigen::Vector3d& direction, TriangleId a, TriangleId b,
                                double t_s) const;
 
@@ -162,8 +162,8 @@ class RayTracer {
   /// Of the ray `direction` at an instant, at which the camera is `camera`.
   [[nodiscard]] SurfaceSample sample_surface(const Eigen::Vector3d& direction, TriangleId triangle,
                                              const CameraFrame& camera, double t_s) const;
-  /// Finds the light for at most kPacket samples: with the triangles between a patch and the lights
-  /// where these are known, else with shadow rays.
+  /// Finds the light for at most kRayPacket samples: with the triangles between a patch and the
+  /// lights where these are known, else with shadow rays.
   void illuminate(std::span<const Ray> rays, std::span<RaySample> samples);
 
   const Scene& scene_;

@@ -58,9 +58,9 @@ void TileSamples<kRays>::trace(RayTracer& tracer, std::span<const Eigen::Vector3
   t_s = at_s;
   triangles.fill(kNothing);
   has_samples = false;
-  std::array<Eigen::Vector3d, RayTracer::kPacket> rays;
-  std::array<std::size_t, RayTracer::kPacket> owners;
-  std::array<TriangleId, RayTracer::kPacket> seen;
+  std::array<Eigen::Vector3d, kRayPacket> rays;
+  std::array<std::size_t, kRayPacket> owners;
+  std::array<TriangleId, kRayPacket> seen;
   std::size_t n = 0;
   const auto flush = [&] {
     tracer.find_triangles({rays.data(), n}, t_s, {seen.data(), n});
@@ -71,7 +71,7 @@ void TileSamples<kRays>::trace(RayTracer& tracer, std::span<const Eigen::Vector3
     if (!pixels[k / kRays]) continue;
     rays[n] = directions[k];
     owners[n++] = k;
-    if (n == RayTracer::kPacket) flush();
+    if (n == kRayPacket) flush();
   }
   if (n > 0) flush();
 }

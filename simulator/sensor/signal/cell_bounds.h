@@ -12,8 +12,8 @@ namespace saccade {
 /// that exact [texel].
 constexpr double kOverhang = 1e-3;
 
-/// Paths that chord_error less than this from their chord are as good as their cubics, whose own error is
-/// orders of magnitude smaller.
+/// Paths that depart by less than this from their chord are as good as their cubics, whose own
+/// error is orders of magnitude smaller.
 constexpr double kStraight_texel = 0.005;
 
 struct Interval {
@@ -204,8 +204,8 @@ class SplitPoint {
   double best_ = -1;
 };
 
-/// Fraction of an interval within one cell at which the radiance turns; the middle if it does not or
-/// the path leaves the cell.
+/// Fraction of an interval within one cell at which the radiance turns; the middle if it does not
+/// or the path leaves the cell.
 inline double extremum_in_cell(const Texture& texture, const HermiteCoordinate& x,
                                const HermiteCoordinate& y) {
   const CellIndex index = middle_cell(x, y);

@@ -9,8 +9,8 @@ namespace {
 /// Coordinates of an environment map go around; those of `view` are brought next to `near`.
 void unwrap_next_to(const RaySample& near, RaySample& sample) {
   if (sample.triangle != kNothing || sample.surface.texture == nullptr) return;
-  const double turn = sample.surface.texture->width();
-  sample.surface.x += turn * std::round((near.surface.x - sample.surface.x) / turn);
+  const double period = sample.surface.texture->width();
+  sample.surface.x += period * std::round((near.surface.x - sample.surface.x) / period);
 }
 
 RadianceRange hull(RadianceRange a, const RadianceRange& b) {

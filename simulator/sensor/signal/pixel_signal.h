@@ -22,7 +22,8 @@ struct PixelSample {
   }
 };
 
-/// The log intensity of one pixel as a function of time, as find_exit() and refine() want it.
+/// The log intensity of one pixel as a function of time, as find_exit() and narrow_bracket() want
+/// it.
 template <std::size_t kRays>
 class PixelSignal {
  public:

@@ -9,8 +9,8 @@
 namespace saccade {
 namespace {
 
-/// Multiplies the albedo's range by the light. Under the same lights the irradiance is taken to stay
-/// near the line between both ends; where they differ, it jumps at the edge of a shadow.
+/// Multiplies the albedo's range by the light. Under the same lights the irradiance is taken to
+/// stay near the line between both ends; where they differ, it jumps at the edge of a shadow.
 RadianceRange illuminated(const Interval& values, const Interval& rates, const RaySample& from,
                           const RaySample& to, double length_s) {
   const double factor = from.surface.texture != nullptr ? from.surface.factor : 1;

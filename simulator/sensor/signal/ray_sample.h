@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-/// What one ray of a pixel sees at an instant, and how that place moves over the texture.
+/// What one ray of a pixel sees at an instant, and how that point moves over the texture.
 struct RaySample {
   TriangleId triangle = kNothing;
   SurfaceSample surface;
@@ -18,7 +18,7 @@ struct RaySample {
 };
 
 /// L = ln(eps + I). Not inline: every caller must round alike, or a signal that returns to a former
-/// level would meet its former threshold in one place and miss it in another.
+/// level would reach its former threshold in one caller and miss it in another.
 [[nodiscard]] double log_intensity(double radiance, double log_eps);
 
 /// Bounds of a radiance and of its rate of change over an interval of time.
@@ -42,8 +42,8 @@ struct RadianceRange {
     rate_high *= factor;
   }
 
-  /// Bound of how far ln(eps + I) departs from its chord over `length_s`: a quarter of the spread of
-  /// its rates times the length, or the spread of its values.
+  /// Bound of how far ln(eps + I) departs from its chord over `length_s`: a quarter of the spread
+  /// of its rates times the length, or the spread of its values.
   [[nodiscard]] double log_error(double log_eps, double length_s) const;
 
   /// Rises or falls throughout, but for a thousandth of its steepest rate.
@@ -53,11 +53,12 @@ struct RadianceRange {
   }
 };
 
-/// Of a ray that sees the same triangle at both ends of an interval of `length_s` > 0 and all through
-/// it. Over the texture the ray follows the cubic with the given ends; it departs from the chord by
-/// at most 4/27 of the sum of both ends' differences from the chord's rate, times the length. A box
-/// within one cell of the texture is bounded by the bilinear function there, which also bounds the
-/// rate; a larger one by its texels. Filtered textures likewise, on both levels around the path's.
+/// Of a ray that sees the same triangle at both ends of an interval of `length_s` > 0 and all
+/// through it. Over the texture the ray follows the cubic with the given ends; it departs from the
+/// chord by at most 4/27 of the sum of both ends' differences from the chord's rate, times the
+/// length. A box within one cell of the texture is bounded by the bilinear function there, which
+/// also bounds the rate; a larger one by its texels. Filtered textures likewise, on both levels
+/// around the path's.
 [[nodiscard]] RadianceRange radiance_range(const RaySample& from, const RaySample& to,
                                            double length_s);
 

@@ -21,8 +21,8 @@ class TrajectoryCoordinate {
         from_excess_(from_slope - chord_),
         to_excess_(to_slope - chord_),
         quartic_(middle - from - 0.5 * chord_ - 0.125 * (from_excess_ - to_excess_)),
-        // The next term of the path, c u^2 (1 - u)^2 (u - 1/2), has the slope c / 16 in the middle and
-        // stays below 0.00895 c.
+        // The next term of the path, c u^2 (1 - u)^2 (u - 1/2), has the slope c / 16 in the middle
+        // and stays below 0.00895 c.
         error_(16 * 0.00895 * std::abs(middle_slope - slope_at(0.5))) {}
 
   [[nodiscard]] double from() const { return from_; }
@@ -87,10 +87,11 @@ struct CoordinateBounds {
   CoordinateBounds(double start, double start_slope, double end, double end_slope, double bending,
                    double length = 1)
       : from(start), to(end), from_slope(start_slope), to_slope(end_slope) {
-    const double turn = 0.5 * bending;
-    const double chord_error = 0.25 * turn * length;
+    const double half_bend = 0.5 * bending;
+    const double chord_error = 0.25 * half_bend * length;
     values = {std::min(from, to) - chord_error, std::max(from, to) + chord_error};
-    slopes = {std::min(start_slope, end_slope) - turn, std::max(start_slope, end_slope) + turn};
+    slopes = {std::min(start_slope, end_slope) - half_bend,
+              std::max(start_slope, end_slope) + half_bend};
   }
 };
 
@@ -102,8 +103,8 @@ struct TexelTrajectory {
   [[nodiscard]] double time_s(double u) const { return from_s + u * length_s; }
   [[nodiscard]] double fraction(double t_s) const { return (t_s - from_s) / length_s; }
 
-  /// Whether the path is as exact as times are wanted to be: its error is a small fraction of what the
-  /// image moves within `tolerance_s`.
+  /// Whether the path is as exact as times are wanted to be: its error is a small fraction of what
+  /// the image moves within `tolerance_s`.
   [[nodiscard]] bool is_exact(double tolerance_s) const {
     constexpr double kFraction = 0.01;
     constexpr double kLeast_texel = 1e-6;

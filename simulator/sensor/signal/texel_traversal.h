@@ -130,9 +130,9 @@ class CellSegment {
     const double first = value_at(x0, y0);
     const double last = first + rise + bend;
     Interval values{std::min(first, last), std::max(first, last)};
-    const double turn = -0.5 * rise;  // over the bend
-    if (turn * bend > 0 && std::abs(turn) < std::abs(bend))
-      values.include(first - turn * turn / bend);
+    const double extremum = -0.5 * rise;  // times the bend
+    if (extremum * bend > 0 && std::abs(extremum) < std::abs(bend))
+      values.include(first - extremum * extremum / bend);
     // Both ends' slopes, beyond what the path's departure can change.
     const double end_rise = rise + 2 * bend;
     const bool is_monotone =

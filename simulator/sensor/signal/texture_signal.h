@@ -24,7 +24,7 @@ class TextureSignal {
  public:
   using Sample = TrajectorySample;
 
-  /// `path` outlives the signal; `look`: at the texture, anywhere on it.
+  /// `path` outlives the signal; `surface`: a sample of the texture, anywhere on it.
   TextureSignal(const TexelTrajectory& path, const SurfaceSample& surface, double log_eps,
                 double tolerance_s)
       : path_(path),
@@ -36,7 +36,7 @@ class TextureSignal {
 
   [[nodiscard]] double tolerance_s() const { return tolerance_s_; }
 
-  /// A place on the path. Its log intensity is not known yet, unless `is_known` demands it.
+  /// A point on the path. Its log intensity is not known yet, unless `is_known` demands it.
   [[nodiscard]] Sample sample_at(double t_s, bool is_known) const {
     const Sample unknown{t_s, kUnknown, path_.fraction(t_s)};
     return is_known ? known(unknown) : unknown;

@@ -9,8 +9,8 @@
 
 namespace saccade {
 
-/// Sorts out, of many triangles at once, those that a ray cannot meet during an interval of time: it
-/// is outside one of their edges all the time. The forms along the ray are parabolas, as in
+/// Sorts out, of many triangles at once, those that a ray cannot meet during an interval of time:
+/// it is outside one of their edges all the time. The forms along the ray are parabolas, as in
 /// TriangleRayBounds; floats in lanes, whose rounding is far below the margin.
 class EdgeCulling {
  public:
@@ -73,9 +73,9 @@ class EdgeCulling {
         const float from = forms[0].at(lane, ray);
         const float middle = forms[1].at(lane, ray);
         const float to = forms[2].at(lane, ray);
-        const float turn = 2 * middle - 0.5F * (from + to);
-        low = std::min(std::min(from, middle), std::min(to, turn));
-        high = std::max(std::max(from, middle), std::max(to, turn));
+        const float control = 2 * middle - 0.5F * (from + to);
+        low = std::min(std::min(from, middle), std::min(to, control));
+        high = std::max(std::max(from, middle), std::max(to, control));
       };
       // Turned to the camera, the triangle lies where all forms are above zero, else below.
       float low, high;

@@ -81,8 +81,8 @@ class OpacitySearch {
     return at <= std::min(from, to) && 2 * at < std::max(from, to);
   }
 
-  /// The lowest opacity between two times, or the highest; by golden sections, up to the first sample
-  /// beyond 0.5.
+  /// The lowest opacity between two times, or the highest; by golden sections, up to the first
+  /// sample beyond 0.5.
   [[nodiscard]] OpacitySample extremum(double from_s, double to_s, bool is_lowest) const {
     constexpr int kSections = 20;
     constexpr double kGolden = 0.6180339887498949;

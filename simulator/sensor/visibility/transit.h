@@ -24,9 +24,9 @@ inline void clip_to_line(double x, double y, double& low, double& high) {
   if (y < 0 && x >= 0) high = std::min(high, x / (x - y));
 }
 
-/// use(begin, end), as fractions of the whole, with each interval in which no form is negative. Each
-/// is given at both ends and in the middle, and taken to be the parabola through these, even between its
-/// quarters.
+/// use(begin, end), as fractions of the interval, with each part of it in which none of the linear
+/// forms (edge functions of a ray) is negative. Each form is given at both ends and in the middle,
+/// and taken to be the parabola through these values, linear between its quarters.
 template <std::size_t kForms, class Use>
 void find_intervals(const std::array<std::array<double, 3>, kForms>& forms, const Use& use) {
   std::array<std::array<double, 5>, kForms> quarters;
@@ -84,8 +84,9 @@ struct TransitTriangle {
                        [&](const Eigen::Vector3d& edge) { return sign * edge.dot(direction) < 0; });
   }
 
-  /// Whether the ray `direction` intersects the plane behind `occluded_beyond`, or behind the camera, at
-  /// both samples and in the middle. Where it grazes the plane, its distance is undefined.
+  /// Whether the ray `direction` intersects the plane behind `occluded_beyond`, or behind the
+  /// camera, at both samples and in the middle. Where it grazes the plane, its distance is
+  /// undefined.
   [[nodiscard]] bool is_occluded(const Eigen::Vector3d& direction, double occluded_beyond) const {
     constexpr double kGrazing = 1e-2;
     constexpr double kMargin = 1.001;

@@ -11,13 +11,13 @@ namespace saccade {
 
 /// Bounds of the parabola through three values at even distances.
 inline Interval parabola_bounds(double from, double middle, double to) {
-  const double turn = 2 * middle - 0.5 * (from + to);  // where the tangents at both ends meet
-  return {std::min({from, to, turn}), std::max({from, to, turn})};
+  const double control = 2 * middle - 0.5 * (from + to);  // where the tangents at both ends meet
+  return {std::min({from, to, control}), std::max({from, to, control})};
 }
 
-/// How a triangle lies to the ray of a pixel during an interval of time. Its forms along the ray are
-/// taken to be parabolas in time; what is nearer to an edge than `margin` of the image plane is in
-/// doubt.
+/// How a triangle lies to the ray of a pixel during an interval of time. Its forms along the ray
+/// are taken to be parabolas in time; what is nearer to an edge than `margin` of the image plane is
+/// in doubt.
 class TriangleRayBounds {
  public:
   TriangleRayBounds(const TransitTriangle& triangle, const Eigen::Vector3d& direction,

@@ -13,7 +13,7 @@ namespace {
 
 using testing::ClosedFormPlane;
 
-/// Events per second, and rays and surface looks per event, at a contrast of range(0) / 100.
+/// Events per second, and rays and surface samples per event, at a contrast of range(0) / 100.
 void record_events(benchmark::State& state) {
   ClosedFormPlane plane = ClosedFormPlane::smooth(240, 180);
   plane.duration_s = 0.2;
@@ -36,7 +36,7 @@ void record_events(benchmark::State& state) {
   };
   state.SetItemsProcessed(events);
   state.counters["rays_per_event"] = per_event(statistics.rays);
-  state.counters["looks_per_event"] = per_event(statistics.surface_looks);
+  state.counters["samples_per_event"] = per_event(statistics.surface_samples);
 }
 BENCHMARK(record_events)->Arg(15)->Arg(50)->Unit(benchmark::kMillisecond)->UseRealTime();
 

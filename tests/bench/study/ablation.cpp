@@ -76,9 +76,10 @@ void print_run(const char* name, double lambda_px, const Scenario& scenario,
   };
   const EventStatistics statistics = camera.statistics();
   std::printf("%s %g %zu %.3f %.3f %.5f %.5f %.5f %.5f %.3f\n", name, lambda_px, events.size(),
-              share(statistics.rays, events.size()), share(statistics.surface_looks, events.size()),
-              share(at_10_us, truth), share(at_10_us, found), share(at_1_us, truth),
-              share(at_1_us, found), elapsed.count());
+              share(statistics.rays, events.size()),
+              share(statistics.surface_samples, events.size()), share(at_10_us, truth),
+              share(at_10_us, found), share(at_1_us, truth), share(at_1_us, found),
+              elapsed.count());
   std::fflush(stdout);
 }
 
@@ -90,7 +91,7 @@ void print_ablation(const Scenario& scenario) {
   options.timestamp_unit = TimestampUnit::kNanoseconds;
   const std::vector<Crop> crops = make_crops(scenario, options);
   std::printf(
-      "# sampling lambda_px events rays_per_event looks_per_event recall_10us "
+      "# sampling lambda_px events rays_per_event samples_per_event recall_10us "
       "precision_10us recall_1us precision_1us seconds\n");
   print_run<EventCamera>("asynchronous", 0, scenario, options, crops);
   for (const double lambda_px : kLambdas_px) {

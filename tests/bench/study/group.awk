@@ -4,7 +4,7 @@
   percent = $1 + 0
   name = $2 " " substr($0, index($0, "]") + 2)
 }
-name ~ /embree|RayCaster|Visibility::visible/ { part["trace"] += percent; next }
+name ~ /embree|EmbreeScene|Visibility::visible/ { part["trace"] += percent; next }
 name ~ /TriangleBvh|Occluder|is_sole_visible|frust|edge_functions|TransitTriangle|TriangleRayBounds|EdgeCulling|stays_|misses|find_transits|occluders|PatchLighting|find_lighting|find_shadows|lighting_of|min_barycentric|nearest_among|visible_exactly|Scene::intersects/ { part["predict"] += percent; next }
 name ~ /TexelTraversal|CellSegment|TexelBorders|CoordinateBounds|Texture::range|Texture::cell|radiance_range|texture_range|range_across|RadianceRange|Thresholds|certif|TextureSignal::range/ { part["texels"] += percent; next }
 name ~ /EventLog|BlockJournal|H5|hdf5|libz|deflate|Sha|sha256|Crc|DatasetWriter|EventFile/ { part["write"] += percent; next }

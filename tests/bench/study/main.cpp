@@ -59,12 +59,12 @@ void print_speed(int runs, const Scenario& scenario) {
   const RayRates rates = measure_ray_rates(scenario);
   const auto rays = static_cast<double>(statistics.rays);
   std::printf(
-      "# width triangles events rays_per_event looks_per_event seconds least greatest "
+      "# width triangles events rays_per_event samples_per_event seconds least greatest "
       "Mevents_per_s sensing_cpu_s Mevents_per_cpu_s Mrays_per_cpu_s Mvisible_per_cpu_s "
       "Membree_per_cpu_s\n");
   std::printf("%d %zu %.0f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.3f %.2f %.1f %.1f\n",
               config.camera.width, scenario.scene.triangle_count(), events, rays / events,
-              static_cast<double>(statistics.surface_looks) / events, median_s, seconds.front(),
+              static_cast<double>(statistics.surface_samples) / events, median_s, seconds.front(),
               seconds.back(), 1e-6 * events / median_s, processor_s, 1e-6 * events / processor_s,
               1e-6 * rays / processor_s, 1e-6 * rates.visible, 1e-6 * rates.embree);
 }

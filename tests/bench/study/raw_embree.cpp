@@ -11,7 +11,7 @@
 
 #include "core/process/parallel.h"
 #include "simulator/scene/mesh/mesh_import.h"
-#include "simulator/scene/mesh/world_from_mesh.h"
+#include "simulator/scene/scene_builder.h"
 #include "simulator/sensor/rays/pixel_rays.h"
 
 namespace saccade::study {

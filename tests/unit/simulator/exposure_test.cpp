@@ -1,4 +1,4 @@
-#include "simulator/exposure.h"
+#include "simulator/record_images.h"
 
 #include <gtest/gtest.h>
 

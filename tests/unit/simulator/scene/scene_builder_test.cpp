@@ -5,7 +5,6 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/images/exr_file.h"
-#include "simulator/scene/mesh/world_from_mesh.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 
 namespace saccade {

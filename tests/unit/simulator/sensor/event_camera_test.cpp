@@ -51,7 +51,7 @@ ExactMatch match(const ClosedFormPlane& plane, const EventOptions& options) {
       "%.2f surface looks per event\n",
       result.found, result.expected, result.wrong_pixels, result.median_us, result.p99_us,
       result.max_us, per_event(recording.statistics.rays),
-      per_event(recording.statistics.surface_looks));
+      per_event(recording.statistics.surface_samples));
   return result;
 }
 

@@ -58,7 +58,7 @@ EventOptions with_all_noise(int rays_per_pixel, double cutoff_hz) {
   options.noise.shot.rate_hz = 20;
   options.noise.bandwidth.cutoff_hz = cutoff_hz;
   options.noise.hot = {0.02, 500, 0.5};
-  options.noise.latency = {20, 10, 0.08, 5};
+  options.noise.latency = {30, 5};
   options.noise.readout.rate_hz = 1e6;
   return options;
 }
@@ -136,7 +136,7 @@ void expect_same_after_resuming(const EventOptions& options) {
                            expected.begin() + static_cast<std::ptrdiff_t>(saved[k].events)))
         << k;
     EXPECT_EQ(second.statistics().rays, first.statistics().rays);
-    EXPECT_EQ(second.statistics().surface_looks, first.statistics().surface_looks);
+    EXPECT_EQ(second.statistics().surface_samples, first.statistics().surface_samples);
   }
 }
 

@@ -286,7 +286,7 @@ EventOptions with_everything() {
   EventOptions options = testing::in_nanoseconds();
   for (const auto& [name, set] : exact_models()) set(options.noise);
   options.noise.bandwidth.cutoff_hz = 300;
-  options.noise.latency = {20, 30, 0.08, 5};
+  options.noise.latency = {50, 5};
   options.noise.readout = {3e6, true, 100};
   return options;
 }

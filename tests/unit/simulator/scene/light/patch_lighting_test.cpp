@@ -7,7 +7,7 @@
 
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene_builder.h"
-#include "simulator/sensor/visibility/shadow_transits.h"
+#include "simulator/sensor/visibility/visibility_predictor.h"
 
 namespace saccade {
 namespace {

@@ -1,4 +1,3 @@
-#include "simulator/sensor/imu/imu_noise.h"
 
 #include <gtest/gtest.h>
 

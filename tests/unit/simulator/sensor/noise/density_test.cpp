@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "simulator/sensor/event_camera.h"
-#include "simulator/sensor/noise/sensor_presets.h"
+#include "simulator/sensor/event_options.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 #include "tests/unit/simulator/sensor/noise/statistics.h"
 

@@ -65,10 +65,10 @@ const std::map<std::string_view, Contract>& contracts() {
         }}},
       {"latency",
        {[](NoiseOptions& o) {
-          o.latency = {0, 0, 0.1, 0};
+          o.latency = {0, 0};
         },
         [](NoiseOptions& o) {
-          o.latency = {10, 5, 0.1, 5};
+          o.latency = {10, 5};
         }}},
       {"readout",
        {[](NoiseOptions& o) {
@@ -98,7 +98,7 @@ std::vector<double> traces(const NoiseOptions& noise, std::uint64_t seed) {
                     {contrast.on, contrast.off, leak_slope(noise.leak, contrast.on, seed, x, y)});
       SpontaneousState state = spontaneous.start(x, y, 0);
       while (state.next_s() < 2) {
-        const SpontaneousCandidate candidate = spontaneous.take(state, x, y);
+        const SpontaneousCandidate candidate = spontaneous.next_candidate(state, x, y);
         if (spontaneous.accepts(candidate, -1))
           traces.insert(traces.end(), {candidate.t_s, 1.0 * candidate.polarity});
       }
@@ -109,7 +109,7 @@ std::vector<double> traces(const NoiseOptions& noise, std::uint64_t seed) {
   traces.push_back(
       filter.on() ? filter.piece(PhotoreceptorFilter::settled(0), {0, 0.001, 1, 1}).value(0.001)
                   : 1);
-  SensorOutput output(noise, options.log_eps, kSide, kSide, 1000, seed);
+  SensorOutput output(noise, kSide, kSide, 1000, seed);
   const auto sink = [&](std::span<const SensedEvent> piece) {
     for (const SensedEvent& e : piece)
       traces.insert(traces.end(), {static_cast<double>(e.t_ns), 1.0 * e.x, 1.0 * e.y});

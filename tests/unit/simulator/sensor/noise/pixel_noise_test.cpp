@@ -94,7 +94,7 @@ std::vector<SpontaneousCandidate> fired(const SpontaneousEvents& events, std::ui
   std::vector<SpontaneousCandidate> fired;
   SpontaneousState state = events.start(x, y, 0);
   while (state.next_s() < duration_s) {
-    const SpontaneousCandidate candidate = events.take(state, x, y);
+    const SpontaneousCandidate candidate = events.next_candidate(state, x, y);
     if (events.accepts(candidate, log_intensity)) fired.push_back(candidate);
   }
   return fired;
@@ -164,7 +164,7 @@ TEST(ShotNoise, FollowsASignalThatChanges) {
   for (std::uint16_t x = 0; x < 200; ++x) {
     SpontaneousState state = events.start(x, 0, 0);
     while (state.next_s() < duration_s) {
-      const SpontaneousCandidate candidate = events.take(state, x, 0);
+      const SpontaneousCandidate candidate = events.next_candidate(state, x, 0);
       const bool is_dark = std::fmod(candidate.t_s, 0.1) < 0.025;
       if (events.accepts(candidate, std::log(kLogEps + (is_dark ? 0 : 1))))
         ++(is_dark ? dark : bright);
@@ -179,9 +179,10 @@ TEST(ShotNoise, FollowsASignalThatChanges) {
 TEST(ShotNoise, SavedStateGoesOnWithTheSameCandidates) {
   const SpontaneousEvents events(shot_noise(50), kLogEps, kSeed);
   SpontaneousState state = events.start(3, 4, 0);
-  for (int i = 0; i < 10; ++i) events.take(state, 3, 4);
+  for (int i = 0; i < 10; ++i) events.next_candidate(state, 3, 4);
   SpontaneousState copy = state;
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(events.take(state, 3, 4).t_s, events.take(copy, 3, 4).t_s);
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(events.next_candidate(state, 3, 4).t_s, events.next_candidate(copy, 3, 4).t_s);
 }
 
 TEST(HotPixels, AreTheStatedFractionWithLogNormalRates) {

@@ -46,7 +46,7 @@ SensedEvents random_events(std::size_t count, double rate_hz, TimeNs step_ns = k
 
 SensorOutput make_output(const NoiseOptions& options, TimeNs step_ns = kStep_ns,
                          std::uint64_t seed = kOutputSeed) {
-  return {options, kLogEps, kOutputWidth, kOutputHeight, step_ns, seed};
+  return {options, kOutputWidth, kOutputHeight, step_ns, seed};
 }
 
 /// Pushes `events` in pieces of `chunk`, each complete up to a bit less than its next event, which
@@ -74,7 +74,7 @@ SensedEvents record(const NoiseOptions& options, const SensedEvents& events,
 
 NoiseOptions busy_options() {
   NoiseOptions options;
-  options.latency = {20, 30, 0.1, 15};
+  options.latency = {50, 15};
   options.readout = {1.7e5, true, 50};
   return options;
 }
@@ -119,14 +119,12 @@ TEST(SensorOutput, RefusesAStateThatDoesNotFit) {
   const std::string state = output.state();
   EXPECT_NE(error_of([&] { output.load(state.substr(0, state.size() - 1)); }), "no error");
   EXPECT_NE(error_of([&] { output.load(state + "x"); }), "no error");
-  SensorOutput other(busy_options(), kLogEps, kOutputWidth + 1, kOutputHeight, kStep_ns,
-                     kOutputSeed);
+  SensorOutput other(busy_options(), kOutputWidth + 1, kOutputHeight, kStep_ns, kOutputSeed);
   EXPECT_NE(error_of([&] { other.load(state); }), "no error");
 }
 
 /// One event per pixel, far apart in time, with the latency that the output gives it [us].
-std::vector<double> latencies_us(const LatencyOptions& latency, float log_intensity,
-                                 std::size_t count) {
+std::vector<double> latencies_us(const LatencyOptions& latency, std::size_t count) {
   NoiseOptions options;
   options.latency = latency;
   SensedEvents events;
@@ -135,7 +133,6 @@ std::vector<double> latencies_us(const LatencyOptions& latency, float log_intens
     event.t_ns = static_cast<TimeNs>(i) * 10'000'000;
     event.x = static_cast<std::uint16_t>(i % kOutputWidth);
     event.y = static_cast<std::uint16_t>(i / kOutputWidth % kOutputHeight);
-    event.log_intensity = log_intensity;
     events.push_back(event);
   }
   SensorOutput output = make_output(options, 1);
@@ -146,17 +143,11 @@ std::vector<double> latencies_us(const LatencyOptions& latency, float log_intens
   return latencies;
 }
 
-TEST(Latency, FallsWithTheRadiance) {
-  const LatencyOptions options{10, 5, 0.1, 0};
-  for (const double radiance : {0.0, 0.2, 1.0, 4.0}) {
-    const auto log_intensity = static_cast<float>(std::log(radiance + kLogEps));
-    EXPECT_NEAR(latencies_us(options, log_intensity, 1)[0], 10 + 5 * 1.1 / (radiance + 0.1), 2e-3);
-  }
-}
+TEST(Latency, WithoutJitterIsItsMean) { EXPECT_NEAR(latencies_us({10, 0}, 1)[0], 10, 2e-3); }
 
 TEST(Latency, JitterIsNormal) {
   constexpr std::size_t kCount = 20000;
-  const std::vector<double> latencies = latencies_us({100, 0, 0.1, 12}, 0, kCount);
+  const std::vector<double> latencies = latencies_us({100, 12}, kCount);
   constexpr int kBins = 30;
   std::array<double, kBins> bins{};
   for (const double latency : latencies) {
@@ -172,7 +163,7 @@ TEST(Latency, JitterIsNormal) {
 }
 
 TEST(Latency, IsNeverNegative) {
-  const std::vector<double> latencies = latencies_us({0, 0, 0.1, 12}, 0, 2000);
+  const std::vector<double> latencies = latencies_us({0, 12}, 2000);
   const auto zeros = static_cast<double>(std::ranges::count(latencies, 0.0));
   EXPECT_NEAR(zeros, 1000, kSigmas * std::sqrt(500.0));
   EXPECT_GE(std::ranges::min(latencies), 0);
@@ -180,7 +171,7 @@ TEST(Latency, IsNeverNegative) {
 
 TEST(Latency, KeepsTheOrderOfEveryPixel) {
   NoiseOptions options;
-  options.latency = {10, 0, 0.1, 200};
+  options.latency = {10, 200};
   const SensedEvents events = random_events(20000, 2e6);
   using Pixel = std::pair<int, int>;
   std::map<Pixel, std::vector<int>> fired;

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "simulator/scene/intersection/embree_scene.h"
 #include "simulator/scene/moving_object.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/visibility/ray_caster.h"
 
 namespace saccade {
 
@@ -16,14 +16,14 @@ namespace saccade {
           frame.rotation.transpose() * ray.direction, ray.time_s};
 }
 
-/// What a ray intersects first among the triangles that are static, in the world, and those of moving
-/// objects, each in its object's own frame. Rays go through the latter only where they pass an
-/// object's bounding sphere at their time. Thread-safe.
+/// What a ray intersects first among the triangles that are static, in the world, and those of
+/// moving objects, each in its object's own frame. Rays go through the latter only where they pass
+/// an object's bounding sphere at their time. Thread-safe.
 class Visibility {
  public:
-  /// `still`: none where everything moves. `ray_casters`: one for each of `objects`.
-  Visibility(std::optional<RayCaster> still, std::vector<MovingObject> objects,
-             std::vector<RayCaster> ray_casters);
+  /// `static_triangles`: none where everything moves. `embree_scenes`: one for each of `objects`.
+  Visibility(std::optional<EmbreeScene> static_triangles, std::vector<MovingObject> objects,
+             std::vector<EmbreeScene> embree_scenes);
 
   /// The nearest triangle along each of at most 16 coherent rays.
   void nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
@@ -36,9 +36,9 @@ class Visibility {
   [[nodiscard]] std::span<const MovingObject> objects() const { return objects_; }
 
  private:
-  std::optional<RayCaster> still_;
+  std::optional<EmbreeScene> static_triangles_;
   std::vector<MovingObject> objects_;
-  std::vector<RayCaster> ray_casters_;
+  std::vector<EmbreeScene> embree_scenes_;
 };
 
 }  // namespace saccade

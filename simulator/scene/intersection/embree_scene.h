@@ -14,9 +14,6 @@ namespace saccade {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// Rays that are traced at once, at most.
-constexpr std::size_t kPacket = 16;
-
 /// Triangles numbered from `first` on.
 struct TriangleRun {
   std::span<const Corners> corners;
@@ -26,17 +23,17 @@ struct TriangleRun {
 /// Visibility and shadows among triangles of one frame, by Embree in single precision. Neighbouring
 /// triangles must share bit-equal corners; then no ray slips through between them. Thread-safe once
 /// built.
-class RayCaster {
+class EmbreeScene {
  public:
   /// Whether a triangle is opaque where a ray intersects its plane. Asked for triangles with
   /// cutouts only; thread-safe.
   using IsOpaque = std::function<bool(const Ray&, TriangleId)>;
 
   /// `opaque` ones stop every ray, those with cutouts where `is_opaque` says so.
-  RayCaster(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque);
-  ~RayCaster();
-  RayCaster(RayCaster&&) noexcept;
-  RayCaster& operator=(RayCaster&&) noexcept;
+  EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque);
+  ~EmbreeScene();
+  EmbreeScene(EmbreeScene&&) noexcept;
+  EmbreeScene& operator=(EmbreeScene&&) noexcept;
 
   /// The nearest triangle along each of at most 16 coherent rays.
   void nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const;

@@ -1,4 +1,4 @@
-#include "simulator/scene/visibility/ray_caster.h"
+#include "simulator/scene/intersection/embree_scene.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
@@ -32,8 +32,8 @@ struct ReleaseDevice {
 struct ReleaseScene {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
-using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
 /// Embree's context with the rays in double precision, for the cutout test.
 struct Context {
@@ -72,7 +72,7 @@ void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> co
 
 RTCRayHit16 make_empty_packet() {
   RTCRayHit16 packet{};
-  for (unsigned i = 0; i < kPacket; ++i) {
+  for (unsigned i = 0; i < kRayPacket; ++i) {
     packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
     packet.ray.mask[i] = ~0U;
     packet.ray.id[i] = i;
@@ -99,9 +99,9 @@ void set_ray(RTCRay16& packet, std::size_t i, const Ray& ray) {
 
 }  // namespace
 
-struct RayCaster::State {
-  Device device;
-  EmbreeScene scene;
+struct EmbreeScene::State {
+  DeviceHandle device;
+  SceneHandle scene;
   IsOpaque is_opaque;
   std::array<TriangleId, 2> first_of_geometry{};
   RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -119,7 +119,7 @@ struct RayCaster::State {
   }
 
   void trace(std::span<const Ray> rays, RTCRayHit16& packet) const {
-    alignas(64) std::array<int, kPacket> valid{};
+    alignas(64) std::array<int, kRayPacket> valid{};
     for (std::size_t i = 0; i < rays.size(); ++i) {
       set_ray(packet.ray, i, rays[i]);
       valid[i] = -1;
@@ -135,7 +135,7 @@ struct RayCaster::State {
   }
 };
 
-RayCaster::RayCaster(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque)
+EmbreeScene::EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque)
     : state_(std::make_unique<State>()) {
   const std::size_t count = opaque.corners.size() + cut_out.corners.size();
   SACCADE_CHECK(count < kNothing / 3);
@@ -155,21 +155,21 @@ RayCaster::RayCaster(const TriangleRun& opaque, const TriangleRun& cut_out, IsOp
   SACCADE_CHECK(rtcGetDeviceError(state_->device.get()) == RTC_ERROR_NONE);
 }
 
-RayCaster::~RayCaster() = default;
-RayCaster::RayCaster(RayCaster&&) noexcept = default;
-RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+EmbreeScene::~EmbreeScene() = default;
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
 
-void RayCaster::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
-  SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size());
+void EmbreeScene::nearest(std::span<const Ray> rays, std::span<TriangleId> triangles) const {
+  SACCADE_CHECK(rays.size() <= kRayPacket && rays.size() == triangles.size());
   if (rays.empty()) return;
   alignas(64) RTCRayHit16 packet = empty_packet();
   state_->trace(rays, packet);
   for (std::size_t i = 0; i < rays.size(); ++i) triangles[i] = state_->hit(packet, i);
 }
 
-void RayCaster::nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,
-                       std::span<float> distances) const {
-  SACCADE_CHECK(rays.size() <= kPacket && rays.size() == triangles.size() &&
+void EmbreeScene::nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,
+                         std::span<float> distances) const {
+  SACCADE_CHECK(rays.size() <= kRayPacket && rays.size() == triangles.size() &&
                 rays.size() == distances.size());
   if (rays.empty()) return;
   alignas(64) RTCRayHit16 packet = empty_packet();
@@ -183,13 +183,13 @@ void RayCaster::nearer(std::span<const Ray> rays, std::span<TriangleId> triangle
   }
 }
 
-void RayCaster::find_blocked(std::span<const Ray> rays, std::span<const float> distances,
-                             std::span<bool> blocked) const {
-  SACCADE_CHECK(rays.size() <= kPacket && distances.size() == rays.size() &&
+void EmbreeScene::find_blocked(std::span<const Ray> rays, std::span<const float> distances,
+                               std::span<bool> blocked) const {
+  SACCADE_CHECK(rays.size() <= kRayPacket && distances.size() == rays.size() &&
                 blocked.size() == rays.size());
   if (rays.empty()) return;
   alignas(64) RTCRay16 packet = empty_packet().ray;
-  alignas(64) std::array<int, kPacket> valid{};
+  alignas(64) std::array<int, kRayPacket> valid{};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (blocked[i]) continue;
     set_ray(packet, i, rays[i]);

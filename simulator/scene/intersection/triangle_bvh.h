@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "simulator/scene/intersection/embree_scene.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/visibility/ray_caster.h"
 
 namespace saccade {
 
@@ -22,8 +22,9 @@ struct AffineForm {
   }
 };
 
-/// A bounding volume hierarchy of triangles, to prove that none of them can become visible. Conservative: a
-/// triangle counts as long as no side of the frusta separates it. Thread-safe once built.
+/// A bounding volume hierarchy of triangles, to prove that none of them can become visible.
+/// Conservative: a triangle counts as long as no side of the frusta separates it. Thread-safe once
+/// built.
 class TriangleBvh {
  public:
   /// `ids`: one per triangle.

@@ -1,4 +1,4 @@
-#include "simulator/scene/visibility/triangle_bvh.h"
+#include "simulator/scene/intersection/triangle_bvh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ constexpr std::uint32_t kLeaf = 4;
 /// Below this boxes are halved by number, so that the tree fits the stack that visits it.
 constexpr int kDeepest = 30;
 constexpr std::size_t kMaxFrusta = 5;
-/// Shares of the size of a box that float coordinates are trusted to.
+/// Fractions of the size of a box that float coordinates are trusted to.
 constexpr double kRounding = 1e-6;
 
 /// Three times the centre.
@@ -153,8 +153,8 @@ std::uint32_t TriangleBvh::divide(std::span<Item> triangles, const Eigen::Aligne
   Eigen::Index axis = 0;
   const float extent = centres.sizes().maxCoeff(&axis);
   const auto bin_of = [&](const Item& occluder) {
-    const float share = (centre_of(occluder.corners)[axis] - centres.min()[axis]) / extent;
-    return std::min(static_cast<std::size_t>(share * static_cast<float>(kBins)), kBins - 1);
+    const float fraction = (centre_of(occluder.corners)[axis] - centres.min()[axis]) / extent;
+    return std::min(static_cast<std::size_t>(fraction * static_cast<float>(kBins)), kBins - 1);
   };
   const auto half = static_cast<std::uint32_t>(triangles.size() / 2);
   if (!(extent > 0)) return half;

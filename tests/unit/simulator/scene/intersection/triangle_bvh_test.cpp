@@ -1,4 +1,4 @@
-#include "simulator/scene/visibility/triangle_bvh.h"
+#include "simulator/scene/intersection/triangle_bvh.h"
 
 #include <gtest/gtest.h>
 
