@@ -51,8 +51,9 @@ struct PinholeCamera {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width - 1 && pixel.y() <= height - 1;
   }
 
-  /// Throws InputError(place) unless sizes and focal lengths are positive and all numbers finite.
-  void check(const std::string& place) const;
+  /// Throws InputError(location) unless sizes and focal lengths are positive and all numbers
+  /// finite.
+  void check(const std::string& location) const;
 };
 
 /// d pi(exp(xi^) p) / d xi at xi = 0 (2x6) [px]: the interaction matrix for the POINT's motion,

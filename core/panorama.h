@@ -34,7 +34,7 @@ struct Panorama {
   /// Whether the last column is the first one's neighbour.
   [[nodiscard]] bool wraps() const { return width == around; }
 
-  /// The unit vector that a place shows.
+  /// The unit vector that is shown at (x, y).
   [[nodiscard]] Eigen::Vector3d direction(double x, double y) const;
   /// Where a direction, other than 0, is shown: x within half a turn of the rectangle's middle.
   [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector3d& direction) const;
@@ -43,8 +43,8 @@ struct Panorama {
   /// Steradians of a pixel in row y.
   [[nodiscard]] double solid_angle(int y) const;
 
-  /// Throws InputError(place) unless the rectangle lies within the whole.
-  void check(const std::string& place) const;
+  /// Throws InputError(location) unless the rectangle lies within the whole.
+  void check(const std::string& location) const;
 };
 
 /// What a camera sees, its lens included.

@@ -12,7 +12,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// The cross-product matrix: skew(a) b = a x b.
 [[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& a);
 
-/// SO(3) exponential of a rotation vector [rad] (Rodrigues); exact to machine precision also near zero.
+/// SO(3) exponential of a rotation vector [rad] (Rodrigues); exact to machine precision also near
+/// zero.
 [[nodiscard]] Eigen::Quaterniond so3_exp(const Eigen::Vector3d& rotation_vector);
 
 /// SO(3) logarithm, |result| <= pi. Sign of the quaternion does not matter.

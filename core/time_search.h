@@ -35,7 +35,8 @@ template <std::ranges::random_access_range Items, class Time, class TimeOf>
   return count_until(events, t, &Event::t_ns);
 }
 
-/// The events with begin <= t_ns < end, in order of time as the stream is; empty where end <= begin.
+/// The events with begin <= t_ns < end, in order of time as the stream is; empty where end <=
+/// begin.
 [[nodiscard]] inline std::span<const Event> events_between(std::span<const Event> events,
                                                            TimeNs begin, TimeNs end) {
   const std::size_t first = count_before(events, begin);

@@ -32,7 +32,7 @@ struct StampedTwist {
 class Trajectory {
  public:
   Trajectory() = default;
-  /// Times strictly increasing (contract; the file readers check it with the place).
+  /// Times strictly increasing (contract; the file readers check it and name the line).
   explicit Trajectory(std::vector<StampedPose> poses);
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }

@@ -43,7 +43,7 @@ DatasetRecord facts(const CameraRecording& recording, const EventStatistics& eve
   record.log_eps = recording.events.log_eps;
   record.rays = static_cast<std::int64_t>(events.rays);
   record.lit_points = static_cast<std::int64_t>(events.lit_points);
-  record.surface_looks = static_cast<std::int64_t>(events.surface_samples);
+  record.surface_samples = static_cast<std::int64_t>(events.surface_samples);
   if (recording.events.noise.readout.on())
     record.lost_events = static_cast<std::int64_t>(events.lost);
   record.time_bound_us = 1e6 * events.time_bound_s;

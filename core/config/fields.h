@@ -28,7 +28,7 @@ enum class Form { kAbsent, kNumber, kText, kList, kMap };
 
 /// The keys of one section while they are read, printed or checked. An options struct names its
 /// keys once,
-///   void describe(config::Fields& fields, TrackOptions& options) {
+///   void describe(config::Fields& fields, AlignOptions& options) {
 ///     fields.value("samples", options.samples, "Map points drawn per iteration.").range(6, 1e6);
 ///     fields.section("blur", options.blur, "Blur of the template.");
 ///   }

@@ -12,9 +12,13 @@ namespace saccade::config {
 
 /// One row of a module's table of methods, the one way in which depth, reconstruction, tracking and
 /// refinement choose theirs. A new method is a row and a pair of files:
-///   constexpr MethodRow<DepthConfig, DepthEstimator, const DepthInput&> kDepthMethods[] = {
-///       {.name = "rays", .help = "Regression over ....", .describe = describe_rays, .make = make_rays},
+///   constexpr DepthMethodRow kDepthMethods[] = {
+///       {.name = "rays",
+///        .help = "Edge points of a space sweep, each refined by a regression.",
+///        .describe = describe_options<&DepthConfig::rays>,
+///        .make = make<RayDepth, &DepthConfig::rays>},
 ///   };
+/// (estimator/depth/depth_config.cpp).
 template <class Config, class Method, class... Inputs>
 struct MethodRow {
   std::string_view name;  ///< value of the key, and name of the section that holds its options

@@ -12,8 +12,8 @@ namespace saccade::config {
 class Fields;
 
 /// What a described key must satisfy; returned by Fields, rules are chained behind it. Each rule
-/// holds for every number of a list as well. A broken rule throws InputError with the location of the
-/// value; a key that the file leaves out keeps its default, which is not checked again.
+/// holds for every number of a list as well. A broken rule throws InputError with the location of
+/// the value; a key that the file leaves out keeps its default, which is not checked again.
 class Rule {
  public:
   static constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();

@@ -47,7 +47,7 @@ struct PoseOverControls {
   Rigid3 world_from_body;
   Eigen::Matrix<double, 3, 12> rotation_jacobian;
 };
-[[nodiscard]] PoseOverControls pose_over(const SplineKnots::LocalBasis& place,
+[[nodiscard]] PoseOverControls pose_over(const SplineKnots::LocalBasis& local,
                                          const std::array<Rigid3, 4>& controls);
 
 /// Control poses of a spline over knots.

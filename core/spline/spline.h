@@ -40,9 +40,9 @@ class Spline {
   [[nodiscard]] static Spline interpolate(std::span<const StampedPose> poses);
 
   /// Least-squares fit with uniform knots `knot_spacing_s` apart (rounded so that whole segments
-  /// fill the poses' span), for recorded motion. Where poses are missing the motion is extrapolated at constant velocity.
-  /// At least 2 poses, times strictly increasing. Throws InputError if the rotations do not
-  /// converge.
+  /// fill the poses' span), for recorded motion. Where poses are missing the motion is extrapolated
+  /// at constant velocity. At least 2 poses, times strictly increasing. Throws InputError if the
+  /// rotations do not converge.
   [[nodiscard]] static Spline smooth(std::span<const StampedPose> poses, double knot_spacing_s);
 
   /// Uniform spline from control poses: segment i starts at start_s + i * knot_spacing_s and uses

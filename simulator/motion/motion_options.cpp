@@ -16,7 +16,7 @@ constexpr double kUnitTolerance = 1e-3;
 /// Ranges that only mistakes leave.
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 36000;
-constexpr double kLargestEntry = 1e10; // of a pose: seconds, metres or a quaternion
+constexpr double kLargestEntry = 1e10;  // of a pose: seconds, metres or a quaternion
 
 /// The keys stand beside those of the position, not in a section of their own.
 void describe_orientation(config::Fields& fields, PresetOrientation& options) {

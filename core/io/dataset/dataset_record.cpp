@@ -53,7 +53,7 @@ void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("log_eps", record.log_eps, "eps of L = ln(eps + I)").above(0);
   fields.value("rays", record.rays, "for visibility, in all").at_least(0);
   fields.value("lit_points", record.lit_points, "whose light was found").at_least(0);
-  fields.value("surface_looks", record.surface_looks, "at known triangles, without a ray")
+  fields.value("surface_looks", record.surface_samples, "samples of known triangles, without a ray")
       .at_least(0);
   fields.value("lost_events", record.lost_events, "that met a full readout").at_least(0);
   fields.value("rays_per_event", record.rays_per_event, "[-]").at_least(0);

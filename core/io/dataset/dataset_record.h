@@ -39,9 +39,9 @@ struct DatasetRecord {
   double log_eps = 1e-3;
   std::optional<std::int64_t> rays;
   std::optional<double> rays_per_event;
-  std::optional<std::int64_t> lit_points;     ///< whose light was found
-  std::optional<std::int64_t> surface_looks;  ///< at known triangles, without a ray
-  std::optional<std::int64_t> lost_events;    ///< met a full readout
+  std::optional<std::int64_t> lit_points;       ///< whose light was found
+  std::optional<std::int64_t> surface_samples;  ///< of known triangles, without a ray
+  std::optional<std::int64_t> lost_events;      ///< met a full readout
   std::optional<double> time_bound_us;  ///< of every event's time, before rounding to the unit
   std::optional<double> path_length_m;  ///< of the camera
   std::map<std::string, std::string> sha256;  ///< of every file but dataset.yaml, by relative path

@@ -7,8 +7,8 @@
 namespace saccade {
 
 /// A file that appears under its final name only when it is complete: it is written as a hidden
-/// sibling (`.NAME.partial-...`) and renamed. Missing parent folders are created, links followed. Throws
-/// InputError with the path when that is not possible.
+/// sibling (`.NAME.partial-...`) and renamed. Missing parent folders are created, links followed.
+/// Throws InputError with the path when that is not possible.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& file);

@@ -28,7 +28,8 @@ struct ExrChannel {
 [[nodiscard]] ImageF read_exr(const std::filesystem::path& file);
 /// R, G and B, or one plane three times.
 [[nodiscard]] ImageRgbF read_exr_rgb(const std::filesystem::path& file);
-[[nodiscard]] ImageRgbF decode_exr_rgb(std::span<const std::byte> bytes, const std::string& place);
+[[nodiscard]] ImageRgbF decode_exr_rgb(std::span<const std::byte> bytes,
+                                       const std::string& location);
 
 /// Float32 with lossless ZIP compression; channels of the same size with different names.
 void write_exr(const std::filesystem::path& file, std::span<const ExrChannel> channels);

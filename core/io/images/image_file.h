@@ -21,9 +21,9 @@ using ImageRgba8 = Image<Rgba8>;
 [[nodiscard]] ImageRgb8 read_image_rgb(const std::filesystem::path& file);
 /// With the alpha channel; 255 where the file has none.
 [[nodiscard]] ImageRgba8 read_image_rgba(const std::filesystem::path& file);
-/// The same from memory; `place` is what errors name.
+/// The same from memory; `location` is what errors name.
 [[nodiscard]] ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes,
-                                           const std::string& place);
+                                           const std::string& location);
 
 void write_png(const std::filesystem::path& file, const ImageU8& image);
 void write_png(const std::filesystem::path& file, const ImageRgb8& image);

@@ -9,7 +9,7 @@
 namespace saccade {
 
 /// Held during every call into HDF5, which is not thread-safe as Debian builds it; also keeps the
-/// library from printing its error stack, because errors are reported with their place here.
+/// library from printing its error stack, because errors are reported with their location here.
 class H5Lock {
  public:
   H5Lock();

@@ -59,8 +59,8 @@ class H5TableWriter {
 };
 
 /// Fills the columns from row `begin` on with as many rows as they have room for, of the `count`
-/// that the group's columns must hold. InputError with the place for columns that are missing or of
-/// another length, and for chunks that cannot be read.
+/// that the group's columns must hold. InputError with the location for columns that are missing or
+/// of another length, and for chunks that cannot be read.
 void read_h5_table(const std::filesystem::path& file, const std::string& group, std::uint64_t count,
                    std::uint64_t begin, std::span<const H5Target> columns);
 

@@ -15,8 +15,7 @@ void PixelBank::start(std::size_t i, double log_intensity, double t_s) {
   Pixel& pixel = pixels_[i];
   pixel.state = start_pixel(pixel.traits, log_intensity, t_s);
   update_thresholds(pixel);
-  if (!noisy_.empty())
-    noisy_[i] = noise_.start(pixel.traits.x, pixel.traits.y, log_intensity, t_s);
+  if (!noisy_.empty()) noisy_[i] = noise_.start(pixel.traits.x, pixel.traits.y, log_intensity, t_s);
 }
 
 void PixelBank::update_thresholds(Pixel& pixel) const {
