@@ -24,24 +24,29 @@
 namespace saccade {
 namespace {
 
+template <class Config>
+std::string print_config(const config::Document& document) {
+  return config::print_documented(config::read<Config>(document));
+}
+
 constexpr Module kModules[] = {
     {.name = "track",
      .help = "Pose of the camera against a known map (thesis chapter 4).",
      .run = run_track,
-     .print_config = print_track_config,
+     .print_config = print_config<TrackConfig>,
      .reference = config::reference<TrackConfig>},
     {.name = "depth",
      .help = "Depth of the edges from events and poses (thesis chapter 5).",
      .takes_poses = true,
      .run = run_depth,
-     .print_config = print_depth_config,
+     .print_config = print_config<DepthConfig>,
      .reference = config::reference<DepthConfig>},
     {.name = "reconstruct",
      .help = "Image of a view from events, poses and depth (thesis chapter 6).",
      .takes_poses = true,
      .takes_depth = true,
      .run = run_reconstruction,
-     .print_config = print_reconstruction_config,
+     .print_config = print_config<ReconstructionConfig>,
      .reference = config::reference<ReconstructionConfig>},
     {.name = "odometry",
      .help = "Poses and map from events and the poses of a short start (thesis chapter 7).",
@@ -59,23 +64,23 @@ constexpr Module kModules[] = {
      .help = "Events and frames as of a camera that does not rotate (thesis chapter 3).",
      .takes_poses = true,
      .run = run_stabilization,
-     .print_config = print_stabilization_config,
+     .print_config = print_config<StabilizeConfig>,
      .reference = config::reference<StabilizeConfig>},
     {.name = "mosaic",
      .help = "Panorama from the events of a rotating camera (thesis 3.4.1).",
      .takes_poses = true,
      .run = run_mosaic,
-     .print_config = print_mosaic_config,
+     .print_config = print_config<MosaicConfig>,
      .reference = config::reference<MosaicConfig>},
     {.name = "rotation",
      .help = "Angular velocity of the camera from events, gyroscope or both.",
      .run = run_rotation,
-     .print_config = print_rotation_config,
+     .print_config = print_config<RotationConfig>,
      .reference = config::reference<RotationConfig>},
     {.name = "external",
      .help = "An external program, which an adapter (-c) says how to run.",
      .run = run_external,
-     .print_config = print_external_config,
+     .print_config = print_config<AdapterConfig>,
      .reference = config::reference<AdapterConfig>},
 };
 

@@ -1,7 +1,6 @@
 #include "estimator/depth/depth_config.h"
 
 #include <span>
-#include <type_traits>
 
 #include "core/check.h"
 #include "core/config/method_table.h"
@@ -12,20 +11,25 @@ namespace {
 using Method = DepthConfig::Method;
 using DepthMethodRow = config::MethodRow<DepthConfig, DepthEstimator, const PinholeCamera&, double>;
 
-template <auto kOptions>
-void describe_options(config::Fields& fields, DepthConfig& config) {
-  describe(fields, config.*kOptions);
+void describe_thesis(config::Fields& fields, DepthConfig& config) {
+  describe(fields, config.thesis);
 }
 
-template <class Depth, auto kOptions>
-std::unique_ptr<DepthEstimator> make(const DepthConfig& config, const PinholeCamera& camera,
-                                     double mean_depth_m) {
-  const auto& options = config.*kOptions;
-  if constexpr (std::is_constructible_v<Depth, decltype(options), DepthLimits, PinholeCamera,
-                                        double>)
-    return std::make_unique<Depth>(options, config.limits, camera, mean_depth_m);
-  else
-    return std::make_unique<Depth>(options, config.limits, camera);
+void describe_rays(config::Fields& fields, DepthConfig& config) { describe(fields, config.rays); }
+
+std::unique_ptr<DepthEstimator> make_thesis(const DepthConfig& config, const PinholeCamera& camera,
+                                            double mean_depth_m) {
+  return std::make_unique<ThesisDepth>(config.thesis, config.limits, camera, mean_depth_m);
+}
+
+std::unique_ptr<DepthEstimator> make_rays(const DepthConfig& config, const PinholeCamera& camera,
+                                          double) {
+  return std::make_unique<RayDepth>(config.rays, config.limits, camera);
+}
+
+std::unique_ptr<DepthEstimator> make_sweep(const DepthConfig& config, const PinholeCamera& camera,
+                                           double) {
+  return std::make_unique<SweepDepth>(config.limits, camera);
 }
 
 /// A new method is a pair of files, its options in DepthConfig and a row here.
@@ -33,17 +37,17 @@ constexpr DepthMethodRow kDepthMethods[] = {
     {.name = Method::kThesis,
      .help = "Keypoints of a reference event frame, searched along epipolar lines and filtered "
              "(thesis chapter 5).",
-     .describe = describe_options<&DepthConfig::thesis>,
-     .make = make<ThesisDepth, &DepthConfig::thesis>},
+     .describe = describe_thesis,
+     .make = make_thesis},
     {.name = Method::kRays,
      .help = "Edge points (edgels) of a space sweep, each refined by a regression over the rays of "
              "the events near it.",
-     .describe = describe_options<&DepthConfig::rays>,
-     .make = make<RayDepth, &DepthConfig::rays>},
+     .describe = describe_rays,
+     .make = make_rays},
     {.name = Method::kSweep,
      .help = "Votes of all rays on planes of constant inverse depth (EMVS), the baseline.",
-     .describe = describe_options<&DepthConfig::sweep>,
-     .make = make<SweepDepth, &DepthConfig::sweep>},
+     .describe = nullptr,
+     .make = make_sweep},
 };
 
 void describe_limits(config::Fields& fields, DepthLimits& limits) {
@@ -54,17 +58,13 @@ void describe_limits(config::Fields& fields, DepthLimits& limits) {
 
 }  // namespace
 
-void describe_depth_method(config::Fields& fields, DepthConfig& config) {
+void describe(config::Fields& fields, DepthConfig& config) {
   config::describe_method(fields, "method", config.method,
                           std::span<const DepthMethodRow>(kDepthMethods), config,
                           "Method that estimates depth.");
   fields.group(
       "range_m", [&](config::Fields& f) { describe_limits(f, config.limits); },
       "Depths that may occur; a wide range costs time and lets more wrong depths through.");
-}
-
-void describe(config::Fields& fields, DepthConfig& config) {
-  describe_depth_method(fields, config);
   fields.group(
       "window", [&](config::Fields& f) { describe(f, config.window); },
       "Part of the events from which one view is estimated.");

@@ -27,15 +27,10 @@ struct DepthConfig {
   DepthLimits limits;
   ThesisDepthOptions thesis;
   RayDepthOptions rays;
-  SweepDepthOptions sweep;
   std::uint64_t seed = 1;
 };
 
 void describe(config::Fields& fields, DepthConfig& config);
-
-/// The keys of the method alone, without window and seed: for modules that estimate depth as a
-/// part of theirs.
-void describe_depth_method(config::Fields& fields, DepthConfig& config);
 
 /// The method that the configuration names. `camera` with its lens; `mean_depth_m` of the scene, >
 /// 0.

@@ -47,8 +47,4 @@ RunSummary run_depth(const RunRequest& request) {
   return summary_of(timing, fmt::format("{} points in {} views", points, windows.size()));
 }
 
-std::string print_depth_config(const config::Document& document) {
-  return config::print_documented(config::read<DepthConfig>(document));
-}
-
 }  // namespace saccade

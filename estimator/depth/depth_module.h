@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -12,8 +9,5 @@ namespace saccade {
 /// and timing.json. Windows run in parallel, with the same result for any number of threads. Throws
 /// InputError for bad input.
 RunSummary run_depth(const RunRequest& request);
-
-/// The resolved configuration, documented.
-[[nodiscard]] std::string print_depth_config(const config::Document& document);
 
 }  // namespace saccade

@@ -145,8 +145,4 @@ RunSummary run_stabilization(const RunRequest& request) {
                                         result.windows.size()));
 }
 
-std::string print_stabilization_config(const config::Document& document) {
-  return config::print_documented(config::read<StabilizeConfig>(document));
-}
-
 }  // namespace saccade

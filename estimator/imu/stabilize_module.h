@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -13,8 +10,5 @@ namespace saccade {
 /// images.txt), run.yaml and timing.json. Events and frames are optional. Throws
 /// InputError for bad input.
 RunSummary run_stabilization(const RunRequest& request);
-
-/// The resolved configuration, documented.
-[[nodiscard]] std::string print_stabilization_config(const config::Document& document);
 
 }  // namespace saccade

@@ -1,7 +1,7 @@
 #include "estimator/mosaic/mosaic_config.h"
 
 #include "estimator/reconstruction/contrast_thresholds.h"
-#include "estimator/reconstruction/snapshots.h"
+#include "estimator/reconstruction/reconstruction_output.h"
 
 namespace saccade {
 

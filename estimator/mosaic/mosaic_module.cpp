@@ -20,7 +20,6 @@
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/rate_offset.h"
 #include "estimator/reconstruction/reconstruction_output.h"
-#include "estimator/reconstruction/snapshots.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_windows.h"
@@ -64,7 +63,7 @@ Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
   return panorama_around(FieldOfView(camera), orientations_of(poses, events), resolution);
 }
 
-/// The orientations without the rate offset that the events imply; then gravity_aligned again with the
+/// The orientations without the rate offset that the events imply; then aligned with gravity again with the
 /// accelerometer, if there is one.
 Trajectory corrected(const Trajectory& world_from_camera, std::span<const Event> events,
                      const MosaicSource& source, const PinholeCamera& camera,
@@ -172,10 +171,6 @@ RunSummary run_mosaic(const RunRequest& request) {
 
   return summary_of(timing,
                     fmt::format("a mosaic of {} x {} px", run.panorama.width, run.panorama.height));
-}
-
-std::string print_mosaic_config(const config::Document& document) {
-  return config::print_documented(config::read<MosaicConfig>(document));
 }
 
 }  // namespace saccade

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -13,8 +10,5 @@ namespace saccade {
 /// gyro_bias.txt (of the inertial sensor), growth/, run.yaml and timing.json; the same for any
 /// number of threads. Throws InputError for bad input.
 RunSummary run_mosaic(const RunRequest& request);
-
-/// The resolved configuration, documented.
-[[nodiscard]] std::string print_mosaic_config(const config::Document& document);
 
 }  // namespace saccade

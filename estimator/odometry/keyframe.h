@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/depth/depth_estimator.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 #include "estimator/tracking/map_extraction.h"
 
 namespace saccade {

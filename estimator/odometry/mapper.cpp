@@ -76,7 +76,7 @@ MappingOptions relaxed(MappingOptions options, double factor) {
   options.max_sigma *= factor;
   RayDepthOptions& rays = options.depth.rays;
   rays.refiner.max_sigma *= factor;
-  rays.propagation.max_sigma *= factor;
+  rays.propagation_max_sigma *= factor;
   rays.fusion.max_sigma *= factor;
   return options;
 }
@@ -199,7 +199,7 @@ Trajectory Mapper::smoothed(const Trajectory& poses, std::span<const Event> even
 
 double Mapper::sweep_depth(const ViewWindow& window) const {
   const DepthLimits& limits = options_.depth.limits;
-  const SweepDepth sweep(options_.depth.sweep, limits, camera_);
+  const SweepDepth sweep(limits, camera_);
   return median_depth(sweep.estimate(window), std::sqrt(limits.near_m * limits.far_m));
 }
 

@@ -16,7 +16,7 @@
 #include "estimator/odometry/start/start_record.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
-#include "estimator/tracking/gyroscope_input.h"
+#include "estimator/tracking/motion_model.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {

@@ -7,7 +7,7 @@
 #include "core/config/fields.h"
 #include "estimator/reconstruction/equations/equation_reconstruction.h"
 #include "estimator/reconstruction/gradient/gradient_reconstruction.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 
 namespace saccade {
 

@@ -1,18 +1,14 @@
 #include "estimator/reconstruction/reconstruction_config.h"
 
 #include "estimator/reconstruction/contrast_thresholds.h"
-#include "estimator/reconstruction/snapshots.h"
+#include "estimator/reconstruction/reconstruction_output.h"
 
 namespace saccade {
 
-void describe_reconstruction_method(config::Fields& fields, ReconstructionConfig& config) {
+void describe(config::Fields& fields, ReconstructionConfig& config) {
   describe(fields, config, true);
   fields.section("depth", config.depth, "Propagation of the known depth to the poses of events.");
   describe_contrast(fields, config.contrast_on, config.contrast_off);
-}
-
-void describe(config::Fields& fields, ReconstructionConfig& config) {
-  describe_reconstruction_method(fields, config);
   fields.group(
       "window", [&](config::Fields& f) { describe(f, config.window); },
       "Part of the events from which one view is reconstructed.");

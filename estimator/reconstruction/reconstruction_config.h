@@ -7,8 +7,8 @@
 
 #include "core/camera.h"
 #include "core/config/fields.h"
-#include "estimator/reconstruction/image_estimator.h"
 #include "estimator/reconstruction/image_methods.h"
+#include "estimator/reconstruction/image_solver.h"
 #include "estimator/reconstruction/surface/depth_source.h"
 #include "estimator/run/view_windows.h"
 
@@ -28,10 +28,6 @@ struct ReconstructionConfig : ImageMethodOptions {
 };
 
 void describe(config::Fields& fields, ReconstructionConfig& config);
-
-/// The keys of the method alone, without window, snapshots, figures and seed: for modules that
-/// reconstruct as a part of theirs.
-void describe_reconstruction_method(config::Fields& fields, ReconstructionConfig& config);
 
 /// The method that the configuration names. `camera` with its lens.
 [[nodiscard]] std::unique_ptr<ImageEstimator> make_image_estimator(

@@ -9,7 +9,6 @@
 #include "estimator/reconstruction/contrast_thresholds.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/reconstruction/reconstruction_output.h"
-#include "estimator/reconstruction/snapshots.h"
 #include "estimator/reconstruction/surface/depth_source.h"
 #include "estimator/reconstruction/thesis_figures.h"
 #include "estimator/run/run_input.h"
@@ -65,10 +64,6 @@ RunSummary run_reconstruction(const RunRequest& request) {
                 timing);
 
   return summary_of(timing, fmt::format("{} views", windows.size()));
-}
-
-std::string print_reconstruction_config(const config::Document& document) {
-  return config::print_documented(config::read<ReconstructionConfig>(document));
 }
 
 }  // namespace saccade

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/io/dataset/dataset.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 
 namespace saccade {
 

@@ -161,8 +161,4 @@ RunSummary run_rotation(const RunRequest& request) {
   return summary_of(timing, fmt::format("{} angular velocities", rates.size()));
 }
 
-std::string print_rotation_config(const config::Document& document) {
-  return config::print_documented(config::read<RotationConfig>(document));
-}
-
 }  // namespace saccade

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -11,8 +8,5 @@ namespace saccade {
 /// from both. Writes angular_velocity.txt, run.yaml and timing.json. Throws InputError for bad
 /// input.
 RunSummary run_rotation(const RunRequest& request);
-
-/// The resolved configuration, documented.
-[[nodiscard]] std::string print_rotation_config(const config::Document& document);
 
 }  // namespace saccade

@@ -39,7 +39,7 @@ struct ViewWindow {
                                             const Trajectory& trajectory);
 
 /// Cuts the stream into consecutive windows that together hold all of it, as few and as equal as
-/// the options allow. Windows without events, where the camera stood still, are left out.
+/// the options allow. Windows without events, where the camera was at rest, are left out.
 /// `trajectory` spans the events and outlives the windows; `frames` are those of kFrame.
 [[nodiscard]] std::vector<ViewWindow> cut_windows(std::span<const Event> events,
                                                   const Trajectory& trajectory,

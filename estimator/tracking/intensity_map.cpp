@@ -13,6 +13,9 @@ namespace {
 /// the next ones go on in the same way.
 constexpr float kDepthDiscontinuity = 0.03F;
 
+/// Difference of neighbours [log units] from which on they are an edge, not texture.
+constexpr float kEdgeContrast = 0.9F;
+
 /// Whether a row of inverse depths a, b, c, d belongs to one surface from b to c.
 bool is_joined(float before, float b, float c, float after) {
   if (!(b > 0 && c > 0)) return false;
@@ -109,14 +112,16 @@ ImageF steepness(const ImageF& image) {
   return steepest;
 }
 
-ImageF smoothed_at_edges(const ImageF& image, double blur_px, double step) {
+/// Where neighbours differ by more than kEdgeContrast the image is smoothed, fully from twice that on,
+/// so that edges attract from further away; elsewhere it stays as it is.
+ImageF smoothed_at_edges(const ImageF& image, double blur_px) {
   if (!(blur_px > 0)) return image;
   const ImageF blurred = smoothed(image, blur_px);
   const ImageF steep = steepness(image);
   ImageF result = image;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
-      const float fraction = std::clamp(steep(x, y) / static_cast<float>(step) - 1, 0.0F, 1.0F);
+      const float fraction = std::clamp(steep(x, y) / kEdgeContrast - 1, 0.0F, 1.0F);
       result(x, y) += fraction * (blurred(x, y) - image(x, y));
     }
   return result;
@@ -125,7 +130,7 @@ ImageF smoothed_at_edges(const ImageF& image, double blur_px, double step) {
 }  // namespace
 
 IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views,
-                           const IntensityMapOptions& options)
+                           double edge_blur_px)
     : camera_(camera) {
   SACCADE_CHECK(!views.empty());
   world_from_map_ = views.front().world_from_reference;
@@ -134,8 +139,7 @@ IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const Referenc
                   std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const int first_row = step * static_cast<int>(i);
-    const ImageF picture =
-        smoothed_at_edges(views[i].log_intensity, options.blur_px, options.edge_step);
+    const ImageF picture = smoothed_at_edges(views[i].log_intensity, edge_blur_px);
     std::copy(picture.pixels().begin(), picture.pixels().end(), &atlas_(0, first_row));
     views_.push_back(lift(camera, views[i],
                           world_from_map_.inverse() * views[i].world_from_reference, first_row));

@@ -14,23 +14,19 @@
 
 namespace saccade {
 
-/// A picture of point samples leaves open where between two of them an edge is. Where neighbours
-/// differ by more than the contrast step it is smoothed, fully from twice that on, so that edges
-/// attract from further away; elsewhere it stays as it is.
-struct IntensityMapOptions {
-  double edge_step = 0.9;  ///< [log units]
-  double blur_px = 0.8;    ///< sigma of the Gaussian; 0: nothing is smoothed
-};
-
 /// The known world of the intensity tracker: what one or more views show, as points with a log
 /// intensity. The pictures lie one below the other in an atlas, so that a pixel of any of them is
 /// one pair of coordinates.
 class IntensityMap {
  public:
+  /// Point samples do not determine the sub-pixel position of an edge: of tracking and refinement.
+  static constexpr double kEdgeBlur_px = 0.8;
+
   /// `camera` is undistorted and that of all views; the map's frame is that of the first of them.
   /// At least one view.
+  /// `edge_blur_px`: sigma of the Gaussian that smooths the pictures at their edges; 0: none.
   IntensityMap(const PinholeCamera& camera, std::span<const ReferenceView> views,
-               const IntensityMapOptions& options);
+               double edge_blur_px);
 
   /// A view's picture in the atlas, its pose, and its points [m].
   struct View {

@@ -79,10 +79,16 @@ void append(MapPoints& all, const MapPoints& more) {
   all.z.insert(all.z.end(), more.z.begin(), more.z.end());
 }
 
-ImageF gradient_magnitude(const ImageF& image) {
-  ImageF gradient_x, gradient_y;
-  differentiate(image, gradient_x, gradient_y);
-  return magnitude_of(gradient_x, gradient_y);
+MapPoints transformed(const Rigid3& target_from_source, const MapPoints& points) {
+  MapPoints moved;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d point =
+        target_from_source * Eigen::Vector3d(points.x[i], points.y[i], points.z[i]);
+    moved.x.push_back(static_cast<float>(point.x()));
+    moved.y.push_back(static_cast<float>(point.y()));
+    moved.z.push_back(static_cast<float>(point.z()));
+  }
+  return moved;
 }
 
 MapPoints extract_map(const ImageF& log_intensity, const ImageF& depth, const PinholeCamera& camera,

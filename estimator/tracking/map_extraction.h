@@ -5,6 +5,7 @@
 
 #include "core/camera.h"
 #include "core/image.h"
+#include "core/rigid3.h"
 
 namespace saccade {
 
@@ -30,8 +31,8 @@ struct MapPoints {
 /// Puts the points of `more` behind those of `all`.
 void append(MapPoints& all, const MapPoints& more);
 
-/// Gradient magnitude by central differences [1/px]; 0 on the border and beside NaN pixels.
-[[nodiscard]] ImageF gradient_magnitude(const ImageF& image);
+/// The points in another frame.
+[[nodiscard]] MapPoints transformed(const Rigid3& target_from_source, const MapPoints& points);
 
 /// Thresholds the gradient magnitude of `log_intensity` (normalised by its maximum) and lifts every
 /// pixel above with a valid depth into 3-D. `depth` [m], same size, 0 or NaN = unknown. `camera` is

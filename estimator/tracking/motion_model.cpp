@@ -1,5 +1,6 @@
 #include "estimator/tracking/motion_model.h"
 
+#include "estimator/imu/imu_input.h"
 #include "estimator/tracking/cholesky.h"
 
 namespace saccade {
@@ -8,7 +9,44 @@ namespace {
 /// Standard deviation at the start: of the velocity nothing is known.
 constexpr double kInitialVelocity_px_s = 300;
 
+void describe_gyroscope(config::Fields& fields, MotionModelOptions& options) {
+  fields
+      .value("gyro_bias", options.gyro_bias,
+             "Known bias in rad/s, in the frame of the sensor, which is subtracted from every "
+             "reading.")
+      .range(-10, 10);
+  fields
+      .value("gyro_offset_s", options.gyro_offset_s,
+             "True time of a reading of the gyroscope minus its time stamp, in seconds.")
+      .range(-1, 1);
+}
+
 }  // namespace
+
+void describe(config::Fields& fields, MotionModelOptions& options) {
+  using Prediction = MotionModelOptions::Prediction;
+  fields.choice(
+      "prediction", options.prediction,
+      {{"none", Prediction::kNone},
+       {"constant_velocity", Prediction::kConstantVelocity},
+       {"imu", Prediction::kImu}},
+      "Prediction of the next pose: the last one, a Kalman filter with constant velocity, "
+      "or that filter with the rotation of the gyroscope.");
+  if (options.prediction == Prediction::kNone) return;
+  fields
+      .value("acceleration_sigma_px", options.acceleration_sigma_px,
+             "Standard deviation of the change of the image velocity within a second, in px/s. A "
+             "smaller one smooths steady motion; a larger one follows abrupt motion.")
+      .range(1, 1e6);
+  if (options.prediction == Prediction::kImu) describe_gyroscope(fields, options);
+}
+
+Gyroscope load_gyroscope(const MotionModelOptions& options, const Dataset& dataset) {
+  if (options.prediction != MotionModelOptions::Prediction::kImu) return {};
+  ImuInput imu = load_imu_input(dataset, "motion.prediction: imu");
+  for (ImuSample& sample : imu.samples) sample.t_ns += ns_from_seconds(options.gyro_offset_s);
+  return {imu.samples, imu.camera_from_imu, options.gyro_bias};
+}
 
 MotionModel::MotionModel(const MotionModelOptions& options, double focal_px)
     : options_(options), focal_px_(focal_px) {}
@@ -36,7 +74,7 @@ bool MotionModel::has_gyroscope() const {
   return options_.prediction == MotionModelOptions::Prediction::kImu && !gyroscope_.is_empty();
 }
 
-void MotionModel::turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns) {
+void MotionModel::rotate_by_gyroscope(TimeNs from_ns, TimeNs to_ns) {
   // Measured, not estimated: independent of the pose and of the translation.
   velocity_.tail<3>() = gyroscope_.mean_rate(from_ns, to_ns);
   cross_covariance_.bottomRows<3>().setZero();
@@ -63,7 +101,7 @@ PosePrediction MotionModel::predict(TimeNs t_ns, double depth_m) {
       options_.acceleration_sigma_px + options_.acceleration_per_speed * speed_px(depth_m);
   Twist drift = twist_of_px(acceleration_px, depth_m).square();
   if (has_gyroscope()) {
-    turn_by_gyroscope(last_ns, t_ns);
+    rotate_by_gyroscope(last_ns, t_ns);
     drift.tail<3>().setZero();
   }
   map_from_camera_ = map_from_camera_ * Rigid3::exp(velocity_ * dt);

@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 
+#include "core/config/fields.h"
 #include "core/event.h"
+#include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "estimator/tracking/gyroscope.h"
 
@@ -18,12 +20,18 @@ struct MotionModelOptions {
   /// The velocity is a random walk (white noise on the acceleration; Barfoot, State Estimation for
   /// Robotics, 3.4): standard deviation of its change within a second, as image motion [px/s].
   double acceleration_sigma_px = 500;
-  /// The same per image speed [1/s], added: what moves fast is about to turn back.
+  /// The same per image speed [1/s], added: what moves fast is likely to change direction.
   double acceleration_per_speed = 0;
   double gyro_sigma = 0.05;                             ///< of a reading, its bias included [rad/s]
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< sensor frame [rad/s]
   double gyro_offset_s = 0;
 };
+
+void describe(config::Fields& fields, MotionModelOptions& options);
+
+/// The dataset's gyroscope, turned into the frame of the camera by camera.yaml, for
+/// motion.prediction: imu; an empty one for any other. InputError where it is needed and missing.
+[[nodiscard]] Gyroscope load_gyroscope(const MotionModelOptions& options, const Dataset& dataset);
 
 /// A pose as it is expected, with the inverse of its covariance in the camera frame (v, w).
 struct PosePrediction {
@@ -36,16 +44,16 @@ struct PosePrediction {
 /// already pulled towards the prediction by its precision (a maximum a posteriori estimate).
 class MotionModel {
  public:
-  /// `focal_px` turns image motion into angles.
+  /// `focal_px` converts image motion into angles.
   MotionModel(const MotionModelOptions& options, double focal_px);
 
-  /// What kImu turns by; without it, it is constant velocity.
+  /// Gyroscope that predicts the rotation of kImu; without it, kImu is constant velocity.
   void set_gyroscope(Gyroscope gyroscope) { gyroscope_ = std::move(gyroscope); }
 
   /// `sigma_px`: standard deviation of the pose, as image motion.
   void reset(TimeNs t_ns, const Rigid3& map_from_camera, double sigma_px = 0.2);
 
-  /// `depth_m`: typical depth of what is seen, which turns image motion into metres. Moves the
+  /// `depth_m`: typical depth of what is visible, which converts image motion into metres. Moves the
   /// filter to `t_ns`, not before its last time.
   [[nodiscard]] PosePrediction predict(TimeNs t_ns, double depth_m);
 
@@ -73,7 +81,7 @@ class MotionModel {
 
  private:
   [[nodiscard]] bool has_gyroscope() const;
-  void turn_by_gyroscope(TimeNs from_ns, TimeNs to_ns);
+  void rotate_by_gyroscope(TimeNs from_ns, TimeNs to_ns);
   [[nodiscard]] Eigen::Array<double, 6, 1> twist_of_px(double px, double depth_m) const;
 
   MotionModelOptions options_;

@@ -31,17 +31,17 @@ ImageF undistort(const ImageF& image, const PinholeCamera& camera, float outside
 std::size_t reference_index(const Dataset& dataset, const ReferenceOptions& options,
                             double start_s) {
   const auto& frames = dataset.frames();
-  const std::string place = dataset.folder().string();
-  if (frames.empty()) throw InputError(place, "holds no frames (images.txt) to take the map from");
+  const std::string source = dataset.folder().string();
+  if (frames.empty()) throw InputError(source, "holds no frames (images.txt) to take the map from");
   if (options.frame) {
     if (static_cast<std::size_t>(*options.frame) >= frames.size())
       throw InputError("reference.frame", fmt::format("{} is beyond the {} frames of {}",
-                                                      *options.frame, frames.size(), place));
+                                                      *options.frame, frames.size(), source));
     return static_cast<std::size_t>(*options.frame);
   }
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (frames[i].t_s >= start_s - kSameTime_s) return i;
-  throw InputError(place, fmt::format("holds no frame at or after the start at {} s", start_s));
+  throw InputError(source, fmt::format("holds no frame at or after the start at {} s", start_s));
 }
 
 ImageF load_depth_at(const Dataset& dataset, double t_s) {
@@ -54,10 +54,10 @@ ImageF load_depth_at(const Dataset& dataset, double t_s) {
                                t_s));
 }
 
-void check_size(const ImageF& image, const PinholeCamera& camera, const std::string& place) {
+void check_size(const ImageF& image, const PinholeCamera& camera, const std::string& source) {
   if (image.width() != camera.width || image.height() != camera.height)
-    throw InputError(place, fmt::format("is {} x {}, the sensor {} x {}", image.width(),
-                                        image.height(), camera.width, camera.height));
+    throw InputError(source, fmt::format("is {} x {}, the sensor {} x {}", image.width(),
+                                         image.height(), camera.width, camera.height));
 }
 
 /// Outside the region no depth is known, so that no map point arises there.

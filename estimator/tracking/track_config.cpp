@@ -1,5 +1,9 @@
 #include "estimator/tracking/track_config.h"
 
+#include <utility>
+
+#include "estimator/tracking/frames/frame_tracker.h"
+
 namespace saccade {
 namespace {
 
@@ -33,29 +37,105 @@ void describe_reference(config::Fields& fields, ReferenceOptions& options) {
       .range(-1, 1);
 }
 
-/// The motion model of the methods that do not use event frames: abrupt at high speed, which
-/// carries them through a shaken camera, and smooth at low speed.
+/// See TrackMethod::has_speed_dependent_motion.
 MotionModelOptions speed_dependent_motion() {
   return {.prediction = MotionModelOptions::Prediction::kConstantVelocity,
           .acceleration_sigma_px = 300,
           .acceleration_per_speed = 6};
 }
 
+void describe_edge_method(config::Fields& fields, TrackConfig& config) {
+  describe(fields, config.edges);
+  if (!fields.has("preset")) return;
+  config.motion = config.edges.motion;
+  if (config.edges.preset != EdgeTrackerOptions::Preset::kThesis) return;
+  config.map.max_fraction = 1;
+  config.map.foreground_depth = false;
+}
+
+void describe_intensity_method(config::Fields& fields, TrackConfig& config) {
+  describe(fields, config.intensity);
+  fields
+      .value("contrast", config.contrast,
+             "Contrast threshold of both polarities in log units; ~ takes the dataset's. An error "
+             "of a few percent costs accuracy, see the sweep tracking_contrast.")
+      .above(0);
+}
+
+void describe_polarity_method(config::Fields& fields, TrackConfig& config) {
+  describe(fields, config.polarity);
+}
+
+EdgeTracker edge_tracker(EdgeTrackerOptions options, const TrackConfig& config,
+                         const TrackWorld& world) {
+  options.motion = config.motion;
+  EdgeTracker tracker(options, world.camera, world.edge_points,
+                      world.intensity_map.world_from_map(), config.seed);
+  tracker.set_gyroscope(world.gyroscope);
+  return tracker;
+}
+
+/// What the other methods fall back to: the accurate setting, whose template is drawn for every
+/// frame, as only a few frames are followed from an uncertain pose.
+EdgeTracker fallback_tracker(const TrackConfig& config, const TrackWorld& world) {
+  EdgeTrackerOptions options;
+  options.templates.redraw_px = 0;
+  return edge_tracker(options, config, world);
+}
+
+std::unique_ptr<Tracker> make_edges(const TrackConfig& config, const TrackWorld& world) {
+  return std::make_unique<EdgeTracker>(edge_tracker(config.edges, config, world));
+}
+
+std::unique_ptr<Tracker> make_intensity(const TrackConfig& config, const TrackWorld& world) {
+  auto tracker = std::make_unique<IntensityTracker>(config.intensity, config.motion, world.contrast,
+                                                    world.camera, world.intensity_map,
+                                                    fallback_tracker(config, world));
+  tracker->set_gyroscope(world.gyroscope);
+  return tracker;
+}
+
+std::unique_ptr<Tracker> make_polarity(const TrackConfig& config, const TrackWorld& world) {
+  auto tracker =
+      std::make_unique<PolarityTracker>(config.polarity, config.motion, world.camera,
+                                        world.intensity_map, fallback_tracker(config, world));
+  tracker->set_gyroscope(world.gyroscope);
+  return tracker;
+}
+
+std::unique_ptr<Tracker> make_frames(const TrackConfig& config, const TrackWorld& world) {
+  return std::make_unique<FrameTracker>(config.motion, world.intensity_map);
+}
+
+constexpr TrackMethod kTrackMethods[] = {
+    {.name = "edges",
+     .help = "Edges of the map against event frames (thesis chapter 4).",
+     .describe = describe_edge_method,
+     .make = make_edges,
+     .has_speed_dependent_motion = false},
+    {.name = "intensity",
+     .help = "Log intensity of the map against that of the pixels at their events.",
+     .describe = describe_intensity_method,
+     .make = make_intensity,
+     .needs_contrast = true,
+     .smooths_map = true},
+    {.name = "polarity",
+     .help = "Brightness increments against the signs of the events.",
+     .describe = describe_polarity_method,
+     .make = make_polarity,
+     .needs_prediction = true},
+    {.name = "frames",
+     .help = "Grey frames against the map: the baseline of a frame camera.",
+     .make = make_frames,
+     .takes_frames = true},
+};
+
 }  // namespace
 
-void describe(config::Fields& fields, MapOptions& options) {
-  fields
-      .value("min_gradient", options.min_gradient,
-             "g_min: gradient magnitude of a map point, relative to the largest one. A "
-             "larger one keeps fewer, stronger edges.")
-      .range(0, 1);
-  fields
-      .value(
-          "max_fraction", options.max_fraction,
-          "Largest fraction of the pixels that become map points, the steepest ones; 1 keeps all. "
-          "A map that fills the view leaves no contrast between edge and surface.")
-      .above(0)
-      .at_most(1);
+std::span<const TrackMethod> track_methods() { return kTrackMethods; }
+
+const TrackMethod& method_of(const TrackConfig& config) {
+  return config::find_method(track_methods(), config.method);
 }
 
 void describe(config::Fields& fields, TrackConfig& config) {
@@ -64,17 +144,17 @@ void describe(config::Fields& fields, TrackConfig& config) {
                           "Method of tracking: edges against event frames (the thesis), the log "
                           "intensity at each event, brightness increments against the signs of the "
                           "events, or grey frames.");
-  if (fields.has("method") && config.method != "edges") config.motion = speed_dependent_motion();
+  const TrackMethod& method = method_of(config);
+  if (fields.has("method") && method.has_speed_dependent_motion)
+    config.motion = speed_dependent_motion();
   fields.section("motion", config.motion, "Motion model that predicts the next pose.");
-  fields.expect(config.method != "polarity" ||
-                    config.motion.prediction != MotionModelOptions::Prediction::kNone,
-                "method", "polarity needs a motion.prediction");
+  fields.expect(
+      !method.needs_prediction || config.motion.prediction != MotionModelOptions::Prediction::kNone,
+      "method", std::string(method.name) + " needs a motion.prediction");
   fields.section("camera", config.camera, "Corrections of the camera's calibration.");
   fields.group(
       "reference", [&](Fields& f) { describe_reference(f, config.reference); },
       "Reference views that the map is made from.");
-  fields.section("map", config.map,
-                 "Pixels of a reference view that become map points (section 4.4 of the thesis).");
   fields.value("initial_pose", config.initial_pose,
                "Pose at the start, world from camera, as tx ty tz qx qy qz qw; ~ takes the ground "
                "truth.");

@@ -6,11 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/config/fields.h"
 #include "core/config/method_table.h"
 #include "estimator/run/camera_correction.h"
-#include "estimator/tracking/edges/edge_tracker_config.h"
+#include "estimator/tracking/edges/edge_tracker.h"
 #include "estimator/tracking/intensity/intensity_tracker.h"
 #include "estimator/tracking/polarity/polarity_tracker.h"
 #include "estimator/tracking/reference_view.h"
@@ -35,24 +36,34 @@ struct TrackConfig {
 
 void describe(config::Fields& fields, TrackConfig& config);
 
-/// A part of it, of other modules that track, too: which pixels become map points.
-void describe(config::Fields& fields, MapOptions& options);
-
 /// What trackers are made from beside their options; it outlives them.
 struct TrackWorld {
-  PinholeCamera camera;  ///< with its lens
-  MapPoints edges;       ///< in the frame of the first reference view
-  IntensityMap map;
-  EventContrast contrast;  ///< of method: intensity
+  PinholeCamera camera;   ///< with its lens
+  MapPoints edge_points;  ///< in the frame of the first reference view
+  IntensityMap intensity_map;
+  EventContrast contrast;  ///< of methods that need it
   Gyroscope gyroscope;     ///< empty unless it is needed
 };
 
-/// The methods of tracking. A new one is a pair of files, its options in TrackConfig, and a row in
-/// track_methods.cpp.
-using TrackMethod = config::MethodRow<TrackConfig, Tracker, const TrackWorld&>;
+/// A method of tracking. A new one is a pair of files, its options in TrackConfig, and a row in
+/// track_config.cpp: nothing else names methods.
+struct TrackMethod {
+  std::string_view name;  ///< value of `method`, and of the section that holds its options
+  std::string_view help;
+  void (*describe)(config::Fields&, TrackConfig&) = nullptr;
+  std::unique_ptr<Tracker> (*make)(const TrackConfig&, const TrackWorld&);
+  bool takes_frames = false;      ///< the dataset's grey frames in place of its events
+  bool needs_contrast = false;    ///< contrast thresholds, from intensity.contrast or the dataset
+  bool needs_prediction = false;  ///< motion.prediction: none is an error
+  bool smooths_map = false;       ///< at its edges, by intensity.map_blur_px
+  /// Abrupt at high speed, which carries a tracker through a shaken camera, and smooth at low speed;
+  /// otherwise the motion model is that of edges.preset.
+  bool has_speed_dependent_motion = true;
+};
+
 [[nodiscard]] std::span<const TrackMethod> track_methods();
 
-/// How the method smooths the map's picture.
-[[nodiscard]] IntensityMapOptions smoothing_of(const TrackConfig& config);
+/// The row of config.method.
+[[nodiscard]] const TrackMethod& method_of(const TrackConfig& config);
 
 }  // namespace saccade

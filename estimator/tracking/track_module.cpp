@@ -16,7 +16,6 @@
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/frames/grey_frames.h"
-#include "estimator/tracking/gyroscope_input.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/track_config.h"
 
@@ -67,7 +66,7 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
 }
 
 EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
-  if (config.method != "intensity") return {};
+  if (!method_of(config).needs_contrast) return {};
   if (config.contrast) return {*config.contrast, *config.contrast};
   const DatasetFacts& facts = dataset.facts();
   if (!facts.contrast_on || !facts.contrast_off)
@@ -80,7 +79,7 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
                       const Dataset& dataset) {
   TrackInput input;
   input.camera = config.camera.of(dataset.camera());
-  if (config.method == "frames") {
+  if (method_of(config).takes_frames) {
     input.frames = load_frame_window(request, dataset, input.camera);
     input.window = window_over(request, input.frames);
   } else {
@@ -96,28 +95,22 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
 }
 
 /// The map points of all views, in the frame of the first.
-MapPoints map_of(const TrackConfig& config, const PinholeCamera& camera,
-                 const std::vector<ReferenceView>& views) {
+MapPoints edge_points_of(const TrackConfig& config, const PinholeCamera& camera,
+                         const std::vector<ReferenceView>& views) {
   MapPoints all;
   const Rigid3 map_from_world = views.front().world_from_reference.inverse();
   for (const ReferenceView& view : views) {
     const MapPoints points = extract_map(view.log_intensity, view.depth, camera, config.map);
-    const Rigid3 map_from_view = map_from_world * view.world_from_reference;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d point =
-          map_from_view * Eigen::Vector3d(points.x[i], points.y[i], points.z[i]);
-      all.x.push_back(static_cast<float>(point.x()));
-      all.y.push_back(static_cast<float>(point.y()));
-      all.z.push_back(static_cast<float>(point.z()));
-    }
+    append(all, transformed(map_from_world * view.world_from_reference, points));
   }
   return all;
 }
 
 TrackWorld world_of(const TrackConfig& config, const TrackInput& input) {
   const PinholeCamera undistorted = input.camera.undistorted();
-  return {input.camera, map_of(config, undistorted, input.references),
-          IntensityMap(undistorted, input.references, smoothing_of(config)), input.contrast,
+  const double map_blur_px = method_of(config).smooths_map ? config.intensity.map_blur_px : 0;
+  return {input.camera, edge_points_of(config, undistorted, input.references),
+          IntensityMap(undistorted, input.references, map_blur_px), input.contrast,
           input.gyroscope};
 }
 
@@ -135,8 +128,8 @@ std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, int re
     tracker.reset(start_ns, input.initial_world_from_camera);
     poses = tracker.track(recording, [&](std::size_t n) { progress.add(n); });
   });
-  timing.stages_s.insert(timing.stages_s.end(), {{"template", tracker.timing().template_s},
-                                                 {"event_frame", tracker.timing().event_frame_s},
+  timing.stages_s.insert(timing.stages_s.end(), {{"template", tracker.timing().view_s},
+                                                 {"event_frame", tracker.timing().load_s},
                                                  {"align", tracker.timing().align_s}});
   timing.events = input.events.size();
   timing.poses = poses.size();
@@ -159,14 +152,13 @@ RunSummary run_track(const RunRequest& request) {
   const Stopwatch mapping;
   const TrackWorld world = world_of(config, input);
   timing.stages_s = {{"map", mapping.seconds()}};
-  const std::unique_ptr<Tracker> tracker =
-      config::find_method(track_methods(), config.method).make(config, world);
+  const std::unique_ptr<Tracker> tracker = method_of(config).make(config, world);
   const std::vector<TrackedPose> poses = track(*tracker, input, request.repeat, timing);
 
   {
     const ScopedTimer writing(timing.io_s);
     write_poses(writer.path(), poses);
-    write_map(writer.path() / "map.ply", world.edges, world.map.world_from_map());
+    write_map(writer.path() / "map.ply", world.edge_points, world.intensity_map.world_from_map());
   }
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
                 timing);
@@ -175,10 +167,6 @@ RunSummary run_track(const RunRequest& request) {
   RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));
   summary.lost_poses = lost;
   return summary;
-}
-
-std::string print_track_config(const config::Document& document) {
-  return config::print_documented(config::read<TrackConfig>(document));
 }
 
 }  // namespace saccade

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -11,8 +8,5 @@ namespace saccade {
 /// trajectory.txt, poses.csv, map.ply, run.yaml and timing.json. One thread. Throws InputError for
 /// bad input; lost tracking is a status in poses.csv.
 RunSummary run_track(const RunRequest& request);
-
-/// The resolved configuration, documented.
-[[nodiscard]] std::string print_track_config(const config::Document& document);
 
 }  // namespace saccade

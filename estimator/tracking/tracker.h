@@ -15,7 +15,8 @@
 
 namespace saccade {
 
-/// kRelocalised: the first pose after having been lost.
+/// kRelocalised: a pose found by EdgeTracker::relocate(). Trackers that search by themselves report
+/// kLost, then kOk.
 enum class TrackStatus { kOk, kLost, kRelocalised };
 
 /// One pose with its evidence.
@@ -40,8 +41,8 @@ struct TrackedPose {
 
 /// Seconds that went into each stage since the last reset.
 struct TrackTiming {
-  double template_s = 0;
-  double event_frame_s = 0;
+  double view_s = 0;  ///< drawing the map: its template, or its view
+  double load_s = 0;  ///< preparing the measurements: an event frame, or the events' residuals
   double align_s = 0;
 };
 
@@ -67,7 +68,7 @@ using TrackProgress = std::function<void(std::size_t)>;
 /// are deterministic and use one thread. Lost tracking is a status of the pose, never an error.
 class Tracker {
  public:
-  /// `focal_px` turns image motion into angles; the map's frame stands in the world.
+  /// `focal_px` converts image motion into angles; `world_from_map`: pose of the map's frame.
   Tracker(const MotionModelOptions& motion, double focal_px, const Rigid3& world_from_map)
       : world_from_map_(world_from_map), motion_(motion, focal_px) {}
   virtual ~Tracker() = default;

@@ -73,7 +73,7 @@ EdgelRefiner::EdgelRefiner(const EventRays& rays, const RefinerOptions& options,
       options_(options),
       limits_(limits),
       camera_(camera),
-      gatherer_(rays, options.regression.reach),
+      gatherer_(rays, options.regression.window),
       found_(camera, static_cast<float>(options.spacing_px)) {}
 
 std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEvents& events) {
@@ -90,7 +90,7 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
     if (!is_plausible(edge, seed.pixel)) return std::nullopt;
     const float sigma = result.sigma / edge.inverse_depth;
     if (sigma > bound_on_sigma(stage, slices, options_.max_sigma)) return std::nullopt;
-    if (found_.has_similar(edge, kSameDepth * edge.inverse_depth)) return std::nullopt;
+    if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
     const float shift_px = std::abs(result.change) * stage.motion_px / (2 * edge.inverse_depth);
     if (stage.is_whole(slices) && shift_px < kConverged_px) return accepted(edge, result, events);
     stage = next_stage(stage, result, edge.inverse_depth, slices);
@@ -101,7 +101,7 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
 std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,
                                                  const NeighbourPrediction& prediction,
                                                  EdgelEvents& events) {
-  if (found_.has_similar(edge, kSameDepth * edge.inverse_depth)) return std::nullopt;
+  if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
   gatherer_.gather({0, rays_.slice_count(), 1}, edge, near_);
   const float prior = 1 / (prediction.sigma * prediction.sigma);
   RegressionResult result =
@@ -109,7 +109,7 @@ std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,
   if (!result.ok || result.residual_px > kMaxConfirmedResidual_px) return std::nullopt;
   const Edgel next = moved(edge, result);
   if (!is_plausible(next, edge.pixel)) return std::nullopt;
-  if (found_.has_similar(next, kSameDepth * next.inverse_depth)) return std::nullopt;
+  if (found_.has_similar(next, kSameEdgelDepth * next.inverse_depth)) return std::nullopt;
   // The information of its events without the prior, and the change that they alone imply.
   const float all = 1 / (result.sigma * result.sigma);
   const float own = std::max(all - prior, 1e-6F * all);
@@ -142,12 +142,12 @@ float EdgelRefiner::unobserved_px(const EdgelEvents& events, std::size_t first) 
     observed_[slice] += events.weight[i];
   }
   const auto reference = static_cast<std::size_t>(rays_.reference_slice());
-  const auto& crossing_px = gatherer_.crossing_px();
+  const auto& slice_motion_px = gatherer_.slice_motion_px();
   float unobserved = 0;
   for (std::size_t k = reference; k < slices && observed_[k] < kObservedWeight; ++k)
-    unobserved += crossing_px[k];
+    unobserved += slice_motion_px[k];
   for (std::size_t k = reference; k-- > 0 && observed_[k] < kObservedWeight;)
-    unobserved += crossing_px[k];
+    unobserved += slice_motion_px[k];
   return unobserved;
 }
 

@@ -34,7 +34,7 @@ struct NeighbourPrediction {
 class EdgelRefiner {
  public:
   /// Edgels at one pixel whose inverse depths differ by less, relatively, are one.
-  static constexpr float kSameDepth = 0.01F;
+  static constexpr float kSameEdgelDepth = 0.01F;
 
   /// `rays` and `options` outlive it.
   EdgelRefiner(const EventRays& rays, const RefinerOptions& options, const DepthLimits& limits,

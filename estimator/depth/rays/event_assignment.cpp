@@ -9,24 +9,24 @@ namespace {
 constexpr std::uint32_t kUnassigned = ~std::uint32_t{0};
 /// Relative difference of depths up to which edgels share their events: that of neighbours on a
 /// slanted surface.
-constexpr float kSameDepth = 0.02F;
+constexpr float kSharedEventDepth = 0.02F;
 
 bool is_same_depth(const FittedEdgel& a, const FittedEdgel& b) {
   const float difference = std::abs(a.edge.inverse_depth - b.edge.inverse_depth);
-  return difference <= kSameDepth * std::max(a.edge.inverse_depth, b.edge.inverse_depth) +
+  return difference <= kSharedEventDepth * std::max(a.edge.inverse_depth, b.edge.inverse_depth) +
                            2 * (a.sigma + b.sigma);
 }
 
 }  // namespace
 
-std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edges,
+std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edgels,
                                        const EdgelEvents& events, std::size_t event_count,
                                        double min_own_fraction) {
   std::vector<float> best(event_count, 0.F);
   std::vector<std::uint32_t> owner(event_count, kUnassigned);
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    const float quality = edges[k].support / edges[k].residual_px;
-    for (std::uint32_t i = edges[k].first; i < edges[k].last; ++i) {
+  for (std::size_t k = 0; k < edgels.size(); ++k) {
+    const float quality = edgels[k].support / edgels[k].residual_px;
+    for (std::uint32_t i = edgels[k].first; i < edgels[k].last; ++i) {
       const float score = quality * events.weight[i];
       if (score <= best[events.event[i]]) continue;
       best[events.event[i]] = score;
@@ -34,15 +34,15 @@ std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edges,
     }
   }
   std::vector<FittedEdgel> kept;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
+  for (std::size_t k = 0; k < edgels.size(); ++k) {
     float own = 0, all = 0;
-    for (std::uint32_t i = edges[k].first; i < edges[k].last; ++i) {
+    for (std::uint32_t i = edgels[k].first; i < edgels[k].last; ++i) {
       const std::uint32_t other = owner[events.event[i]];
       all += events.weight[i];
-      if (other == k || (other != kUnassigned && is_same_depth(edges[k], edges[other])))
+      if (other == k || (other != kUnassigned && is_same_depth(edgels[k], edgels[other])))
         own += events.weight[i];
     }
-    if (own >= static_cast<float>(min_own_fraction) * all) kept.push_back(edges[k]);
+    if (own >= static_cast<float>(min_own_fraction) * all) kept.push_back(edgels[k]);
   }
   return kept;
 }

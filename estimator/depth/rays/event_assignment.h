@@ -22,7 +22,7 @@ struct FittedEdgel {
 /// support per residual), since every event has one cause; edgels at the same depth, such as
 /// neighbours along one contour, share events. Edgels that keep less than `min_own_fraction` of the
 /// weight of their events are dropped: they were assembled from the events of others. 0 keeps all.
-[[nodiscard]] std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edges,
+[[nodiscard]] std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edgels,
                                                      const EdgelEvents& events,
                                                      std::size_t event_count,
                                                      double min_own_fraction);

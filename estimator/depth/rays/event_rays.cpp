@@ -176,7 +176,7 @@ std::vector<std::uint32_t> EventRays::sort_events(std::span<const Event> events,
   }
   for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
   std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
-  for (std::uint32_t& project : positions) project = next[project]++;
+  for (std::uint32_t& position : positions) position = next[position]++;
   return positions;
 }
 

@@ -110,7 +110,7 @@ float LocalPlanes::spread_around_start() {
 }
 
 LocalPlanes::Sums LocalPlanes::weighted_sums(const Eigen::Vector3f& plane, float spread) const {
-  const float per_cut = 1 / (kBiweightReach * spread);
+  const float per_cut = 1 / (kBiweightCutoff * spread);
   Lanes weights{}, rr{}, one{}, x{}, y{}, xx{}, xy{}, yy{}, d{}, dx{}, dy{};
   for (std::size_t k = 0; k < dx_.size(); k += kLanes) {
     const Lanes px = load_lanes(&dx_[k]), py = load_lanes(&dy_[k]),
@@ -171,7 +171,7 @@ LocalPlane LocalPlanes::fit(const EdgePoint& start) {
 LocalPlanes::Sides LocalPlanes::plane_sides(const LocalPlane& plane,
                                             const Eigen::Vector2f& normal) const {
   const float change = plane.inverse_depth - start_inverse_depth_;
-  const float per_cut = 1 / (kBiweightReach * plane.spread);
+  const float per_cut = 1 / (kBiweightCutoff * plane.spread);
   Sides sides;
   for (std::size_t k = 0; k < count_; ++k) {
     const float across = dx_[k] * normal.x() + dy_[k] * normal.y();
@@ -223,7 +223,7 @@ float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) c
            [&](const EdgePoint& other, float dx, float dy, float) {
              const float gap = std::abs(other.inverse_depth - plane.inverse_depth -
                                         plane.slope.x() * dx - plane.slope.y() * dy);
-             if (gap < always + kBiweightReach * plane.spread * other.sigma || gap >= second)
+             if (gap < always + kBiweightCutoff * plane.spread * other.sigma || gap >= second)
                return;
              second = gap >= nearest ? gap : nearest;
              nearest = std::min(nearest, gap);

@@ -7,6 +7,9 @@
 namespace saccade {
 namespace {
 
+/// Shift of a point on an occluding contour onto the surface that ends there: on the contour the pixel
+/// is as likely the surface behind.
+constexpr float kContourShift_px = 0.5F;
 constexpr float kAlwaysAllowed = 0.005F;  ///< relative distance from the plane that is no outlier
 
 // The model of sigma, fitted to the errors on Walls, Planes, Dunes and Boxes (docs/depth.md).
@@ -22,7 +25,7 @@ bool is_supported(const EdgePoint& point, const LocalPlane& plane, const FusionO
   const float change = std::abs(plane.inverse_depth - point.inverse_depth);
   return plane.weights >= static_cast<float>(options.min_neighbours + 1) &&
          change <=
-             kBiweightReach * plane.spread * point.sigma + kAlwaysAllowed * point.inverse_depth;
+             kBiweightCutoff * plane.spread * point.sigma + kAlwaysAllowed * point.inverse_depth;
 }
 
 float sigma_of(const LocalPlane& plane) {
@@ -46,11 +49,6 @@ float local_sigma_of(const EdgePoint& point, const LocalPlane& plane,
 
 void describe(config::Fields& fields, FusionOptions& options) {
   fields
-      .value("radius_px", options.plane.radius_px,
-             "Radius of the neighbourhood whose plane gives a point's depth, in pixels; 0 disables "
-             "the fusion.")
-      .range(0, 100);
-  fields
       .value("min_neighbours", options.min_neighbours,
              "Points with a smaller sum of weights of their neighbours are dropped; larger values "
              "give fewer and better points.")
@@ -60,17 +58,11 @@ void describe(config::Fields& fields, FusionOptions& options) {
              "Points whose plane has a larger standard deviation, divided by the inverse depth, "
              "are dropped.")
       .above(0);
-  fields
-      .value(
-          "contour_shift_px", options.contour_shift_px,
-          "Shift of a point on an occluding contour onto the surface that ends there, in pixels; "
-          "0 leaves it on the contour, where the pixel is as likely the surface behind.")
-      .range(0, 5);
 }
 
 std::vector<EdgePoint> supported_points(const std::vector<EdgePoint>& points,
                                         const FusionOptions& options) {
-  if (!(options.plane.radius_px > 0) || points.empty()) return points;
+  if (points.empty()) return points;
   LocalPlanes planes(points, options.plane);
   std::vector<EdgePoint> kept;
   for (const EdgePoint& point : points)
@@ -80,7 +72,7 @@ std::vector<EdgePoint> supported_points(const std::vector<EdgePoint>& points,
 
 std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
                                    const FusionOptions& options) {
-  if (!(options.plane.radius_px > 0) || points.empty()) return points;
+  if (points.empty()) return points;
   LocalPlanes planes(points, options.plane);
   std::vector<EdgePoint> result;
   for (const EdgePoint& point : points) {
@@ -88,9 +80,8 @@ std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
     if (!is_supported(point, plane, options)) continue;
     const float sigma = sigma_of(plane);
     if (sigma > static_cast<float>(options.max_sigma) * plane.inverse_depth) continue;
-    const Eigen::Vector2f shift = static_cast<float>(options.contour_shift_px) *
-                                  static_cast<float>(planes.surface_side(point, plane)) *
-                                  point.normal;
+    const Eigen::Vector2f shift =
+        kContourShift_px * static_cast<float>(planes.surface_side(point, plane)) * point.normal;
     EdgePoint smooth = point;
     smooth.x_px += shift.x();
     smooth.y_px += shift.y();

@@ -14,7 +14,6 @@ struct FusionOptions {
   double max_sigma = 0.02;
   double position_sigma_px =
       0.4;  ///< u: error of a point's pixel, which matters on slanted surfaces
-  double contour_shift_px = 0.5;
 };
 
 void describe(config::Fields& fields, FusionOptions& options);

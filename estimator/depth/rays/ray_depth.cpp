@@ -22,6 +22,12 @@ constexpr int kStripTiles = 3;
 constexpr float kMinStrength = 1.6F;
 constexpr float kMinVoteRatio = 1;
 constexpr float kMinParallax_px = 1.2F;
+/// An edgel is dropped when less than this fraction of its events is explained by it better than by
+/// others.
+constexpr double kMinOwnEventFraction = 0.9;
+/// An edgel that moves farther than this without an event around the time of the view was hidden
+/// then, and is no point of the view.
+constexpr float kMaxUnobserved_px = 2;
 // The neighbours that predict a depth.
 constexpr PlaneOptions kPropagationPlane{.radius_px = 10};
 constexpr float kPropagationSpacing_px = 1;  ///< between edgels at the same depth
@@ -49,7 +55,7 @@ SeedStrips sorted_into_strips(const std::vector<EdgelSeed>& seeds, int height) {
 void append(const std::vector<WindowEdgels>& strips, EdgelIndex found, WindowEdgels& all) {
   for (const WindowEdgels& strip : strips)
     for (FittedEdgel edge : strip.edges) {
-      if (found.has_similar(edge.edge, EdgelRefiner::kSameDepth * edge.edge.inverse_depth))
+      if (found.has_similar(edge.edge, EdgelRefiner::kSameEdgelDepth * edge.edge.inverse_depth))
         continue;
       found.add(edge.edge);
       const auto first = static_cast<std::uint32_t>(all.events.event.size());
@@ -66,7 +72,6 @@ void append(const std::vector<WindowEdgels>& strips, EdgelIndex found, WindowEdg
 }  // namespace
 
 void describe(config::Fields& fields, RayDepthOptions& options) {
-  RegressionOptions& regression = options.refiner.regression;
   fields
       .value("spacing_px", options.refiner.spacing_px,
              "Smallest distance between edgels at the same depth, in pixels; smaller values give "
@@ -77,37 +82,6 @@ void describe(config::Fields& fields, RayDepthOptions& options) {
              "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
              "depth, are dropped; larger values give more and less accurate points.")
       .above(0);
-  fields
-      .value("offset_sigma_px", regression.offset_sigma_px,
-             "Standard deviation of the prior on an edgel's offset from its seed across the edge, "
-             "in pixels; 0 fixes the offset at zero.")
-      .range(0, 100);
-  fields
-      .value("tilt_sigma", regression.tilt_sigma,
-             "Standard deviation of the prior on the change of an edgel's direction, as a slope; 0 "
-             "fixes the direction of the seed.")
-      .range(0, 10);
-  fields
-      .value(
-          "hysteresis_sigma_px", regression.hysteresis_sigma_px,
-          "Standard deviation of the prior on the shift between ON and OFF events of an edge, in "
-          "pixels; 0 fixes the shift at zero.")
-      .range(0, 10);
-  fields
-      .value("min_own_event_fraction", options.min_own_event_fraction,
-             "An edgel is dropped when less than this fraction of its events is explained by it "
-             "better than by others; 0 keeps every edgel.")
-      .range(0, 1);
-  fields
-      .value("max_unobserved_px", options.max_unobserved_px,
-             "An edgel that moves farther than this without an event around the time of the view "
-             "was hidden then, and is no point of the view; in pixels.")
-      .above(0);
-  fields
-      .value("propagation_rounds", options.propagation.rounds,
-             "Rounds in which seeds take a depth that their neighbours predict; 0 disables the "
-             "propagation, each round gives more points and takes longer.")
-      .range(0, 100);
   fields.section("fusion", options.fusion, "Planes fitted through neighbouring points.");
 }
 
@@ -132,16 +106,13 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
     for (const EdgelSeed& seed : seeds) found.seeds.push_back(seed.pixel);
     return sorted_into_strips(seeds, camera_.height);
   });
-  timed(regression_s, [&] { fit(rays, strips, found); });
+  timed(regression_s, [&] { refine_seeds(rays, strips, found); });
   const auto assign = [&] {
-    found.edges =
-        assign_events(found.edges, found.events, rays.size(), options_.min_own_event_fraction);
+    found.edges = assign_events(found.edges, found.events, rays.size(), kMinOwnEventFraction);
   };
   timed(assignment_s, assign);
-  for (int i = 0; i < options_.propagation.rounds; ++i) {
-    timed(propagation_s, [&] { propagate(rays, strips, found); });
-    timed(assignment_s, assign);
-  }
+  timed(propagation_s, [&] { propagate(rays, strips, found); });
+  timed(assignment_s, assign);
   for (std::uint32_t& event : found.events.event) event = rays.source[event];
   found.stages_s = {{"rays", rays_s},
                     {"seeds", seeds_s},
@@ -164,7 +135,8 @@ DepthResult RayDepth::fuse(const WindowEdgels& found) const {
   return result;
 }
 
-void RayDepth::fit(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const {
+void RayDepth::refine_seeds(const EventRays& rays, const SeedStrips& strips,
+                            WindowEdgels& found) const {
   std::vector<WindowEdgels> fitted(strips.size());
   parallel_for(strips.size(), [&](std::size_t k) {
     EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
@@ -179,11 +151,10 @@ void RayDepth::fit(const EventRays& rays, const SeedStrips& strips, WindowEdgels
   append(fitted, EdgelIndex(camera_, static_cast<float>(options_.refiner.spacing_px)), found);
 }
 
-std::vector<EdgePoint> RayDepth::points_of(const std::vector<FittedEdgel>& edges) const {
+std::vector<EdgePoint> RayDepth::points_of(const std::vector<FittedEdgel>& edgels) const {
   std::vector<EdgePoint> points;
-  for (const FittedEdgel& e : edges)
-    if (e.unobserved_px <= static_cast<float>(options_.max_unobserved_px) &&
-        camera_.contains(e.edge.pixel.cast<double>()))
+  for (const FittedEdgel& e : edgels)
+    if (e.unobserved_px <= kMaxUnobserved_px && camera_.contains(e.edge.pixel.cast<double>()))
       points.push_back(
           {e.edge.pixel.x(), e.edge.pixel.y(), e.edge.inverse_depth, e.sigma, e.edge.normal});
   return points;
@@ -222,7 +193,7 @@ std::optional<FittedEdgel> RayDepth::confirm(const EdgelSeed& seed, LocalPlanes&
   const NeighbourPrediction prediction{
       plane.spread * std::hypot(plane.sigma, model),
       planes.gap_around(seed.pixel.x(), seed.pixel.y(), plane),
-      static_cast<float>(options_.propagation.max_sigma) * plane.inverse_depth};
+      static_cast<float>(options_.propagation_max_sigma) * plane.inverse_depth};
   return refiner.confirm({seed.pixel, seed.normal, plane.inverse_depth}, prediction, events);
 }
 

@@ -19,20 +19,14 @@
 
 namespace saccade {
 
-struct PropagationOptions {
-  int rounds = 1;
-  double max_sigma = 0.05;  ///< relative, of the own events of an edgel that is confirmed
-};
-
 struct RayDepthOptions {
   /// Time slices of a window in which events are looked up by pixel; with 64 the first stages have
   /// too few events.
   static constexpr int kTimeSlices = 24;
 
   RefinerOptions refiner;
-  double min_own_event_fraction = 0.9;
-  double max_unobserved_px = 2;
-  PropagationOptions propagation;
+  /// Relative, of the own events of an edgel that is confirmed by its neighbours.
+  double propagation_max_sigma = 0.05;
   FusionOptions fusion;
 };
 
@@ -41,7 +35,8 @@ void describe(config::Fields& fields, RayDepthOptions& options);
 /// The edgels of a window before their depths are fused.
 struct WindowEdgels {
   std::vector<FittedEdgel> edges;  ///< `first` and `last` are indices into `events`
-  EdgelEvents events;              ///< indices into the window's events
+  EdgelEvents
+      events;  ///< indices into the rays until the end of find_edgels(), then into the window
   std::vector<Eigen::Vector2f> seeds;
   std::vector<std::pair<std::string, double>> stages_s;
 };
@@ -60,15 +55,15 @@ class RayDepth : public DepthEstimator {
 
   /// The two halves of estimate(), for callers that adjust the edgels in between.
   [[nodiscard]] WindowEdgels find_edgels(const ViewWindow& window) const;
-  [[nodiscard]] DepthResult fuse(const WindowEdgels& edges) const;
+  [[nodiscard]] DepthResult fuse(const WindowEdgels& found) const;
 
  private:
-  void fit(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
+  void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, LocalPlanes& planes,
                                                    EdgelRefiner& refiner,
                                                    EdgelEvents& events) const;
-  [[nodiscard]] std::vector<EdgePoint> points_of(const std::vector<FittedEdgel>& edges) const;
+  [[nodiscard]] std::vector<EdgePoint> points_of(const std::vector<FittedEdgel>& edgels) const;
 
   RayDepthOptions options_;
   DepthLimits limits_;

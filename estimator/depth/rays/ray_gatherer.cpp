@@ -36,7 +36,7 @@ struct Boxes {
   alignas(64) std::array<std::int32_t, kLanes> left, right, top, bottom;
   alignas(64) std::array<std::int32_t, kLanes> is_on;  ///< events there are ON
   alignas(64) std::array<std::int32_t, kLanes> is_ahead;
-  alignas(64) std::array<float, kLanes> crossing_px;
+  alignas(64) std::array<float, kLanes> slice_motion_px;
 };
 
 /// The cell of a coordinate; coordinates outside the grid belong to its border.
@@ -69,14 +69,14 @@ void RayNeighbourhood::pad() {
     for (auto* array : {&across, &along, &parallax, &polarity}) (*array)[i] = 0;
 }
 
-RayGatherer::RayGatherer(const EventRays& rays, const GatherReach& reach)
+RayGatherer::RayGatherer(const EventRays& rays, const GatherWindow& window)
     : rays_(rays),
-      radius_px_(static_cast<float>(reach.radius_px)),
-      half_length_px_(static_cast<float>(reach.half_length_px)),
+      radius_px_(static_cast<float>(window.radius_px)),
+      half_length_px_(static_cast<float>(window.half_length_px)),
       coefficients_(kCoefficients) {
   const auto slices = rays.slices();
   for (auto& c : coefficients_) c.assign(padded_to_lanes(slices.size()), 0.F);
-  crossing_px_.resize(padded_to_lanes(slices.size()));
+  slice_motion_px_.resize(padded_to_lanes(slices.size()));
   for (std::size_t s = 0; s < slices.size(); ++s)
     for (int i = 0; i < 3; ++i) {
       const auto row = static_cast<std::size_t>(i);
@@ -123,7 +123,7 @@ Boxes boxes_of(const std::vector<std::vector<float>>& coefficients, std::size_t 
   store(cell_of(y + reach_y, rays.rows()), boxes.bottom);
   store(is_on, boxes.is_on);
   store(is_ahead, boxes.is_ahead);
-  store(magnitude(sweep) * rays.slice_length_s(), boxes.crossing_px);
+  store(magnitude(sweep) * rays.slice_length_s(), boxes.slice_motion_px);
   return boxes;
 }
 
@@ -137,7 +137,8 @@ void RayGatherer::gather(const SliceRange& slices, const Edgel& edge, RayNeighbo
   for (int block = next / lanes * lanes; block < slices.last; block += lanes) {
     const Boxes boxes = boxes_of(coefficients_, static_cast<std::size_t>(block), rays_, edge,
                                  radius_px_, half_length_px_);
-    std::copy(boxes.crossing_px.begin(), boxes.crossing_px.end(), crossing_px_.begin() + block);
+    std::copy(boxes.slice_motion_px.begin(), boxes.slice_motion_px.end(),
+              slice_motion_px_.begin() + block);
     for (; next < std::min(slices.last, block + lanes); next += slices.stride) {
       const auto lane = static_cast<std::size_t>(next - block);
       if (boxes.is_ahead[lane] == 0) continue;

@@ -45,26 +45,26 @@ struct SliceRange {
   int stride = 1;
 };
 
-/// The strip around an edgel whose events are used.
-struct GatherReach {
+/// The window around an edgel whose events are used.
+struct GatherWindow {
   double radius_px = 1.5;       ///< across the edgel
   double half_length_px = 1.5;  ///< along it
 };
 
-/// Collects the events of an edgel: those whose rays pass within its strip and whose polarity agrees
+/// Collects the events of an edgel: those whose rays pass within its window and whose polarity agrees
 /// with its normal, p x'(rho) . n > 0. The edgel is projected into all slices at once, and the cells
-/// of each slice that the strip may have covered are read.
+/// of each slice that the window may have covered are read.
 class RayGatherer {
  public:
   /// `rays` must outlive it.
-  RayGatherer(const EventRays& rays, const GatherReach& reach);
+  RayGatherer(const EventRays& rays, const GatherWindow& window);
 
   /// Not thread-safe: buffers are reused.
   void gather(const SliceRange& slices, const Edgel& edge, RayNeighbourhood& near);
 
   /// Motion of the last call's edgel along its normal on the sensor during each slice [px]; valid
   /// for the slices that were read.
-  [[nodiscard]] const std::vector<float>& crossing_px() const { return crossing_px_; }
+  [[nodiscard]] const std::vector<float>& slice_motion_px() const { return slice_motion_px_; }
 
  private:
   static constexpr std::uint32_t kOn = std::uint32_t{1} << 31U;
@@ -84,7 +84,7 @@ class RayGatherer {
   /// rates of both (12).
   std::vector<std::vector<float>> coefficients_;
 
-  std::vector<float> crossing_px_;
+  std::vector<float> slice_motion_px_;
 
   // Candidates: all events of the cells.
   std::vector<Run> runs_;

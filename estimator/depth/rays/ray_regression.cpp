@@ -139,12 +139,12 @@ RegressionResult regress(const RayNeighbourhood& near, const RegressionOptions& 
   RegressionResult result;
   if (near.count < kMinEvents) return result;
   Parameters p;
-  const float widest = static_cast<float>(options.reach.radius_px);
+  const float widest = static_cast<float>(options.window.radius_px);
   Normal normal;
   Solution solution;
   for (int i = 0; i < options.iterations; ++i) {
-    const float scale = i == 0 ? widest / kBiweightReach : scale_of(normal);
-    result.cut_px = std::min(kBiweightReach * scale, widest);
+    const float scale = i == 0 ? widest / kBiweightCutoff : scale_of(normal);
+    result.cut_px = std::min(kBiweightCutoff * scale, widest);
     const double variance = static_cast<double>(scale) * static_cast<double>(scale);
     const double noise = i == 0 ? variance : variance_of(normal);
     normal = accumulate(near, p, result.cut_px);

@@ -11,9 +11,9 @@
 namespace saccade {
 
 struct RegressionOptions {
-  /// 1.5 px across holds the events of an edge at the error of a seed; a longer strip mixes in
+  /// 1.5 px across holds the events of an edge at the error of a seed; a longer window mixes in
   /// curved edges.
-  GatherReach reach;
+  GatherWindow window;
   int iterations = 5;                ///< of reweighting, per stage; it has converged by then
   double tilt_sigma = 0.3;           ///< of m around 0; 0: m = 0
   double hysteresis_sigma_px = 0.5;  ///< of h around 0; 0: h = 0

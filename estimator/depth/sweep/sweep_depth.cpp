@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/stopwatch.h"
+#include "estimator/depth/outlier_removal.h"
 #include "estimator/depth/rays/ray_votes.h"
 
 namespace saccade {
@@ -14,13 +15,19 @@ namespace {
 /// apart.
 constexpr double kMinParallax_px = 2;
 
+/// Planes, equally spaced in inverse depth, as public mappers have them.
+constexpr int kPlanes = 100;
+/// Votes by which a pixel must exceed the Gaussian mean of its neighbourhood, where the most votes of
+/// the view are 255.
+constexpr double kThreshold = 6;
+
 /// Side of the Gaussian neighbourhood of the adaptive threshold, and of the median over a point's
 /// neighbours; odd.
 constexpr int kThresholdSide_px = 5;
 constexpr int kMedianSide_px = 5;
 
 /// 1 where the votes exceed the Gaussian mean of their neighbourhood by the threshold.
-ImageU8 adaptive_threshold(const ImageF& votes, const SweepDepthOptions& options) {
+ImageU8 adaptive_threshold(const ImageF& votes) {
   const float most = *std::max_element(votes.pixels().begin(), votes.pixels().end());
   ImageU8 mask(votes.width(), votes.height());
   if (!(most > 0)) return mask;
@@ -30,10 +37,7 @@ ImageU8 adaptive_threshold(const ImageF& votes, const SweepDepthOptions& options
   const cv::Mat from(votes.height(), votes.width(), CV_8U, scaled.data());
   cv::Mat to(votes.height(), votes.width(), CV_8U, mask.data());
   cv::adaptiveThreshold(from, to, 1, cv::ADAPTIVE_THRESH_GAUSSIAN_C, cv::THRESH_BINARY,
-                        kThresholdSide_px, -options.threshold);
-  // A negative threshold is passed by pixels without any vote, too.
-  for (std::size_t i = 0; i < votes.size(); ++i)
-    if (!(votes.pixels()[i] > 0)) mask.pixels()[i] = 0;
+                        kThresholdSide_px, -kThreshold);
   return mask;
 }
 
@@ -51,26 +55,11 @@ float masked_median(const ImageF& values, const ImageU8& mask, int x, int y) {
 
 }  // namespace
 
-void describe(config::Fields& fields, SweepDepthOptions& options) {
-  fields
-      .value("planes", options.planes,
-             "Number of planes, equally spaced in inverse depth between the limits of range_m; "
-             "time and resolution in depth grow with it.")
-      .range(2, 10000);
-  fields
-      .value("threshold", options.threshold,
-             "Votes by which a pixel must exceed the Gaussian mean of its neighbourhood, where the "
-             "most votes of the view are 255; larger values give fewer and better points.")
-      .range(-255, 255);
-  fields.section("outliers", options.outliers, "Radius outlier removal of the selected points.");
-}
-
-SweepDepth::SweepDepth(const SweepDepthOptions& options, const DepthLimits& limits,
-                       const PinholeCamera& camera)
-    : options_(options), limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
+SweepDepth::SweepDepth(const DepthLimits& limits, const PinholeCamera& camera)
+    : limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
 
 double SweepDepth::spacing() const {
-  return (limits_.max_inverse() - limits_.min_inverse()) / (options_.planes - 1);
+  return (limits_.max_inverse() - limits_.min_inverse()) / (kPlanes - 1);
 }
 
 DepthResult SweepDepth::estimate(const ViewWindow& window) const {
@@ -86,7 +75,7 @@ DepthResult SweepDepth::estimate(const ViewWindow& window) const {
     const ScopedTimer clock(select_s);
     const auto selected = select(peaks);
     for (const EdgePoint& point : selected) result.candidates.emplace_back(point.x_px, point.y_px);
-    result.points = without_outliers(selected, camera_, options_.outliers);
+    result.points = without_outliers(selected, camera_);
   }
   result.stages_s = {{"votes", vote_s}, {"selection", select_s}};
   return result;
@@ -95,7 +84,7 @@ DepthResult SweepDepth::estimate(const ViewWindow& window) const {
 SweepDepth::Peaks SweepDepth::sweep(const EventRays& rays) const {
   Peaks peaks{ImageF(camera_.width, camera_.height), ImageF(camera_.width, camera_.height)};
   ImageF votes(camera_.width, camera_.height);
-  for (int k = 0; k < options_.planes; ++k) {
+  for (int k = 0; k < kPlanes; ++k) {
     const auto rho = static_cast<float>(limits_.min_inverse() + k * spacing());
     votes.fill(0);
     vote_bilinear(rays, 0, rays.size(), rho, votes);
@@ -117,7 +106,7 @@ bool SweepDepth::has_parallax(const EventRays& rays) const {
 
 std::vector<EdgePoint> SweepDepth::select(const Peaks& peaks) const {
   if (peaks.votes.empty()) return {};
-  const ImageU8 mask = adaptive_threshold(peaks.votes, options_);
+  const ImageU8 mask = adaptive_threshold(peaks.votes);
   const auto sigma = static_cast<float>(spacing() / std::sqrt(12.0));
   std::vector<EdgePoint> points;
   for (int y = 0; y < mask.height(); ++y)

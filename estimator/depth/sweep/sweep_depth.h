@@ -1,21 +1,11 @@
 #pragma once
 
 #include "core/camera.h"
-#include "core/config/fields.h"
 #include "core/image.h"
 #include "estimator/depth/depth_estimator.h"
-#include "estimator/depth/outlier_removal.h"
 #include "estimator/depth/rays/event_rays.h"
 
 namespace saccade {
-
-struct SweepDepthOptions {
-  int planes = 100;
-  double threshold = 6;
-  OutlierOptions outliers;
-};
-
-void describe(config::Fields& fields, SweepDepthOptions& options);
 
 /// The space sweep by itself, as EMVS and its successors do it: the baseline for other methods.
 /// Every event's ray votes bilinearly on planes equally spaced in inverse depth; a pixel takes the
@@ -24,8 +14,7 @@ void describe(config::Fields& fields, SweepDepthOptions& options);
 /// WO2018/037079.) Sigma is that of a value uniformly distributed between two planes.
 class SweepDepth : public DepthEstimator {
  public:
-  SweepDepth(const SweepDepthOptions& options, const DepthLimits& limits,
-             const PinholeCamera& camera);
+  SweepDepth(const DepthLimits& limits, const PinholeCamera& camera);
 
   [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
@@ -41,7 +30,6 @@ class SweepDepth : public DepthEstimator {
   /// Between neighbouring planes [1/m].
   [[nodiscard]] double spacing() const;
 
-  SweepDepthOptions options_;
   DepthLimits limits_;
   PinholeCamera camera_;  ///< undistorted
   UndistortionTable undistortion_;

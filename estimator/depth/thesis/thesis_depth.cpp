@@ -6,6 +6,7 @@
 
 #include "core/stopwatch.h"
 #include "core/time_search.h"
+#include "estimator/depth/outlier_removal.h"
 #include "estimator/depth/thesis/derotated_frame.h"
 #include "estimator/depth/thesis/epipolar.h"
 #include "estimator/mean_time.h"
@@ -20,6 +21,13 @@ struct ThesisDepth::Keypoint {
 };
 
 namespace {
+
+/// s of section 5.5: each cell gives at most one keypoint.
+constexpr int kCell_px = 3;
+/// Standard deviation of a match along the epipolar line: tau = kMatchSigma_px / |du/drho| of (5.14).
+constexpr double kMatchSigma_px = 0.7;
+/// A keypoint becomes a point only if a / (a + b) is above it.
+constexpr double kMinInlierProbability = 0.5;
 
 /// Beta prior (a, b) of a new keypoint: as many outliers as inliers are expected, with the weight of
 /// 20 matches, so that the first few decide nothing alone.
@@ -66,36 +74,16 @@ void describe(config::Fields& fields, ThesisDepthOptions& options) {
              "need small frames; large frames blur edges.")
       .range(0.001, 100);
   fields
-      .value("cell_px", options.cell_px,
-             "Side of a cell of the keypoint grid, in pixels; each cell gives at most one keypoint "
-             "(thesis section 5.5). Smaller cells give more points at a higher cost.")
-      .range(1, 1000);
-  fields
-      .value("patch_radius_px", options.search.patch_radius_px,
-             "Radius r of the patches compared along the epipolar line, in pixels; a patch has 2 r "
-             "+ 1 pixels on each side. Large patches mix depths at depth discontinuities.")
-      .range(1, 50);
-  fields
-      .value("match_sigma_px", options.match_sigma_px,
-             "Standard deviation of a match along the epipolar line, in pixels; it gives the "
-             "variance of a measurement in the depth filter (5.14).")
-      .range(0.001, 100);
-  fields
       .value("max_sigma", options.max_sigma,
              "A keypoint has converged when the standard deviation of its inverse depth, divided "
              "by the inverse depth, is below this; larger values give more and less accurate "
              "points.")
       .above(0);
   fields
-      .value("min_inlier_probability", options.min_inlier_probability,
-             "A keypoint becomes a point only if its inlier probability a / (a + b) is above this.")
-      .range(0, 1);
-  fields
       .value("initial_depth_m", options.initial_depth_m,
              "Depth at which all keypoints start, in metres; ~ takes the dataset's mean scene "
              "depth.")
       .above(0);
-  fields.section("outliers", options.outliers, "Radius outlier removal of the converged points.");
 }
 
 ThesisDepth::ThesisDepth(const ThesisDepthOptions& options, const DepthLimits& limits,
@@ -147,7 +135,7 @@ DepthResult ThesisDepth::estimate(const ViewWindow& window) const {
   }
   {
     const ScopedTimer clock(removal_s);
-    result.points = without_outliers(converged, camera_, options_.outliers);
+    result.points = without_outliers(converged, camera_);
   }
   result.stages_s = {{"event_frame", frame_s}, {"search", search_s}, {"outliers", removal_s}};
   return result;
@@ -163,10 +151,9 @@ std::vector<ThesisDepth::Keypoint> ThesisDepth::start_keypoints(const ImageF& re
   // Six standard deviations span the range of inverse depths.
   const DepthBelief prior{1 / initial_depth_m_, range * range / 36, kPriorInliers, kPriorOutliers};
   std::vector<Keypoint> keypoints;
-  for (const Eigen::Vector2f& centre :
-       find_keypoints(reference, options_.cell_px, kMinCellWeight)) {
+  for (const Eigen::Vector2f& centre : find_keypoints(reference, kCell_px, kMinCellWeight)) {
     const Eigen::Vector2d pixel = centre.cast<double>();
-    const int radius = options_.search.patch_radius_px;
+    const int radius = SearchOptions().patch_radius_px;
     if (!FramePatch::fits(reference, pixel, radius)) continue;
     keypoints.push_back({pixel, camera_.ray(pixel), FramePatch(reference, pixel, radius), prior});
   }
@@ -182,13 +169,13 @@ void ThesisDepth::update(const ImageF& frame, const Eigen::Vector3d& centre,
   const double length = per_inverse_depth.norm();
   if (!(length > 0)) return;
   const Eigen::Vector2d direction = per_inverse_depth / length;
-  const SearchResult match = search_along(keypoint.patch, frame, start, direction, options_.search);
+  const SearchResult match = search_along(keypoint.patch, frame, start, direction, SearchOptions());
   if (match.status != SearchStatus::kFound) return;
   const Eigen::Vector2d matched = start + match.shift_px * direction;  // W(u; p) of (5.2)
   const double inverse_depth =
       triangulate(keypoint.ray, camera_.ray(matched), centre);  // (5.12), (5.13)
   if (!std::isfinite(inverse_depth)) return;
-  const double tau = options_.match_sigma_px / length;
+  const double tau = kMatchSigma_px / length;
   const double range = limits_.max_inverse() - limits_.min_inverse();
   keypoint.belief = updated(keypoint.belief, inverse_depth, tau * tau, range);  // (5.14)
   keypoint.belief.mean =
@@ -197,8 +184,7 @@ void ThesisDepth::update(const ImageF& frame, const Eigen::Vector3d& centre,
 
 bool ThesisDepth::is_converged(const DepthBelief& belief) const {
   const double limit = options_.max_sigma * belief.mean;
-  return belief.variance < limit * limit &&
-         belief.inlier_probability() > options_.min_inlier_probability;
+  return belief.variance < limit * limit && belief.inlier_probability() > kMinInlierProbability;
 }
 
 }  // namespace saccade

@@ -7,7 +7,6 @@
 #include "core/camera.h"
 #include "core/config/fields.h"
 #include "estimator/depth/depth_estimator.h"
-#include "estimator/depth/outlier_removal.h"
 #include "estimator/depth/thesis/depth_filter.h"
 #include "estimator/depth/thesis/epipolar_search.h"
 #include "estimator/depth/thesis/grid_keypoints.h"
@@ -16,12 +15,7 @@ namespace saccade {
 
 struct ThesisDepthOptions {
   double events_per_px = 0.28;  ///< thesis section 5.4
-  int cell_px = 3;              ///< s of section 5.5
-  SearchOptions search;         ///< (5.1)-(5.4)
-  double match_sigma_px = 0.7;  ///< tau = match_sigma_px / |du/drho| of (5.14)
   double max_sigma = 0.035;
-  double min_inlier_probability = 0.5;
-  OutlierOptions outliers;
   std::optional<double> initial_depth_m;
 };
 

@@ -49,12 +49,11 @@ float offset_of(const EventRuns& runs, std::span<const IntensityObservation> run
 /// beyond its bounds, and hardly where it is within; an event inconsistent with the image has less
 /// weight (Cauchy).
 void reweight(GridObservation& target, float log_intensity, const ObservationKind& kind,
-              float value, double bound_sigma) {
+              float value, float bound_sigma) {
   const float error = value - log_intensity;
   if (kind.slack > 0) {
-    const auto sigma = static_cast<float>(bound_sigma);
     target.log_intensity = log_intensity + std::clamp(error, -kind.slack, kind.slack);
-    target.weight = 1 / (sigma * sigma);
+    target.weight = 1 / (bound_sigma * bound_sigma);
     return;
   }
   const float ratio = error / kOutlierSigmas;
@@ -64,7 +63,7 @@ void reweight(GridObservation& target, float log_intensity, const ObservationKin
 
 /// All observations; `image` is that of the round before, empty in the first.
 void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const EventRuns& runs,
-                      const ImageF& image, const EquationOptions& options) {
+                      const ImageF& image, float bound_sigma) {
   std::vector<GridObservation> targets;
   std::vector<float> values;
   runs.for_each([&](std::span<const IntensityObservation> run) {
@@ -83,7 +82,7 @@ void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const 
       const float offset = offset_of(runs, run, values);
       for (std::size_t k = 0; k < run.size(); ++k)
         reweight(targets[k], run[k].log_intensity, runs.kind(run[k]), values[k] - offset,
-                 options.bound_sigma);
+                 bound_sigma);
     }
     system.add_run(targets);
   });
@@ -145,26 +144,27 @@ std::vector<GradientState> gradient_states(const ReferenceGrid& grid, const Imag
   return states;
 }
 
+void make_fast(EquationOptions& options) {
+  options.observations.no_event_spacing_px = 1.6;
+  options.observations.dense_events_per_px = 10;
+  options.observations.reprojection.redraw_parallax_px = 2;
+  options.merge_radius_px = 1.1;
+  options.tolerance = 0.01;
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, EquationOptions& options) {
-  fields
-      .value("merge_radius_px", options.merge_radius_px,
-             "Successive observations of a pixel whose reprojections are closer than this are "
-             "merged, in pixels; larger values are faster and blur fine texture, 0 disables the "
-             "merging.")
-      .range(0, 10);
+  using Preset = EquationOptions::Preset;
+  fields.choice("preset", options.preset, {{"best", Preset::kBest}, {"fast", Preset::kFast}},
+                "Setting that the other keys and observations start from: fast has fewer no-event "
+                "constraints, renders surfaces less often, and merges and solves more coarsely.");
+  if (fields.has("preset") && options.preset == Preset::kFast) make_fast(options);
   fields
       .value("smoothness_sigma", options.smoothness_sigma,
              "Standard deviation of the difference of neighbouring pixels where nothing else is "
              "known, in log units; smaller values give smoother images.")
       .range(1e-4, 1e4);
-  fields
-      .value(
-          "tolerance", options.tolerance,
-          "Relative residual at which conjugate gradients end; larger values are faster and lose "
-          "the largest waves of the image first.")
-      .range(1e-9, 1);
 }
 
 Reconstruction EquationReconstruction::solve(ObservationSource& source,
@@ -192,7 +192,7 @@ Reconstruction EquationReconstruction::solve(ObservationSource& source,
       const ScopedTimer clock(assembly_s);
       system.clear();
       system.reserve(runs.size());
-      add_observations(system, grid, runs, image, options_);
+      add_observations(system, grid, runs, image, static_cast<float>(options_.bound_sigma));
       add_smoothness(system, grid, options_, image);
     }
     {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include "core/config/fields.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 
 namespace saccade {
 
 struct EquationOptions {
+  enum class Preset { kBest, kFast };  ///< kFast also sets options without a configuration key
+
+  Preset preset = Preset::kBest;
   /// Thresholds of real pixels drift, so that an offset is trusted for a few events; that costs ideal
   /// data next to nothing (docs/reconstruction.md).
   ObservationOptions observations{
@@ -17,10 +20,10 @@ struct EquationOptions {
       .expected_fraction = 0.4,
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
-  double merge_radius_px = 0.9;
+  double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged
   double smoothness_sigma = 0.05;
   double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]
-  double tolerance = 0.005;
+  double tolerance = 0.005;  ///< of the relative residual of conjugate gradients
 };
 
 void describe(config::Fields& fields, EquationOptions& options);

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "estimator/reconstruction/gradient/gradient_filter.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 #include "estimator/reconstruction/observations/reference_grid.h"
 
 namespace saccade {

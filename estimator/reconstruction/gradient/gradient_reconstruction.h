@@ -2,7 +2,7 @@
 
 #include "core/config/fields.h"
 #include "estimator/reconstruction/gradient/poisson.h"
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 
 namespace saccade {
 

@@ -39,11 +39,6 @@ void describe(config::Fields& fields, ObservationOptions& options, bool has_surf
              "Image motion from one no-event constraint of a pixel to the next, in pixels; smaller "
              "values give better images of smooth parts and take longer.")
       .range(0.1, 1000);
-  fields
-      .value("dense_events_per_px", options.dense_events_per_px,
-             "Where a part of the sensor has more events per pixel than this, no-event constraints "
-             "are thinned in proportion: smaller values are faster.")
-      .above(0);
   if (!has_surfaces) return;
   fields
       .value("redraw_parallax_px", options.reprojection.redraw_parallax_px,
@@ -169,7 +164,7 @@ template <class Path>
 void ReprojectedObservations<Path>::add_no_event_constraints(
     std::vector<IntensityObservation>& observations) {
   constrained_from_reference_ = inverse_of(path_.end_pose());
-  // Neighbours in both directions take turns, so that the view is covered evenly.
+  // Neighbours in both directions alternate, so that the view is covered evenly.
   const int width = pixels_.width();
   for (int y = 0; y < pixels_.height() && options_.no_event_constraints; ++y)
     for (int left = 0; left < width; left += kTile_px) {

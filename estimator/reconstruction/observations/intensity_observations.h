@@ -52,6 +52,8 @@ struct ObservationOptions {
   double no_event_spacing_px = 2;
   /// Every n-th pixel is constrained at a time, a different one each time.
   int no_event_stride = 1;
+  /// Where a part of the sensor has more events per pixel, no-event constraints are thinned in
+  /// proportion.
   double dense_events_per_px = 1e9;
   /// After its last event a pixel's log intensity goes on beyond it: expected by this fraction of a
   /// threshold, since what passes a pixel most often are edges.

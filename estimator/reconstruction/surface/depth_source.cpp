@@ -55,13 +55,6 @@ void describe(config::Fields& fields, DepthSourceOptions& options) {
                 "Rendering of the known depth into other views: surface draws triangles between "
                 "neighbouring pixels; splat draws every point as a Gaussian, as the thesis does "
                 "(6.21), and enlarges all contours by half the kernel.");
-  if (options.propagation != Propagation::kSplat) return;
-  fields
-      .value("kernel_px", options.kernel_px,
-             "Side of the Gaussian of a point, in pixels, odd (thesis fig. 6.2); larger kernels "
-             "leave fewer gaps and enlarge contours more.")
-      .range(1, 99);
-  fields.expect(options.kernel_px % 2 == 1, "kernel_px", "must be odd");
 }
 
 DepthScene scene_of(const ImageF& depth, const PinholeCamera& camera,

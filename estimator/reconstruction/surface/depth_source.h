@@ -17,7 +17,7 @@ struct DepthSourceOptions {
   enum class Propagation { kSurface, kSplat };
 
   Propagation propagation = Propagation::kSurface;
-  int kernel_px = 3;  ///< of kSplat; odd
+  int kernel_px = 3;  ///< of kSplat: side of the Gaussian of a point; odd (thesis fig. 6.2)
 };
 
 void describe(config::Fields& fields, DepthSourceOptions& options);

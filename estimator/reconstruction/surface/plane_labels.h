@@ -14,7 +14,7 @@ namespace saccade {
 ///   sum over pixels  mean_k min(e_k^2 / 2, most_k) + n f + d distance + g |grad f|
 ///   + sum over neighbours a, b  tau w_ab min(1, (|f_a - f_b| at a + |f_a - f_b| at b) / 2 s)
 /// with e_k the distance of a point in the pixel from its plane in sigmas, f the log inverse depth,
-/// w_ab the length of border that a pair of eight neighbours stands for. Creases between planes cost
+/// w_ab the length of border that a pair of eight neighbours represents. Creases between planes cost
 /// nothing, depth discontinuities cost their length, points behind a surface may be occluded by it,
 /// and near surfaces end where their points do. Minimised by expansion moves (Boykov, Veksler and
 /// Zabih, PAMI 2001) with OpenCV's maximum flow. Deterministic.

@@ -71,7 +71,7 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   const EventContrast contrast = contrast_of(config, tracked, dataset);
   io.reset();
 
-  const IntensityMap map(camera.undistorted(), references, IntensityMapOptions());
+  const IntensityMap map(camera.undistorted(), references, IntensityMap::kEdgeBlur_px);
   const MapSurface surface(map);
   std::vector<StampedPose> start = known_path(poses, first_s, last_s, run.folder.string());
   const Rigid3 map_from_world = map.world_from_map().inverse();

@@ -10,7 +10,7 @@
 namespace saccade {
 
 /// What the methods that compare intensities do when these say nothing about the pose: the edges of
-/// the map, which need neither past levels nor a velocity, are followed for a few frames.
+/// the map, which need neither the log intensities of the pixels nor a velocity, are followed for a few frames.
 class EdgeFallback {
  public:
   explicit EdgeFallback(EdgeTracker edges) : edges_(std::move(edges)) {}
@@ -28,7 +28,24 @@ class EdgeFallback {
   /// Follows the first frames of `events` and appends their poses, all of them lost where they do
   /// not fit. Returns the number of events; 0, and nothing is appended, where too few are left.
   std::size_t follow(std::span<const Event> events, std::vector<TrackedPose>& poses,
-                     TrackTiming& timing);
+                     TrackTiming& timing) {
+    constexpr std::size_t kFrames = 6;
+    const TrackTiming before = edges_.timing();
+    const std::size_t count = kFrames * edges_.next_frame_events();
+    if (count > events.size()) return 0;
+    std::vector<TrackedPose> found = edges_.track({.events = events.first(count)});
+    timing.view_s += edges_.timing().view_s - before.view_s;
+    timing.load_s += edges_.timing().load_s - before.load_s;
+    timing.align_s += edges_.timing().align_s - before.align_s;
+    double inlier_ratio = 0;
+    for (const TrackedPose& pose : found)
+      inlier_ratio += pose.inlier_ratio / static_cast<double>(found.size());
+    fits_ = inlier_ratio >= edges_.min_inlier_ratio();
+    if (!fits_)
+      for (TrackedPose& pose : found) pose.status = TrackStatus::kLost;
+    poses.insert(poses.end(), found.begin(), found.end());
+    return count;
+  }
 
   /// Whether the frames of the last follow() had enough inliers, on average.
   [[nodiscard]] bool fits() const { return fits_; }

@@ -27,7 +27,71 @@ double agreement(const AlignResult& aligned) {
   return brightness.gain > 0 ? brightness.gain * brightness.gain / brightness.variance : 0;
 }
 
+void describe_alignment(config::Fields& fields, AlignOptions& options) {
+  using Kind = SelectionOptions::Kind;
+  fields
+      .value(
+          "samples", options.samples,
+          "Template points drawn per iteration by the random selection (thesis 4.3). The cost of "
+          "a pose is proportional to samples times iterations; more samples give less noise.")
+      .range(16, 1e6);
+  fields
+      .value("iterations", options.iterations,
+             "Gauss-Newton iterations per pose: always all of them with random points, at most so "
+             "many with fixed ones.")
+      .range(1, 1000);
+  fields.choice("selection", options.selection.kind,
+                {{"random", Kind::kRandom},
+                 {"dense", Kind::kDense},
+                 {"semi_dense", Kind::kSemiDense},
+                 {"sparse_patches", Kind::kSparsePatches}},
+                "Template points that are aligned (fig. 4.1): random ones drawn afresh in every "
+                "iteration, all, the steepest half, or patches around the steepest ones.");
+  fields.choice(
+      "robust_loss", options.robust_loss,
+      {{"none", RobustLoss::kNone}, {"huber", RobustLoss::kHuber}, {"tukey", RobustLoss::kTukey}},
+      "Loss of the residuals, in units of their root mean square. A robust one helps "
+      "where the map is incomplete or wrong.");
+  fields
+      .value("pyramid_levels", options.pyramid_levels,
+             "Resolutions of the alignment, coarse to fine; 1 is the full one alone. Each further "
+             "level doubles the distance from which a wrong start is corrected and costs time.")
+      .range(1, 8);
+}
+
 }  // namespace
+
+void describe(config::Fields& fields, EdgeTrackerOptions& options) {
+  using Preset = EdgeTrackerOptions::Preset;
+  using Kind = EventFrameOptions::Kind;
+  using Window = EventFrameOptions::Window;
+  fields.choice(
+      "preset", options.preset,
+      {{"accurate", Preset::kAccurate},
+       {"fast", Preset::kFast},
+       {"narrow_view", Preset::kNarrowView},
+       {"thesis", Preset::kThesis}},
+      "Setting that the other keys and motion start from. accurate and fast are the thesis's with "
+      "the improvements of this project; narrow_view is accurate for a narrow field of view and "
+      "steady motion; thesis is its method as printed.");
+  if (fields.has("preset")) options = edge_preset(options.preset);
+  describe_alignment(fields, options.align);
+  fields
+      .value(
+          "event_map_ratio", options.event_frame.event_map_ratio,
+          "Events per frame, relative to the template's lit pixels (4.21). A smaller ratio gives "
+          "more poses, each of fewer events; a larger one blurs fast motion.")
+      .range(1e-4, 100);
+  fields.choice(
+      "event_frame", options.event_frame.kind,
+      {{"binary", Kind::kBinary}, {"time_surface", Kind::kTimeSurface}},
+      "Value of a pixel of the event frame: whether an event fell, or how recent its last "
+      "event is (thesis chapter 9).");
+  fields.choice("event_window", options.event_frame.window,
+                {{"disjoint", Window::kDisjoint}, {"sliding", Window::kSliding}},
+                "Events of a frame: the next ones, or the newest ones, a quarter of which are new "
+                "(thesis chapter 9). Sliding frames give four times the poses.");
+}
 
 EdgeTrackerOptions edge_preset(EdgeTrackerOptions::Preset preset) {
   EdgeTrackerOptions options;
@@ -44,6 +108,14 @@ EdgeTrackerOptions edge_preset(EdgeTrackerOptions::Preset preset) {
     options.align.averaging_from = 0;
     options.align.smooth = true;
     options.motion.acceleration_sigma_px = 250;
+  } else if (preset == EdgeTrackerOptions::Preset::kNarrowView) {
+    // There a rotation and a translation to the side look nearly alike: only a steady prediction
+    // separates them. The wider template and the shorter frames suit images with few edges.
+    options.templates.blur_size_px = 5;
+    options.templates.blur_sigma_px = 1.1;
+    options.templates.redraw_px = 4;
+    options.event_frame.event_map_ratio = 0.2;
+    options.motion.acceleration_sigma_px = 20;
   } else if (preset == EdgeTrackerOptions::Preset::kThesis) {
     options.templates.bilinear = false;
     options.templates.z_test = false;
@@ -115,7 +187,7 @@ std::size_t EdgeTracker::next_frame_events() {
 }
 
 void EdgeTracker::prepare_template(const Rigid3& map_from_camera) {
-  const ScopedTimer clock(timing_.template_s);
+  const ScopedTimer clock(timing_.view_s);
   if (template_fits(map_from_camera)) return;
   map_from_template_ = map_from_camera;
   points_ = drawer_.draw(map_from_template_.inverse());
@@ -150,7 +222,7 @@ std::size_t EdgeTracker::events_per_frame() const {
 }
 
 void EdgeTracker::draw_frame(TrackedPose& pose) {
-  const ScopedTimer clock(timing_.event_frame_s);
+  const ScopedTimer clock(timing_.load_s);
   const std::span<const Event> events = window_.events();
   pose.first_ns = events.front().t_ns;
   pose.last_ns = events.back().t_ns;

@@ -18,8 +18,8 @@ namespace saccade {
 
 /// The defaults are the accurate setting.
 struct EdgeTrackerOptions {
-  /// Settings that differ in more than has a key, see edge_preset().
-  enum class Preset { kAccurate, kFast, kThesis };
+  /// Presets; they also set options without a configuration key, see edge_preset().
+  enum class Preset { kAccurate, kFast, kNarrowView, kThesis };
 
   Preset preset = Preset::kAccurate;
   TemplateOptions templates;
@@ -33,8 +33,12 @@ struct EdgeTrackerOptions {
 };
 
 /// The thesis's accurate (500 samples, 30 iterations) and fast (50 samples, 5 iterations) settings
-/// with this project's improvements, and its method as it was printed.
+/// with this project's improvements, one for a narrow field of view and steady motion, and the
+/// thesis's method as it was printed.
 [[nodiscard]] EdgeTrackerOptions edge_preset(EdgeTrackerOptions::Preset preset);
+
+/// The keys but those of the motion model, which is a section of its own.
+void describe(config::Fields& fields, EdgeTrackerOptions& options);
 
 /// The thesis's tracker (chapter 4): a template of the map's edges is aligned to frames of
 /// event_map_ratio * n_map events (4.21). Deterministic in `seed`.

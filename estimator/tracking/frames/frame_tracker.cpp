@@ -104,7 +104,7 @@ int FrameTracker::coarsest_level() const {
 }
 
 void FrameTracker::draw(const Rigid3& map_from_camera) {
-  const ScopedTimer clock(timing_.template_s);
+  const ScopedTimer clock(timing_.view_s);
   view_.draw(map_from_camera);
   for (int y = 0; y < rendered_.height(); ++y)
     for (int x = 0; x < rendered_.width(); ++x) {

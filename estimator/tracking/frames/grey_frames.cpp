@@ -22,11 +22,11 @@ const config::Node* value_of(const config::Node* map, std::string_view key) {
   return entry == nullptr ? nullptr : &entry->value;
 }
 
-double number(const config::Node& node, const std::string& place) {
+double number(const config::Node& node, const std::string& source) {
   try {
     return std::stod(node.text);
   } catch (const std::exception&) {
-    throw InputError(place, fmt::format("is {}, not a number", node.shown()));
+    throw InputError(source, fmt::format("is {}, not a number", node.shown()));
   }
 }
 
@@ -34,14 +34,14 @@ double number(const config::Node& node, const std::string& place) {
 ToneCurve tone_of(const Dataset& dataset) {
   ToneCurve tone;
   if (!dataset.record() || dataset.record()->config_yaml.empty()) return tone;
-  const std::string place = (dataset.folder() / "dataset.yaml").string();
-  const config::Document document = config::parse(dataset.record()->config_yaml, place);
+  const std::string source = (dataset.folder() / "dataset.yaml").string();
+  const config::Document document = config::parse(dataset.record()->config_yaml, source);
   const config::Node* frames = value_of(&document.root(), "frames");
   if (const config::Node* gain = value_of(frames, "gain"))
-    tone.gain = number(*gain, place + ": frames.gain");
+    tone.gain = number(*gain, source + ": frames.gain");
   const config::Node* gamma = value_of(frames, "gamma");
   if (gamma != nullptr && gamma->text != "srgb")
-    tone.gamma = number(*gamma, place + ": frames.gamma");
+    tone.gamma = number(*gamma, source + ": frames.gamma");
   return tone;
 }
 

@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// Further than this from its sample the map is not extrapolated linearly [px].
-constexpr float kReach_px = 3;
+constexpr float kMaxExtrapolation_px = 3;
 constexpr float kNearest_m = 1e-6F;
 
 }  // namespace
@@ -69,8 +69,9 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atl
     const float ey = pixel_y_[i] - (fy * y + cy);
     const float u = atlas_x_[i] + scale_xx_[i] * ex + scale_xy_[i] * ey;
     const float z = atlas_y_[i] + scale_yx_[i] * ex + scale_yy_[i] * ey;
-    const bool is_visible = (pz > 0) & (std::abs(ex) < kReach_px) & (std::abs(ey) < kReach_px) &
-                            (u >= 0) & (z >= 0) & (u < right) & (z < bottom);
+    const bool is_visible = (pz > 0) & (std::abs(ex) < kMaxExtrapolation_px) &
+                            (std::abs(ey) < kMaxExtrapolation_px) & (u >= 0) & (z >= 0) &
+                            (u < right) & (z < bottom);
     visible_[i] = is_visible ? 1.0F : 0.0F;
     const float safe_u = is_visible ? u : 0;
     const float safe_v = is_visible ? z : 0;

@@ -34,7 +34,7 @@ class EventResidualBatch {
   /// `at`: the map near the pixel's reprojection at the sought pose.
   void add(const LogIntensityObservation& event, const MapSample& at);
 
-  /// Where the map stands and how the camera moves while the events happen: its velocity (v, w) in
+  /// Pose of the map, and how the camera moves while the events happen: its velocity (v, w) in
   /// its own frame [m/s, rad/s].
   struct Motion {
     Eigen::Matrix3f rotation;     ///< camera from map
@@ -48,7 +48,7 @@ class EventResidualBatch {
   /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
   /// map's slope in the image:
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
-  /// where the turn w t within the events' time is left out.
+  /// where the rotation w t within the events' time is left out.
   void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
 
   /// Weights confidence (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with

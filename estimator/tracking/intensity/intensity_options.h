@@ -9,7 +9,7 @@ namespace saccade {
 
 /// How poses are found from the log intensity at each event.
 struct IntensityOptions {
-  IntensityMapOptions map;
+  double map_blur_px = IntensityMap::kEdgeBlur_px;
   /// Per pose; by default 1000, times (width / 240 px)^1.5 on a wider sensor.
   std::optional<int> events;
   int samples = 1000;         ///< at most so many events of a pose are aligned, evenly spread
@@ -18,7 +18,8 @@ struct IntensityOptions {
   /// within one, and mostly keeps its direction.
   bool half_threshold = true;
   double correction_fraction = 0.15;
-  double redraw_deg = 1.15;  ///< the map is rendered anew when the view has moved this far
+  double redraw_deg =
+      1.15;  ///< the map is rendered anew when image points have moved by fx times this
 };
 
 void describe(config::Fields& fields, IntensityOptions& options);

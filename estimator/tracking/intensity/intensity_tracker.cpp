@@ -12,8 +12,8 @@
 namespace saccade {
 namespace {
 
-/// Fewer do not make a pose before a silence.
-constexpr std::size_t kFewEvents = 100;
+/// Fewer do not make a pose before a gap in the events.
+constexpr std::size_t kMinEventsBeforeGap = 100;
 /// Pixels are said to be known as well at the start as after this many corrections.
 constexpr float kKnownCorrections = 10;
 /// Gauss-Newton steps of a pose, always all of them: from the prediction they suffice.
@@ -23,7 +23,7 @@ constexpr double kInformation = 0.1;
 /// Lost below this fraction of the mean inlier ratio, ...
 constexpr double kInlierDrop = 0.75;
 /// ... and where the camera should have moved so far without an event.
-constexpr double kSilence_px = 2;
+constexpr double kMaxMotionWithoutEvents_px = 2;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void describe(config::Fields& fields, IntensityOptions& options) {
       .range(0, 1);
   fields
       .value(
-          "map_blur_px", options.map.blur_px,
+          "map_blur_px", options.map_blur_px,
           "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
           "0 disables it.")
       .range(0, 10);
@@ -68,17 +68,17 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   timing_ = {};
   last_event_ns_ = t_ns;
   mean_inlier_ratio_ = 0;
-  misfits_ = 0;
-  judged_ = {};
-  judged_events_ = 0;
-  attempts_ = 0;
+  low_inlier_batches_ = 0;
+  pending_sums_ = {};
+  pending_events_ = 0;
+  candidates_tried_ = 0;
   is_lost_ = false;
   residuals_.reset_views_drawn();
   restart_pixels(kKnownCorrections);
 }
 
 void IntensityTracker::restart_pixels(float corrections) {
-  const ScopedTimer clock(timing_.template_s);
+  const ScopedTimer clock(timing_.view_s);
   residuals_.restart(motion_.pose(), corrections);
 }
 
@@ -90,11 +90,12 @@ std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
   while (events.size() >= count) {
     std::size_t done = 0;
     if (is_lost_) {
-      done = relocalise(events, poses);
+      done = relocate(events, poses);
       if (done == 0) break;  // too few events are left
     } else {
-      done = before_silence(events.first(count));
-      if (done == count || done >= kFewEvents) poses.push_back(track_batch(events.first(done)));
+      done = events_before_gap(events.first(count));
+      if (done == count || done >= kMinEventsBeforeGap)
+        poses.push_back(track_batch(events.first(done)));
       if (done < count) lose();
     }
     if (done > 0) last_event_ns_ = events[done - 1].t_ns;
@@ -115,14 +116,14 @@ std::size_t IntensityTracker::events_per_pose() const {
   return static_cast<std::size_t>(std::lround(kEvents * std::pow(wider, kPower)));
 }
 
-std::size_t IntensityTracker::before_silence(std::span<const Event> events) const {
+std::size_t IntensityTracker::events_before_gap(std::span<const Event> events) const {
   // However fast the camera seems to move: a velocity from few events may be anything.
   constexpr double kShortest_s = 0.005;
   const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
   TimeNs before_ns = last_event_ns_;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const double gap_s = seconds_from_ns(events[i].t_ns - before_ns);
-    if (gap_s > kShortest_s && gap_s * speed_px > kSilence_px) return i;
+    if (gap_s > kShortest_s && gap_s * speed_px > kMaxMotionWithoutEvents_px) return i;
     before_ns = events[i].t_ns;
   }
   return events.size();
@@ -132,12 +133,12 @@ bool IntensityTracker::fits_worse(const Sums& sums, std::size_t events) {
   // Few events say little: those of several poses are judged together.
   constexpr std::size_t kEnough = 1000;
   constexpr double kUnknowns = 6;
-  judged_.visible += sums.visible;
-  judged_.inliers += sums.inliers;
-  judged_events_ += events;
-  if (judged_events_ < kEnough) return false;
-  judged_events_ = 0;
-  const Sums evidence = std::exchange(judged_, {});
+  pending_sums_.visible += sums.visible;
+  pending_sums_.inliers += sums.inliers;
+  pending_events_ += events;
+  if (pending_events_ < kEnough) return false;
+  pending_events_ = 0;
+  const Sums evidence = std::exchange(pending_sums_, {});
   if (evidence.visible < kUnknowns) return true;  // the map is not in view
   const double inlier_ratio = evidence.inliers / evidence.visible;
   constexpr int kPatience = 5;
@@ -146,48 +147,48 @@ bool IntensityTracker::fits_worse(const Sums& sums, std::size_t events) {
   constexpr int kUncertain = 50;
   constexpr double kUncertainDrop = 0.6;
   if (mean_inlier_ratio_ == 0) mean_inlier_ratio_ = inlier_ratio;
-  const bool is_certain = attempts_ == 0;
+  const bool is_certain = candidates_tried_ == 0;
   const double drop = kInlierDrop * (is_certain ? 1 : kUncertainDrop);
-  if (inlier_ratio < drop * mean_inlier_ratio_) return ++misfits_ >= kPatience;
-  misfits_ = 0;
+  if (inlier_ratio < drop * mean_inlier_ratio_) return ++low_inlier_batches_ >= kPatience;
+  low_inlier_batches_ = 0;
   if (is_certain) mean_inlier_ratio_ += kLearningRate * (inlier_ratio - mean_inlier_ratio_);
-  if (!is_certain && ++fits_ >= kUncertain) attempts_ = 0;
+  if (!is_certain && ++good_batches_ >= kUncertain) candidates_tried_ = 0;
   return false;
 }
 
 void IntensityTracker::lose() {
-  if (attempts_ == 0) lost_at_ = motion_.pose();
+  if (candidates_tried_ == 0) lost_at_ = motion_.pose();
   is_lost_ = true;
-  misfits_ = 0;
-  judged_ = {};
-  judged_events_ = 0;
+  low_inlier_batches_ = 0;
+  pending_sums_ = {};
+  pending_events_ = 0;
 }
 
 Rigid3 IntensityTracker::candidate_pose(TimeNs t_ns) const {
   // Where it should be by now, where it was, and then around it in growing circles.
   const double gap_s = seconds_from_ns(t_ns - last_event_ns_);
-  if (attempts_ == 1) return lost_at_ * Rigid3::exp(motion_.velocity() * gap_s);
-  if (attempts_ == 2) return lost_at_;
+  if (candidates_tried_ == 1) return lost_at_ * Rigid3::exp(motion_.velocity() * gap_s);
+  if (candidates_tried_ == 2) return lost_at_;
   constexpr int kDirections = 8;
   constexpr double kRingSpacing_px = 6;
-  const int ring = 1 + (attempts_ - 3) / kDirections;
-  const double angle = 2 * std::numbers::pi * (attempts_ - 3) / kDirections;
+  const int ring = 1 + (candidates_tried_ - 3) / kDirections;
+  const double angle = 2 * std::numbers::pi * (candidates_tried_ - 3) / kDirections;
   const double rotation = kRingSpacing_px * ring / camera_.fx;
   Twist offset = Twist::Zero();
   offset.tail<3>() << rotation * std::sin(angle), rotation * std::cos(angle), 0;
   return lost_at_ * Rigid3::exp(offset);
 }
 
-std::size_t IntensityTracker::relocalise(std::span<const Event> events, Poses& poses) {
+std::size_t IntensityTracker::relocate(std::span<const Event> events, Poses& poses) {
   const TimeNs t_ns = events.front().t_ns;
-  ++attempts_;
+  ++candidates_tried_;
   fallback_.reset_near(t_ns, world_from_map_ * candidate_pose(t_ns));
   const std::size_t known = poses.size();
   const std::size_t done = fallback_.follow(events, poses, timing_);
   for (std::size_t i = known; i < poses.size(); ++i) poses[i].status = TrackStatus::kLost;
   if (done == 0 || !fallback_.fits()) return done;
   is_lost_ = false;
-  fits_ = 0;
+  good_batches_ = 0;
   motion_ = fallback_.motion();
   restart_pixels(1);
   return done;
@@ -227,10 +228,10 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
 void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
                             const Rigid3& map_from_camera) {
   {
-    const ScopedTimer clock(timing_.template_s);
+    const ScopedTimer clock(timing_.view_s);
     residuals_.prepare_view(map_from_camera);
   }
-  const ScopedTimer clock(timing_.event_frame_s);
+  const ScopedTimer clock(timing_.load_s);
   residuals_.load(events, t_ns, motion_at(map_from_camera));
 }
 

@@ -33,15 +33,15 @@ class IntensityTracker : public Tracker {
   [[nodiscard]] std::vector<TrackedPose> track(const Recording& recording,
                                                const TrackProgress& progress = {}) override;
 
-  [[nodiscard]] std::size_t templates_drawn() const { return residuals_.views_drawn(); }
+  [[nodiscard]] std::size_t views_drawn() const { return residuals_.views_drawn(); }
 
  private:
   using Sums = EventResidualBatch::Sums;
   using Poses = std::vector<TrackedPose>;
 
-  [[nodiscard]] std::size_t before_silence(std::span<const Event> events) const;
+  [[nodiscard]] std::size_t events_before_gap(std::span<const Event> events) const;
   [[nodiscard]] bool fits_worse(const Sums& sums, std::size_t events);
-  std::size_t relocalise(std::span<const Event> events, Poses& poses);
+  std::size_t relocate(std::span<const Event> events, Poses& poses);
   void lose();
   [[nodiscard]] Rigid3 candidate_pose(TimeNs t_ns) const;
   void restart_pixels(float corrections);
@@ -57,13 +57,13 @@ class IntensityTracker : public Tracker {
   EdgeFallback fallback_;
   TimeNs last_event_ns_ = 0;
   double mean_inlier_ratio_ = 0;  ///< running mean while it is tracked; 0: not known
-  Sums judged_;                   ///< evidence since the last judgement, of so many events
-  std::size_t judged_events_ = 0;
-  int misfits_ = 0;  ///< judgements in a row that it fits worse than on average
+  Sums pending_sums_;             ///< since the inlier ratio was last compared with its mean
+  std::size_t pending_events_ = 0;
+  int low_inlier_batches_ = 0;  ///< comparisons in a row with a ratio well below the mean
   bool is_lost_ = false;
-  int attempts_ = 0;  ///< to find the pose again, since it was tracked for long
-  int fits_ = 0;      ///< judgements since it was found that it fits
-  Rigid3 lost_at_;    ///< the last pose before
+  int candidates_tried_ = 0;  ///< poses from which it was searched, since it was tracked for long
+  int good_batches_ = 0;      ///< comparisons with a normal ratio since it was found again
+  Rigid3 lost_at_;            ///< the last pose before
 };
 
 }  // namespace saccade

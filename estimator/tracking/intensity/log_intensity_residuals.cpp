@@ -20,7 +20,7 @@ constexpr float kMinSlope = 0.1F;
 /// Events go to random pixels: those of a later one are fetched that many events before.
 constexpr std::size_t kPixelsAhead = 16;
 
-/// In place of the pixel that an alignment corrects.
+/// Marks an observation whose pixel is not corrected.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
 
 /// A view of some 240 columns is fine enough: what lies between its nodes is extrapolated.

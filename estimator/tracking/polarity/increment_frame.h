@@ -17,10 +17,10 @@ namespace saccade {
 /// sensor where the camera's motion takes each of them until the frame's time.
 ///
 /// With `reversals` an event of the other polarity than its pixel's last one counts twice. The
-/// signal stands anywhere within a threshold ahead of the last event, half of one in the mean, and
-/// just so behind an event that turns back: it moved by two thresholds, not by one. The first of
-/// them was crossed when it passed the level of the last event again. Where the signal turns as a
-/// parabola that is 0.27 of the time between both before the second; it is taken to be 0.3, and
+/// signal lies anywhere within a threshold ahead of the last event, half of one in the mean, and
+/// just so behind an event that reverses: it moved by two thresholds, not by one. The first of
+/// them was crossed when it passed the value of the last event again. Where the signal reverses
+/// like a parabola that is 0.27 of the time between both before the second; it is taken to be 0.3, and
 /// never further back than 1.5 px of image motion.
 class IncrementFrame {
  public:

@@ -86,7 +86,7 @@ std::size_t PolarityTracker::follow_edges(std::span<const Event> events, Poses& 
 }
 
 void PolarityTracker::draw_view(const Rigid3& map_from_camera) {
-  const ScopedTimer clock(timing_.template_s);
+  const ScopedTimer clock(timing_.view_s);
   if (has_view_ && view_.moved_px(map_from_camera) < kRedraw_px) return;
   view_.draw(map_from_camera);
   template_.draw(view_, map_.atlas());
@@ -103,7 +103,7 @@ bool PolarityTracker::track_frame(std::span<const Event> events, Poses& poses) {
   const PosePrediction predicted = motion_.predict(pose.t_ns, view_.typical_depth_m());
   draw_view(predicted.map_from_camera);
   {
-    const ScopedTimer clock(timing_.event_frame_s);
+    const ScopedTimer clock(timing_.load_s);
     frame_.draw(events, pose.t_ns, ImageMotion(camera_, motion_.velocity()), view_);
   }
   const PoseEstimate<Sums> estimate = align(predicted);

@@ -33,7 +33,7 @@ void describe(config::Fields& fields, PolarityOptions& options);
 /// contrast threshold and the length of dt are in it and need not be known. Gauss-Newton (inverse
 /// compositional) with Cauchy weights, pulled towards a constant velocity, which also gives V, by
 /// the prediction's precision. Where the signs disagree with what is expected - at the start, when
-/// V is not known, and where the camera turns back - the edges of the map are followed for a few
+/// V is not known, and where the camera reverses - the edges of the map are followed for a few
 /// frames instead. Lost is what they do not fit either.
 class PolarityTracker : public Tracker {
  public:
@@ -45,7 +45,7 @@ class PolarityTracker : public Tracker {
   [[nodiscard]] std::vector<TrackedPose> track(const Recording& recording,
                                                const TrackProgress& progress = {}) override;
 
-  [[nodiscard]] std::size_t templates_drawn() const { return views_drawn_; }
+  [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
 
  private:
   using Sums = IncrementResidualBatch::Sums;

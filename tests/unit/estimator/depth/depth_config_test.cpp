@@ -42,10 +42,10 @@ TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
 TEST(DepthConfig, ReadsWhatItPrints) {
   const std::string yaml =
       "{window: {by: events, events: 5000, reference: end}, range_m: {near: 1, far: 9}, "
-      "thesis: {initial_depth_m: 2, patch_radius_px: 3}, seed: 5}";
+      "thesis: {initial_depth_m: 2, events_per_px: 0.1}, seed: 5}";
   const DepthConfig config = parsed(yaml);
   EXPECT_EQ(config.window.events, 5000);
-  EXPECT_EQ(config.thesis.search.patch_radius_px, 3);
+  EXPECT_EQ(config.thesis.events_per_px, 0.1);
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parsed(printed)), printed);
 }
@@ -58,12 +58,9 @@ TEST(DepthConfig, NamesWhatIsWrong) {
   EXPECT_THAT(error("range_m: {near: 3, far: 2}"), HasSubstr("must be below far"));
   EXPECT_THAT(error("range_m: {near: 0}"), HasSubstr("range_m.near"));
   EXPECT_THAT(error("thesis: {events_per_px: -1}"), HasSubstr("events_per_px"));
-  EXPECT_THAT(error("thesis: {cell_px: 0}"), HasSubstr("cell_px"));
-  EXPECT_THAT(error("thesis: {patch_radius: 3}"), HasSubstr("patch_radius_px"));
+  EXPECT_THAT(error("thesis: {event_per_px: 3}"), HasSubstr("events_per_px"));
   EXPECT_THAT(error("thesis: {max_sigma: 0}"), HasSubstr("max_sigma"));
-  EXPECT_THAT(error("thesis: {outliers: {radius_ratio: .inf}}"), HasSubstr("radius_ratio"));
   EXPECT_THAT(error("thesis: {initial_depth_m: 0}"), HasSubstr("initial_depth_m"));
-  EXPECT_THAT(error("{method: sweep, sweep: {planes: 1}}"), HasSubstr("planes"));
   EXPECT_THAT(error("{method: sweep, rays: {}}"), HasSubstr("method: rays"));
 }
 

@@ -190,18 +190,5 @@ TEST(ThesisDepth, StartsAtTheStatedDepth) {
   EXPECT_LT(errors[errors.size() / 2], 0.015);
 }
 
-TEST(SweepDepth, PixelsWithoutARayHaveNoDepth) {
-  DepthConfig config;
-  config.method = DepthConfig::Method::kSweep;
-  config.sweep.planes = 20;
-  config.sweep.threshold = -255;
-  config.sweep.outliers.min_neighbours = 0;
-  const DepthResult result = make_depth_estimator(config, recording().world.camera(), kMeanDepth_m)
-                                 ->estimate(recording().window(0));
-  ASSERT_GT(result.points.size(), 1000U);
-  for (const EdgePoint& point : result.points)
-    EXPECT_GE(point.inverse_depth, static_cast<float>(config.limits.min_inverse()));
-}
-
 }  // namespace
 }  // namespace saccade

@@ -29,7 +29,7 @@ using testing::read_file;
 constexpr const char* kBest =
     "{method: equations, observations: {event_sigma: 0.1, no_event_spacing_px: 1, run_events: 8}}";
 constexpr const char* kThesis =
-    "{method: gradient, depth: {propagation: splat, kernel_px: 3}, "
+    "{method: gradient, depth: {propagation: splat}, "
     "observations: {no_event_constraints: false}}";
 
 class ReconstructionModule : public testing::SharedFolder<ReconstructionModule> {
@@ -146,12 +146,6 @@ TEST_F(ReconstructionModule, BadInputIsAnErrorThatNamesItsSource) {
   RunRequest run = request("track", "{}");
   run.depth_from = dataset();
   EXPECT_THAT(error_of([&] { return run_module("track", run).events; }), HasSubstr("--depth-from"));
-  EXPECT_THAT(
-      error_of([&] {
-        return run_reconstruction(request("even", "depth: {propagation: splat, kernel_px: 4}"))
-            .events;
-      }),
-      HasSubstr("must be odd"));
   const fs::path bare = path("bare");
   fs::create_directories(bare);
   fs::copy(dataset(), bare, fs::copy_options::recursive | fs::copy_options::overwrite_existing);

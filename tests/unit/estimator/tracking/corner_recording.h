@@ -97,7 +97,7 @@ inline TrackConfig tracking_config(const std::string& name) {
   return config::read<TrackConfig>(config::load(file));
 }
 
-/// The edges that a method falls back to, as track_methods.cpp sets them.
+/// The edges that a method falls back to, as track_config.cpp sets them.
 inline EdgeTrackerOptions fallback_options(const TrackConfig& config) {
   EdgeTrackerOptions options;
   options.templates.redraw_px = 0;

@@ -1,4 +1,4 @@
-#include "estimator/tracking/gyroscope_input.h"
+#include "estimator/tracking/motion_model.h"
 
 #include <gtest/gtest.h>
 

@@ -30,8 +30,8 @@ ReferenceView view_with_step(float step) {
   return view;
 }
 
-IntensityMap map_of(const ReferenceView& view, const IntensityMapOptions& options = {}) {
-  return {tiny_camera(), std::span(&view, 1), options};
+IntensityMap map_of(const ReferenceView& view, double edge_blur_px = IntensityMap::kEdgeBlur_px) {
+  return {tiny_camera(), std::span(&view, 1), edge_blur_px};
 }
 
 TEST(IntensityMap, SmoothesAtStrongEdgesOnly) {
@@ -52,24 +52,24 @@ TEST(IntensityMap, FaintEdgesStayAsTheyAre) {
 }
 
 TEST(IntensityMap, SmoothesTheMoreTheStrongerTheEdge) {
-  // From the step on, fully from twice that on: shares 0, 1/2 and 1 of a Gaussian's change, which
-  // is itself in proportion to the step.
+  // From a difference of 0.9 on, fully from twice that on: 0, 1/2 and 1 of a Gaussian's change,
+  // which is itself in proportion to the difference.
   const auto change = [](float step) {
     ReferenceView view = view_with_step(step);
     for (int y = 0; y < 18; ++y)
       for (int x = 0; x < 24; ++x) view.log_intensity(x, y) = x >= 12 ? step : 0;
-    return map_of(view, {1, 0.8}).atlas()(11, 9) / step;
+    return map_of(view).atlas()(11, 9) / step;
   };
-  const float fully = change(3);
+  const float fully = change(2.7F);
   EXPECT_GT(fully, 0.1F);
-  EXPECT_FLOAT_EQ(change(2), fully);
-  EXPECT_FLOAT_EQ(change(1.5F), fully / 2);
-  EXPECT_EQ(change(1), 0);
+  EXPECT_FLOAT_EQ(change(1.8F), fully);
+  EXPECT_FLOAT_EQ(change(1.35F), fully / 2);
+  EXPECT_EQ(change(0.9F), 0);
 }
 
 TEST(IntensityMap, NoBlurLeavesThePicture) {
   const ReferenceView view = view_with_step(4);
-  EXPECT_EQ(map_of(view, {0.9, 0}).atlas(), view.log_intensity);
+  EXPECT_EQ(map_of(view, 0).atlas(), view.log_intensity);
 }
 
 TEST(IntensityMap, WhatIsUnknownStaysSoAndSpreadsNowhere) {
@@ -99,7 +99,7 @@ TEST(IntensityMap, PicturesOfSeveralViewsLieOneBelowTheOther) {
   const Rigid3 first_from_second(so3_exp({0, 0.4, 0}), {0.5, 0, -0.1});
   views[0].world_from_reference = world_from_first;
   views[1].world_from_reference = world_from_first * first_from_second;
-  const IntensityMap map(tiny_camera(), views, {});
+  const IntensityMap map(tiny_camera(), views, IntensityMap::kEdgeBlur_px);
   ASSERT_EQ(map.views().size(), 2U);
   EXPECT_EQ(map.atlas().width(), 24);
   EXPECT_EQ(map.atlas().height(), 37);

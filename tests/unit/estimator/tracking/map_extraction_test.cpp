@@ -47,20 +47,6 @@ std::set<int> columns_of(const MapPoints& map) {
   return columns;
 }
 
-TEST(GradientMagnitude, IsTheSlopeOfARamp) {
-  ImageF image(kMapWidth, kMapHeight);
-  for (int y = 0; y < kMapHeight; ++y)
-    for (int x = 0; x < kMapWidth; ++x)
-      image(x, y) = 0.3F * static_cast<float>(x) - 0.4F * static_cast<float>(y);
-  image(20, 10) = kNaN;
-  const ImageF magnitude = gradient_magnitude(image);
-  EXPECT_NEAR(magnitude(5, 5), 0.5, 1e-5);
-  EXPECT_EQ(magnitude(0, 5), 0);
-  EXPECT_EQ(magnitude(5, kMapHeight - 1), 0);
-  for (const auto& [x, y] : {std::pair{19, 10}, {21, 10}, {20, 9}, {20, 11}})
-    EXPECT_EQ(magnitude(x, y), 0) << "beside NaN";
-}
-
 TEST(ExtractMap, BackProjectsExactly) {
   ImageF depth(kMapWidth, kMapHeight);
   for (int y = 0; y < kMapHeight; ++y)

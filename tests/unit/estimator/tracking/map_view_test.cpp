@@ -35,7 +35,7 @@ IntensityMap two_planes() {
   ReferenceView view{ImageF(kWidth, kHeight, -1), ImageF(kWidth, kHeight, kFar_m), {}};
   for (int y = kTop; y <= kBottom; ++y)
     for (int x = kLeft; x <= kRight; ++x) view.depth(x, y) = kNear_m;
-  return {two_planes_camera(), std::span(&view, 1), {}};
+  return {two_planes_camera(), std::span(&view, 1), 0};
 }
 
 /// A step to the side that opens a gap of some pixels, and a small turn.
@@ -239,7 +239,7 @@ IntensityMap turned_views(const std::vector<double>& angles) {
     view.world_from_reference = {so3_exp({0, angle, 0}), {0, 0, 0}};
     views.push_back(view);
   }
-  return {two_planes_camera(), views, {}};
+  return {two_planes_camera(), views, 0};
 }
 
 /// Which view the place belongs to; -1: none.

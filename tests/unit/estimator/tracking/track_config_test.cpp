@@ -52,8 +52,8 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
 
 TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
   const TrackConfig config = parse(
-      "{reference: {planar_depth_m: 0.7, region_px: [1, 2, 30, 40]}, map: {min_gradient: 0.2},"
-      " edges: {preset: fast, blur_size_px: 5}, motion: {acceleration_sigma_px: 123},"
+      "{reference: {planar_depth_m: 0.7, region_px: [1, 2, 30, 40]},"
+      " edges: {preset: fast, iterations: 7}, motion: {acceleration_sigma_px: 123},"
       " initial_pose: [1, 2, 3, 0, 0, 0, 1], seed: 9}");
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parse(printed)), printed);
@@ -61,7 +61,7 @@ TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
   EXPECT_EQ(again.motion.acceleration_sigma_px, 123);
   EXPECT_EQ(again.initial_pose, config.initial_pose);
   EXPECT_EQ(again.reference.region_px, config.reference.region_px);
-  EXPECT_EQ(again.edges.templates.blur_size_px, 5);
+  EXPECT_EQ(again.edges.align.iterations, 7);
   EXPECT_EQ(again.edges.align.samples, 50);
   EXPECT_TRUE(again.edges.align.smooth) << "of the preset, without a key";
 }
@@ -76,7 +76,7 @@ TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
   EXPECT_EQ(again.method, "intensity");
   EXPECT_EQ(again.reference.new_view_deg, 7);
   EXPECT_EQ(again.intensity.events, 321);
-  EXPECT_EQ(again.intensity.map.blur_px, 0);
+  EXPECT_EQ(again.intensity.map_blur_px, 0);
   EXPECT_EQ(again.contrast, 0.17);
   EXPECT_EQ(again.motion.acceleration_sigma_px, 3);
   EXPECT_EQ(again.motion.acceleration_per_speed, 6) << "of the method, without a key";
@@ -108,18 +108,12 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{edges: {pyramid_levels: 0}}", "edges.pyramid_levels"},
       {"{edges: {robust_loss: cauchy}}", "edges.robust_loss"},
       {"{edges: {selection: sparse}}", "edges.selection"},
-      {"{edges: {blur_size_px: 4}}", "edges.blur_size_px"},
-      {"{edges: {blur_size_px: 17}}", "edges.blur_size_px"},
-      {"{edges: {blur_sigma_px: 0}}", "edges.blur_sigma_px"},
       {"{edges: {event_map_ratio: 0}}", "edges.event_map_ratio"},
       {"{edges: {event_window: slides}}", "edges.event_window"},
       {"{edges: {event_frame: surface}}", "edges.event_frame"},
-      {"{edges: {min_inlier_ratio: 2}}", "edges.min_inlier_ratio"},
-      {"{motion: {prediction: constant_velocity, gyro_sigma: 1}}", "prediction: imu"},
-      {"{motion: {prediction: imu, gyro_sigma: 0}}", "motion.gyro_sigma"},
+      {"{motion: {prediction: constant_velocity, gyro_offset_s: 0.1}}", "prediction: imu"},
+      {"{motion: {prediction: imu, gyro_offset_s: 2}}", "motion.gyro_offset_s"},
       {"{motion: {prediction: none, acceleration_sigma_px: 100}}", "acceleration_sigma_px"},
-      {"{map: {min_gradient: -0.1}}", "map.min_gradient"},
-      {"{map: {max_fraction: 0}}", "map.max_fraction"},
       {"{reference: {planar_depth_m: 0}}", "reference.planar_depth_m"},
       {"{reference: {frame: -1}}", "reference.frame"},
       {"{reference: {region_px: [1, 2, 3]}}", "reference.region_px"},
@@ -154,7 +148,13 @@ TEST(TrackConfig, TheThesisPresetLeavesOutTheImprovements) {
   EXPECT_FALSE(config.map.foreground_depth);
   EXPECT_EQ(config.map.max_fraction, 1);
   EXPECT_EQ(config.motion.prediction, MotionModelOptions::Prediction::kNone);
-  EXPECT_EQ(parse("{edges: {preset: thesis}, map: {max_fraction: 0.5}}").map.max_fraction, 0.5);
+}
+
+TEST(TrackConfig, ThePresetForANarrowViewHoldsItsMotionModelToo) {
+  const TrackConfig config = parse("{edges: {preset: narrow_view}}");
+  EXPECT_EQ(config.edges.templates.blur_size_px, 5);
+  EXPECT_EQ(config.edges.event_frame.event_map_ratio, 0.2);
+  EXPECT_EQ(config.motion.acceleration_sigma_px, 20);
 }
 
 TEST(TrackConfig, EveryMethodPrintsAConfigurationThatItReads) {

@@ -122,11 +122,5 @@ TEST(PlanarFusion, WhatIsTooUncertainIsDropped) {
   EXPECT_TRUE(fuse_planes(grid_of_points(0.004), options).empty());
 }
 
-TEST(PlanarFusion, WithoutRadiusNothingChanges) {
-  FusionOptions options;
-  options.plane.radius_px = 0;
-  EXPECT_EQ(fuse_planes(grid_of_points(0.004), options).size(), 400U);
-}
-
 }  // namespace
 }  // namespace saccade

@@ -25,7 +25,7 @@ class RayGather : public ::testing::Test {
   Events events_ = world_.simulate(corner_motion, 0, 0.3, 1e-3, 0.15);
   UndistortionTable undistortion_{world_.camera()};
   EventRays rays_{{events_, &trajectory_, kView_s}, world_.camera(), undistortion_, kSlices};
-  GatherReach reach_;
+  GatherWindow window_;
 
   /// Tests every ray of every slice, its polarity against the motion of its projection.
   [[nodiscard]] std::vector<std::uint32_t> by_testing_all(const SliceRange& slices,
@@ -40,8 +40,8 @@ class RayGather : public ::testing::Test {
         const RayGradient& gradient = rays_.gradient[i];
         const Eigen::Vector2f up(gradient.qax + gradient.qbx * edge.inverse_depth,
                                  gradient.qay + gradient.qby * edge.inverse_depth);
-        if (std::abs(d.dot(edge.normal)) <= static_cast<float>(reach_.radius_px) &&
-            std::abs(d.dot(edge.tangent())) <= static_cast<float>(reach_.half_length_px) &&
+        if (std::abs(d.dot(edge.normal)) <= static_cast<float>(window_.radius_px) &&
+            std::abs(d.dot(edge.tangent())) <= static_cast<float>(window_.half_length_px) &&
             up.dot(edge.normal) > 0)
           found.push_back(static_cast<std::uint32_t>(i));
       }
@@ -50,7 +50,7 @@ class RayGather : public ::testing::Test {
 };
 
 TEST_F(RayGather, FindsWhatALookAtAllRaysFinds) {
-  RayGatherer gatherer(rays_, reach_);
+  RayGatherer gatherer(rays_, window_);
   RayNeighbourhood near;
   std::size_t all = 0, common = 0, gathered = 0;
   for (int i = 0; i < 60; ++i) {
@@ -78,7 +78,7 @@ TEST_F(RayGather, FindsWhatALookAtAllRaysFinds) {
 }
 
 TEST_F(RayGather, CoordinatesAreThoseOfTheEdge) {
-  RayGatherer gatherer(rays_, reach_);
+  RayGatherer gatherer(rays_, window_);
   RayNeighbourhood near;
   const Edgel edge{{60, 45}, {0.6F, 0.8F}, 0.4F};
   gatherer.gather({0, kSlices, 1}, edge, near);
@@ -96,7 +96,7 @@ TEST_F(RayGather, CoordinatesAreThoseOfTheEdge) {
 }
 
 TEST_F(RayGather, TheCrossingIsTheMotionAcrossTheEdge) {
-  RayGatherer gatherer(rays_, reach_);
+  RayGatherer gatherer(rays_, window_);
   RayNeighbourhood near;
   const Edgel edge{{60, 45}, {1, 0}, 0.4F};
   gatherer.gather({0, kSlices, 1}, edge, near);
@@ -113,7 +113,8 @@ TEST_F(RayGather, TheCrossingIsTheMotionAcrossTheEdge) {
         seen(point, t_s + length_s / 2) - seen(point, t_s - length_s / 2);
     const Eigen::Vector2d along = seen(world_.camera().ray({60, 46}) / 0.4, t_s) - seen(point, t_s);
     const double across = std::abs(along.y() * motion.x() - along.x() * motion.y()) / along.norm();
-    EXPECT_NEAR(gatherer.crossing_px()[static_cast<std::size_t>(k)], across, 0.05 * across + 0.02);
+    EXPECT_NEAR(gatherer.slice_motion_px()[static_cast<std::size_t>(k)], across,
+                0.05 * across + 0.02);
   }
 }
 

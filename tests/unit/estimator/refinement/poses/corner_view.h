@@ -31,7 +31,7 @@ struct CornerView {
     view.depth = world.depth(motion(0));
     view.world_from_reference = motion(0);
     const std::vector<ReferenceView> views{view};
-    return {world.camera(), views, {}};
+    return {world.camera(), views, IntensityMap::kEdgeBlur_px};
   }
 
   /// The true path, moved by `share` of half a pixel here and there.

@@ -26,7 +26,7 @@ const PlanarWorld& world() {
 const IntensityMap& intensity_map() {
   static const std::vector<ReferenceView> views{
       {world().log_intensity(corner_motion(0)), world().depth(corner_motion(0)), corner_motion(0)}};
-  static const IntensityMap map(world().camera(), views, {.blur_px = 0});
+  static const IntensityMap map(world().camera(), views, 0);
   return map;
 }
 

@@ -29,7 +29,8 @@ class IntensityTracking {
   explicit IntensityTracking(const TrackConfig& config = best(),
                              double contrast = kRecordedContrast,
                              const ReferenceView& view = resolved_recording().view)
-      : map_(resolved_recording().world.camera(), std::span(&view, 1), config.intensity.map),
+      : map_(resolved_recording().world.camera(), std::span(&view, 1),
+             config.intensity.map_blur_px),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
         edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(),
                config.seed),
@@ -271,7 +272,7 @@ TEST(IntensityTracker, TheViewIsDrawnAnewOnlyWhereItHasMoved) {
   IntensityTracking usual;
   const Errors finely = resolved_errors(from(0, often_drawn->track({resolved_recording().events})));
   static_cast<void>(usual->track({resolved_recording().events}));
-  EXPECT_LT(usual->templates_drawn(), often_drawn->templates_drawn() / 2);
+  EXPECT_LT(usual->views_drawn(), often_drawn->views_drawn() / 2);
   EXPECT_LT(finely.mean, 0.09);
 }
 

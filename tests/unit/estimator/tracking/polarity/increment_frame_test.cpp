@@ -29,7 +29,7 @@ class StillWall {
  public:
   StillWall()
       : reference_{ImageF(64, 48, -1), ImageF(64, 48, kStillDepth_m), Rigid3()},
-        map_(still_camera(), std::span(&reference_, 1), {.blur_px = 0}),
+        map_(still_camera(), std::span(&reference_, 1), 0),
         view_(map_, 0) {
     view_.draw(Rigid3());
   }

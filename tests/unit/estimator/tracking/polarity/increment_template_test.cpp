@@ -34,9 +34,7 @@ double seen(const Eigen::Vector2d& pixel, const Rigid3& map_from_camera) {
 
 class WavyWall {
  public:
-  WavyWall()
-      : reference_(reference()),
-        map_(small_uneven_camera(), std::span(&reference_, 1), {.blur_px = 0}) {}
+  WavyWall() : reference_(reference()), map_(small_uneven_camera(), std::span(&reference_, 1), 0) {}
   [[nodiscard]] const IntensityMap& map() const { return map_; }
 
  private:

@@ -26,7 +26,7 @@ class PolarityTracking {
  public:
   explicit PolarityTracking(const TrackConfig& config = polarity(),
                             const ReferenceView& view = resolved_recording().view)
-      : map_(resolved_recording().world.camera(), std::span(&view, 1), smoothing_of(config)),
+      : map_(resolved_recording().world.camera(), std::span(&view, 1), 0),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
         edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(),
                config.seed),

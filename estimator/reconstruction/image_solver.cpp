@@ -1,4 +1,4 @@
-#include "estimator/reconstruction/image_estimator.h"
+#include "estimator/reconstruction/image_solver.h"
 
 namespace saccade {
 
