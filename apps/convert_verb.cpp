@@ -50,21 +50,25 @@ void convert_sequence(const PublicSequence& sequence, const ConvertOptions& opti
                sequence.camera_residual_px);
 }
 
-bool names_event_file(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
-  return ending == ".h5" || ending == ".hdf5" || ending == ".txt";
+/// ".h5, .hdf5, .txt"
+std::string event_file_endings() {
+  std::string list;
+  for (const EventFormat& format : event_formats())
+    list += (list.empty() ? "" : ", ") + std::string(format.ending);
+  return list;
 }
 
 void convert(const ConvertOptions& options) {
   options.common.apply();
-  if (!names_event_file(options.output)) {
+  if (find_event_format(options.output) == nullptr) {
     if (std::filesystem::is_directory(options.input))
       if (const auto sequence = open_public_sequence(options.input))
         return convert_sequence(*sequence, options);
-    throw InputError(options.output.string(),
-                     "cannot tell the format from the ending; valid endings: .h5, .hdf5, .txt; a "
-                     "folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the layout of "
-                     "the Event Camera Dataset is read as it is)");
+    throw InputError(
+        options.output.string(),
+        "cannot tell the format from the ending; valid endings: " + event_file_endings() +
+            "; a folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the "
+            "layout of the Event Camera Dataset is read as it is)");
   }
   if (options.window.start_s != 0 || options.window.duration_s)
     throw InputError("--start-s", "belongs to the conversion of whole sequences");

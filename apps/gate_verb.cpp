@@ -80,7 +80,7 @@ void gate_runs(const GateVerbOptions& options) {
   finish(options, compare_runs(read_baseline(options.baseline), runs, options.gate));
 }
 
-void race_builds(const GateVerbOptions& options) {
+void benchmark_builds(const GateVerbOptions& options) {
   if (options.builds.size() != 2)
     throw InputError("--build", "name two programs: --build A --build B -- ARGUMENTS");
   if (!options.baseline.empty() || options.update)
@@ -89,9 +89,11 @@ void race_builds(const GateVerbOptions& options) {
     throw InputError("--build", "say what both are to do: --build A --build B -- ARGUMENTS");
   for (const std::filesystem::path& build : options.builds)
     if (!std::filesystem::exists(build)) throw InputError(build.string(), "does not exist");
-  const PairedBenchmark race{options.builds[0], options.builds[1], options.words, options.repeats};
-  Progress progress("running", repetition_order(race.repeats).size(), "runs");
-  const PairedTimes times = run_paired_benchmark(race, [&](const Repetition&) { progress.add(1); });
+  const PairedBenchmark benchmark{options.builds[0], options.builds[1], options.words,
+                                  options.repeats};
+  Progress progress("running", repetition_order(benchmark.repeats).size(), "runs");
+  const PairedTimes times =
+      run_paired_benchmark(benchmark, [&](const Repetition&) { progress.add(1); });
   progress.finish();
   finish(options, compare_times(times.first_s, times.second_s, options.gate));
 }
@@ -102,7 +104,7 @@ void gate(GateVerbOptions& options) {
   options.gate.check();
   if (options.builds.empty()) return gate_runs(options);
   options.all = true;  // there is one row
-  race_builds(options);
+  benchmark_builds(options);
 }
 
 void add_rule_options(CLI::App& verb, GateOptions& gate) {
@@ -134,7 +136,8 @@ void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
   verb.add_flag("--update", options.update, "Write the runs to the baseline and compare nothing.");
   verb.add_option(
           "--build", options.builds,
-          "Program to time; give it twice to run both builds in turn and compare their times.")
+          "Program to time; give it twice to compare the times of both programs by a paired "
+          "benchmark.")
       ->type_name("PROGRAM")
       ->take_all()
       ->allow_extra_args(false);
@@ -157,7 +160,7 @@ void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
 void add_gate_verb(CLI::App& command) {
   const auto options = std::make_shared<GateVerbOptions>();
   CLI::App* verb = command.add_subcommand(
-      "gate", "Hold scored runs against a baseline, or two builds against each other.");
+      "gate", "Compare scored runs with a baseline, or the speed of two builds.");
   add_gate_options(*verb, *options);
   verb->footer(
       "Examples:\n"

@@ -26,17 +26,17 @@ struct StatisticsOptions {
 };
 
 /// Recordings whose names are alike are named as they were given.
-void name_apart(std::vector<NamedStatistics>& recordings,
+void name_apart(std::vector<StreamStatistics>& recordings,
                 const std::vector<std::filesystem::path>& paths) {
   std::map<std::string, int> count;
-  for (const NamedStatistics& recording : recordings) ++count[recording.name];
+  for (const StreamStatistics& recording : recordings) ++count[recording.name];
   for (std::size_t i = 0; i < recordings.size(); ++i)
     if (count[recordings[i].name] > 1) recordings[i].name = paths[i].string();
 }
 
 void show_statistics(const StatisticsOptions& options) {
   options.common.apply();
-  std::vector<NamedStatistics> recordings;
+  std::vector<StreamStatistics> recordings;
   for (const std::filesystem::path& path : options.paths)
     recordings.push_back(statistics_of_recording(path, options.part));
   name_apart(recordings, options.paths);

@@ -25,7 +25,7 @@ struct SweepVerbOptions {
   std::vector<std::string> overrides;
   std::vector<std::string> seeds;
   int threads = 0;  ///< 0: as the file states it
-  SweepOptions sweep;
+  int jobs = 0;     ///< at a time; 0: one per core
   bool dry_run = false;
   bool print_config = false;
   bool quiet = false;
@@ -62,11 +62,11 @@ void sweep(const SweepVerbOptions& options) {
   }
   if (options.output.empty()) throw InputError("-o", "name the folder of the sweep: -o DIR");
   if (options.dry_run) {
-    fmt::print("{}", config.generate ? estimate_generation(config, options.output, options.sweep)
+    fmt::print("{}", config.generate ? estimate_generation(config, options.output, options.jobs)
                                      : describe_sweep(config, options.output));
     return;
   }
-  const SweepSummary summary = run_sweep(config, options.output, *launcher, options.sweep);
+  const SweepSummary summary = run_sweep(config, options.output, *launcher, options.jobs);
   if (summary.interrupted)
     throw std::runtime_error("interrupted; the same command goes on from here");
   if (!options.quiet) show(options, summary, config.generate.has_value());
@@ -76,7 +76,7 @@ void sweep(const SweepVerbOptions& options) {
                                          (options.output / "jobs").string()));
   if (summary.missed > 0)
     throw std::runtime_error(fmt::format("{} expected {} missed: {}", summary.missed,
-                                         summary.missed == 1 ? "figure was" : "figures were",
+                                         summary.missed == 1 ? "metric was" : "metrics were",
                                          (options.output / "sweep.md").string()));
 }
 
@@ -89,7 +89,7 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
       ->take_all()
       ->allow_extra_args(false);
   verb.add_option(
-          "-j,--jobs", options.sweep.jobs,
+          "-j,--jobs", options.jobs,
           "Number of jobs at a time (default: as many as the cores allow; on Slurm, as many as it "
           "accepts). Speeds are comparable only with 1; `timing: true` in the file requires it.")
       ->type_name("N")

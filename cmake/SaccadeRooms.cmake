@@ -1,4 +1,4 @@
-# One static library per room of the house: saccade_<room>, with the alias saccade::<room>.
+# One static library per folder core, simulator, estimator, eval: saccade_<folder>, alias saccade::<folder>.
 set(SACCADE_ROOMS core simulator estimator eval)
 
 # saccade_add_room(<room> PUBLIC <targets> PRIVATE <targets> HEADER_ONLY <targets>)

@@ -27,8 +27,8 @@ struct EstimatedView {
 [[nodiscard]] EstimatedView load_depth_map(const std::filesystem::path& file,
                                            const Dataset& dataset, double t_s);
 
-/// One view from a point cloud in the world (PLY), as it projects into the camera at its true pose at
-/// `t_s`: points before it and within the image. What stands in front of a point is not tested.
+/// One view from a point cloud in the world (PLY), as it projects into the camera at its true pose
+/// at `t_s`: points before it and within the image. What stands in front of a point is not tested.
 [[nodiscard]] EstimatedView load_cloud(const std::filesystem::path& file, const Dataset& dataset,
                                        double t_s);
 

@@ -78,8 +78,7 @@ TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
   if (run.trajectory) input.estimate = *run.trajectory;
   input.truth = dataset.groundtruth();
   input.mean_depth_m = dataset.facts().mean_depth_m;
-  if (run.record.window)
-    input.window = ScoredTime{run.record.window->start_s, run.record.window->end_s};
+  input.window = run.record.window;
   if (run.poses) {
     input.reported.emplace();
     for (const PoseRow& row : *run.poses)

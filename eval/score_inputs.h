@@ -10,8 +10,8 @@ namespace saccade {
 
 /// What the scores of a run follow from, by name: `run_sha256` (every file of the run folder but
 /// those that scoring writes), `dataset_sha256` (dataset.yaml, which holds the hashes of the other
-/// files, or else the events; and the ground truth) and `version` (of this program). It stands below
-/// `inputs` in metrics.json: scores whose inputs are others are stale.
+/// files, or else the events; and the ground truth) and `version` (of this program). It stands
+/// below `inputs` in metrics.json: scores whose inputs are others are stale.
 using ScoreInputs = std::map<std::string, std::string>;
 
 [[nodiscard]] ScoreInputs score_inputs(const std::filesystem::path& run_folder,

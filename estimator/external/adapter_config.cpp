@@ -1,5 +1,6 @@
 #include "estimator/external/adapter_config.h"
 
+#include "core/io/events/event_file.h"
 #include "estimator/external/command_template.h"
 
 namespace saccade {
@@ -42,13 +43,12 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
-  fields.choice(
-      "events", config.events,
-      {{"txt", EventFileFormat::kText},
-       {"h5", EventFileFormat::kH5},
-       {"csv", EventFileFormat::kCsv}},
-      "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout of DSEC "
-      "(`h5`), or lines t,x,y,p (`csv`).");
+  config::Names<std::string> formats{{"csv", "csv"}};
+  for (const EventFormat& format : event_formats())
+    formats.emplace_back(format.ending.substr(1), format.ending.substr(1));
+  fields.choice("events", config.events, formats,
+                "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout "
+                "of DSEC (`h5`, `hdf5`), or lines t,x,y,p (`csv`).");
   fields.choice("time_unit", config.event_unit,
                 {{"us", StampUnit::kMicroseconds}, {"ns", StampUnit::kNanoseconds}},
                 "Time unit of h5 and csv.");

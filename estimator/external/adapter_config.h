@@ -10,7 +10,6 @@
 
 namespace saccade {
 
-enum class EventFileFormat { kText, kH5, kCsv };
 enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
 /// The trajectory that an external program writes: a line for each pose, numbers separated by
@@ -40,7 +39,7 @@ struct AdapterConfig {
   std::string version_command;
   std::map<std::string, std::filesystem::path> files;  ///< by placeholder
   std::map<std::string, std::string> environment;
-  EventFileFormat events = EventFileFormat::kText;
+  std::string events = "txt";  ///< ending of the file
   StampUnit event_unit = StampUnit::kMicroseconds;
   double groundtruth_start_s = 0;
   AdapterOutput output;

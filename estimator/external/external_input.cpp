@@ -40,12 +40,11 @@ void write_events_csv(const fs::path& file, std::span<const Event> events, Stamp
 
 fs::path write_events(const fs::path& folder, const AdapterConfig& config,
                       std::span<const Event> events) {
-  if (config.events == EventFileFormat::kCsv) {
-    write_events_csv(folder / "events.csv", events, config.event_unit);
-    return folder / "events.csv";
+  const fs::path file = folder / ("events." + config.events);
+  if (config.events == "csv") {
+    write_events_csv(file, events, config.event_unit);
+    return file;
   }
-  const fs::path file =
-      folder / (config.events == EventFileFormat::kH5 ? "events.h5" : "events.txt");
   const std::unique_ptr<EventWriter> writer = make_event_writer(
       file, config.event_unit == StampUnit::kNanoseconds ? TimestampUnit::kNanoseconds
                                                          : TimestampUnit::kMicroseconds);

@@ -43,20 +43,20 @@ void write_stabilized_events(const std::filesystem::path& folder, const PinholeC
                              std::span<const std::vector<StabilizedEvent>> stabilized) {
   std::filesystem::create_directories(folder);
   EventH5Writer events(folder / "events.h5", TimestampUnit::kNanoseconds);
-  StabilizedCoordinates places;
+  StabilizedCoordinates coordinates;
   for (const std::vector<StabilizedEvent>& window : stabilized) {
     Events batch;
     for (const auto& [event, exact] : within_image(window, camera)) {
       batch.push_back(event);
-      places.x.push_back(exact.x);
-      places.y.push_back(exact.y);
-      places.source_x.push_back(exact.source.x);
-      places.source_y.push_back(exact.source.y);
+      coordinates.x.push_back(exact.x);
+      coordinates.y.push_back(exact.y);
+      coordinates.source_x.push_back(exact.source.x);
+      coordinates.source_y.push_back(exact.source.y);
     }
     events.append(batch);
   }
   events.close();
-  write_stabilized_coordinates(folder / "places.h5", places);
+  write_stabilized_coordinates(folder / "places.h5", coordinates);
   write_stabilized_windows(folder / "windows.csv", windows);
 }
 

@@ -11,19 +11,8 @@
 namespace saccade {
 namespace {
 
-/// The pairs with one fault: their number, and the first of them.
-struct AffectedPairs {
-  std::size_t count = 0;
-  const GatePair* first = nullptr;
-
-  void add(const GatePair& pair) {
-    if (count++ == 0) first = &pair;
-  }
-  [[nodiscard]] std::string scope() const {
-    const std::string text = first->after->key.text();
-    return count == 1 ? text : fmt::format("{} and {} more", text, count - 1);
-  }
-};
+/// The pairs with one fault, by metric.
+using AffectedPairs = std::map<std::string, std::vector<GatePair>>;
 
 const GateRun* find(std::span<const GateRun> runs, const GateKey& key) {
   const auto found =
@@ -31,16 +20,20 @@ const GateRun* find(std::span<const GateRun> runs, const GateKey& key) {
   return found == runs.end() ? nullptr : &*found;
 }
 
-GateRow regressed(const std::string& metric, const AffectedPairs& found, std::string note) {
-  GateRow row;
-  row.verdict = GateRow::Verdict::kRegressed;
-  row.metric = metric;
-  row.scope = found.scope();
-  row.pairs = found.count;
-  row.before = found.first->before->get(metric);
-  row.after = found.first->after->get(metric);
-  row.note = std::move(note);
-  return row;
+void add_regressions(const AffectedPairs& affected, const std::string& note, GateResult& result) {
+  for (const auto& [metric, pairs] : affected) {
+    const GatePair& first = pairs.front();
+    GateRow row;
+    row.verdict = GateRow::Verdict::kRegressed;
+    row.metric = metric;
+    row.scope = first.after->key.text();
+    if (pairs.size() > 1) row.scope += fmt::format(" and {} more", pairs.size() - 1);
+    row.pairs = pairs.size();
+    row.before = first.before->get(metric);
+    row.after = first.after->get(metric);
+    row.note = note;
+    result.rows.push_back(row);
+  }
 }
 
 }  // namespace
@@ -71,25 +64,23 @@ std::vector<GatePair> match_runs(std::span<const GateRun> baseline, std::span<co
 }
 
 void add_missing_metrics(std::span<const GatePair> pairs, bool speed, GateResult& result) {
-  std::map<std::string, AffectedPairs> missing;
+  AffectedPairs missing;
   for (const GatePair& pair : pairs)
     for (const auto& [metric, value] : pair.before->metrics)
       if (value && !pair.after->get(metric) && (speed || !metric.starts_with("speed.")))
-        missing[metric].add(pair);
-  for (const auto& [metric, found] : missing)
-    result.rows.push_back(regressed(metric, found, "missing"));
+        missing[metric].push_back(pair);
+  add_regressions(missing, "missing", result);
 }
 
 void add_changed_signs(std::span<const GatePair> pairs, GateResult& result) {
-  std::map<std::string, AffectedPairs> changed;
+  AffectedPairs changed;
   for (const GatePair& pair : pairs)
     for (const auto& [metric, before] : pair.before->metrics) {
       const std::optional<double> after = pair.after->get(metric);
       if (is_judged_by_sign(metric) && before && after && *before * *after < 0)
-        changed[metric].add(pair);
+        changed[metric].push_back(pair);
     }
-  for (const auto& [metric, found] : changed)
-    result.rows.push_back(regressed(metric, found, "changed sign"));
+  add_regressions(changed, "changed sign", result);
 }
 
 void note_other_data(std::span<const GatePair> pairs, GateResult& result) {

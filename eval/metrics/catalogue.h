@@ -25,7 +25,7 @@ struct MetricInfo {
   /// not count, and 0 has a logarithm. In the metric's unit, above 0; nullopt: not judged unless
   /// asked for.
   std::optional<double> floor = {};
-  std::optional<double> tolerance = {};  ///< smallest relative change that the gate counts
+  std::optional<double> tolerance = {};  ///< smallest relative change; nullopt: --tolerance
   std::string board = {};                ///< title of its leaderboard; empty: it has none
   bool in_tables = false;                ///< a column where a table's reader named none
   bool in_figures = false;               ///< drawn where a sweep names no metrics

@@ -46,8 +46,8 @@ struct DepthErrors {
 ///   depth.{rel_mean,rel_median,rmse_m,delta_1_25,outlier_5_percent,within_1_sigma,within_2_sigma},
 /// the same below depth.strict, depth.points (a number), depth.completeness (over all edge pixels);
 /// depth.views.count; and of the views' own figures depth.views.{rel_mean,rel_median,
-/// outlier_5_percent,completeness,points}.{median,worst}. Fractions of points and relative errors are fractions.
-/// null where there is nothing to score, or no sigma.
+/// outlier_5_percent,completeness,points}.{median,worst}. Relative errors and fractions of points
+/// are in 0..1, not percent. Null where there is nothing to score, or no sigma.
 void set_depth_scores(Metrics& metrics, std::span<const DepthErrors> views);
 
 /// The figures of one view, without the prefix.

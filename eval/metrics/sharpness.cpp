@@ -19,7 +19,7 @@ void draw(ImageF& image, const Eigen::Vector2d& pixel) {
 StabilizedRun load_stabilized(const std::filesystem::path& folder) {
   StabilizedRun run;
   run.events = read_events(folder / "events.h5", {});
-  run.places = read_stabilized_coordinates(folder / "places.h5", run.events.size());
+  run.coordinates = read_stabilized_coordinates(folder / "places.h5", run.events.size());
   run.windows = read_stabilized_windows(folder / "windows.csv");
   return run;
 }
@@ -41,8 +41,8 @@ WindowImages images_of(const StabilizedRun& run, std::size_t index, const Datase
   const std::size_t end = count_before(run.events, ns_from_seconds(window.end_s));
   for (std::size_t i = begin; i < end; ++i) {
     const Eigen::Vector2d from =
-        undistorted(run.places.source_x[i], run.places.source_y[i]).cast<double>();
-    const Eigen::Vector2d to(run.places.x[i], run.places.y[i]);
+        undistorted(run.coordinates.source_x[i], run.coordinates.source_y[i]).cast<double>();
+    const Eigen::Vector2d to(run.coordinates.x[i], run.coordinates.y[i]);
     draw(images.raw, from);
     draw(images.stabilized, to);
     ++images.events;

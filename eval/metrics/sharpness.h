@@ -13,8 +13,8 @@ namespace saccade {
 /// What `saccade run stabilize` wrote, or any program in its layout: events.h5, places.h5 and
 /// windows.csv of one folder.
 struct StabilizedRun {
-  Events events;                 ///< at the nearest pixel, in order of time
-  StabilizedCoordinates places;  ///< of the same
+  Events events;                      ///< at the nearest pixel, in order of time
+  StabilizedCoordinates coordinates;  ///< of the same
   std::vector<StabilizedWindow> windows;
 };
 

@@ -57,8 +57,8 @@ Subject open_subject(const std::filesystem::path& path, const RenderOptions& opt
   return subject;
 }
 
-TimeSpan span_of(const Subject& subject, const RenderOptions& options) {
-  TimeSpan span = time_span(subject.dataset);
+RunRecord::Window span_of(const Subject& subject, const RenderOptions& options) {
+  RunRecord::Window span = time_span(subject.dataset);
   if (subject.run && subject.run->record.window) {
     span.start_s = std::max(span.start_s, subject.run->record.window->start_s);
     span.end_s = std::min(span.end_s, subject.run->record.window->end_s);
@@ -73,7 +73,7 @@ TimeSpan span_of(const Subject& subject, const RenderOptions& options) {
   return span;
 }
 
-std::optional<Overlay> overlay_for(const Subject& subject, const TimeSpan& span,
+std::optional<Overlay> overlay_for(const Subject& subject, const RunRecord::Window& span,
                                    const RenderOptions& options) {
   if (!options.overlay) return std::nullopt;
   return Overlay(*options.overlay, subject.dataset, subject.run ? &*subject.run : nullptr,
@@ -121,7 +121,8 @@ std::vector<CaptionedPicture> pictures_at(const Scene& scene, double t_s) {
   return pictures;
 }
 
-std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory, const TimeSpan& span) {
+std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory,
+                                       const RunRecord::Window& span) {
   std::vector<Eigen::Vector3d> result;
   for (const StampedPose& pose : trajectory.poses())
     if (pose.t_s >= span.start_s && pose.t_s <= span.end_s)
@@ -135,7 +136,7 @@ std::string title_of(const Subject& subject) {
   return fmt::format("{}: {} on {}", subject.run->name(), subject.run->record.module, dataset);
 }
 
-ImageRgb8 contact_sheet(const Scene& scene, const TimeSpan& span) {
+ImageRgb8 contact_sheet(const Scene& scene, const RunRecord::Window& span) {
   const Subject& subject = scene.subject;
   const SensorView& view = scene.view;
   ContactSheet sheet(title_of(subject), view.theme());
@@ -168,7 +169,7 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
   if (ending != ".png" && ending != ".mp4")
     throw InputError(output.string(), "must end in .png or .mp4");
   const Subject subject = open_subject(path, options);
-  const TimeSpan span = span_of(subject, options);
+  const RunRecord::Window span = span_of(subject, options);
   if (subject.run && !options.overlay) {
     if (const auto mosaic = load_mosaic(*subject.run))
       return render_mosaic(*subject.run, subject.dataset, *mosaic, title_of(subject), output,
@@ -185,7 +186,8 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
     return render_stabilized(*subject.run, subject.dataset, title_of(subject), span, output,
                              options);
   const bool single = ending == ".png" && options.time_s.has_value();
-  const TimeSpan loaded = single ? TimeSpan{*options.time_s, *options.time_s} : span;
+  const RunRecord::Window loaded =
+      single ? RunRecord::Window{*options.time_s, *options.time_s} : span;
   // Before the events are loaded, so that errors in the overlay's options are reported at once.
   std::optional<Overlay> overlay = overlay_for(subject, span, options);
   const Scene scene{subject,

@@ -17,7 +17,7 @@ void write_video(const std::filesystem::path& output, std::size_t count, double 
   video.finish();
 }
 
-void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
+void write_slow_motion_video(const std::filesystem::path& output, const RunRecord::Window& span,
                              const RenderOptions& options,
                              const std::function<ImageRgb8(double)>& frame) {
   constexpr double kFps = 30;

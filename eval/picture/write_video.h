@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/image.h"
+#include "core/io/run/run_record.h"
 #include "eval/picture/render.h"
 #include "eval/picture/view/sensor_view.h"
 
@@ -16,7 +17,7 @@ void write_video(const std::filesystem::path& output, std::size_t count, double 
 
 /// Writes a video of a time span in slow motion, `options.slow_motion` times as long, by default
 /// with 30 frames per second; `frame` draws the picture at a time [s].
-void write_slow_motion_video(const std::filesystem::path& output, const TimeSpan& span,
+void write_slow_motion_video(const std::filesystem::path& output, const RunRecord::Window& span,
                              const RenderOptions& options,
                              const std::function<ImageRgb8(double)>& frame);
 

@@ -56,8 +56,7 @@ struct Leaderboard {
 [[nodiscard]] PooledValue pooled(std::span<const double> values);
 
 /// One per metric that any of the entries has, in a fixed order; `trajectory.nees`, best at 6, as
-/// the factor that it is off (nees_factor(), eval/metrics/trajectory/consistency.h); runs that came to nothing
-/// stand in those of trajectories. Scores are pooled over seeds as they are; over sequences, which
+/// nees_factor(); runs that came to nothing stand in those of trajectories. Scores are pooled over seeds as they are; over sequences, which
 /// differ in difficulty by factors, as logarithms:
 ///   overall = exp(mean of ln score),  interval = exp(interval of the mean of ln score),
 /// the interval from three sequences on.

@@ -19,11 +19,7 @@
 #include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
 #include "eval/report/run_data.h"
-#include "eval/report/sections/against_section.h"
-#include "eval/report/sections/compared_section.h"
-#include "eval/report/sections/leaderboard_section.h"
-#include "eval/report/sections/run_section.h"
-#include "eval/report/tables.h"
+#include "eval/report/sections/page_sections.h"
 
 namespace saccade {
 namespace {
@@ -141,16 +137,16 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   std::vector<RunData> runs = gather_runs(run_folders);
   tell_methods_apart(runs);
   const std::vector<RunData> before = gather_runs(options.against);
-  std::optional<Sides> sides;
-  if (!before.empty()) sides = compare_sides(before, runs);
+  std::optional<RunSetComparison> comparison;
+  if (!before.empty()) comparison = compare_run_sets(before, runs);
   const std::vector<Leaderboard> boards = leaderboards_of(runs, options.published);
   std::vector<Table> exported;
   for (const Leaderboard& board : boards) exported.push_back(leaderboard_table(board));
   std::vector<PageChart> charts;
   std::vector<std::string> parts;
-  if (sides) {
-    parts.push_back(against_section(*sides, charts));
-    exported.push_back(against_table(*sides));
+  if (comparison) {
+    parts.push_back(against_section(*comparison, charts));
+    exported.push_back(against_table(*comparison));
   }
   if (runs.size() > 1)
     parts.push_back(leaderboard_section(std::span(exported).first(boards.size())));

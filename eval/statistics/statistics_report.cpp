@@ -1,8 +1,13 @@
 #include "eval/statistics/statistics_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
+#include "core/error.h"
+#include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "core/io/images/image_file.h"
 #include "core/io/tables/csv_file.h"
 #include "eval/picture/chart/line_chart.h"
@@ -10,6 +15,7 @@
 #include "eval/table/table.h"
 
 namespace saccade {
+namespace fs = std::filesystem;
 namespace {
 
 /// Rate of the pixel below which the fraction `quantile` of all pixels lies [1/s].
@@ -85,31 +91,30 @@ Line pixel_line(const StreamStatistics& s) {
   return line;
 }
 
-CsvTable quantity_table(std::span<const NamedStatistics> recordings) {
+CsvTable quantity_table(std::span<const StreamStatistics> recordings) {
   std::vector<std::string> columns{"recording"};
   for (const Quantity& quantity : kQuantities) columns.emplace_back(quantity.key);
   CsvTable table(columns);
-  for (const NamedStatistics& recording : recordings) {
+  for (const StreamStatistics& recording : recordings) {
     std::vector<CsvTable::Cell> cells{recording.name};
-    for (const Quantity& quantity : kQuantities)
-      cells.emplace_back(quantity.value(recording.statistics));
+    for (const Quantity& quantity : kQuantities) cells.emplace_back(quantity.value(recording));
     table.add(cells);
   }
   return table;
 }
 
-CsvTable rate_table(std::span<const NamedStatistics> recordings) {
+CsvTable rate_table(std::span<const StreamStatistics> recordings) {
   CsvTable table({"recording", "t_s", "on_hz", "off_hz"});
-  for (const NamedStatistics& recording : recordings)
-    for (const RateBin& bin : recording.statistics.rates)
+  for (const StreamStatistics& recording : recordings)
+    for (const RateBin& bin : recording.rates)
       table.add({recording.name, bin.t_s, bin.on_hz, bin.off_hz});
   return table;
 }
 
-CsvTable gap_table(std::span<const NamedStatistics> recordings) {
+CsvTable gap_table(std::span<const StreamStatistics> recordings) {
   CsvTable table({"recording", "from_us", "to_us", "same_polarity", "other_polarity"});
-  for (const NamedStatistics& recording : recordings) {
-    const EventGaps& gaps = recording.statistics.gaps;
+  for (const StreamStatistics& recording : recordings) {
+    const EventGaps& gaps = recording.gaps;
     for (std::size_t i = 0; i < gaps.same.bins(); ++i)
       table.add({recording.name, gaps.same.lower(i), gaps.same.lower(i + 1),
                  static_cast<long long>(gaps.same.count(i)),
@@ -118,38 +123,86 @@ CsvTable gap_table(std::span<const NamedStatistics> recordings) {
   return table;
 }
 
+constexpr double kLongest_s = 86400;
+
+std::string seconds_text(const Event& event) {
+  return fmt::format("{:.6f} s", seconds_from_ns(event.t_ns));
+}
+
+TimeWindow window_of(const fs::path& file, const RecordingPart& part) {
+  TimeWindow window;
+  if (part.start_s) window.start_ns = ns_from_seconds(*part.start_s);
+  if (part.duration_s) {
+    const TimeNs start_ns = part.start_s ? window.start_ns : read_event_file_info(file).first_ns;
+    window.end_ns = start_ns + ns_from_seconds(*part.duration_s);
+  }
+  return window;
+}
+
+SensorSize extent(const Events& events) {
+  SensorSize size;
+  for (const Event& event : events)
+    size = {std::max(size.width, event.x + 1), std::max(size.height, event.y + 1)};
+  return size;
+}
+
 }  // namespace
 
-std::string statistics_table(std::span<const NamedStatistics> recordings) {
+StreamStatistics statistics_of_recording(const fs::path& path, const RecordingPart& part) {
+  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  fs::path file = path;
+  SensorSize size;
+  if (fs::is_directory(path)) {
+    const Dataset dataset = Dataset::open(path);
+    file = dataset.events_file();
+    if (file.empty()) throw InputError(path.string(), "holds no events");
+    size = {dataset.camera().width, dataset.camera().height};
+  }
+  const Events events = read_events(file, size, window_of(file, part));
+  if (events.empty() || events.front().t_ns == events.back().t_ns)
+    throw InputError(file.string(), "holds no two events at different times in this part");
+  if (seconds_from_ns(events.back().t_ns - events.front().t_ns) > kLongest_s)
+    throw InputError(file.string(), "spans more than a day, from " + seconds_text(events.front()) +
+                                        " to " + seconds_text(events.back()) +
+                                        "; --start-s and --duration-s choose a part");
+  if (size.width == 0) size = extent(events);
+  // "data/walls/" has an empty file name.
+  const fs::path name = path.has_filename() ? path.filename() : path.parent_path().filename();
+  StreamStatistics statistics = stream_statistics(events, size);
+  statistics.name = name.string();
+  return statistics;
+}
+
+std::string statistics_table(std::span<const StreamStatistics> recordings) {
   Table table{.columns = {{""}}};
-  for (const NamedStatistics& recording : recordings)
+  for (const StreamStatistics& recording : recordings)
     table.columns.push_back({recording.name, true});
   for (const Quantity& quantity : kQuantities) {
     std::vector<std::string> cells{quantity.label};
-    for (const NamedStatistics& recording : recordings)
-      cells.push_back(rounded(quantity.value(recording.statistics)));
+    for (const StreamStatistics& recording : recordings)
+      cells.push_back(rounded(quantity.value(recording)));
     table.add(cells);
   }
   return table_text(table);
 }
 
-ImageRgb8 draw_statistics(std::span<const NamedStatistics> recordings) {
+ImageRgb8 draw_statistics(std::span<const StreamStatistics> recordings) {
   LineChart chart;
   chart.panels = {{"events/s of a pixel", {}, "time from the first event [s]"},
                   {"gaps to the same polarity [%]", {}, "gap [us]"},
                   {"gaps to the other polarity [%]", {}, "gap [us]"},
                   {"events/s of a pixel", {}, "pixels with fewer [%]"}};
-  for (const auto& [name, statistics] : recordings) {
-    chart.names.push_back(name);
-    chart.panels[0].lines.push_back(rate_line(statistics));
-    chart.panels[1].lines.push_back(gap_line(statistics.gaps.same, statistics.gaps));
-    chart.panels[2].lines.push_back(gap_line(statistics.gaps.opposite, statistics.gaps));
-    chart.panels[3].lines.push_back(pixel_line(statistics));
+  for (const StreamStatistics& recording : recordings) {
+    chart.names.push_back(recording.name);
+    chart.panels[0].lines.push_back(rate_line(recording));
+    chart.panels[1].lines.push_back(gap_line(recording.gaps.same, recording.gaps));
+    chart.panels[2].lines.push_back(gap_line(recording.gaps.opposite, recording.gaps));
+    chart.panels[3].lines.push_back(pixel_line(recording));
   }
   return draw(chart, kLightTheme);
 }
 
-void write_statistics(std::span<const NamedStatistics> recordings,
+void write_statistics(std::span<const StreamStatistics> recordings,
                       const std::filesystem::path& folder) {
   quantity_table(recordings).save(folder / "statistics.csv");
   rate_table(recordings).save(folder / "rates.csv");

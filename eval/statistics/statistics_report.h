@@ -1,24 +1,37 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/image.h"
-#include "eval/statistics/recording_statistics.h"
+#include "eval/statistics/stream_statistics.h"
 
 namespace saccade {
 
+/// Part of a recording, on its own clock [s].
+struct RecordingPart {
+  std::optional<double> start_s;     ///< default: the first event
+  std::optional<double> duration_s;  ///< default: to the last event
+};
+
+/// Statistics of a dataset folder or an event file, named after that folder or file. The sensor of
+/// an event file is taken to be as large as its events ask for. Throws InputError for what cannot
+/// be read, and for a part without two events at different times.
+[[nodiscard]] StreamStatistics statistics_of_recording(const std::filesystem::path& path,
+                                                       const RecordingPart& part = {});
+
 /// For a terminal: a row for each quantity, a column for each recording.
-[[nodiscard]] std::string statistics_table(std::span<const NamedStatistics> recordings);
+[[nodiscard]] std::string statistics_table(std::span<const StreamStatistics> recordings);
 
 /// Rate over time, gaps between events of a pixel, and the rates of all pixels; a line for each
 /// recording.
-[[nodiscard]] ImageRgb8 draw_statistics(std::span<const NamedStatistics> recordings);
+[[nodiscard]] ImageRgb8 draw_statistics(std::span<const StreamStatistics> recordings);
 
 /// Writes statistics.csv (a row for each recording), rates.csv, gaps.csv and statistics.png into
 /// `folder` (docs/realism.md).
-void write_statistics(std::span<const NamedStatistics> recordings,
+void write_statistics(std::span<const StreamStatistics> recordings,
                       const std::filesystem::path& folder);
 
 }  // namespace saccade

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/event.h"
@@ -50,6 +51,7 @@ struct RateBin {
 /// Statistics that a stream of events has whatever made it, so that a simulation can be held
 /// against a recording (docs/realism.md).
 struct StreamStatistics {
+  std::string name = {};  ///< of the recording; stream_statistics() leaves it empty
   std::size_t events = 0;
   double duration_s = 0;     ///< first to last event
   double pixel_rate_hz = 0;  ///< events/s of a pixel, mean

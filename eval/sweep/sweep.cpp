@@ -1,8 +1,12 @@
 #include "eval/sweep/sweep.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <deque>
 #include <fstream>
 #include <map>
@@ -15,7 +19,6 @@
 #include "core/io/files/atomic_file.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
-#include "eval/sweep/folder_lock.h"
 #include "eval/sweep/plan/calibration_run.h"
 #include "eval/sweep/plan/job_record.h"
 #include "eval/sweep/plan/plan.h"
@@ -56,6 +59,26 @@ void check_folder(const fs::path& folder) {
     throw InputError(folder.string(),
                      "is not empty and not a sweep (no sweep.yaml); choose another folder");
 }
+
+/// Keeps two programs from filling one folder at the same time; the system releases it when the
+/// program ends, however that happens.
+class FolderLock {
+ public:
+  /// `folder` exists. InputError when another program holds it.
+  explicit FolderLock(const fs::path& folder)
+      : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ < 0) fail_to_write(folder, errno);
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    ::close(descriptor_);
+    throw InputError(folder.string(), "is being filled by another program at this moment");
+  }
+  ~FolderLock() { ::close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
 
 /// Removes what killed estimators left beside the run folders.
 void remove_half_written(const fs::path& folder) {
@@ -159,19 +182,16 @@ class Phase {
 };
 
 /// A simulation uses all cores of its machine; the many small ones of `generate` run in parallel.
-LaunchLimits limits_of_simulations(const SweepConfig& sweep, const SweepOptions& options,
-                                   const Launcher& launcher) {
+LaunchLimits limits_of_simulations(const SweepConfig& sweep, int jobs, const Launcher& launcher) {
   const int threads = sweep.generate ? sweep.threads : 0;
   const int usual = launcher.default_parallel_jobs(threads);
-  if (sweep.generate && options.jobs > 0) return {options.jobs, threads};
-  return {options.jobs > 0 ? std::min(options.jobs, usual) : usual, threads};
+  if (sweep.generate && jobs > 0) return {jobs, threads};
+  return {jobs > 0 ? std::min(jobs, usual) : usual, threads};
 }
 
-LaunchLimits limits_of_runs(const SweepConfig& sweep, const SweepOptions& options,
-                            const Launcher& launcher) {
+LaunchLimits limits_of_runs(const SweepConfig& sweep, int jobs, const Launcher& launcher) {
   if (sweep.timing) return {1, 0};
-  const int parallel_jobs =
-      options.jobs > 0 ? options.jobs : launcher.default_parallel_jobs(sweep.threads);
+  const int parallel_jobs = jobs > 0 ? jobs : launcher.default_parallel_jobs(sweep.threads);
   return {parallel_jobs, sweep.threads};
 }
 
@@ -202,7 +222,7 @@ void check_generated(const std::vector<SweepJob>& simulations) {
 }  // namespace
 
 SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launcher& launcher,
-                       const SweepOptions& options) {
+                       int jobs) {
   check_folder(folder);
   SweepPlan plan = plan_sweep(sweep, folder);
   fs::create_directories(folder);
@@ -212,11 +232,11 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   if (sweep.generate) check_generated(plan.simulations);
   Phase simulations(plan.simulations, 0, folder);
   bool complete =
-      simulations.run(launcher, limits_of_simulations(sweep, options, launcher), "simulating");
+      simulations.run(launcher, limits_of_simulations(sweep, jobs, launcher), "simulating");
   for (int stage = 0; complete && stage < plan.stages(); ++stage) {
     Phase runs(plan.runs, stage, folder);
     runs.fail_without_inputs(plan.simulations);
-    complete = runs.run(launcher, limits_of_runs(sweep, options, launcher),
+    complete = runs.run(launcher, limits_of_runs(sweep, jobs, launcher),
                         stage == 0 ? "running" : "running on");
   }
   SweepSummary summary{count(plan, JobState::kDone), count(plan, JobState::kSkipped),
@@ -228,8 +248,7 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   return summary;
 }
 
-std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder,
-                                const SweepOptions& options) {
+std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder, int jobs) {
   check_folder(folder);
   const SweepPlan plan = plan_sweep(sweep, folder);
   JobInputs inputs;
@@ -242,7 +261,7 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
   if (due.empty()) return text;
   text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
   const std::unique_ptr<Launcher> here = make_launcher("local");
-  const int parallel_jobs = limits_of_simulations(sweep, options, *here).parallel_jobs;
+  const int parallel_jobs = limits_of_simulations(sweep, jobs, *here).parallel_jobs;
   return text + calibration_text(run_calibration(due, *here), due.size(), parallel_jobs);
 }
 

@@ -8,11 +8,6 @@
 
 namespace saccade {
 
-/// Options of the command line.
-struct SweepOptions {
-  int jobs = 0;  ///< runs in parallel; 0: one per core. With `timing` always one
-};
-
 /// The outcome of a sweep, in numbers of jobs.
 struct SweepSummary {
   std::size_t done = 0;     ///< by this call
@@ -27,17 +22,17 @@ struct SweepSummary {
 /// jobs/NAME/{job.yaml, log.txt}. Simulations run first and one at a time, because each uses all
 /// cores. A job that fails is reported on stderr with its command and the end of its log; the
 /// others continue. A sweep with `generate` makes its datasets, each with `threads` threads, and
-/// their manifest (write_manifest), which is also written after an interrupt. Throws InputError
-/// when `folder` holds anything but a sweep, or another program is writing to it.
+/// their manifest (write_manifest), which is also written after an interrupt. `jobs`: at a time; 0:
+/// one per core; with `timing` always one. Throws InputError when `folder` holds anything but a
+/// sweep, or another program is writing to it.
 SweepSummary run_sweep(const SweepConfig& sweep, const std::filesystem::path& folder,
-                       Launcher& launcher, const SweepOptions& options = {});
+                       Launcher& launcher, int jobs = 0);
 
 /// Estimates the cost of the datasets that a sweep with `generate` has still to make: their number,
 /// the first command line, and the events, disk space and time from a calibration run on this
 /// machine (run_calibration). Writes nothing.
 [[nodiscard]] std::string estimate_generation(const SweepConfig& sweep,
-                                              const std::filesystem::path& folder,
-                                              const SweepOptions& options = {});
+                                              const std::filesystem::path& folder, int jobs = 0);
 
 /// What run_sweep() would do: of each job the name, whether and why it would run, and its command
 /// lines. Writes nothing.

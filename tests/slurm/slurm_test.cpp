@@ -127,8 +127,7 @@ class OnSlurm : public ::testing::Test {
             "grid: {edges.samples: [" +
             samples +
             "]}\n"
-            "seeds: [1, 2]\n"
-            "slurm: {file_lag_s: 1}\n" +
+            "seeds: [1, 2]\n" +
             more);
   }
 

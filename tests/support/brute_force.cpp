@@ -65,8 +65,8 @@ class BrutePixel {
     return at(0.5 * (a.t_s + b.t_s));
   }
 
-  /// The two samples, a nanosecond apart, between which `is_before` turns false; true at `lo`, false
-  /// at `hi`.
+  /// The two samples, a nanosecond apart, between which `is_before` turns false; true at `lo`,
+  /// false at `hi`.
   template <class IsBefore>
   [[nodiscard]] std::pair<Look, Look> bisect(Look lo, Look hi, const IsBefore& is_before) const {
     while (hi.t_s - lo.t_s > kBracket_s) {

@@ -37,8 +37,8 @@ class DirectionWorld {
 /// 48 x 36 pixels, 44 degrees wide.
 [[nodiscard]] PinholeCamera small_camera();
 
-/// Horizontal at first and looking along longitude `start` [rad]; at rest until 0.1 s, then `rate` rad/s
-/// to the left, nodding by 0.1 rad.
+/// Horizontal at first and looking along longitude `start` [rad]; at rest until 0.1 s, then `rate`
+/// rad/s to the left, nodding by 0.1 rad.
 [[nodiscard]] OrientationFunction sweep(double start, double rate);
 
 /// A dataset of it with a perfect inertial sensor in the camera's axes and panorama.exr; contrast

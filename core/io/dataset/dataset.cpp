@@ -42,8 +42,10 @@ void take_size_of_images(const std::vector<StampedFile>& frames, PinholeCamera& 
 }
 
 fs::path find_events(const fs::path& folder) {
-  for (const char* name : {"events.h5", "events.txt"})
-    if (fs::exists(folder / name)) return folder / name;
+  for (const EventFormat& format : event_formats()) {
+    fs::path file = folder / ("events" + std::string(format.ending));
+    if (fs::exists(file)) return file;
+  }
   return {};
 }
 

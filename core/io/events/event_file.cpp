@@ -1,6 +1,7 @@
 #include "core/io/events/event_file.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/io/events/events_h5.h"
 #include "core/io/events/events_text.h"
@@ -8,29 +9,60 @@
 namespace saccade {
 namespace {
 
-bool is_h5(const std::filesystem::path& file) {
-  return file.extension() == ".h5" || file.extension() == ".hdf5";
+std::unique_ptr<EventWriter> make_h5(const std::filesystem::path& file, TimestampUnit unit,
+                                     SensorSize sensor) {
+  return std::make_unique<EventH5Writer>(file, unit, sensor);
+}
+
+Events read_h5(const std::filesystem::path& file, SensorSize size, TimeWindow window) {
+  return EventH5Reader(file).read(size, window);
+}
+
+EventFileInfo read_h5_info(const std::filesystem::path& file) { return EventH5Reader(file).info(); }
+
+std::unique_ptr<EventWriter> make_text(const std::filesystem::path& file, TimestampUnit /*unit*/,
+                                       SensorSize /*sensor*/) {
+  return std::make_unique<EventTextWriter>(file);
+}
+
+constexpr EventFormat kEventFormats[] = {
+    {".h5", true, read_h5, read_h5_info, make_h5},
+    {".hdf5", true, read_h5, read_h5_info, make_h5},
+    {".txt", false, read_events_text, read_events_text_info, make_text},
+};
+
+/// The row of the file's ending; text, the last row, where the table does not hold it.
+const EventFormat& format_of(const std::filesystem::path& file) {
+  const EventFormat* format = find_event_format(file);
+  return format != nullptr ? *format : *std::rbegin(kEventFormats);
 }
 
 }  // namespace
 
+std::span<const EventFormat> event_formats() { return kEventFormats; }
+
+const EventFormat* find_event_format(const std::filesystem::path& file) {
+  for (const EventFormat& format : kEventFormats)
+    if (file.extension() == format.ending) return &format;
+  return nullptr;
+}
+
 Events read_events(const std::filesystem::path& file, SensorSize size, TimeWindow window) {
-  if (is_h5(file)) return EventH5Reader(file).read(size, window);
-  return read_events_text(file, size, window);
+  return format_of(file).read(file, size, window);
 }
 
 EventFileInfo read_event_file_info(const std::filesystem::path& file) {
-  return is_h5(file) ? EventH5Reader(file).info() : read_events_text_info(file);
+  return format_of(file).read_info(file);
 }
 
 std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
                                                TimestampUnit unit, SensorSize sensor) {
-  if (is_h5(file)) return std::make_unique<EventH5Writer>(file, unit, sensor);
-  return std::make_unique<EventTextWriter>(file);
+  return format_of(file).make_writer(file, unit, sensor);
 }
 
 SensorSize stated_sensor(const std::filesystem::path& file) {
-  return is_h5(file) ? EventH5Reader(file).info().sensor : SensorSize{};
+  const EventFormat& format = format_of(file);
+  return format.states_sensor ? format.read_info(file).sensor : SensorSize{};
 }
 
 void sort_ties(std::span<Event> events) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "core/event.h"
 
@@ -34,8 +35,8 @@ struct EventFileInfo {
   SensorSize sensor;  ///< as the file states it; only HDF5 can
 };
 
-/// Events of a `.h5`/`.hdf5` file (events_h5.h) or, with any other ending, a text file
-/// (events_text.h), in EventOrder: the file must be in order of time, ties are sorted here. Throws
+/// Events of a file in the format of its ending (event_formats(); any other ending: text), in
+/// EventOrder: the file must be in order of time, ties are sorted here. Throws
 /// InputError with line or index for everything malformed, coordinates outside `size` included.
 [[nodiscard]] Events read_events(const std::filesystem::path& file, SensorSize size,
                                  TimeWindow window = {});
@@ -57,6 +58,21 @@ class EventWriter {
 [[nodiscard]] std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
                                                              TimestampUnit unit,
                                                              SensorSize sensor = {});
+
+/// A row of the table of formats. A new format is a reader and a writer beside this file and a row
+/// in event_file.cpp; datasets, adapters and `saccade convert` read the table.
+struct EventFormat {
+  std::string_view ending;  ///< with its dot
+  bool states_sensor;       ///< EventFileInfo::sensor
+  Events (*read)(const std::filesystem::path&, SensorSize, TimeWindow);
+  EventFileInfo (*read_info)(const std::filesystem::path&);
+  std::unique_ptr<EventWriter> (*make_writer)(const std::filesystem::path&, TimestampUnit,
+                                              SensorSize);
+};
+
+[[nodiscard]] std::span<const EventFormat> event_formats();
+/// The row of the file's ending; nullptr where the table does not hold it.
+[[nodiscard]] const EventFormat* find_event_format(const std::filesystem::path& file);
 
 /// The sensor's size where the file states it; no event is read.
 [[nodiscard]] SensorSize stated_sensor(const std::filesystem::path& file);

@@ -7,7 +7,7 @@ namespace saccade {
 
 std::optional<double> nees(std::span<const StampedCovariance> covariances,
                            const TrajectoryScoreInput& input) {
-  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
   if (!interval || input.estimate.empty()) return std::nullopt;
   double sum = 0, count = 0;
   for (const StampedCovariance& entry : covariances) {

@@ -17,7 +17,8 @@ namespace saccade {
 
 constexpr double kNeesOfTruth = 6;  ///< of errors as large as the covariances say
 
-/// The factor between a NEES and the 6 of errors as large as the covariances say, above or below: max(NEES / 6, 6 / NEES), 1 at best. `nees` > 0.
+/// The factor between a NEES and the 6 of errors as large as the covariances say, above or below:
+/// max(NEES / 6, 6 / NEES), 1 at best. `nees` > 0.
 [[nodiscard]] double nees_factor(double nees);
 
 }  // namespace saccade

@@ -15,8 +15,8 @@ inline constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 ///   E_ij = truth_ij^-1 estimated_ij,  translation error |t(E_ij)| [m], rotation error angle(E_ij).
 /// Pairs (i, j):
 ///   rpe.length_{10,20,30,40,50}_percent   j is the first sample whose true path length from i
-///     reaches that fraction of the whole true path: `trans_percent` (mean of error / path from i to
-///     j), `trans_rmse_m`, `rot_rmse_deg`, `rot_deg_per_m` (mean of error / path from i to j);
+///     reaches that fraction of the whole true path: `trans_percent` (mean of error / path from i
+///     to j), `trans_rmse_m`, `rot_rmse_deg`, `rot_deg_per_m` (mean of error / path from i to j);
 ///   rpe.per_second   j is one second after i: `trans_rmse_m`, `rot_rmse_deg`;
 /// and `pairs`, their number. Every sample i that has a j counts. No such pair, or a camera that
 /// does not move (path below 1 um): null.

@@ -13,15 +13,15 @@ constexpr double kTimeRoundingS = 2e-9;
 
 }  // namespace
 
-std::optional<ScoredTime> scored_interval(const Trajectory& truth,
-                                          const std::optional<ScoredTime>& window) {
+std::optional<RunRecord::Window> scored_interval(const Trajectory& truth,
+                                                 const std::optional<RunRecord::Window>& window) {
   if (truth.empty()) return std::nullopt;
-  ScoredTime result{truth.start_s(), truth.end_s()};
+  RunRecord::Window result{truth.start_s(), truth.end_s()};
   if (window) {
     result.start_s = std::max(result.start_s, window->start_s);
     result.end_s = std::min(result.end_s, window->end_s);
   }
-  if (result.duration() < 0) return std::nullopt;
+  if (result.end_s - result.start_s < 0) return std::nullopt;
   return result;
 }
 
@@ -37,7 +37,7 @@ Rigid3 held_pose(const Trajectory& estimate, double t_s) {
                      (t_s - pose.t_s) / (next.t_s - pose.t_s));
 }
 
-double coverage(const Trajectory& estimate, const ScoredTime& interval) {
+double coverage(const Trajectory& estimate, const RunRecord::Window& interval) {
   double covered_s = 0;
   double covered_until = interval.start_s;
   bool touched = false;
@@ -49,16 +49,16 @@ double coverage(const Trajectory& estimate, const ScoredTime& interval) {
     covered_s += to - from;
     covered_until = to;
   }
-  if (interval.duration() <= 0) return touched ? 1 : 0;
-  return std::min(1.0, covered_s / interval.duration());
+  if (interval.end_s <= interval.start_s) return touched ? 1 : 0;
+  return std::min(1.0, covered_s / (interval.end_s - interval.start_s));
 }
 
 ScoredSamples take_samples(const Trajectory& estimate, const Trajectory& truth,
-                           const ScoredTime& interval) {
+                           const RunRecord::Window& interval) {
   ScoredSamples samples;
   if (estimate.empty()) return samples;
-  const auto steps =
-      static_cast<std::size_t>(std::floor((interval.duration() + kTimeRoundingS) / kScoreStepS));
+  const auto steps = static_cast<std::size_t>(
+      std::floor((interval.end_s - interval.start_s + kTimeRoundingS) / kScoreStepS));
   for (std::size_t k = 0; k <= steps; ++k) {
     const double t_s =
         std::min(interval.start_s + static_cast<double>(k) * kScoreStepS, interval.end_s);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 
 namespace saccade {
@@ -12,17 +13,10 @@ constexpr double kMaxPoseAgeS = 0.02;
 /// Spacing of the instants at which errors are taken [s].
 constexpr double kScoreStepS = 0.001;
 
-struct ScoredTime {
-  double start_s = 0;
-  double end_s = 0;
-
-  [[nodiscard]] double duration() const { return end_s - start_s; }
-};
-
 /// The time that is scored: `window` (what the estimator was given; the whole truth without one)
 /// cut to the ground truth. nullopt where there is no truth or nothing of it in the window.
-[[nodiscard]] std::optional<ScoredTime> scored_interval(const Trajectory& truth,
-                                                        const std::optional<ScoredTime>& window);
+[[nodiscard]] std::optional<RunRecord::Window> scored_interval(
+    const Trajectory& truth, const std::optional<RunRecord::Window>& window);
 
 /// What an estimate claims at `t_s`: interpolated between poses at most 20 ms apart; in a longer
 /// gap the pose before it is held; before the first pose the first and after the last pose the
@@ -33,7 +27,7 @@ struct ScoredTime {
 ///   | interval and union of [t_i, t_i + 20 ms] | / | interval |.
 /// What is missing before the first and after the last pose counts against it. An interval of
 /// length zero has coverage 1 if a pose covers it, else 0.
-[[nodiscard]] double coverage(const Trajectory& estimate, const ScoredTime& interval);
+[[nodiscard]] double coverage(const Trajectory& estimate, const RunRecord::Window& interval);
 
 /// Estimate (as held) and truth at start, start + 1 ms, ... of the scored interval, so that frame
 /// density does not weigh.
@@ -45,6 +39,6 @@ struct ScoredSamples {
 
 /// Empty where `estimate` is empty.
 [[nodiscard]] ScoredSamples take_samples(const Trajectory& estimate, const Trajectory& truth,
-                                         const ScoredTime& interval);
+                                         const RunRecord::Window& interval);
 
 }  // namespace saccade

@@ -52,10 +52,10 @@ void set_aligned(Metrics& metrics, const std::string& key, std::span<const PoseP
 
 /// Of the protocol of Rebecq et al. (BMVC 2017): SE(3) by the poses of the first 5 s alone.
 std::optional<double> error_after_begin_percent(const TrajectoryScoreInput& input,
-                                                const ScoredTime& interval,
+                                                const RunRecord::Window& interval,
                                                 std::span<const PosePair> pairs, double path_m) {
   constexpr double kBeginS = 5;
-  if (interval.duration() <= kBeginS || path_m <= 0) return std::nullopt;
+  if (interval.end_s - interval.start_s <= kBeginS || path_m <= 0) return std::nullopt;
   std::size_t begin = 0;
   for (const StampedPose& pose : input.estimate.poses())
     if (pose.t_s >= interval.start_s && pose.t_s <= interval.start_s + kBeginS) ++begin;
@@ -78,7 +78,7 @@ std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
 }  // namespace
 
 ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
-  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
   return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
 }
 
@@ -88,7 +88,7 @@ ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
 
 std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
   std::vector<PosePair> pairs;
-  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
   if (!interval) return pairs;
   for (const StampedPose& pose : input.estimate.poses())
     if (pose.t_s >= interval->start_s && pose.t_s <= interval->end_s)
@@ -96,7 +96,7 @@ std::vector<PosePair> associate(const TrajectoryScoreInput& input) {
   return pairs;
 }
 
-double reported_lost_s(const std::vector<PoseStatus>& reported, const ScoredTime& interval) {
+double reported_lost_s(const std::vector<PoseStatus>& reported, const RunRecord::Window& interval) {
   double lost = 0;
   for (std::size_t i = 0; i < reported.size(); ++i) {
     if (!reported[i].is_lost) continue;
@@ -109,7 +109,7 @@ double reported_lost_s(const std::vector<PoseStatus>& reported, const ScoredTime
 
 Metrics score_trajectory(const TrajectoryScoreInput& input) {
   Metrics metrics;
-  const std::optional<ScoredTime> interval = scored_interval(input.truth, input.window);
+  const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
   const ScoredSamples samples = scored_samples(input);
   const ErrorSeries series = series_of(samples, input.mean_depth_m);
   set_statistics(metrics, "trajectory.dt_rel_percent", series.dt_rel_percent);
@@ -127,7 +127,7 @@ Metrics score_trajectory(const TrajectoryScoreInput& input) {
   metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
   std::optional<double> covered, duration, path, lost, reported, after_begin;
   if (interval) {
-    duration = interval->duration();
+    duration = interval->end_s - interval->start_s;
     covered = coverage(input.estimate, *interval);
     if (!samples.t_s.empty()) path = path_lengths(samples).back();
     lost = lost_s(series, *duration);

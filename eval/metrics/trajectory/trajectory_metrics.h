@@ -18,8 +18,9 @@ struct PoseStatus {
 
 struct TrajectoryScoreInput {
   Trajectory estimate;
-  Trajectory truth;                    ///< empty: everything but the number of poses is null
-  std::optional<ScoredTime> window;    ///< what the estimator was given; nullopt: all of the truth
+  Trajectory truth;  ///< empty: everything but the number of poses is null
+  std::optional<RunRecord::Window>
+      window;                          ///< what the estimator was given; nullopt: all of the truth
   std::optional<double> mean_depth_m;  ///< d of dt_rel (thesis 8.1), > 0
   /// In order of time; nullopt: the estimator reports no status.
   std::optional<std::vector<PoseStatus>> reported;
@@ -49,6 +50,6 @@ struct ErrorSeries {
 
 /// Time between a lost pose and the next one that is not lost, cut to the interval [s].
 [[nodiscard]] double reported_lost_s(const std::vector<PoseStatus>& reported,
-                                     const ScoredTime& interval);
+                                     const RunRecord::Window& interval);
 
 }  // namespace saccade

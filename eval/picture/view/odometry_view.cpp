@@ -61,7 +61,7 @@ ImageRgb8 two_by_two(const OdometryView& view, const std::string& title, const T
 }  // namespace
 
 OdometryView::OdometryView(const RunFolder& run, const Dataset& dataset,
-                           const KeyframeHistory& history, const TimeSpan& loaded,
+                           const KeyframeHistory& history, const RunRecord::Window& loaded,
                            const SensorViewStyle& style)
     : run_(run),
       history_(history),
@@ -95,11 +95,11 @@ std::vector<CaptionedPicture> OdometryView::pictures(double t_s) const {
 }
 
 void render_odometry(const RunFolder& run, const Dataset& dataset, const KeyframeHistory& history,
-                     const std::string& title, const TimeSpan& span,
+                     const std::string& title, const RunRecord::Window& span,
                      const std::filesystem::path& output, const RenderOptions& options) {
   const bool is_video = output.extension() == ".mp4";
-  const TimeSpan loaded =
-      options.time_s && !is_video ? TimeSpan{*options.time_s, *options.time_s} : span;
+  const RunRecord::Window loaded =
+      options.time_s && !is_video ? RunRecord::Window{*options.time_s, *options.time_s} : span;
   const Theme& theme = options.dark ? kDarkTheme : kLightTheme;
   const OdometryView view(run, dataset, history, loaded,
                           {options.upscale, options.events.value_or(0), theme});

@@ -20,7 +20,7 @@ class OdometryView {
  public:
   /// `loaded`: the time span that is drawn. `run` has poses. All must outlive this.
   OdometryView(const RunFolder& run, const Dataset& dataset, const KeyframeHistory& history,
-               const TimeSpan& loaded, const SensorViewStyle& style);
+               const RunRecord::Window& loaded, const SensorViewStyle& style);
 
   /// The current map over the events around `t_s`, seen from the estimated pose; the depth of the
   /// current keyframe; its image, where the run made one; the trajectory until `t_s` from above,
@@ -41,7 +41,7 @@ class OdometryView {
 
 /// Draws such a run, see render(). `run` has poses.
 void render_odometry(const RunFolder& run, const Dataset& dataset, const KeyframeHistory& history,
-                     const std::string& title, const TimeSpan& span,
+                     const std::string& title, const RunRecord::Window& span,
                      const std::filesystem::path& output, const RenderOptions& options);
 
 }  // namespace saccade

@@ -21,25 +21,12 @@ namespace {
 constexpr float kMaxResidual = 0.5F;   ///< [log units]
 constexpr float kOutlierError = 0.1F;  ///< relative; larger errors are depths of another surface
 
-/// The named channels of one file.
-class ExrChannels {
- public:
-  explicit ExrChannels(const std::filesystem::path& file)
-      : file_(file), channels_(read_exr_channels(file)) {}
-
-  [[nodiscard]] const std::vector<ExrChannel>& all() const { return channels_; }
-  [[nodiscard]] const ImageF& at(const std::string& name) const {
-    const auto found = std::find_if(channels_.begin(), channels_.end(),
-                                    [&](const ExrChannel& c) { return c.name == name; });
-    if (found == channels_.end())
-      throw InputError(file_.string(), fmt::format("lacks the channel {}", name));
-    return found->image;
-  }
-
- private:
-  std::filesystem::path file_;
-  std::vector<ExrChannel> channels_;
-};
+const ImageF& channel_of(const std::vector<ExrChannel>& channels, const std::string& name,
+                         const std::filesystem::path& file) {
+  for (const ExrChannel& channel : channels)
+    if (channel.name == name) return channel.image;
+  throw InputError(file.string(), fmt::format("lacks the channel {}", name));
+}
 
 ImageF absolute_difference(const ImageF& a, const ImageF& b) {
   ImageF result = a;
@@ -77,17 +64,20 @@ std::string agreement(const ImageF& depth, const ImageF& truth) {
 std::vector<CaptionedPicture> poisson_pictures(const std::filesystem::path& run, int factor) {
   const std::filesystem::path file = run / "figures" / "poisson.exr";
   if (!std::filesystem::exists(file)) return {};
-  const ExrChannels stages(file);
-  const ImageF& truth = stages.at("L");
+  const std::vector<ExrChannel> channels = read_exr_channels(file);
+  const auto stage = [&](const char* name) -> const ImageF& {
+    return channel_of(channels, name, file);
+  };
+  const ImageF& truth = stage("L");
   const float low = quantile(truth, {}, 0.005);
   const float high = quantile(truth, {}, 0.995);
   std::vector<CaptionedPicture> pictures = {
       {"log intensity of a frame", upscale(draw_log_image(truth, {}, low, high), factor)},
-      {"its gradient, x", upscale(draw_signed(stages.at("gx")), factor)},
-      {"its gradient, y", upscale(draw_signed(stages.at("gy")), factor)},
-      {"divergence of the gradient", upscale(draw_signed(stages.at("div")), factor)}};
+      {"its gradient, x", upscale(draw_signed(stage("gx")), factor)},
+      {"its gradient, y", upscale(draw_signed(stage("gy")), factor)},
+      {"divergence of the gradient", upscale(draw_signed(stage("div")), factor)}};
   for (const char* boundary : {"neumann", "dirichlet"}) {
-    const ImageF& solved = stages.at(boundary);
+    const ImageF& solved = stage(boundary);
     const ImageF residual = absolute_difference(solved, truth);
     pictures.push_back({fmt::format("recovered, {}", boundary),
                         upscale(draw_log_image(solved, {}, low, high), factor)});
@@ -106,17 +96,18 @@ std::vector<CaptionedPicture> propagation_pictures(const std::filesystem::path& 
   if (!std::filesystem::exists(list)) return {};
   std::vector<CaptionedPicture> pictures;
   for (const RunView& view : read_view_list(list)) {
-    const ExrChannels maps(view.depth);
+    const std::vector<ExrChannel> maps = read_exr_channels(view.depth);
+    const ImageF& surface = channel_of(maps, "Z", view.depth);
     const auto truth = depth_truth_at(dataset, view.t_s);
-    const DepthRange range = depth_range(truth ? truth->depth : maps.at("Z"));
+    const DepthRange range = depth_range(truth ? truth->depth : surface);
     const auto add = [&](const std::string& what, const ImageF& depth) {
       pictures.push_back({truth ? what + ": " + agreement(depth, truth->depth) : what,
                           draw_depth_map(depth, range, upscale, theme)});
     };
-    for (const ExrChannel& channel : maps.all())
+    for (const ExrChannel& channel : maps)
       if (channel.name.starts_with('k'))
         add(fmt::format("{0} x {0} px", std::stoi(channel.name.substr(1))), channel.image);
-    add("surface", maps.at("Z"));
+    add("surface", surface);
     if (truth) pictures.push_back({"truth", draw_depth_map(truth->depth, range, upscale, theme)});
   }
   return pictures;

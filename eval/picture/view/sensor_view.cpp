@@ -91,7 +91,7 @@ std::optional<DepthPicture> SensorView::plain_depth(double t_s) const {
   return DepthPicture{draw_depth(depth, range, style_.theme), range};
 }
 
-TimeSpan time_span(const Dataset& dataset) {
+RunRecord::Window time_span(const Dataset& dataset) {
   if (!dataset.events_file().empty()) {
     const EventFileInfo info = read_event_file_info(dataset.events_file());
     if (info.count > 0) return {seconds_from_ns(info.first_ns), seconds_from_ns(info.last_ns)};

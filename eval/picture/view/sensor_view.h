@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/io/dataset/dataset.h"
+#include "core/io/run/run_record.h"
 #include "core/trajectory.h"
 #include "eval/picture/canvas/colour.h"
 #include "eval/picture/image/image_picture.h"
@@ -71,10 +72,6 @@ class SensorView {
                                                       double t_s);
 
 /// First and last event time [s], or the span of the ground truth where there are no events.
-struct TimeSpan {
-  double start_s = 0;
-  double end_s = 0;
-};
-[[nodiscard]] TimeSpan time_span(const Dataset& dataset);
+[[nodiscard]] RunRecord::Window time_span(const Dataset& dataset);
 
 }  // namespace saccade

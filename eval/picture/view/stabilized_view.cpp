@@ -63,8 +63,8 @@ std::vector<CaptionedPicture> StabilizedView::events(double t_s) const {
   ImageF before(dataset_.camera().width, dataset_.camera().height);
   ImageF after = before;
   for (std::size_t i = first; i < first + around.size(); ++i) {
-    add_event(before, undistortion_(run_.places.source_x[i], run_.places.source_y[i]));
-    add_event(after, {run_.places.x[i], run_.places.y[i]});
+    add_event(before, undistortion_(run_.coordinates.source_x[i], run_.coordinates.source_y[i]));
+    add_event(after, {run_.coordinates.x[i], run_.coordinates.y[i]});
   }
   const float max = std::max(quantile(after, {}, kBrightQuantile), 1.0F);
   const double length_ms =
@@ -88,7 +88,7 @@ std::vector<CaptionedPicture> StabilizedView::frames(double t_s) const {
 }
 
 void render_stabilized(const RunFolder& run, const Dataset& dataset, const std::string& title,
-                       const TimeSpan& span, const std::filesystem::path& output,
+                       const RunRecord::Window& span, const std::filesystem::path& output,
                        const RenderOptions& options) {
   constexpr double kTimes[] = {0.15, 0.5, 0.85};
   const StabilizedView view(run, dataset, options.events.value_or(0), options.upscale);

@@ -46,7 +46,7 @@ class StabilizedView {
 
 /// Draws such a run, see render().
 void render_stabilized(const RunFolder& run, const Dataset& dataset, const std::string& title,
-                       const TimeSpan& span, const std::filesystem::path& output,
+                       const RunRecord::Window& span, const std::filesystem::path& output,
                        const RenderOptions& options);
 
 }  // namespace saccade

@@ -22,7 +22,7 @@ constexpr double kViewFps = 3;
 /// Tolerance for rounded times at the ends of a window.
 constexpr double kRoundingS = 1e-6;
 
-std::vector<std::size_t> shown_views(const ViewPictures& views, const TimeSpan& span,
+std::vector<std::size_t> shown_views(const ViewPictures& views, const RunRecord::Window& span,
                                      const std::optional<double>& time_s) {
   const std::vector<double>& times = views.times();
   if (time_s) {
@@ -75,7 +75,7 @@ void write_growth_video(const std::vector<GrowthStep>& steps,
 }
 
 void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictures& views,
-                  const std::string& title, const TimeSpan& span,
+                  const std::string& title, const RunRecord::Window& span,
                   const std::filesystem::path& output, const RenderOptions& options) {
   const bool is_video = output.extension() == ".mp4";
   const double fps = options.fps.value_or(kViewFps);

@@ -15,7 +15,7 @@ namespace saccade {
 /// Draws a run that wrote views, see render(). `span`: whose views are shown; with
 /// `options.time_s` the one nearest to it. Throws InputError where no view is in the span.
 void render_views(const RunFolder& run, const Dataset& dataset, const ViewPictures& views,
-                  const std::string& title, const TimeSpan& span,
+                  const std::string& title, const RunRecord::Window& span,
                   const std::filesystem::path& output, const RenderOptions& options);
 
 /// Writes a video of growth/, beside a `truth` that has the size of its pictures times

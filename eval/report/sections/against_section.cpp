@@ -1,4 +1,4 @@
-#include "eval/report/sections/against_section.h"
+#include "eval/report/sections/page_sections.h"
 
 #include <fmt/format.h>
 
@@ -38,9 +38,9 @@ Table::Cell verdict_cell(const GateRow& row) {
 }
 
 /// The charts of a pair's errors.
-std::vector<PageChart> pair_charts(const Sides& sides, const RunPair& pair) {
-  const std::vector<std::pair<ChartCurve, const RunData*>> both{{{"A: " + sides.a, "s0"}, pair.a},
-                                                                {{"B: " + sides.b, "s1"}, pair.b}};
+std::vector<PageChart> pair_charts(const RunSetComparison& comparison, const RunPair& pair) {
+  const std::vector<std::pair<ChartCurve, const RunData*>> both{
+      {{"A: " + comparison.a, "s0"}, pair.a}, {{"B: " + comparison.b, "s1"}, pair.b}};
   const std::array runs{pair.a, pair.b};
   std::vector<PageChart> charts;
   for (const TimedError& error : timed_errors(runs)) {
@@ -61,17 +61,18 @@ std::string notes_html(const GateResult& result) {
 
 }  // namespace
 
-Table against_table(const Sides& sides) {
-  Table table{"against",
-              fmt::format("B ({}) against A ({}), means over the pairs", sides.b, sides.a),
-              {{"scope"},
-               {"metric"},
-               {"pairs", true},
-               {"A", true},
-               {"B", true},
-               {"difference [%]", true},
-               {"B is"}}};
-  for (const GateRow& row : sides.result.rows)
+Table against_table(const RunSetComparison& comparison) {
+  Table table{
+      "against",
+      fmt::format("B ({}) against A ({}), means over the pairs", comparison.b, comparison.a),
+      {{"scope"},
+       {"metric"},
+       {"pairs", true},
+       {"A", true},
+       {"B", true},
+       {"difference [%]", true},
+       {"B is"}}};
+  for (const GateRow& row : comparison.result.rows)
     table.rows.push_back({{row.scope, {}},
                           {row.metric, {}},
                           number_cell(static_cast<double>(row.pairs), std::to_string(row.pairs)),
@@ -82,20 +83,20 @@ Table against_table(const Sides& sides) {
   return table;
 }
 
-std::string against_section(const Sides& sides, std::vector<PageChart>& page) {
+std::string against_section(const RunSetComparison& comparison, std::vector<PageChart>& page) {
   std::string html = fmt::format(
       "<section id=\"against\"><h2>A against B</h2>\n<p>A: {}. B: {}. Runs of the same sequence, "
       "module, configuration and seed are pairs; where A and B are configurations, all but that. "
       "The difference is the mean over the pairs of the ratio B / A, less 1, in logarithms; its "
       "99 % interval holds for all comparisons of the table together. Better or worse is what the "
       "gate would say: below six pairs only of a gross change.</p>\n",
-      escape_html(sides.a), escape_html(sides.b));
-  html += table_html(against_table(sides)) + notes_html(sides.result);
+      escape_html(comparison.a), escape_html(comparison.b));
+  html += table_html(against_table(comparison)) + notes_html(comparison.result);
   std::set<std::string> shown;
   std::string grid;
-  for (const RunPair& pair : sides.pairs) {
+  for (const RunPair& pair : comparison.pairs) {
     if (!shown.insert(pair.scope).second) continue;
-    const std::string charts = chart_grid(pair_charts(sides, pair), page);
+    const std::string charts = chart_grid(pair_charts(comparison, pair), page);
     if (!charts.empty()) grid += fmt::format("<h3>{}</h3>\n", escape_html(pair.scope)) + charts;
   }
   return html + grid + "</section>\n";

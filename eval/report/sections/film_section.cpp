@@ -26,8 +26,8 @@ constexpr int kSmallFilm = 37;  ///< of RenderOptions::crf: noise of events goes
 constexpr int kPictureWidth = 480;
 constexpr std::size_t kLeastViews = 8;  ///< fewer make no film
 
-TimeSpan span_of(const RunData& data) {
-  TimeSpan span = time_span(*data.data);
+RunRecord::Window span_of(const RunData& data) {
+  RunRecord::Window span = time_span(*data.data);
   if (const auto& window = data.run.record.window) {
     span.start_s = std::max(span.start_s, window->start_s);
     span.end_s = std::min(span.end_s, window->end_s);
@@ -74,7 +74,7 @@ std::optional<RenderOptions> film_options(const RunData& data, double length_s) 
 std::string film_section(const RunData& data) {
   if (!data.data || data.data->events_file().empty() || !data.run.record.problem().empty())
     return "";
-  const TimeSpan span = span_of(data);
+  const RunRecord::Window span = span_of(data);
   const double length_s = span.end_s - span.start_s;
   if (!(length_s > 0)) return "";
   std::optional<RenderOptions> options = film_options(data, length_s);

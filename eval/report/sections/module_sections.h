@@ -8,8 +8,8 @@
 namespace saccade {
 
 /// The parts of a run's section, one for each kind of result, as HTML. A part is empty where the
-/// run does not have its kind of result; all but rotation_section() and step_section() are also
-/// empty where the dataset is gone.
+/// run does not have its kind of result; all but rotation_section() are also empty where the dataset
+/// is gone.
 
 /// Scores of depth, a table of its views, estimated depth, truth and errors of the view in the
 /// middle and of the worst (thesis figs. 8.9-8.11), the cloud from above, its planes.
@@ -38,9 +38,9 @@ namespace saccade {
 /// Events and frames before and after stabilization (thesis figs. 3.2 and 3.3).
 [[nodiscard]] std::string stabilization_section(const RunData& data);
 
-/// Single stages of a reconstruction, where the run kept them: Poisson's equation on true gradients
+/// Stages of a reconstruction, where the run kept their images: Poisson's equation on true gradients
 /// (thesis fig. 6.1), depth warped to another view (fig. 6.2).
-[[nodiscard]] std::string step_section(const RunData& data);
+[[nodiscard]] std::string reconstruction_stage_section(const RunData& data);
 
 /// A short film as `saccade render` makes it, small and inside the page, which a reader starts; its
 /// middle stands there until then and on paper. Empty also for a failed run or one with too little

@@ -1,4 +1,4 @@
-#include "eval/report/sections/run_section.h"
+#include "eval/report/sections/page_sections.h"
 
 #include <fmt/format.h>
 
@@ -243,7 +243,7 @@ std::vector<std::string> commands(const RunData& data) {
 
 std::string dataset_pictures(const RunData& data) {
   if (!data.data || data.data->events_file().empty()) return "";
-  const TimeSpan span = time_span(*data.data);
+  const RunRecord::Window span = time_span(*data.data);
   const double t_s = (span.start_s + span.end_s) / 2;
   const SensorView view(*data.data, t_s, t_s, {});
   // Only the events need hard pixels; pictures are interpolated by the browser.
@@ -273,8 +273,8 @@ std::string run_section(const RunData& data, bool film) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
     html += mosaic_section(data) + stabilization_section(data) + rotation_section(data);
   }
-  return html + step_section(data) + accuracy_details(data) + stages(data) + provenance(data) +
-         repeat_html(commands(data)) + "</section>\n";
+  return html + reconstruction_stage_section(data) + accuracy_details(data) + stages(data) +
+         provenance(data) + repeat_html(commands(data)) + "</section>\n";
 }
 
 }  // namespace saccade

@@ -21,6 +21,8 @@ constexpr int kSignalStatus = 128;
 /// Slurm kills a process 30 s after it asked it to end (KillWait).
 constexpr std::chrono::seconds kCancelTimeout{45};
 constexpr std::chrono::milliseconds kPollPeriod{300};
+/// A job that is lost on three nodes is more likely the cause than they are.
+constexpr int kMaxAttempts = 3;
 
 ChildEnd end_of_status(int status) {
   return status > kSignalStatus ? ChildEnd{-1, status - kSignalStatus} : ChildEnd{status, 0};
@@ -196,9 +198,9 @@ void SlurmJobs::handle_lost(std::size_t index, const std::string& state) {
   if (!first_unfinished_of_task(job)) {
     --job.attempts;
     make_pending(job);
-  } else if (job.attempts < options_.slurm.attempts) {
+  } else if (job.attempts < kMaxAttempts) {
     callbacks_.on_note(fmt::format("job {} {}; attempt {} of {} follows", launches_[index].name,
-                                   what, job.attempts + 1, options_.slurm.attempts));
+                                   what, job.attempts + 1, kMaxAttempts));
     make_pending(job);
   } else {
     fail(index, fmt::format("{}, in the last of {} attempts", what, job.attempts));

@@ -11,7 +11,7 @@ namespace saccade {
 /// Job arrays of Slurm, on nodes that see the same files under the same paths. Submitted jobs
 /// outlive this program: after SIGKILL and SIGHUP they continue, and the next call adopts them;
 /// SIGINT and SIGTERM cancel them. A job whose node failed or whose script was killed is submitted
-/// again, up to `attempts` times in all.
+/// again, up to three times in all.
 class SlurmLauncher : public Launcher {
  public:
   /// `period`: between two checks for results; the queue is polled every five periods.

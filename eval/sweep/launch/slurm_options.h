@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,14 +7,11 @@
 
 namespace saccade {
 
-/// What a sweep requests from Slurm for each of its jobs. Empty values mean the cluster's defaults.
+/// What a sweep requests from Slurm for its jobs.
 struct SlurmOptions {
-  std::string partition;
-  std::optional<double> time_limit_s;
-  std::optional<int> memory_mb;
   std::vector<std::string> options;  ///< come after all others
   int jobs_per_task = 1;
-  int attempts = 3;
+  /// Delay until files that a node wrote are visible here: half of NFS's longest attribute cache.
   double file_lag_s = 30;
   int max_array_size = 0;  ///< tasks; 0: Slurm's MaxArraySize
 };

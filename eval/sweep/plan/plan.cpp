@@ -135,8 +135,8 @@ class Planner {
     Words settings;
     append(settings, dataset.set);
     if (seed) append(settings, "--seed", std::to_string(*seed));
-    Words call{"simulate", simulation.config.string(), "-o", simulation.output.string()};
-    if (sweep_.cache) call.emplace_back("--cached");
+    Words call{"simulate", simulation.config.string(), "-o", simulation.output.string(),
+               "--cached"};
     append(call, settings);
     simulation.commands = {call};
     simulation.settings = "simulate " + shell_line(settings);
@@ -224,7 +224,6 @@ class Planner {
     for (std::size_t i = 0; i < sweep_.grid.size(); ++i)
       append(settings, "--set", sweep_.grid[i].key + "=" + job.point.grid[i]);
     if (job.point.seed) append(settings, "--seed", std::to_string(*job.point.seed));
-    if (sweep_.start_s) append(settings, "--start-s", fmt::format("{}", *sweep_.start_s));
     if (sweep_.duration_s) append(settings, "--duration-s", fmt::format("{}", *sweep_.duration_s));
     append(settings, "--repeat", std::to_string(configuration.repeat.value_or(sweep_.repeat)));
     append(settings, "--threads", std::to_string(sweep_.threads));

@@ -226,11 +226,9 @@ void describe_execution(config::Fields& fields, SweepConfig& sweep) {
              "Threads of one run or of one generated dataset. More threads leave room for fewer "
              "parallel jobs.")
       .range(1, 4096);
-  fields.value("cache", sweep.cache,
-               "Simulate into the cache that all sweeps share, so that datasets are reused.");
-  fields.value("start_s", sweep.start_s,
-               "Start of the window that is run, in seconds. Default: the first event.");
-  fields.value("duration_s", sweep.duration_s, "Length of the window that is run, in seconds.")
+  fields
+      .value("duration_s", sweep.duration_s,
+             "Time that is run, in seconds from the first event. Default: the whole recording.")
       .above(0);
   fields.value("metrics", sweep.metrics,
                "Keys of metrics.json that sweep.md and its charts show. Default: the usual ones.");

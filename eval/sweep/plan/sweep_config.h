@@ -68,8 +68,6 @@ struct SweepConfig {
   int repeat = 1;
   bool timing = false;
   int threads = 1;
-  bool cache = true;
-  std::optional<double> start_s;
   std::optional<double> duration_s;
   std::vector<std::string> metrics;  ///< empty: the usual ones
   SlurmOptions slurm;

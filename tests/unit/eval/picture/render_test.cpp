@@ -48,20 +48,20 @@ fs::path stabilized_run(const fs::path& run, const fs::path& data, const fs::pat
   fs::create_directories(stabilized);
   const Dataset dataset = Dataset::open(data);
   Events events;
-  StabilizedCoordinates places;
+  StabilizedCoordinates coordinates;
   for (const Event& event : dataset.load_events()) {
     if (event.x + 1 >= dataset.camera().width) continue;
-    places.source_x.push_back(event.x);
-    places.source_y.push_back(event.y);
-    places.x.push_back(event.x + 1.25F);
-    places.y.push_back(event.y);
+    coordinates.source_x.push_back(event.x);
+    coordinates.source_y.push_back(event.y);
+    coordinates.x.push_back(event.x + 1.25F);
+    coordinates.y.push_back(event.y);
     events.push_back(event);
     ++events.back().x;
   }
   EventH5Writer writer(stabilized / "events.h5", TimestampUnit::kNanoseconds);
   writer.append(events);
   writer.close();
-  write_stabilized_coordinates(stabilized / "places.h5", places);
+  write_stabilized_coordinates(stabilized / "places.h5", coordinates);
   write_stabilized_windows(stabilized / "windows.csv", {});
   write_file_list(stabilized / "images.txt", dataset.frames());
   return folder;

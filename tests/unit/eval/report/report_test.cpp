@@ -103,7 +103,8 @@ TEST_F(Report, IsTheSameEveryTime) { EXPECT_EQ(written({run()}), written({run()}
 void state_error(const fs::path& run, double dt_rel_percent) {
   Metrics metrics = read_json_metrics(run / "metrics.json");
   metrics.set("trajectory.dt_rel_percent.mean", dt_rel_percent);
-  std::ofstream(run / "metrics.json") << to_json(metrics, recorded_inputs(run));
+  const std::string text = to_json(metrics, recorded_inputs(run));
+  std::ofstream(run / "metrics.json") << text;
 }
 
 TEST_F(Report, ShowsWhatEvalScored) {
@@ -189,16 +190,16 @@ TEST_F(Report, ComparesTheMethodsOfASequence) {
   testing::write_fake_run(folder.path() / "walls_fast", dataset(), errors, "fast");
   const std::string page = written({run(), twin(), folder.path() / "walls_fast"});
   EXPECT_EQ(count(page, "id=\"compared\""), 1U);
-  for (const char* id : {"walls/dt_rel/time", "walls/dt_rel/shares", "walls/dtheta/time",
-                         "walls/dtheta/shares", "/trajectory.dt_rel_percent.mean/speed"})
+  for (const char* id : {"walls/dt_rel/time", "walls/dt_rel/fractions", "walls/dtheta/time",
+                         "walls/dtheta/fractions", "/trajectory.dt_rel_percent.mean/speed"})
     EXPECT_EQ(count(page, "data-chart=\"" + std::string(id) + "\""), 1U) << id;
   EXPECT_EQ(count(page, "walls/trajectory.dt_rel_percent.mean/speed"), 0U)
       << "the mean over one sequence is the sequence's";
-  const auto shares = chart_of(page, "walls/dt_rel/shares");
-  ASSERT_EQ(shares["series"].size(), 2U) << "runs of one method are pooled";
-  EXPECT_EQ(shares["series"][0]["name"], "track accurate");
-  EXPECT_EQ(shares["series"][1]["name"], "track fast");
-  EXPECT_LT(shares["series"][0]["x"][50], shares["series"][1]["x"][50]);
+  const auto fractions = chart_of(page, "walls/dt_rel/fractions");
+  ASSERT_EQ(fractions["series"].size(), 2U) << "runs of one method are pooled";
+  EXPECT_EQ(fractions["series"][0]["name"], "track accurate");
+  EXPECT_EQ(fractions["series"][1]["name"], "track fast");
+  EXPECT_LT(fractions["series"][0]["x"][50], fractions["series"][1]["x"][50]);
   EXPECT_EQ(chart_of(page, "/trajectory.dt_rel_percent.mean/speed")["series"].size(), 3U)
       << "the front and two methods";
 }

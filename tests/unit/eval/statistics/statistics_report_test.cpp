@@ -26,12 +26,12 @@ std::string contents(const fs::path& file) {
 TEST_F(StatisticsReport, ADatasetAndAnEventFileSideBySide) {
   TemporaryFolder folder;
   const fs::path file = folder.write("few.txt", "0.001 3 4 1\n0.002 5 6 0\n0.004 5 6 0\n");
-  const std::vector<NamedStatistics> both{statistics_of_recording(dataset() / ""),
-                                          statistics_of_recording(file)};
+  const std::vector<StreamStatistics> both{statistics_of_recording(dataset() / ""),
+                                           statistics_of_recording(file)};
   EXPECT_EQ(both[0].name, dataset().filename().string());
-  EXPECT_EQ(both[0].statistics.pixels.ascending_hz.size(), 80U * 60U);
+  EXPECT_EQ(both[0].pixels.ascending_hz.size(), 80U * 60U);
   EXPECT_EQ(both[1].name, "few.txt");
-  EXPECT_EQ(both[1].statistics.pixels.ascending_hz.size(), 6U * 7U);
+  EXPECT_EQ(both[1].pixels.ascending_hz.size(), 6U * 7U);
   EXPECT_NE(statistics_table(both).find("few.txt"), std::string::npos);
 
   write_statistics(both, folder.path() / "out");
@@ -47,13 +47,9 @@ TEST_F(StatisticsReport, APartOfARecording) {
   TemporaryFolder folder;
   const fs::path file =
       folder.write("e.txt", "10.001 3 4 1\n10.002 5 6 0\n10.004 5 6 0\n10.009 5 6 1\n");
-  EXPECT_EQ(statistics_of_recording(file, {.start_s = {}, .duration_s = 0.005}).statistics.events,
-            3U);
-  EXPECT_EQ(statistics_of_recording(file, {.start_s = 10.002, .duration_s = {}}).statistics.events,
-            3U);
-  EXPECT_EQ(
-      statistics_of_recording(file, {.start_s = 10.002, .duration_s = 0.005}).statistics.events,
-      2U);
+  EXPECT_EQ(statistics_of_recording(file, {.start_s = {}, .duration_s = 0.005}).events, 3U);
+  EXPECT_EQ(statistics_of_recording(file, {.start_s = 10.002, .duration_s = {}}).events, 3U);
+  EXPECT_EQ(statistics_of_recording(file, {.start_s = 10.002, .duration_s = 0.005}).events, 2U);
 }
 
 TEST_F(StatisticsReport, RefusesWhatHasNoTwoEvents) {

@@ -22,9 +22,9 @@ Table table() {
 
 TEST(Table, ATerminalShowsAlignedColumns) {
   EXPECT_EQ(table_text(table()),
-            "method        rank               walls_1\n"
-            "a_b & {50 %}     1  0.123 [0.100, 0.200]\n"
-            "[x], y      0 of 1                     –\n");
+            "method          rank               walls_1\n"
+            "a_b & {50 %}       1  0.123 [0.100, 0.200]\n"
+            "[x], y        0 of 1                     –\n");
 }
 
 TEST(Table, WithoutTitlesThereIsNoRowOfThem) {

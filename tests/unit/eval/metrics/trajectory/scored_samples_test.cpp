@@ -16,11 +16,11 @@ TEST(ScoredInterval, IsTheWindowCutToTheTruth) {
   const Trajectory truth = straight(1, 3, 0.01);
   EXPECT_DOUBLE_EQ(scored_interval(truth, std::nullopt)->start_s, 1);
   EXPECT_DOUBLE_EQ(scored_interval(truth, std::nullopt)->end_s, truth.end_s());
-  const auto cut = scored_interval(truth, ScoredTime{0, 2});
+  const auto cut = scored_interval(truth, RunRecord::Window{0, 2});
   EXPECT_DOUBLE_EQ(cut->start_s, 1);
   EXPECT_DOUBLE_EQ(cut->end_s, 2);
-  EXPECT_FALSE(scored_interval(truth, ScoredTime{4, 5}));
-  EXPECT_FALSE(scored_interval({}, ScoredTime{0, 1}));
+  EXPECT_FALSE(scored_interval(truth, RunRecord::Window{4, 5}));
+  EXPECT_FALSE(scored_interval({}, RunRecord::Window{0, 1}));
 }
 
 TEST(HeldPose, InterpolatesShortGapsAndHoldsLongOnes) {

@@ -90,7 +90,7 @@ TEST(ScoreTrajectory, LeavingPosesOutScoresTheHeldPose) {
 TEST(ScoreTrajectory, GapsAtTheEndsOfTheWindowCount) {
   const Metrics m = score_trajectory({.estimate = straight(0.3, 0.8, 0.01),
                                       .truth = straight(0, 1, 0.01),
-                                      .window = ScoredTime{0, 1},
+                                      .window = RunRecord::Window{0, 1},
                                       .mean_depth_m = 1,
                                       .reported = {}});
   EXPECT_NEAR(value(m, "coverage"), 0.52, 1e-9);
@@ -100,7 +100,7 @@ TEST(ScoreTrajectory, GapsAtTheEndsOfTheWindowCount) {
 TEST(ScoreTrajectory, OnlyTheWindowIsScored) {
   const Metrics m = score_trajectory({.estimate = straight(0.2, 0.5, 0.01),
                                       .truth = straight(0, 1, 0.01),
-                                      .window = ScoredTime{0.2, 0.5},
+                                      .window = RunRecord::Window{0.2, 0.5},
                                       .mean_depth_m = 1,
                                       .reported = {}});
   EXPECT_NEAR(value(m, "coverage"), 1, 1e-9);
@@ -149,7 +149,7 @@ TEST(ScoreTrajectory, HasTheSameKeysWhateverIsMissing) {
       {.estimate = {}, .truth = truth, .window = {}, .mean_depth_m = 1, .reported = {}},
       {.estimate = truth,
        .truth = truth,
-       .window = ScoredTime{5, 6},
+       .window = RunRecord::Window{5, 6},
        .mean_depth_m = 1,
        .reported = {}},
       {.estimate = straight(0.5, 0.5, 1),

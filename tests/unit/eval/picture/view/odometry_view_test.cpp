@@ -88,7 +88,7 @@ TEST_F(OdometryViewTest, TheReportShowsAtMostEightKeyframes) {
   EXPECT_EQ(occurrences("alt=\"depth of a keyframe\""), 8);
   EXPECT_EQ(occurrences("alt=\"image of a keyframe\""), 8);
   EXPECT_EQ(occurrences("alt=\"path from above\""), 1);
-  EXPECT_EQ(occurrences("<tr><td>"), 10) << "all of them are in the table";
+  EXPECT_EQ(occurrences("<tr><td"), 10) << "all of them are in the table";
   EXPECT_THAT(html, HasSubstr("9: depth at 0.200 s"));
 }
 

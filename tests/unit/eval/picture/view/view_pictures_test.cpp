@@ -198,11 +198,11 @@ TEST_F(ViewPicturesTest, StepsAreDrawnWhereARunKeptThem) {
   EXPECT_EQ(poisson_pictures(run, 1).size(), 8U);
 
   RunData shown;
-  EXPECT_EQ(step_section(shown), "");
+  EXPECT_EQ(reconstruction_stage_section(shown), "");
   shown.run.folder = run;
   shown.data = data;
-  EXPECT_THAT(step_section(shown), HasSubstr("residual, dirichlet"));
-  EXPECT_THAT(step_section(shown), HasSubstr("15 x 15 px"));
+  EXPECT_THAT(reconstruction_stage_section(shown), HasSubstr("residual, dirichlet"));
+  EXPECT_THAT(reconstruction_stage_section(shown), HasSubstr("15 x 15 px"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "eval/report/sides.h"
+#include "eval/report/run_set_comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,53 +35,53 @@ std::vector<RunData> side(double factor, const std::string& configuration,
   return runs;
 }
 
-const GateRow* row_of_scope(const Sides& sides, const std::string& scope) {
-  for (const GateRow& row : sides.result.rows)
+const GateRow* row_of_scope(const RunSetComparison& comparison, const std::string& scope) {
+  for (const GateRow& row : comparison.result.rows)
     if (row.scope == scope) return &row;
   return nullptr;
 }
 
-TEST(Sides, AreVersionsOfOneConfiguration) {
+TEST(RunSetComparison, AreVersionsOfOneConfiguration) {
   const std::vector<RunData> before = side(1, "best", "0.9"), after = side(1.1, "best", "1.0");
-  const Sides sides = compare_sides(before, after);
-  EXPECT_EQ(sides.a, "0.9");
-  EXPECT_EQ(sides.b, "1.0");
-  EXPECT_EQ(sides.pairs.size(), 16U);
-  EXPECT_EQ(sides.pairs.front().scope, "walls, track best");
-  const GateRow* row = row_of_scope(sides, "track, 2 sequences");
+  const RunSetComparison comparison = compare_run_sets(before, after);
+  EXPECT_EQ(comparison.a, "0.9");
+  EXPECT_EQ(comparison.b, "1.0");
+  EXPECT_EQ(comparison.pairs.size(), 16U);
+  EXPECT_EQ(comparison.pairs.front().scope, "walls, track best");
+  const GateRow* row = row_of_scope(comparison, "track, 2 sequences");
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->verdict, GateRow::Verdict::kRegressed);
   EXPECT_NEAR(row->change.value(), 0.1, 1e-3);
   EXPECT_LE(row->low.value(), row->change.value());
 }
 
-TEST(Sides, AreConfigurationsWhereNoTwoAreTheSame) {
+TEST(RunSetComparison, AreConfigurationsWhereNoTwoAreTheSame) {
   const std::vector<RunData> before = side(1, "fast", "1.0"), after = side(0.5, "best", "1.0");
-  const Sides sides = compare_sides(before, after);
-  EXPECT_EQ(sides.a, "track fast");
-  EXPECT_EQ(sides.b, "track best");
-  EXPECT_EQ(sides.pairs.front().scope, "walls, track");
-  ASSERT_NE(row_of_scope(sides, "walls, track"), nullptr);
-  EXPECT_EQ(row_of_scope(sides, "walls, track")->verdict, GateRow::Verdict::kImproved);
+  const RunSetComparison comparison = compare_run_sets(before, after);
+  EXPECT_EQ(comparison.a, "track fast");
+  EXPECT_EQ(comparison.b, "track best");
+  EXPECT_EQ(comparison.pairs.front().scope, "walls, track");
+  ASSERT_NE(row_of_scope(comparison, "walls, track"), nullptr);
+  EXPECT_EQ(row_of_scope(comparison, "walls, track")->verdict, GateRow::Verdict::kImproved);
 }
 
-TEST(Sides, WithoutPartnerAreNoted) {
+TEST(RunSetComparison, WithoutPartnerAreNoted) {
   const std::vector<RunData> before = side(1, "best", "1.0");
   std::vector<RunData> after = side(1, "best", "1.0");
   after.push_back(scored_run("office", 1, 1, "best", "1.0"));
-  const Sides sides = compare_sides(before, after);
-  EXPECT_EQ(sides.a, "before");
-  EXPECT_EQ(sides.pairs.size(), 16U);
-  ASSERT_EQ(sides.result.notes.size(), 1U);
-  EXPECT_THAT(sides.result.notes[0], ::testing::HasSubstr("office, track best, seed 1"));
+  const RunSetComparison comparison = compare_run_sets(before, after);
+  EXPECT_EQ(comparison.a, "before");
+  EXPECT_EQ(comparison.pairs.size(), 16U);
+  ASSERT_EQ(comparison.result.notes.size(), 1U);
+  EXPECT_THAT(comparison.result.notes[0], ::testing::HasSubstr("office, track best, seed 1"));
 }
 
-TEST(Sides, RefuseWhatCannotBePaired) {
+TEST(RunSetComparison, RefuseWhatCannotBePaired) {
   const std::vector<RunData> walls{scored_run("walls", 1, 1, "best", "1.0")};
   const std::vector<RunData> desk{scored_run("desk", 1, 1, "best", "1.0")};
-  EXPECT_THROW((void)compare_sides(walls, desk), InputError);
+  EXPECT_THROW((void)compare_run_sets(walls, desk), InputError);
   const std::vector<RunData> twice{walls[0], walls[0]};
-  EXPECT_THROW((void)compare_sides(twice, walls), InputError);
+  EXPECT_THROW((void)compare_run_sets(twice, walls), InputError);
 }
 
 }  // namespace

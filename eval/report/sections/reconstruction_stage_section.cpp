@@ -18,7 +18,7 @@ std::string group(const std::string& title, const std::vector<CaptionedPicture>&
 
 }  // namespace
 
-std::string step_section(const RunData& data) {
+std::string reconstruction_stage_section(const RunData& data) {
   if (!data.data) return "";
   return group("Poisson's equation: true gradients in, image out",
                poisson_pictures(data.run.folder, kUpscale)) +

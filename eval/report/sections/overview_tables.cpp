@@ -1,4 +1,4 @@
-#include "eval/report/tables.h"
+#include "eval/report/sections/page_sections.h"
 
 #include <fmt/format.h>
 

@@ -11,14 +11,14 @@ namespace saccade {
 
 /// Two runs of one key of the gate.
 struct RunPair {
-  std::string
-      scope;  ///< "walls, track accurate"; without the configuration where those are compared
+  /// "walls, track accurate"; without the configuration where those are compared.
+  std::string scope;
   const RunData* a = nullptr;
   const RunData* b = nullptr;
 };
 
 /// Two sets of runs that did the same work: A before, B after.
-struct Sides {
+struct RunSetComparison {
   std::string a, b;  ///< what tells them apart: the version, the method, or "before" and "after"
   std::vector<RunPair> pairs;  ///< in the order of B
   GateResult result;           ///< by the gate's rules; runs of B without a partner are notes
@@ -27,6 +27,7 @@ struct Sides {
 /// Pairs the runs, at least one on either side, by dataset, module, configuration and seed; where
 /// no two have the same configuration, by the rest: then configurations are compared. Throws
 /// InputError where nothing can be paired or two runs of a side did the same work.
-[[nodiscard]] Sides compare_sides(std::span<const RunData> before, std::span<const RunData> after);
+[[nodiscard]] RunSetComparison compare_run_sets(std::span<const RunData> before,
+                                                std::span<const RunData> after);
 
 }  // namespace saccade

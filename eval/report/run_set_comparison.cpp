@@ -1,4 +1,4 @@
-#include "eval/report/sides.h"
+#include "eval/report/run_set_comparison.h"
 
 #include <algorithm>
 #include <map>
@@ -56,42 +56,42 @@ std::optional<std::string> common(std::span<const RunData> runs, const Property&
 }
 
 template <typename Property>
-bool set_names(Sides& sides, std::span<const RunData> before, std::span<const RunData> after,
-               const Property& property) {
+bool set_names(RunSetComparison& comparison, std::span<const RunData> before,
+               std::span<const RunData> after, const Property& property) {
   const auto a = common(before, property), b = common(after, property);
   if (!a || !b || *a == *b) return false;
-  sides.a = *a;
-  sides.b = *b;
+  comparison.a = *a;
+  comparison.b = *b;
   return true;
 }
 
 }  // namespace
 
-Sides compare_sides(std::span<const RunData> before, std::span<const RunData> after) {
+RunSetComparison compare_run_sets(std::span<const RunData> before, std::span<const RunData> after) {
   const bool with_config = has_pair(before, after, true);
   if (!with_config && !has_pair(before, after, false))
     throw InputError("--against",
                      "none of its runs has a partner of the same dataset, module and "
                      "seed");
   const RunsByKey a = by_key(before, with_config), b = by_key(after, with_config);
-  Sides sides;
+  RunSetComparison comparison;
   const bool named =
-      set_names(sides, before, after, [](const RunData& run) { return run.method; }) ||
-      set_names(sides, before, after,
+      set_names(comparison, before, after, [](const RunData& run) { return run.method; }) ||
+      set_names(comparison, before, after,
                 [](const RunData& run) { return run.run.record.tool_version; });
   if (!named) {
-    sides.a = "before";
-    sides.b = "after";
+    comparison.a = "before";
+    comparison.b = "after";
   }
   for (const RunData& run : after) {
     const GateKey key = key_of(run, with_config);
     if (const auto partner = a.find(key); partner != a.end())
-      sides.pairs.push_back({key.sequence(), partner->second, &run});
+      comparison.pairs.push_back({key.sequence(), partner->second, &run});
   }
   GateOptions options;
   options.partial = true;
-  sides.result = compare_runs(gate_runs(a), gate_runs(b), options);
-  return sides;
+  comparison.result = compare_runs(gate_runs(a), gate_runs(b), options);
+  return comparison;
 }
 
 }  // namespace saccade
