@@ -6,7 +6,6 @@
 #include "estimator/depth/depth_module.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/external_module.h"
-#include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_module.h"
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/mosaic_module.h"
@@ -16,13 +15,18 @@
 #include "estimator/reconstruction/reconstruction_module.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/refinement_module.h"
-#include "estimator/rotation/rotation_config.h"
 #include "estimator/rotation/rotation_module.h"
 #include "estimator/tracking/track_config.h"
 #include "estimator/tracking/track_module.h"
 
 namespace saccade {
 namespace {
+
+/// The resolved configuration, documented, as YAML.
+template <class Config>
+std::string print(const config::Document& document) {
+  return config::print_documented(config::read<Config>(document));
+}
 
 constexpr Module kModules[] = {
     {.name = "track",
@@ -46,20 +50,20 @@ constexpr Module kModules[] = {
     {.name = "odometry",
      .help = "Poses and map from events and the poses of a short start (thesis chapter 7).",
      .run = run_odometry,
-     .print_config = print_odometry_config,
+     .print_config = print<OdometryConfig>,
      .reference = config::reference<OdometryConfig>},
     {.name = "refine",
      .help = "Batch optimum beside a run of track, depth or odometry, which --from names.",
      .takes_poses = true,
      .takes_run = true,
      .run = run_refinement,
-     .print_config = print_refinement_config,
+     .print_config = print<RefinementConfig>,
      .reference = config::reference<RefinementConfig>},
     {.name = "stabilize",
      .help = "Events and frames as of a camera that does not rotate (thesis chapter 3).",
      .takes_poses = true,
      .run = run_stabilization,
-     .print_config = print_stabilization_config,
+     .print_config = print<StabilizeConfig>,
      .reference = config::reference<StabilizeConfig>},
     {.name = "mosaic",
      .help = "Panorama from the events of a rotating camera (thesis 3.4.1).",
@@ -70,12 +74,12 @@ constexpr Module kModules[] = {
     {.name = "rotation",
      .help = "Angular velocity of the camera from events, gyroscope or both.",
      .run = run_rotation,
-     .print_config = print_rotation_config,
+     .print_config = print<RotationConfig>,
      .reference = config::reference<RotationConfig>},
     {.name = "external",
      .help = "An external program, which an adapter (-c) says how to run.",
      .run = run_external,
-     .print_config = print_external_config,
+     .print_config = print<AdapterConfig>,
      .reference = config::reference<AdapterConfig>},
 };
 

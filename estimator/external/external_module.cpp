@@ -146,8 +146,4 @@ RunSummary run_external(const RunRequest& request) {
   return summary;
 }
 
-std::string print_external_config(const config::Document& document) {
-  return config::print_documented(config::read<AdapterConfig>(document));
-}
-
 }  // namespace saccade

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -11,8 +8,5 @@ namespace saccade {
 /// crash, a time-out and bad output are a status of the run, which then holds no poses; a program
 /// that cannot be started is an InputError.
 RunSummary run_external(const RunRequest& request);
-
-/// The adapter as it is resolved, documented.
-[[nodiscard]] std::string print_external_config(const config::Document& document);
 
 }  // namespace saccade

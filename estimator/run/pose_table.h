@@ -29,7 +29,7 @@ struct CameraPose {
 /// Between exact poses: at 10 rad/s the error of a linearly interpolated rotation is 5e-7.
 inline constexpr TimeNs kPoseIntervalNs = 200'000;
 
-/// target_from_camera at the time of any event: exact every kPoseStepNs and linear in between.
+/// target_from_camera at the time of any event: exact every kPoseIntervalNs and linear in between.
 class PoseTable {
  public:
   /// From `start_ns` to `end_ns`, held beyond the trajectory's ends.
