@@ -15,13 +15,13 @@ namespace {
 
 constexpr int kRounds = 10;
 constexpr std::size_t kMinIntervals = 8;
-constexpr double kSmoothing_s = 0.05;    ///< knot spacing of the spline that smooths the path
-constexpr double kPositionSigma = 1e-3;  ///< of a position, relative to the typical depth
-constexpr double kTiltSigma_rad = 2e-3;  ///< of an orientation of the path
-constexpr double kAccelBiasSigma = 0.2;  ///< [m/s^2]
-constexpr double kMaxScaleSigma = 0.05;  ///< relative; a larger sigma is kUnobservableScale
-constexpr double kMaxResidual = 2;       ///< a larger residual is kInconsistent
-constexpr double kCauchyScale = 3;       ///< of the loss of an interval [sigma]
+constexpr double kSmoothing_s = 0.05;      ///< knot spacing of the spline that smooths the path
+constexpr double kPositionSigma = 1e-3;    ///< of a position, relative to the typical depth
+constexpr double kTiltSigma_rad = 2e-3;    ///< of an orientation of the path
+constexpr double kAlignedBiasSigma = 0.2;  ///< [m/s^2]
+constexpr double kMaxScaleSigma = 0.05;    ///< relative; a larger sigma is kUnobservableScale
+constexpr double kMaxResidual = 2;         ///< a larger residual is kInconsistent
+constexpr double kCauchyScale = 3;         ///< of the loss of an interval [sigma]
 
 using Chain = VelocityChain;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
@@ -207,7 +207,7 @@ class Alignment {
       return rows;
     };
     Chain::Head precision = Chain::Head::Zero();
-    precision.tail<3>().setConstant(std::pow(result_.scale / kAccelBiasSigma, 2));
+    precision.tail<3>().setConstant(std::pow(result_.scale / kAlignedBiasSigma, 2));
     const Chain::Solution found = least_squares(precision, rows_of);
     update(found, basis);
     reweight(found, rows_of);

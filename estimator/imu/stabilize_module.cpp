@@ -88,8 +88,7 @@ Stabilization stabilize(const std::optional<ImuInput>& imu, const Trajectory& gi
   return result;
 }
 
-void write(const std::filesystem::path& folder, const Dataset& dataset,
-           const StabilizeConfig& config, const Stabilization& result,
+void write(const std::filesystem::path& folder, const Dataset& dataset, const Stabilization& result,
            const RunRecord::Window& window) {
   write_orientations(folder / "orientation.txt", result.camera.world_from_camera.poses());
   if (!result.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.camera.gyro);
@@ -154,7 +153,7 @@ RunSummary run_stabilization(const RunRequest& request) {
   const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
     const ScopedTimer clock(timing.io_s);
-    write(writer.path(), dataset, config, result, window);
+    write(writer.path(), dataset, result, window);
   }
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
