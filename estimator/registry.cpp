@@ -6,7 +6,6 @@
 #include "estimator/depth/depth_module.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/external_module.h"
-#include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_module.h"
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/mosaic_module.h"
@@ -16,7 +15,6 @@
 #include "estimator/reconstruction/reconstruction_module.h"
 #include "estimator/refinement/refinement_config.h"
 #include "estimator/refinement/refinement_module.h"
-#include "estimator/rotation/rotation_config.h"
 #include "estimator/rotation/rotation_module.h"
 #include "estimator/tracking/track_config.h"
 #include "estimator/tracking/track_module.h"
@@ -24,6 +22,7 @@
 namespace saccade {
 namespace {
 
+/// The resolved configuration, documented, as YAML.
 template <class Config>
 std::string print_config(const config::Document& document) {
   return config::print_documented(config::read<Config>(document));
@@ -51,14 +50,14 @@ constexpr Module kModules[] = {
     {.name = "odometry",
      .help = "Poses and map from events and the poses of a short start (thesis chapter 7).",
      .run = run_odometry,
-     .print_config = print_odometry_config,
+     .print_config = print_config<OdometryConfig>,
      .reference = config::reference<OdometryConfig>},
     {.name = "refine",
      .help = "Batch optimum beside a run of track, depth or odometry, which --from names.",
      .takes_poses = true,
      .takes_run = true,
      .run = run_refinement,
-     .print_config = print_refinement_config,
+     .print_config = print_config<RefinementConfig>,
      .reference = config::reference<RefinementConfig>},
     {.name = "stabilize",
      .help = "Events and frames as of a camera that does not rotate (thesis chapter 3).",

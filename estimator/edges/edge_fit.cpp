@@ -26,9 +26,9 @@ std::optional<EdgeUnknowns> fit_edge(std::span<const EdgeObservation> events,
     Eigen::Matrix4d information = precision.asDiagonal();
     Eigen::Vector4d gradient = precision.cwiseProduct(edge - prior.mean);
     for (const EdgeLine& line : lines) {
-      const double larger = line.larger(edge[0]);
-      if (!(line.forward > 0 && larger > 0)) return std::nullopt;
-      const double r = line.in_view(edge) / larger / sigma_px;
+      const double g = line.magnification(edge[0]);
+      if (!(line.forward > 0 && g > 0)) return std::nullopt;
+      const double r = line.residual_in_view_px(edge) / g / sigma_px;
       const double weight = 1 / (sigma_px * sigma_px * (1 + r * r / (kScale * kScale)));
       const Eigen::Matrix<double, 1, 4> by_edge = line.by_edge(edge);
       information += weight * by_edge.transpose() * by_edge;

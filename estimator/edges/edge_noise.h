@@ -10,8 +10,9 @@ namespace saccade {
 /// The noise model of the event-to-edge residual (edge_residual.h), the same in every adjustment:
 /// an event scatters about its edge by a Gaussian of sigma_px(), outliers by Cauchy's loss
 ///   rho(r) = a^2 ln(1 + (r / (a sigma))^2),   a = kCauchyScale,
-/// and an edge's own unknowns have Gaussian priors about 0 with the sigmas below. One set of values
-/// serves ideal and noisy sensors and all adjustments.
+/// and an edge's own unknowns have Gaussian priors with the sigmas below: c, m, h and k about 0, rho about
+/// the regressed depth or, in the window adjustment, that of a landmark, there with Cauchy's loss. One
+/// set of values serves ideal and noisy sensors and all adjustments.
 struct EdgeNoise {
   static constexpr double kMinSigma_px = 0.1;
   static constexpr double kCauchyScale = 2;

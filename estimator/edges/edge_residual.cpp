@@ -5,11 +5,12 @@
 namespace saccade {
 
 Eigen::Matrix<double, 1, 4> EdgeLine::by_edge(const EdgeUnknowns& edge) const {
-  const double size = larger(edge[0]);
+  const double g = magnification(edge[0]);
   Eigen::Matrix<double, 1, 4> derivative;
-  derivative << across_by_rho - edge[2] * along_by_rho + in_view(edge) / size * origin_z / forward,
+  derivative << across_by_rho - edge[2] * along_by_rho +
+                    residual_in_view_px(edge) / g * origin_z / forward,
       -1, -(along_px + edge[0] * along_by_rho), -lag;
-  return derivative / size;
+  return derivative / g;
 }
 
 EdgeLine line_of(const EdgeObservation& observation, const PinholeCamera& camera) {
@@ -36,9 +37,9 @@ double edge_residual(const EdgeObservation& observation, const PinholeCamera& ca
   moved.view_from_camera = observation.view_from_camera * Rigid3::exp(motion);
   const EdgeLine line = line_of(moved, camera);
   const double rho = edge[0];
-  const double larger = line.larger(rho);
-  if (!(line.forward > 0 && larger > 0)) return std::numeric_limits<double>::quiet_NaN();
-  const double residual = line.in_view(edge) / larger;
+  const double g = line.magnification(rho);
+  if (!(line.forward > 0 && g > 0)) return std::numeric_limits<double>::quiet_NaN();
+  const double residual = line.residual_in_view_px(edge) / g;
   if (derivatives == nullptr) return residual;
   const Eigen::Matrix3d rotation = moved.view_from_camera.rotation_matrix();
   const Eigen::Vector3d direction = rotation * observation.ray;
@@ -56,12 +57,12 @@ double edge_residual(const EdgeObservation& observation, const PinholeCamera& ca
   const Eigen::Matrix<double, 2, 6> x_by_motion =
       (1 - rho * line.origin_z) * a_by_motion +
       rho * (origin_by_motion.topRows<2>() - a * origin_by_motion.row(2));
-  Eigen::Matrix<double, 1, 6> larger_by_motion = -rho * origin_by_motion.row(2);
-  larger_by_motion.tail<3>() -= larger * by_rotation.row(2);
-  larger_by_motion /= direction.z();
+  Eigen::Matrix<double, 1, 6> g_by_motion = -rho * origin_by_motion.row(2);
+  g_by_motion.tail<3>() -= g * by_rotation.row(2);
+  g_by_motion /= direction.z();
   // exp(motion + d) = exp(motion) exp(J_r d) (Barfoot, 2017, section 7.1.5).
   derivatives->motion =
-      (across * x_by_motion - residual * larger_by_motion) / larger * se3_left_jacobian(-motion);
+      (across * x_by_motion - residual * g_by_motion) / g * se3_left_jacobian(-motion);
   derivatives->edge = line.by_edge(edge);
   return residual;
 }

@@ -14,12 +14,13 @@ namespace saccade {
 /// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
 /// scatter, and a residual in the view would be made small by any motion that shrinks the picture.
 /// With q = K^-1 u the event's ray, rho the edge's inverse depth, c its offset, m its tilt and h
-/// the hysteresis of the thresholds, over a lag of l contrasts.
+/// the shift [px] per contrast of lag l: of refine depth l = p, so that h is the ON/OFF shift; of the
+/// window adjustment also the shift between successive events of a polarity run.
 struct EdgeObservation {
   Rigid3 view_from_camera;  ///< at the event's time, before any correction
   Eigen::Vector3d ray;      ///< q, z = 1
   /// What h is multiplied by: the polarity p, +1 or -1, or p times the contrasts by which the
-  /// brightness had changed (event_runs.h).
+  /// brightness had changed (polarity_runs.h).
   double lag = 0;
   Eigen::Vector2d pixel;   ///< e, in the view
   Eigen::Vector2d normal;  ///< n, unit
@@ -37,13 +38,13 @@ struct EdgeLine {
   double lag = 0;
 
   /// g; not above 0: the edge is behind the camera.
-  [[nodiscard]] double larger(double rho) const { return (1 - rho * origin_z) / forward; }
+  [[nodiscard]] double magnification(double rho) const { return (1 - rho * origin_z) / forward; }
   /// n . (x - e) - c - m t . (x - e) - h l.
-  [[nodiscard]] double in_view(const EdgeUnknowns& edge) const {
+  [[nodiscard]] double residual_in_view_px(const EdgeUnknowns& edge) const {
     return across_px + edge[0] * across_by_rho - edge[1] -
            edge[2] * (along_px + edge[0] * along_by_rho) - edge[3] * lag;
   }
-  /// The derivative of in_view / larger by the unknowns.
+  /// The derivative of residual_in_view_px / magnification by the unknowns.
   [[nodiscard]] Eigen::Matrix<double, 1, 4> by_edge(const EdgeUnknowns& edge) const;
 };
 

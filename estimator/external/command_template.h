@@ -22,7 +22,7 @@ using Placeholders = std::map<std::string, std::string, std::less<>>;
 /// `text` with its placeholders replaced; all of them are known (contract).
 [[nodiscard]] std::string substituted(std::string_view text, const Placeholders& values);
 
-/// The words of a command line (core/shell.h), each substituted: a value with blanks stays one word.
+/// The words of a command line (core/process/shell.h), each substituted: a value with blanks stays one word.
 [[nodiscard]] std::vector<std::string> substituted_words(std::string_view line,
                                                          const Placeholders& values);
 

@@ -4,8 +4,15 @@
 
 #include "core/error.h"
 #include "core/io/calibration_file.h"
+#include "core/io/imu_file.h"
 
 namespace saccade {
+namespace {
+
+/// Noise densities of a consumer sensor [rad/s/sqrt(Hz), m/s^2/sqrt(Hz)].
+constexpr double kGyroscopeDensity = 1e-3, kAccelerometerDensity = 1e-2;
+
+}  // namespace
 
 ImuInput load_imu_input(const Dataset& dataset, const std::string& consumer) {
   const std::string folder = dataset.folder().string();
@@ -22,6 +29,20 @@ ImuInput load_imu_input(const Dataset& dataset, const std::string& consumer) {
       input.imu_in_camera = camera_from_imu->translation();
     }
   return input;
+}
+
+MountedImu load_mounted_imu(const Dataset& dataset, const std::string& consumer) {
+  const ImuInput input = load_imu_input(dataset, consumer);
+  MountedImu imu;
+  for (const ImuSample& sample : input.samples)
+    imu.samples.push_back({sample.t_ns, input.camera_from_imu * sample.specific_force,
+                           input.camera_from_imu * sample.angular_velocity});
+  imu.position_in_camera = input.imu_in_camera;
+  const std::filesystem::path noise = dataset.folder() / "imu.yaml";
+  if (std::filesystem::exists(noise)) imu.noise = read_imu_yaml(noise);
+  if (imu.noise.gyroscope.density == 0) imu.noise.gyroscope.density = kGyroscopeDensity;
+  if (imu.noise.accelerometer.density == 0) imu.noise.accelerometer.density = kAccelerometerDensity;
+  return imu;
 }
 
 ImuPoses camera_orientations(const ImuInput& imu, const OrientationOptions& options) {

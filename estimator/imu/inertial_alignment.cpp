@@ -7,6 +7,7 @@
 
 #include "core/rigid3.h"
 #include "core/spline/spline.h"
+#include "estimator/imu/rest_detector.h"
 #include "estimator/imu/velocity_chain.h"
 
 namespace saccade {
@@ -14,8 +15,15 @@ namespace {
 
 constexpr int kRounds = 10;
 constexpr std::size_t kMinIntervals = 8;
+constexpr double kSmoothing_s = 0.05;      ///< knot spacing of the spline that smooths the path
+constexpr double kPositionSigma = 1e-3;    ///< of a position, relative to the typical depth
+constexpr double kTiltSigma_rad = 2e-3;    ///< of an orientation of the path
+constexpr double kAlignedBiasSigma = 0.2;  ///< [m/s^2]
+constexpr double kMaxScaleSigma = 0.05;    ///< relative; a larger sigma is kUnobservableScale
+constexpr double kMaxResidual = 2;         ///< a larger residual is kInconsistent
+constexpr double kCauchyScale = 3;         ///< of the loss of an interval [sigma]
 
-using Chain = VelocityChain<6>;
+using Chain = VelocityChain;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
 /// The preintegrated samples between two nodes of the path.
@@ -33,13 +41,13 @@ Matrix32 tangent_basis(const Eigen::Vector3d& direction) {
 }
 
 /// Poses of the smoothed path at equal intervals.
-std::vector<StampedPose> nodes_of(const Trajectory& path, const InertialAlignmentOptions& options) {
-  const Spline spline = Spline::smooth(path.poses(), options.smoothing_s);
+std::vector<StampedPose> nodes_of(const Trajectory& path, double interval_s) {
+  const Spline spline = Spline::smooth(path.poses(), kSmoothing_s);
   const double length_s = spline.end_s() - spline.start_s();
-  const auto count = static_cast<std::size_t>(length_s / options.interval_s);
+  const auto count = static_cast<std::size_t>(length_s / interval_s);
   std::vector<StampedPose> nodes;
   for (std::size_t j = 0; j <= count; ++j) {
-    const double t_s = spline.start_s() + static_cast<double>(j) * options.interval_s;
+    const double t_s = spline.start_s() + static_cast<double>(j) * interval_s;
     nodes.push_back({t_s, spline.pose(t_s)});
   }
   return nodes;
@@ -47,8 +55,11 @@ std::vector<StampedPose> nodes_of(const Trajectory& path, const InertialAlignmen
 
 class Alignment {
  public:
-  Alignment(const Trajectory& path, const MountedImu& imu, const InertialAlignmentOptions& options)
-      : imu_(imu), options_(options), nodes_(nodes_of(path, options)) {}
+  Alignment(const Trajectory& path, const MountedImu& imu, double typical_depth_m,
+            double interval_s)
+      : imu_(imu),
+        position_sigma_(kPositionSigma * typical_depth_m),
+        nodes_(nodes_of(path, interval_s)) {}
 
   [[nodiscard]] InertialAlignment solve() {
     for (int round = 0; round < kRounds; ++round) {
@@ -75,8 +86,8 @@ class Alignment {
  private:
   [[nodiscard]] InertialAlignment::Status status() const {
     using Status = InertialAlignment::Status;
-    if (result_.residual > options_.max_residual) return Status::kInconsistent;
-    const bool is_known = result_.scale > 0 && result_.scale_sigma < options_.max_scale_sigma;
+    if (result_.residual > kMaxResidual) return Status::kInconsistent;
+    const bool is_known = result_.scale > 0 && result_.scale_sigma < kMaxScaleSigma;
     return is_known ? Status::kOk : Status::kUnobservableScale;
   }
 
@@ -114,14 +125,14 @@ class Alignment {
   }
 
   /// Solves for the head of `rows_of(interval)` over all intervals.
-  template <int kHead, class MakeRows>
-  [[nodiscard]] typename VelocityChain<kHead>::Solution least_squares(
-      const Eigen::Matrix<double, kHead, 1>& precision, const MakeRows& rows_of) const {
-    VelocityChain<kHead> chain(precision);
+  template <class MakeRows>
+  [[nodiscard]] Chain::Solution least_squares(const Chain::Head& precision,
+                                              const MakeRows& rows_of) const {
+    Chain chain(precision);
     std::size_t node = 0;
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
       for (; node < intervals_[k].node; ++node) chain.skip();
-      typename VelocityChain<kHead>::Rows rows = rows_of(intervals_[k]);
+      Chain::Rows rows = rows_of(intervals_[k]);
       rows.weight *= weights_[k];
       chain.add(rows);
       ++node;
@@ -130,19 +141,17 @@ class Alignment {
   }
 
   /// Equations (b), (c) of an interval without the head: weights from the path's sigmas, and values.
-  template <int kHead>
-  [[nodiscard]] typename VelocityChain<kHead>::Rows rows_without_head(
-      const Interval& interval) const {
+  [[nodiscard]] Chain::Rows rows_without_head(const Interval& interval) const {
     const double t_s = interval.sum.duration_s;
-    const double velocity_sigma = options_.gravity * options_.tilt_sigma_rad * t_s / result_.scale;
-    const double position_sigma = std::hypot(options_.position_sigma, 0.5 * t_s * velocity_sigma);
-    typename VelocityChain<kHead>::Rows rows;
+    const double velocity_sigma = kGravity_m_s2 * kTiltSigma_rad * t_s / result_.scale;
+    const double position_sigma = std::hypot(position_sigma_, 0.5 * t_s * velocity_sigma);
+    Chain::Rows rows;
     rows.duration_s = t_s;
-    rows.weight.template head<3>().setConstant(1 / position_sigma);
-    rows.weight.template tail<3>().setConstant(1 / velocity_sigma);
+    rows.weight.head<3>().setConstant(1 / position_sigma);
+    rows.weight.tail<3>().setConstant(1 / velocity_sigma);
     rows.value.setZero();
-    rows.value.template head<3>() = nodes_[interval.node + 1].world_from_camera.translation() -
-                                    nodes_[interval.node].world_from_camera.translation();
+    rows.value.head<3>() = nodes_[interval.node + 1].world_from_camera.translation() -
+                           nodes_[interval.node].world_from_camera.translation();
     return rows;
   }
 
@@ -181,7 +190,7 @@ class Alignment {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (const Interval& interval : intervals_) force += measured_change(interval).tail<3>();
     if (force.norm() > 0) direction_ = -force.normalized();
-    result_.gravity = options_.gravity * direction_;
+    result_.gravity = kGravity_m_s2 * direction_;
   }
 
   /// Solves (b), (c) for (l, l t, l c), linearised about the previous direction d.
@@ -189,18 +198,17 @@ class Alignment {
     const Matrix32 basis = tangent_basis(direction_);
     const auto rows_of = [&](const Interval& interval) {
       const Matrix6 jacobian = change_by_bias(interval);
-      Chain::Rows rows = rows_without_head<6>(interval);
+      Chain::Rows rows = rows_without_head(interval);
       rows.head.col(0) =
           measured_change(interval) +
-          constant_acceleration<1>(rows.duration_s, Eigen::Vector3d(options_.gravity * direction_));
-      rows.head.middleCols<2>(1) =
-          constant_acceleration<2>(rows.duration_s, options_.gravity * basis);
+          constant_acceleration<1>(rows.duration_s, Eigen::Vector3d(kGravity_m_s2 * direction_));
+      rows.head.middleCols<2>(1) = constant_acceleration<2>(rows.duration_s, kGravity_m_s2 * basis);
       rows.head.rightCols<3>() = jacobian.rightCols<3>();
       return rows;
     };
     Chain::Head precision = Chain::Head::Zero();
-    precision.tail<3>().setConstant(std::pow(result_.scale / options_.accel_bias_sigma, 2));
-    const Chain::Solution found = least_squares<6>(precision, rows_of);
+    precision.tail<3>().setConstant(std::pow(result_.scale / kAlignedBiasSigma, 2));
+    const Chain::Solution found = least_squares(precision, rows_of);
     update(found, basis);
     reweight(found, rows_of);
   }
@@ -216,7 +224,7 @@ class Alignment {
     const Eigen::Vector2d t = found.head.segment<2>(1) / inverse;
     result_.tilt_sigma_rad = std::sqrt(found.covariance.block<2, 2>(1, 1).trace() / 2) / inverse;
     direction_ = (direction_ + basis * t).normalized();
-    result_.gravity = options_.gravity * direction_;
+    result_.gravity = kGravity_m_s2 * direction_;
     result_.bias.accel = found.head.tail<3>() / inverse;
   }
 
@@ -234,7 +242,7 @@ class Alignment {
       const double square = rows.weight.cwiseProduct(error).squaredNorm() / 6;
       squares += weights_[k] * weights_[k] * square;
       weight_sum += weights_[k] * weights_[k];
-      weights_[k] = 1 / std::sqrt(1 + square / (options_.outlier * options_.outlier));
+      weights_[k] = 1 / std::sqrt(1 + square / (kCauchyScale * kCauchyScale));
     }
     // Six equations and three unknowns for each interval.
     result_.residual = std::sqrt(2 * squares / weight_sum);
@@ -244,7 +252,7 @@ class Alignment {
   }
 
   const MountedImu& imu_;
-  const InertialAlignmentOptions& options_;
+  double position_sigma_;  ///< of a position of the path, in its unit
   std::vector<StampedPose> nodes_;
   std::vector<Interval> intervals_;
   std::vector<double> weights_;                            ///< of each interval
@@ -259,8 +267,8 @@ Eigen::Quaterniond InertialAlignment::gravity_alignment() const {
 }
 
 InertialAlignment align_inertially(const Trajectory& path, const MountedImu& imu,
-                                   const InertialAlignmentOptions& options) {
-  return Alignment(path, imu, options).solve();
+                                   double typical_depth_m, double interval_s) {
+  return Alignment(path, imu, typical_depth_m, interval_s).solve();
 }
 
 }  // namespace saccade

@@ -4,33 +4,24 @@
 #include <Eigen/Geometry>
 
 #include "core/trajectory.h"
-#include "estimator/imu/mounted_imu.h"
+#include "estimator/imu/imu_input.h"
 #include "estimator/imu/preintegration.h"
 
 namespace saccade {
 
-struct InertialAlignmentOptions {
-  double gravity = 9.81;          ///< [m/s^2]
-  double interval_s = 0.1;        ///< between two poses of the path that samples connect
-  double smoothing_s = 0.05;      ///< knot spacing of the spline that smooths the path
-  double position_sigma = 5e-4;   ///< of a position of the path [unit of the path]
-  double tilt_sigma_rad = 2e-3;   ///< of an orientation of the path
-  double accel_bias_sigma = 0.2;  ///< [m/s^2]
-  double max_scale_sigma = 0.05;  ///< relative; a larger sigma is kUnobservableScale
-  double max_residual = 2;        ///< a larger residual is kInconsistent
-  double outlier = 3;             ///< scale of the Cauchy loss of an interval [sigma]
-};
+/// Between two poses of the path that samples connect [s].
+inline constexpr double kInertialInterval_s = 0.1;
 
 /// Scale, gravity and calibration that align a camera's path with inertial measurements.
 struct InertialAlignment {
   enum class Status {
     kOk,
-    kNoReadings,         ///< the samples cover too little of the path
+    kNoSamples,          ///< the samples cover too little of the path
     kUnobservableScale,  ///< nearly constant velocity: accelerations are too small for the scale
     kInconsistent        ///< path and samples contradict each other, by their stated sigmas
   };
 
-  Status status = Status::kNoReadings;
+  Status status = Status::kNoSamples;
   double scale = 1;                                   ///< metres in the path's unit
   double scale_sigma = 0;                             ///< relative
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< in the path's world [m/s^2]
@@ -54,9 +45,10 @@ struct InertialAlignment {
 ///   v_(j+1) - v_j = g T + l R_j dV(c)                                                       (c)
 /// which is linear in l, v_j, l t and l c, and repeated about the new d. The samples, which have
 /// the smaller errors, are multiplied by the unknown l: with the path multiplied by the scale
-/// instead, noise of the path would bias the scale towards zero. `path`: at least two poses.
-/// Deterministic.
+/// instead, noise of the path would bias the scale towards zero. `path`: at least two poses, whose
+/// positions have a sigma of a thousandth of `typical_depth_m` (in the path's unit). Deterministic.
 [[nodiscard]] InertialAlignment align_inertially(const Trajectory& path, const MountedImu& imu,
-                                                 const InertialAlignmentOptions& options);
+                                                 double typical_depth_m,
+                                                 double interval_s = kInertialInterval_s);
 
 }  // namespace saccade

@@ -60,7 +60,8 @@ void describe(config::Fields& fields, OrientationOptions& options) {
                  {"gyroscope", Method::kGyroscope}},
                 "Filter for the orientation: an error-state Kalman filter with velocity, position "
                 "and biases (`inertial`, the most accurate), the complementary filter of the "
-                "thesis (`complementary`), or the plain integral of the gyroscope (`gyroscope`).");
+                "thesis (`complementary`, Valenti et al.), or the plain integral of the gyroscope "
+                "(`gyroscope`).");
   if (options.method == Method::kInertial)
     fields
         .value("position_sigma_m", options.inertial.position_sigma_m,
@@ -69,10 +70,7 @@ void describe(config::Fields& fields, OrientationOptions& options) {
                "they are true; ~ lets the sensor move anywhere.")
         .range(1e-3, 1000);
   if (options.method == Method::kComplementary)
-    fields.group(
-        "complementary",
-        [&](config::Fields& f) { describe_complementary(f, options.complementary); },
-        "Complementary filter of Valenti et al. (thesis 3.1).");
+    describe_complementary(fields, options.complementary);
   if (options.method != Method::kGyroscope)
     fields.section("gyroscope", options.gyroscope, "Noise of the gyroscope.");
 }

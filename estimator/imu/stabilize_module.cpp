@@ -15,7 +15,6 @@
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/imu/imu_input.h"
-#include "estimator/imu/stabilize_config.h"
 #include "estimator/imu/stabilize_output.h"
 #include "estimator/imu/stabilizer.h"
 #include "estimator/run/run_input.h"
@@ -89,20 +88,37 @@ Stabilization stabilize(const std::optional<ImuInput>& imu, const Trajectory& gi
   return result;
 }
 
-void write(const std::filesystem::path& folder, const Dataset& dataset,
-           const StabilizeConfig& config, const Stabilization& result,
+void write(const std::filesystem::path& folder, const Dataset& dataset, const Stabilization& result,
            const RunRecord::Window& window) {
   write_orientations(folder / "orientation.txt", result.camera.world_from_camera.poses());
   if (!result.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.camera.gyro);
   if (!result.windows.empty())
     write_stabilized_events(folder / "stabilized", dataset.camera(), result.windows, result.events);
-  if (config.frames)
-    write_stabilized_frames(folder / "stabilized", dataset, window,
-                            Stabilizer(dataset.camera(), result.camera.world_from_camera),
-                            result.world_from_smoothed);
+  write_stabilized_frames(folder / "stabilized", dataset, window,
+                          Stabilizer(dataset.camera(), result.camera.world_from_camera),
+                          result.world_from_smoothed);
 }
 
 }  // namespace
+
+void describe(config::Fields& fields, StabilizeConfig& config) {
+  fields.section("orientation", config.orientation,
+                 "Orientation from the inertial sensor. Not used with --poses-from.");
+  fields
+      .value("smoothing_time_s", config.smoothing.time_constant_s,
+             "Time constant of the low-pass filter of the steady orientation, in seconds. Larger "
+             "values remove slower motion; 0.4 corresponds to the thesis's 0.1 per frame (3.18).")
+      .range(1e-4, 1e6);
+  fields.value("lock_roll", config.smoothing.lock_roll,
+               "Keeps the rows of the stabilized image horizontal.");
+  fields
+      .value("window_s", config.window_s,
+             "Length of a window of events that are rotated to one steady orientation, in "
+             "seconds.")
+      .range(1e-4, 1e4);
+  fields.value("seed", config.seed,
+               "Seed of the run. It changes nothing here: no random numbers are drawn.");
+}
 
 RunSummary run_stabilization(const RunRequest& request) {
   const auto config = read_config<StabilizeConfig>(request);
@@ -137,7 +153,7 @@ RunSummary run_stabilization(const RunRequest& request) {
   const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
     const ScopedTimer clock(timing.io_s);
-    write(writer.path(), dataset, config, result, window);
+    write(writer.path(), dataset, result, window);
   }
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 

@@ -4,7 +4,7 @@
 
 #include "core/check.h"
 #include "core/rigid3.h"
-#include "estimator/reconstruction/observations/pose_table.h"
+#include "estimator/run/pose_table.h"
 
 namespace saccade {
 

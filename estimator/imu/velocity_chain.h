@@ -11,9 +11,9 @@ namespace saccade {
 /// Linear least squares over kHead global unknowns ("head") and a chain of velocities v_j. A row
 /// involves the head and two neighbouring velocities: v_j is eliminated (Schur complement) as soon
 /// as all of its rows are known, so that time and memory are linear in the chain's length.
-template <int kHead>
 class VelocityChain {
  public:
+  static constexpr int kHead = 6;
   using Head = Eigen::Matrix<double, kHead, 1>;
   using HeadMatrix = Eigen::Matrix<double, kHead, kHead>;
   using Six = Eigen::Matrix<double, 6, 1>;
@@ -37,17 +37,17 @@ class VelocityChain {
   explicit VelocityChain(const Head& precision) {
     information_.setZero();
     right_.setZero();
-    information_.diagonal().template tail<kHead>() = precision;
+    information_.diagonal().tail<kHead>() = precision;
     free_velocity();
   }
 
   /// Adds the equations of the next interval.
   void add(const Rows& rows) {
     Eigen::Matrix<double, 6, kHead + 6> full = Eigen::Matrix<double, 6, kHead + 6>::Zero();
-    full.template block<3, 3>(0, 0) = rows.duration_s * Eigen::Matrix3d::Identity();
-    full.template block<3, 3>(3, 0).setIdentity();
-    full.template block<3, 3>(3, 3) = -Eigen::Matrix3d::Identity();
-    full.template rightCols<kHead>() = rows.head;
+    full.block<3, 3>(0, 0) = rows.duration_s * Eigen::Matrix3d::Identity();
+    full.block<3, 3>(3, 0).setIdentity();
+    full.block<3, 3>(3, 3) = -Eigen::Matrix3d::Identity();
+    full.rightCols<kHead>() = rows.head;
     const Eigen::Matrix<double, 6, 6> weight =
         Eigen::Matrix<double, 6, 6>(rows.weight.cwiseAbs2().asDiagonal());
     const Eigen::Matrix<double, 6, kHead + 6> weighted = weight * full;
@@ -62,13 +62,13 @@ class VelocityChain {
     const Narrow inverse = factor.solve(Narrow::Identity());
     const NarrowVector last = inverse * right_;
     Solution solution;
-    solution.head = last.template tail<kHead>();
-    solution.covariance = inverse.template bottomRightCorner<kHead, kHead>();
-    solution.velocities.assign(links_.size() + 1, last.template head<3>());
+    solution.head = last.tail<kHead>();
+    solution.covariance = inverse.bottomRightCorner<kHead, kHead>();
+    solution.velocities.assign(links_.size() + 1, last.head<3>());
     NarrowVector next = last;
     for (std::size_t j = links_.size(); j-- > 0;) {
       solution.velocities[j] = links_[j].value - links_[j].by_next * next;
-      next.template head<3>() = solution.velocities[j];
+      next.head<3>() = solution.velocities[j];
     }
     return solution;
   }
@@ -86,26 +86,22 @@ class VelocityChain {
   };
 
   /// A velocity without equations is zero.
-  void free_velocity() { information_.template topLeftCorner<3, 3>().diagonal().array() += 1e-9; }
+  void free_velocity() { information_.topLeftCorner<3, 3>().diagonal().array() += 1e-9; }
 
   /// Adds to the normal equations of (v_j, v_(j+1), head) and eliminates v_j.
   void link(Wide information, WideVector right) {
-    information.template topLeftCorner<3, 3>() += information_.template topLeftCorner<3, 3>();
-    information.template topRightCorner<3, kHead>() +=
-        information_.template topRightCorner<3, kHead>();
-    information.template bottomLeftCorner<kHead, 3>() +=
-        information_.template bottomLeftCorner<kHead, 3>();
-    information.template bottomRightCorner<kHead, kHead>() +=
-        information_.template bottomRightCorner<kHead, kHead>();
-    right.template head<3>() += right_.template head<3>();
-    right.template tail<kHead>() += right_.template tail<kHead>();
-    const Eigen::Matrix3d inverse = information.template topLeftCorner<3, 3>().inverse();
-    const Eigen::Matrix<double, 3, kHead + 3> cross =
-        information.template topRightCorner<3, kHead + 3>();
-    const Link link{inverse * cross, inverse * right.template head<3>()};
-    information_ = information.template bottomRightCorner<kHead + 3, kHead + 3>() -
-                   cross.transpose() * link.by_next;
-    right_ = right.template tail<kHead + 3>() - cross.transpose() * link.value;
+    information.topLeftCorner<3, 3>() += information_.topLeftCorner<3, 3>();
+    information.topRightCorner<3, kHead>() += information_.topRightCorner<3, kHead>();
+    information.bottomLeftCorner<kHead, 3>() += information_.bottomLeftCorner<kHead, 3>();
+    information.bottomRightCorner<kHead, kHead>() += information_.bottomRightCorner<kHead, kHead>();
+    right.head<3>() += right_.head<3>();
+    right.tail<kHead>() += right_.tail<kHead>();
+    const Eigen::Matrix3d inverse = information.topLeftCorner<3, 3>().inverse();
+    const Eigen::Matrix<double, 3, kHead + 3> cross = information.topRightCorner<3, kHead + 3>();
+    const Link link{inverse * cross, inverse * right.head<3>()};
+    information_ =
+        information.bottomRightCorner<kHead + 3, kHead + 3>() - cross.transpose() * link.by_next;
+    right_ = right.tail<kHead + 3>() - cross.transpose() * link.value;
     links_.push_back(link);
     free_velocity();
   }

@@ -10,7 +10,7 @@
 #include "core/panorama.h"
 #include "core/process/parallel.h"
 #include "estimator/reconstruction/observations/panorama_projector.h"
-#include "estimator/reconstruction/observations/pose_table.h"
+#include "estimator/run/pose_table.h"
 
 namespace saccade {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/spline/spline.h"
 #include "core/time_search.h"
 #include "estimator/depth/sweep/sweep_depth.h"
+#include "estimator/edges/least_squares/robust_spread.h"
 #include "estimator/reconstruction/surface/point_surface.h"
 
 namespace saccade {
@@ -21,9 +22,7 @@ double median_depth(const DepthResult& result, double otherwise) {
   std::vector<float> inverse;
   inverse.reserve(result.points.size());
   for (const EdgePoint& point : result.points) inverse.push_back(point.inverse_depth);
-  const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
-  std::nth_element(inverse.begin(), middle, inverse.end());
-  return 1 / static_cast<double>(*middle);
+  return 1 / static_cast<double>(median_of(inverse));
 }
 
 /// The points in the camera of their view.
@@ -86,7 +85,7 @@ MappingOptions relaxed(MappingOptions options, double factor) {
 Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
     : options_(options), camera_(camera) {}
 
-Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const {
+Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) const {
   Mapping mapping = map_once(events, path);
   for (const double factor : {3.0, 9.0}) {
     if (mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges)) break;
@@ -96,7 +95,7 @@ Mapping Mapper::map(std::span<const Event> events, const KnownPath& path) const 
   return mapping;
 }
 
-Mapping Mapper::map_once(std::span<const Event> events, const KnownPath& path) const {
+Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path) const {
   Mapping mapping;
   Keyframe& keyframe = mapping.keyframe;
   ViewWindow window;
@@ -158,16 +157,16 @@ RayDepth Mapper::rays() const {
 }
 
 std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& path,
-                                                const KnownPath& known,
+                                                const PathEstimate& estimate,
                                                 double typical_depth_m) const {
   std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
   for (int i = 0; i < options_.adjust_rounds; ++i) {
     edges = depth.find_edgels(window);
-    WindowAdjustment adjustment =
-        adjust_window(window, *edges, camera_,
-                      {known.fixed_until_s, known.given_until_s, typical_depth_m, known.landmarks},
-                      options_.adjustment);
+    WindowAdjustment adjustment = adjust_window(
+        window, *edges, camera_,
+        {estimate.fixed_until_s, estimate.given_until_s, typical_depth_m, estimate.landmarks},
+        options_.adjustment);
     if (!adjustment.ok) break;
     path = std::move(adjustment.trajectory);
     edges = std::move(adjustment.edges);

@@ -31,7 +31,7 @@ struct MappingOptions {
   int min_edges = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// Rounds of finding edges and adjusting them together with the poses; 0: the poses are taken as
-  /// they are. Of depth.method: rays.
+  /// they are. Of DepthConfig's method rays.
   int adjust_rounds = 0;
   WindowAdjustmentOptions adjustment;
   MapOptions steep;  ///< of kGradient
@@ -47,8 +47,8 @@ struct MappingOptions {
   }
 };
 
-/// What is known of the camera's path.
-struct KnownPath {
+/// The camera's path as far as it is known, from given poses or estimated ones.
+struct PathEstimate {
   Trajectory poses;
   double fixed_until_s = 0;               ///< poses until then do not change any more
   double given_until_s = kNoGivenPoses;   ///< those until then were given: they fix the scale
@@ -72,10 +72,10 @@ class Mapper {
   Mapper(const MappingOptions& options, const PinholeCamera& camera);
 
   /// A keyframe from the newest of `events`, none of them beyond the poses.
-  [[nodiscard]] Mapping map(std::span<const Event> events, const KnownPath& path) const;
+  [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path) const;
 
   /// Depth and edges of a keyframe anew, by better poses; `events` contain its own.
-  /// Of depth.method: rays and Edges::kDepth.
+  /// Of DepthConfig's method rays and Edges::kDepth.
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
   [[nodiscard]] RayDepth rays() const;
@@ -84,13 +84,13 @@ class Mapper {
   void add_image(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
  private:
-  [[nodiscard]] Mapping map_once(std::span<const Event> events, const KnownPath& path) const;
+  [[nodiscard]] Mapping map_once(std::span<const Event> events, const PathEstimate& path) const;
   [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.
   [[nodiscard]] std::optional<WindowEdgels> adjust_path(ViewWindow& window, Trajectory& path,
-                                                        const KnownPath& known,
+                                                        const PathEstimate& estimate,
                                                         double typical_depth_m) const;
   [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;
   void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;

@@ -24,7 +24,7 @@ void describe(config::Fields& fields, InertialRecord& record) {
   fields.value("format_version", record.format_version, "layout of this file");
   fields.choice("status", found.status,
                 {{"ok", Status::kOk},
-                 {"no_readings", Status::kNoReadings},
+                 {"no_readings", Status::kNoSamples},
                  {"even_motion", Status::kUnobservableScale},
                  {"disagrees", Status::kInconsistent}},
                 "whether the readings say what the scale is");
@@ -44,8 +44,6 @@ void describe(config::Fields& fields, InertialRecord& record) {
 
 InertialAlignment align_odometry(std::span<const TrackedPose> poses,
                                  std::span<const Keyframe> keyframes, const MountedImu& imu) {
-  /// Sigma of a pose from one interval of readings to the next, relative to the typical depth.
-  constexpr double kPositionSigma = 1e-3;
   std::vector<StampedPose> path;
   for (const TrackedPose& pose : poses)
     if (pose.status == TrackStatus::kOk)
@@ -54,9 +52,7 @@ InertialAlignment align_odometry(std::span<const TrackedPose> poses,
   if (path.size() < 2 || keyframes.empty()) return {};
   std::vector<double> depths;
   for (const Keyframe& keyframe : keyframes) depths.push_back(keyframe.typical_depth_m);
-  InertialAlignmentOptions alignment;
-  alignment.position_sigma = kPositionSigma * median(std::move(depths));
-  return align_inertially(Trajectory(std::move(path)), imu, alignment);
+  return align_inertially(Trajectory(std::move(path)), imu, median(std::move(depths)));
 }
 
 Rigid3 in_metric_world(const InertialAlignment& found, const Rigid3& world_from_camera) {

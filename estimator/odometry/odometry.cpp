@@ -26,10 +26,10 @@ std::size_t count_until_s(std::span<const Event> events, double t_s) {
   return count_until(events, ns_from_seconds(t_s));
 }
 
-bool is_fixed(const KnownPath& start) { return start.fixed_until_s >= start.poses.end_s(); }
+bool is_fixed(const PathEstimate& start) { return start.fixed_until_s >= start.poses.end_s(); }
 
 /// The poses of a start that are an output: those that were not given.
-std::vector<TrackedPose> found_poses(const KnownPath& start) {
+std::vector<TrackedPose> found_poses(const PathEstimate& start) {
   std::vector<TrackedPose> poses;
   for (const StampedPose& pose : start.poses.poses()) {
     if (pose.t_s <= start.given_until_s) continue;
@@ -68,14 +68,14 @@ void Odometry::set_gyroscope(Gyroscope gyroscope) {
   tracker_.set_gyroscope(std::move(gyroscope));
 }
 
-OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& start,
+OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& start,
                              const std::function<void(std::size_t)>& progress) {
   OdometryResult result;
   {
     const ScopedTimer clock(result.mapping_s);
     start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
   }
-  Stream stream{events, count_until_s(events, known_.back().t_s)};
+  Stream stream{events, count_until_s(events, path_.back().t_s)};
   if (progress) progress(stream.done);
   tracker_.start(stream.rest());
   const EventClock clock(stream.rest().empty() ? 0 : stream.rest().front().t_ns);
@@ -97,7 +97,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const KnownPath& sta
     if (!job_ && !is_lost_ && wants_keyframe()) begin_mapping(events.first(stream.done), now_s);
     if (job_ && is_due(now_s)) end_mapping(now_s, result);
   }
-  if (job_) end_mapping(known_.back().t_s, result);
+  if (job_) end_mapping(path_.back().t_s, result);
   output(result);
   return result;
 }
@@ -130,8 +130,8 @@ void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
   result.poses.push_back(pose);
   is_lost_ = pose.status == TrackStatus::kLost;
   if (is_lost_) return;
-  if (const double t_s = seconds_from_ns(pose.t_ns); t_s > known_.back().t_s)
-    known_.push_back({t_s, pose.world_from_camera});
+  if (const double t_s = seconds_from_ns(pose.t_ns); t_s > path_.back().t_s)
+    path_.push_back({t_s, pose.world_from_camera});
 }
 
 void Odometry::discard_diverged_poses(const TrackedPose& found, OdometryResult& result) {
@@ -139,24 +139,24 @@ void Odometry::discard_diverged_poses(const TrackedPose& found, OdometryResult& 
   // The keyframe in the making rests on diverged poses, and so do poses at the same time.
   job_.reset();
   while (!result.poses.empty() && result.poses.back().t_ns >= found.t_ns) result.poses.pop_back();
-  while (known_.size() > 1 && known_.back().t_s >= t_s) known_.pop_back();
+  while (path_.size() > 1 && path_.back().t_s >= t_s) path_.pop_back();
   mapped_from_s_ = seconds_from_ns(found.last_ns);
   fixed_until_s_ = std::max(fixed_until_s_, t_s);
 }
 
 std::optional<TrackedPose> Odometry::relocate() {
   // Where it was before it diverged, then at every keyframe, the newest first.
-  const Trajectory known(known_);
-  const double before_s = known.end_s() - kLookBack_s;
-  const std::array<Rigid3, 2> recent = {known.poses().back().world_from_camera,
-                                        known.at_clamped(before_s)};
+  const Trajectory path(path_);
+  const double before_s = path.end_s() - kLookBack_s;
+  const std::array<Rigid3, 2> recent = {path.poses().back().world_from_camera,
+                                        path.at_clamped(before_s)};
   if (auto pose = tracker_.relocate(recent)) return pose;
   const std::vector<std::size_t> active = map_.active();
   for (std::size_t i = map_.keyframes().size(); i-- > 0;) {
-    const Rigid3 place = map_.keyframes()[i].world_from_camera;
-    map_.activate_around(i, place);
+    const Rigid3 world_from_camera = map_.keyframes()[i].world_from_camera;
+    map_.activate_around(i, world_from_camera);
     tracker_.set_map(map_.points());
-    if (auto pose = tracker_.relocate({&place, 1})) return pose;
+    if (auto pose = tracker_.relocate({&world_from_camera, 1})) return pose;
   }
   map_.activate(active);
   tracker_.set_map(map_.points());
@@ -175,22 +175,22 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
-  known_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
+  path_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
   fixed_until_s_ = first.path.fixed_until_s;
   given_until_s_ = first.path.given_until_s;
   result.poses = found_poses(first.path);
-  if (given_until_s_ != kNoGivenPoses) result.extrapolated_s = known_.back().t_s - given_until_s_;
+  if (given_until_s_ != kNoGivenPoses) result.extrapolated_s = path_.back().t_s - given_until_s_;
   typical_depth_m_ = keyframe.typical_depth_m;
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
-  last_keyframe_ = known_.back();
+  last_keyframe_ = path_.back();
   map_.add(std::move(keyframe), last_keyframe_.world_from_camera);
   tracker_.set_map(map_.points());
   tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
 }
 
 bool Odometry::wants_keyframe() const {
-  if (known_.back().t_s < last_keyframe_.t_s + options_.keyframe.interval_s) return false;
-  const Rigid3& world_from_camera = known_.back().world_from_camera;
+  if (path_.back().t_s < last_keyframe_.t_s + options_.keyframe.interval_s) return false;
+  const Rigid3& world_from_camera = path_.back().world_from_camera;
   const double baseline_m =
       (world_from_camera.translation() - last_keyframe_.world_from_camera.translation()).norm();
   return baseline_m >= options_.keyframe.distance * typical_depth_m_;  // d_kf
@@ -199,15 +199,15 @@ bool Odometry::wants_keyframe() const {
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_ = std::make_unique<Job>();
   job_->made_s = now_s;
-  last_keyframe_ = known_.back();
+  last_keyframe_ = path_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   const std::span<const Event> mapped = events.subspan(count_until_s(events, mapped_from_s_));
   job_->mapping = std::async(
       policy,
       [this, mapped, seconds = &job_->seconds,
-       path = KnownPath{
-           Trajectory(known_), fixed_until_s_, given_until_s_, typical_depth_m_,
-           map_.landmarks(now_s - options_.mapping.duration_s, known_.back().world_from_camera)}] {
+       path = PathEstimate{
+           Trajectory(path_), fixed_until_s_, given_until_s_, typical_depth_m_,
+           map_.landmarks(now_s - options_.mapping.duration_s, path_.back().world_from_camera)}] {
         const ScopedTimer clock(*seconds);
         return mapper_.map(mapped, path);
       });
@@ -223,14 +223,14 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   typical_depth_m_ = keyframe.typical_depth_m;
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);
-  map_.add(std::move(keyframe), known_.back().world_from_camera);
+  map_.add(std::move(keyframe), path_.back().world_from_camera);
   tracker_.set_map(map_.points());
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
 
 void Odometry::apply_adjusted_poses(const Mapping& mapping) {
   const Trajectory adjusted(mapping.poses);
-  for (StampedPose& pose : known_) {
+  for (StampedPose& pose : path_) {
     if (pose.t_s < adjusted.start_s()) continue;
     pose.world_from_camera = pose.t_s <= adjusted.end_s()
                                  ? adjusted.at_clamped(pose.t_s)
@@ -244,20 +244,20 @@ bool Odometry::wants_batch_adjustment(const OdometryResult& result) const {
          count_lost(result.poses) == 0;
 }
 
-void Odometry::adjust(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
-                      const std::function<void(std::size_t)>& progress) {
+void Odometry::adjust(std::span<const Event> events, const PathEstimate& start,
+                      OdometryResult& result, const std::function<void(std::size_t)>& progress) {
   const ScopedTimer clock(result.batch_s);
   BatchInput batch;
-  batch.path = known_;
+  batch.path = path_;
   for (const StampedPose& pose : start.poses.poses())
     if (pose.t_s <= start.fixed_until_s) batch.given.push_back(pose);
   for (const Keyframe& keyframe : map_.keyframes()) batch.keyframe_s.push_back(keyframe.t_s);
   batch.typical_depth_m = typical_depth_m_;
   batch.imu = imu_;
   batch.is_metric = start.given_until_s != kNoGivenPoses;
-  const BatchAdjustment adjusted = adjust_batch(within(events, Trajectory(known_)), batch, camera_,
+  const BatchAdjustment adjusted = adjust_batch(within(events, Trajectory(path_)), batch, camera_,
                                                 mapper_.rays(), batch_, progress);
-  for (StampedPose& pose : known_) pose.world_from_camera = adjusted.path.at_clamped(pose.t_s);
+  for (StampedPose& pose : path_) pose.world_from_camera = adjusted.path.at_clamped(pose.t_s);
   std::vector<Keyframe>& keyframes = map_.keyframes();
   parallel_for(keyframes.size(),
                [&](std::size_t i) { mapper_.renew(events, adjusted.path, keyframes[i]); });
@@ -270,7 +270,7 @@ void Odometry::adjust(std::span<const Event> events, const KnownPath& start, Odo
 
 void Odometry::add_images(std::span<const Event> events,
                           const std::function<void(std::size_t)>& progress) {
-  const Trajectory poses(known_);
+  const Trajectory poses(path_);
   std::vector<Keyframe>& keyframes = map_.keyframes();
   parallel_for(keyframes.size(), [&](std::size_t i) {
     mapper_.add_image(events, poses, keyframes[i]);
@@ -279,7 +279,7 @@ void Odometry::add_images(std::span<const Event> events,
 }
 
 void Odometry::output(OdometryResult& result) const {
-  const Trajectory adjusted(known_);
+  const Trajectory adjusted(path_);
   for (TrackedPose& pose : result.poses)
     pose.world_from_camera = adjusted.at_clamped(seconds_from_ns(pose.t_ns));
 }

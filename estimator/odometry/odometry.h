@@ -39,7 +39,7 @@ enum class OdometryMode {
 };
 
 /// When the camera is searched for at the keyframes: never, when it is lost, or also when the events
-/// are inconsistent with the map (EdgeTracker::fits()).
+/// are inconsistent with the map (EdgeTracker::is_consistent()).
 enum class Relocation { kNever, kLost, kInconsistent };
 
 /// Whether path and edges are adjusted together after the last event, and by what (kOffline, where
@@ -98,7 +98,7 @@ class Odometry {
   /// are found from the last of them on; those that were not given are part of the result, too, as
   /// last adjusted. `progress` is called with the number of events done since its last call. Throws
   /// InputError where the start shows no edges.
-  [[nodiscard]] OdometryResult run(std::span<const Event> events, const KnownPath& start,
+  [[nodiscard]] OdometryResult run(std::span<const Event> events, const PathEstimate& start,
                                    const std::function<void(std::size_t)>& progress = {});
 
   [[nodiscard]] const EdgeMap& map() const { return map_; }
@@ -109,7 +109,7 @@ class Odometry {
   /// The batch adjustment (batch_adjustment.h) of what run() found of the same events and start:
   /// poses with their sigmas and covariances, and keyframes on the adjusted path. `progress`: as of
   /// adjust_batch().
-  void adjust(std::span<const Event> events, const KnownPath& start, OdometryResult& result,
+  void adjust(std::span<const Event> events, const PathEstimate& start, OdometryResult& result,
               const std::function<void(std::size_t)>& progress = {});
 
   /// Images for people, after run(): of every keyframe that has none, with the poses as last
@@ -146,7 +146,7 @@ class Odometry {
   Mapper mapper_;
   EdgeMap map_;
   EdgeTracker tracker_;
-  std::vector<StampedPose> known_;  ///< the start, then what was tracked, as last adjusted
+  std::vector<StampedPose> path_;  ///< the start, then what was tracked, as last adjusted
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;
   double mapped_from_s_ = 0;  ///< poses before were lost and found again

@@ -48,11 +48,6 @@ void describe_keyframe(config::Fields& fields, KeyframeOptions& options) {
              "seconds. Mapping runs beside the tracking meanwhile; 0 makes tracking wait.")
       .range(0, 1e3);
   fields
-      .value("active_window_s", options.active_window_s,
-             "Length of the active window, in seconds: the newest poses, which the next keyframe "
-             "may still adjust. Older ones are fixed.")
-      .range(0, 1e3);
-  fields
       .value("active", options.active,
              "The most keyframes that make up the map: the newest, and of the others those that "
              "show most of what the camera sees. 1 replaces the map by every keyframe.")
@@ -69,6 +64,15 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
              "The longest time of these events, in seconds. Longer windows have longer baselines "
              "and cost more.")
       .range(1e-3, 1e3);
+  fields
+      .value("contrast_on", *options.reconstruction.contrast_on,
+             "Contrast threshold of ON events, in units of log intensity. It scales the images "
+             "alone: nothing is taken from the dataset.")
+      .above(0);
+  fields
+      .value("contrast_off", *options.reconstruction.contrast_off,
+             "Contrast threshold of OFF events, in units of log intensity.")
+      .above(0);
   if (options.edges == MappingOptions::Edges::kGradient) return;
   fields
       .value("depth_events", options.depth_events,
@@ -97,11 +101,6 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
              "The most edges that are adjusted. More are more accurate and take longer.")
       .range(30, 1e7);
   fields
-      .value("given_pairs", adjustment.given_pairs,
-             "The most pairs of an edge's events between two nodes while the poses are given; "
-             "later it is one. These events determine the scale.")
-      .range(1, 1e6);
-  fields
       .value("iterations", adjustment.iterations,
              "The most iterations of Levenberg-Marquardt. Fewer bound the time of a keyframe.")
       .range(1, 1000);
@@ -118,7 +117,7 @@ void describe_range(config::Fields& fields, DepthLimits& limits) {
   fields.expect(limits.near_m < limits.far_m, "near", "must be below far");
 }
 
-/// What odometry lets a user set of the options of depth, reconstruction and tracking.
+/// What odometry lets a user set of the options of depth and tracking.
 void describe_parts(config::Fields& fields, OdometryOptions& options) {
   using config::Fields;
   MappingOptions& mapping = options.mapping;
@@ -130,18 +129,6 @@ void describe_parts(config::Fields& fields, OdometryOptions& options) {
             "Depths that may occur.");
       },
       "Depth of keyframes.");
-  fields.group(
-      "reconstruction",
-      [&](Fields& f) {
-        f.value("contrast_on", *mapping.reconstruction.contrast_on,
-                "Contrast threshold of ON events, in units of log intensity. It scales the images "
-                "alone: nothing is taken from the dataset.")
-            .above(0);
-        f.value("contrast_off", *mapping.reconstruction.contrast_off,
-                "Contrast threshold of OFF events, in units of log intensity.")
-            .above(0);
-      },
-      "Images of keyframes.");
   fields.group(
       "tracking",
       [&](Fields& f) {
@@ -158,7 +145,7 @@ void describe_parts(config::Fields& fields, OdometryOptions& options) {
                  "with the rotation measured by the gyroscope.");
         if (motion.prediction == MotionModelOptions::Prediction::kImu)
           f.value("gyro_bias", motion.gyro_bias,
-                  "Bias of the gyroscope, which is subtracted from its readings, in rad/s in the "
+                  "Bias of the gyroscope, which is subtracted from its samples, in rad/s in the "
                   "sensor's axes.")
               .range(-10, 10);
       },
@@ -187,15 +174,11 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                 "Whether tracking waits for keyframes, so that the result is the same on any "
                 "machine, or events are played at the pace of their recording.");
   if (odometry.mode == OdometryMode::kOnline)
-    fields.group(
-        "online",
-        [&](Fields& f) {
-          f.value("max_age_ms", odometry.max_age_ms,
-                  "Age of the events of a frame, in milliseconds, above which all that have "
-                  "arrived are dropped. Larger values drop less and lag more.")
-              .above(0);
-        },
-        "Playing at the pace of the recording.");
+    fields
+        .value("max_age_ms", odometry.max_age_ms,
+               "Age of the events of a frame, in milliseconds, above which all that have arrived "
+               "are dropped. Larger values drop less and lag more.")
+        .above(0);
   fields.group(
       "keyframe", [&](Fields& f) { describe_keyframe(f, odometry.keyframe); },
       "When keyframes are made, and how many make up the map.");
@@ -218,19 +201,14 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                    {"events", BatchMode::kEvents},
                    {"events_and_imu", BatchMode::kEventsAndImu}},
                   "Whether the whole path and the edges of all keyframes are adjusted together "
-                  "after the last event, with or without the readings of the inertial sensor. Of "
+                  "after the last event, with or without the samples of the inertial sensor. Of "
                   "mode: offline, and where no pose was lost; it is slow.");
   }
   describe_parts(fields, odometry);
-  fields.group(
-      "imu",
-      [&](Fields& f) {
-        f.value("align", config.align_imu,
-                "Whether scale, gravity, biases and time offset are found from gyroscope and "
-                "accelerometer once the path is there. A run without given poses is then in metres "
-                "and upright.");
-      },
-      "Alignment with an inertial sensor.");
+  fields.value("align_imu", config.align_imu,
+               "Whether scale, gravity, biases and time offset are found from gyroscope and "
+               "accelerometer once the path is there. A run without given poses is then in metres "
+               "and upright.");
   fields.value("seed", config.seed, "Seed of the random template points of the tracking.");
 }
 

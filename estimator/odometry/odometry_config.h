@@ -20,7 +20,7 @@ struct StartOptions {
 
 /// The configuration of `saccade run odometry`; describe() names the keys, ranges and defaults.
 /// Nothing comes from the dataset but its events, its calibration, the poses of the start, if
-/// there are any, and, where asked for, the readings of its inertial sensor.
+/// there are any, and, where asked for, the samples of its inertial sensor.
 struct OdometryConfig {
   CameraCorrection camera;
   StartOptions start;

@@ -13,7 +13,6 @@
 #include "core/stopwatch.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
-#include "estimator/odometry/start/start_record.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/motion_model.h"
@@ -65,7 +64,7 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
 
 /// What is known at the start, and how it came to be known.
 struct Start {
-  KnownPath path;
+  PathEstimate path;
   std::optional<Bootstrap> found;  ///< from events alone
   double from_s = 0;               ///< what is scored begins there
   double seconds = 0;              ///< of work
@@ -106,7 +105,7 @@ OdometryInput load(const RunRequest& request, const OdometryConfig& config) {
   input.events = load_events(request, input.dataset);
   input.gyroscope = load_gyroscope(config.odometry.tracker.motion, input.dataset);
   if (config.align_imu || config.odometry.batch_adjustment == BatchMode::kEventsAndImu)
-    input.imu = load_mounted_imu(input.dataset, "imu.align or batch_adjustment");
+    input.imu = load_mounted_imu(input.dataset, "align_imu or batch_adjustment");
   return input;
 }
 
@@ -144,7 +143,7 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
   return found;
 }
 
-/// Scale and gravity by the readings. Given poses have a world and metres of their own.
+/// Scale and gravity by the samples. Given poses have a world and metres of their own.
 void align(OdometryFound& found, const OdometryInput& input, bool has_given_poses) {
   OdometryResult& result = found.result;
   result.inertial = align_odometry(result.poses, found.keyframes, *input.imu);
@@ -223,10 +222,6 @@ RunSummary run_odometry(const RunRequest& request) {
   writer.finish("odometry", request, input.dataset, window, config.seed, config::print(config),
                 timing);
   return summary_of(found, config, timing);
-}
-
-std::string print_odometry_config(const config::Document& document) {
-  return config::print_documented(config::read<OdometryConfig>(document));
 }
 
 }  // namespace saccade

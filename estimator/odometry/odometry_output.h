@@ -6,6 +6,7 @@
 #include "core/camera.h"
 #include "core/io/run/keyframe_list.h"
 #include "estimator/odometry/odometry.h"
+#include "estimator/odometry/start/bootstrap.h"
 
 namespace saccade {
 
@@ -18,5 +19,9 @@ void write_keyframes(const std::filesystem::path& folder, const PinholeCamera& c
 /// Writes into a run folder: trajectory.txt, poses.csv and the keyframes (write_keyframes()).
 void write_odometry(const std::filesystem::path& folder, const PinholeCamera& camera,
                     const OdometryResult& result, std::span<const Keyframe> keyframes);
+
+/// Writes start.yaml: what a start that was found from events alone rests on. `depth_m` is what its
+/// typical depth was called.
+void write_start(const std::filesystem::path& file, const Bootstrap& start, double depth_m);
 
 }  // namespace saccade

@@ -42,16 +42,6 @@ OdometryOptions edges() {
   mapping.min_edges = 600;
   mapping.smoothing_s = 0.01;
   mapping.adjust_rounds = 1;
-  WindowAdjustmentOptions& adjustment = mapping.adjustment;
-  adjustment.node_spacing_s = 0.02;
-  adjustment.edges = 800;
-  // Only from given poses do events say how far away an edge is in metres.
-  adjustment.given_pairs = 5;
-  adjustment.pose_sigma_px = 1;
-  adjustment.smoothness_sigma_px = 0.1;
-  adjustment.fixed_sigma_px = 0.02;
-  adjustment.landmark_sigma_px = 0.1;
-  adjustment.landmark_depth_sigma = 0.003;
   return options;
 }
 

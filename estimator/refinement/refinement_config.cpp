@@ -1,9 +1,6 @@
 #include "estimator/refinement/refinement_config.h"
 
 #include "core/config/method_table.h"
-#include "estimator/refinement/depth/refine_depth.h"
-#include "estimator/refinement/joint/refine_joint.h"
-#include "estimator/refinement/poses/refine_poses.h"
 
 namespace saccade {
 namespace {
@@ -28,10 +25,11 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
                "average the errors of the map's picture and take longer.")
         .range(1000, 1e9);
     fields
-        .value("chain_events", options.chain_events,
-               "The most events of a pixel that share one unknown offset of the log intensity; 2 "
-               "compares neighbouring events alone. Longer chains say more; with a sensor whose "
-               "thresholds differ between pixels they drift.")
+        .value(
+            "run_events", options.run_events,
+            "The most events of a pixel that share one unknown offset of the log intensity (an "
+            "event run); 2 compares neighbouring events alone. Longer runs say more; with a sensor "
+            "whose thresholds differ between pixels they drift.")
         .range(2, 1e9);
   } else {
     fields
@@ -39,11 +37,6 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
                "Events of the window over which the brightness increments of an image are summed. "
                "Larger windows make fewer images.")
         .range(100, 1e9);
-    fields
-        .value("increments", options.increments,
-               "The most brightness increments that are used, about: all of evenly spread pixels. "
-               "More reduce the error and take longer.")
-        .range(1000, 1e9);
   }
   fields
       .value("contrast", config.contrast,
@@ -75,11 +68,6 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
              "The most edges of a keyframe that are adjusted. More reduce drift and take longer.")
       .range(30, 1e7);
   fields
-      .value("given_events_per_edge", options.given_events_per_edge,
-             "The most events of an edge that are used while the poses are given, beside 30 later "
-             "ones. They determine the scale of the path.")
-      .range(5, 1e6);
-  fields
       .value("reobserved_keyframes", options.reobserved_keyframes,
              "The most later keyframes whose events join the edges that they observe again; 0 "
              "leaves every keyframe to its own window. It bounds the drift of a camera that comes "
@@ -90,14 +78,14 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
              "How often edges are found on the refined path and adjusted together with it.")
       .range(1, 100);
   fields.value("use_imu", options.use_imu,
-               "Whether the readings of gyroscope and accelerometer join in, with gravity, biases "
+               "Whether the samples of gyroscope and accelerometer join in, with gravity, biases "
                "and time offset as further unknowns. Of a run without given poses they determine "
                "the scale, too, and the refined run is in metres and upright.");
 }
 
 constexpr RefinementMethod kMethods[] = {
     {.name = "of_run",
-     .help = "The kind that fits the run's module.",
+     .help = "The method that fits the run's module.",
      .describe = nullptr,
      .module = "",
      .run = nullptr},
@@ -124,9 +112,11 @@ std::span<const RefinementMethod> refinement_methods() { return kMethods; }
 
 void describe(config::Fields& fields, RefinementConfig& config) {
   config::describe_method(
-      fields, "kind", config.kind, refinement_methods(), config,
+      fields, "method", config.method, refinement_methods(), config,
       "What is refined: poses of a run of track, depth of a run of depth, path and map of a run of "
-      "odometry (joint), or of_run, which takes the kind that fits the run with its defaults.");
+      "odometry (joint), or of_run, which takes the one that fits the run, with its defaults.");
+  fields.value("seed", config.seed,
+               "Seed of the run. It changes nothing here: no random numbers are drawn.");
 }
 
 }  // namespace saccade

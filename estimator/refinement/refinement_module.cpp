@@ -17,8 +17,8 @@ namespace {
 /// The method that the configuration names, or that fits the run.
 const RefinementMethod& method_of(const RefinementConfig& config, const SourceRun& run) {
   const auto fits = [&](const RefinementMethod& method) {
-    return config.kind == "of_run" ? method.module == run.record.module
-                                   : method.name == config.kind;
+    return config.method == "of_run" ? method.module == run.record.module
+                                     : method.name == config.method;
   };
   const auto methods = refinement_methods();
   const auto found = std::find_if(methods.begin(), methods.end(), fits);
@@ -39,14 +39,10 @@ RunSummary run_refinement(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   const SourceRun run = SourceRun::open(request, dataset);
   const RefinementMethod& method = method_of(config, run);
-  config.kind = method.name;
-  if (config.kind != "depth" && request.poses_from)
+  config.method = method.name;
+  if (config.method != "depth" && request.poses_from)
     throw InputError("--poses-from", "poses are refined here; it is of a run of depth");
   return method.run(request, config, dataset, run, writer);
-}
-
-std::string print_refinement_config(const config::Document& document) {
-  return config::print_documented(config::read<RefinementConfig>(document));
 }
 
 }  // namespace saccade

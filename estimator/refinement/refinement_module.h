@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-
-#include "core/config/document.h"
 #include "estimator/run/run_request.h"
 
 namespace saccade {
@@ -11,8 +8,5 @@ namespace saccade {
 /// covariance.txt and cost.csv. One thread. Throws InputError for bad input, a run that cannot be
 /// refined among it.
 RunSummary run_refinement(const RunRequest& request);
-
-/// The resolved configuration, documented, as YAML.
-[[nodiscard]] std::string print_refinement_config(const config::Document& document);
 
 }  // namespace saccade

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kFewestPoses = 4;
 
-[[noreturn]] void fail_few(const std::string& place) {
-  throw InputError(place, fmt::format("holds fewer than {} poses that are not lost: nothing to "
+[[noreturn]] void fail_few(const std::string& where) {
+  throw InputError(where, fmt::format("holds fewer than {} poses that are not lost: nothing to "
                                       "refine",
                                       kFewestPoses));
 }
@@ -84,13 +84,13 @@ std::vector<TrackedPose> SourceRun::poses() const {
   return poses;
 }
 
-std::vector<StampedPose> known_path(std::span<const TrackedPose> poses, double start_s,
-                                    double end_s, const std::string& place) {
+std::vector<StampedPose> poses_not_lost(std::span<const TrackedPose> poses, double start_s,
+                                        double end_s, const std::string& where) {
   std::vector<StampedPose> path;
   for (const TrackedPose& pose : poses)
     if (pose.status == TrackStatus::kOk)
       path.push_back({seconds_from_ns(pose.t_ns), pose.world_from_camera});
-  if (path.size() < kFewestPoses) fail_few(place);
+  if (path.size() < kFewestPoses) fail_few(where);
   if (start_s < path.front().t_s)
     path.insert(path.begin(), {start_s, path.front().world_from_camera});
   if (end_s > path.back().t_s) path.push_back({end_s, path.back().world_from_camera});

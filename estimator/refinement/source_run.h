@@ -39,10 +39,10 @@ struct SourceRun {
 };
 
 /// The poses that are not lost, the first and last repeated at `start_s` and `end_s`. Throws InputError
-/// naming `place` where fewer than four are left.
-[[nodiscard]] std::vector<StampedPose> known_path(std::span<const TrackedPose> poses,
-                                                  double start_s, double end_s,
-                                                  const std::string& place);
+/// naming `where` where fewer than four are left.
+[[nodiscard]] std::vector<StampedPose> poses_not_lost(std::span<const TrackedPose> poses,
+                                                      double start_s, double end_s,
+                                                      const std::string& where);
 
 template <class Config>
 Config SourceRun::config() const {

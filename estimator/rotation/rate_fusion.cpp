@@ -38,8 +38,8 @@ Eigen::Vector3d RateFusion::fuse(const RateMeasurements& measured) {
     const double sum = gyro_rate_variance + events_rate_variance;
     const double difference = measured.gyroscope[k] - measured.events[k] - bias_[k];
     const double square = std::min(difference * difference, kOutlierSigmas * kOutlierSigmas * sum);
-    const double excess = std::max((square - gyro_rate_variance) * px2, -events_variance_[k]);
-    events_variance_[k] += (excess - events_variance_[k]) / (kPriorWindows + windows_);
+    const double unexplained = std::max((square - gyro_rate_variance) * px2, -events_variance_[k]);
+    events_variance_[k] += (unexplained - events_variance_[k]) / (kPriorWindows + windows_);
     events_variance_[k] = std::max(events_variance_[k], min_variance);
     rate[k] = measured.gyroscope[k] - bias_[k];
     if (std::abs(difference) > kOutlierSigmas * std::sqrt(sum)) continue;

@@ -11,7 +11,6 @@
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/rotation/rate_fusion.h"
-#include "estimator/rotation/rotation_config.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/gyroscope.h"
@@ -19,7 +18,7 @@
 namespace saccade {
 namespace {
 
-using Source = RotationConfig::Source;
+using Method = RotationConfig::Method;
 using Rates = std::vector<StampedTwist>;  // without velocity
 
 StampedTwist rate_at(double t_s, const Eigen::Vector3d& rate) {
@@ -110,12 +109,12 @@ Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double av
 Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
                  std::span<const Event> events, const std::optional<ImuInput>& imu,
                  Progress& progress) {
-  switch (config.source) {
-    case Source::kEvents:
+  switch (config.method) {
+    case Method::kEvents:
       return rates_of(events, camera, config.events, progress);
-    case Source::kImu:
+    case Method::kImu:
       return rates_of(*imu, config.orientation, config.averaging_s);
-    case Source::kBoth:
+    case Method::kBoth:
       break;
   }
   const Gyroscope gyroscope(imu->samples, imu->camera_from_imu, Eigen::Vector3d::Zero());
@@ -123,6 +122,35 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
 }
 
 }  // namespace
+
+void describe(config::Fields& fields, RotationConfig& config) {
+  using Method = RotationConfig::Method;
+  fields.choice("method", config.method,
+                {{"events", Method::kEvents}, {"imu", Method::kImu}, {"both", Method::kBoth}},
+                "Source of the angular velocity: contrast maximisation over the events "
+                "(`events`), the gyroscope less its estimated bias (`imu`), or the fusion of "
+                "both by their variances (`both`).");
+  if (config.method != Method::kImu) {
+    fields
+        .value("window_events", config.events.window_events,
+               "Number of events per window, about two per pixel of the sensor. Larger windows "
+               "average more noise, but the rotation may change too much within them.")
+        .range(100, 1e8);
+  }
+  if (config.method == Method::kImu) {
+    fields.section("orientation", config.orientation,
+                   "Orientation filter that estimates the bias of the gyroscope.");
+    fields
+        .value("averaging_s", config.averaging_s,
+               "Time over which the angular velocity is averaged, in seconds. 0 writes every "
+               "sample.")
+        .range(0, 10);
+  }
+  if (config.method == Method::kBoth)
+    fields.section("gyroscope", config.gyroscope, "Noise of the gyroscope.");
+  fields.value("seed", config.seed,
+               "Seed of the run. It changes nothing here: no random numbers are drawn.");
+}
 
 RunSummary run_rotation(const RunRequest& request) {
   const auto config = read_config<RotationConfig>(request);
@@ -134,8 +162,8 @@ RunSummary run_rotation(const RunRequest& request) {
   Events events;
   {
     const ScopedTimer clock(timing.io_s);
-    if (config.source != Source::kEvents) imu = load_imu_input(dataset, "source: imu or both");
-    if (config.source != Source::kImu) events = load_events(request, dataset);
+    if (config.method != Method::kEvents) imu = load_imu_input(dataset, "method: imu or both");
+    if (config.method != Method::kImu) events = load_events(request, dataset);
   }
   timing.events = events.size();
   Rates rates;

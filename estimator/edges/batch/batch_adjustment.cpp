@@ -15,21 +15,19 @@
 #include "core/error.h"
 #include "core/process/parallel.h"
 #include "core/time_search.h"
-#include "estimator/edges/batch/batch_windows.h"
 #include "estimator/edges/batch/path_edge_cost.h"
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_noise.h"
-#include "estimator/edges/event_runs.h"
 #include "estimator/edges/least_squares/marginal_information.h"
 #include "estimator/edges/least_squares/path_covariance.h"
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
 #include "estimator/edges/least_squares/schur_solver.h"
+#include "estimator/edges/polarity_runs.h"
 
 namespace saccade {
 namespace {
 
-constexpr double kPositionSigma = 1e-3;  ///< of the path over an interval, relative to the depth
 constexpr double kPoseSpacing_s = 1e-3;  ///< of a path
 
 /// `most` of `count` indices, evenly.
@@ -47,8 +45,8 @@ void append_evenly(std::span<const std::uint32_t> events, int most,
 }
 
 /// The path as a smooth spline, every millisecond.
-Trajectory smoothed_path(const BatchInput& start, double smoothing_s) {
-  const Spline spline = Spline::smooth(start.path, smoothing_s);
+Trajectory smoothed_path(const BatchInput& input, double smoothing_s) {
+  const Spline spline = Spline::smooth(input.path, smoothing_s);
   const double length_s = spline.end_s() - spline.start_s();
   const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kPoseSpacing_s)));
   std::vector<StampedPose> poses;
@@ -70,7 +68,7 @@ struct BatchEdge {
 class BatchProblem {
  public:
   BatchProblem(const Trajectory& path, const std::vector<ViewWindow>& windows,
-               const std::vector<WindowEdgels>& found, const BatchInput& start,
+               const std::vector<WindowEdgels>& found, const BatchInput& input,
                const PinholeCamera& camera, const BatchAdjustmentOptions& options)
       : path_(path),
         windows_(windows),
@@ -78,8 +76,8 @@ class BatchProblem {
         camera_(camera),
         undistorted_(camera.undistorted()),
         options_(options),
-        depth_m_(start.typical_depth_m),
-        given_until_s_(start.given.size() > 1 ? start.given.back().t_s : path.start_s()),
+        depth_m_(input.typical_depth_m),
+        given_until_s_(input.given.size() > 1 ? input.given.back().t_s : path.start_s()),
         correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
     run_positions_.resize(windows.size());
     parallel_for(windows.size(), [&](std::size_t k) {
@@ -88,8 +86,8 @@ class BatchProblem {
     choose_edges();
     for (BatchEdge& edge : edges_) add_edge(edge);
     if (options.reobserved_keyframes > 0) add_reobservations();
-    add_path_priors(start.given);
-    if (options.use_imu) add_readings(start);
+    add_path_priors(input.given);
+    if (options.use_imu) add_inertial_factors(input);
   }
 
   void solve(CostLog& costs, const std::function<void()>& each) {
@@ -101,7 +99,7 @@ class BatchProblem {
   [[nodiscard]] Trajectory path() const { return correction_.applied(path_); }
 
   [[nodiscard]] std::optional<InertialAlignment> inertial() const {
-    return readings_ ? std::optional(readings_->found()) : std::nullopt;
+    return inertial_factors_ ? std::optional(inertial_factors_->found()) : std::nullopt;
   }
 
   void judge(BatchAdjustment& result) {
@@ -201,13 +199,13 @@ class BatchProblem {
     observation.lag = event.polarity;
     observation.pixel = edge.pixel.cast<double>();
     observation.normal = edge.normal.cast<double>();
-    const SplineKnots::LocalBasis place = correction_.knots().at(t_s);
+    const SplineKnots::LocalBasis basis = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
-        new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, place.weight,
+        new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, basis.weight,
                          sigma_px),
-        new ceres::CauchyLoss(EdgeNoise::kCauchyScale), correction_.data(place.first),
-        correction_.data(place.first + 1), correction_.data(place.first + 2),
-        correction_.data(place.first + 3), batch_edge.unknowns.data());
+        new ceres::CauchyLoss(EdgeNoise::kCauchyScale), correction_.data(basis.first),
+        correction_.data(basis.first + 1), correction_.data(basis.first + 2),
+        correction_.data(basis.first + 3), batch_edge.unknowns.data());
     residuals_.emplace_back(id, sigma_px);
   }
 
@@ -222,10 +220,10 @@ class BatchProblem {
     const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px));
     for (const StampedPose& pose : given) {
       if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
-      const SplineKnots::LocalBasis place = correction_.knots().at(pose.t_s);
+      const SplineKnots::LocalBasis basis = correction_.knots().at(pose.t_s);
       // xi(t) = -log(given^-1 path): the gauge.
       const Twist error = (pose.world_from_camera.inverse() * path_.at_clamped(pose.t_s)).log();
-      add_prior(root, -error, place.weight, place.first);
+      add_prior(root, -error, basis.weight, basis.first);
     }
   }
 
@@ -251,29 +249,28 @@ class BatchProblem {
     }
   }
 
-  void add_readings(const BatchInput& start) {
-    SACCADE_CHECK(start.imu.has_value());
-    InertialAlignmentOptions alignment;
-    alignment.position_sigma = kPositionSigma * depth_m_;
-    alignment.interval_s = options_.imu_interval_s;
-    const InertialAlignment aligned = align_inertially(path_, *start.imu, alignment);
+  void add_inertial_factors(const BatchInput& input) {
+    SACCADE_CHECK(input.imu.has_value());
+    const InertialAlignment aligned =
+        align_inertially(path_, *input.imu, depth_m_, options_.imu_interval_s);
     if (!(aligned.gravity.norm() > 0))
       throw InputError("imu.txt",
                        "the readings of imu.txt cover too little of the path, or do not fit it");
     const bool knows_scale = aligned.status == InertialAlignment::Status::kOk;
-    // Neighbouring events err alike and count for less than their number says; readings do not.
-    readings_.emplace(path_, correction_.knots(),
-                      InertialStart{*start.imu, aligned, start.is_metric || !knows_scale, depth_m_},
-                      options_.imu_interval_s, 1 / std::sqrt(options_.information_ratio));
-    readings_->add_to(problem_, correction_, *ordering_);
+    // Neighbouring events err alike and count for less than their number says; samples do not.
+    inertial_factors_.emplace(
+        path_, correction_.knots(),
+        InertialStart{*input.imu, aligned, input.is_metric || !knows_scale, depth_m_},
+        options_.imu_interval_s, 1 / std::sqrt(options_.information_ratio));
+    inertial_factors_->add_to(problem_, correction_, *ordering_);
   }
 
   [[nodiscard]] Eigen::MatrixXd inverse_information() {
     std::vector<double*> controls, edges;
     for (std::size_t k = 0; k < correction_.knots().controls(); ++k)
       controls.push_back(correction_.data(k));
-    if (readings_)
-      for (double* block : readings_->unknowns()) controls.push_back(block);
+    if (inertial_factors_)
+      for (double* block : inertial_factors_->unknowns()) controls.push_back(block);
     for (BatchEdge& edge : edges_) edges.push_back(edge.unknowns.data());
     const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
@@ -294,7 +291,7 @@ class BatchProblem {
   PathCorrection correction_;
   std::vector<std::vector<std::uint8_t>> run_positions_;  ///< of the windows' events
   std::vector<BatchEdge> edges_;
-  std::optional<InertialFactors> readings_;
+  std::optional<InertialFactors> inertial_factors_;
   std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
@@ -303,15 +300,32 @@ class BatchProblem {
 
 }  // namespace
 
-Matrix6 BatchAdjustment::covariance_at(double t_s) const {
-  const SplineKnots::LocalBasis place = knots.at(t_s);
-  Eigen::Matrix<double, 6, 24> by_twists;
-  for (Eigen::Index k = 0; k < 4; ++k)
-    by_twists.middleCols<6>(6 * k) = place.weight[k] * Matrix6::Identity();
-  return saccade::covariance_at(covariance, place.first, by_twists);
+std::span<const Event> events_of_view(std::span<const Event> events, double t_s, double window_s) {
+  return events_between(events, ns_from_seconds(t_s - window_s / 2),
+                        ns_from_seconds(t_s + window_s / 2));
 }
 
-BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& start,
+std::vector<double> batch_views(std::vector<double> keyframe_s, double end_s, double window_s) {
+  const double most_s = window_s / 3;
+  if (keyframe_s.back() < end_s - most_s) keyframe_s.push_back(end_s - most_s);
+  std::vector<double> views = {keyframe_s.front()};
+  for (std::size_t k = 1; k < keyframe_s.size(); ++k) {
+    const double from_s = keyframe_s[k - 1], gap_s = keyframe_s[k] - from_s;
+    const int parts = std::max(1, static_cast<int>(std::ceil(gap_s / most_s)));
+    for (int i = 1; i <= parts; ++i) views.push_back(from_s + gap_s * i / parts);
+  }
+  return views;
+}
+
+Matrix6 BatchAdjustment::covariance_at(double t_s) const {
+  const SplineKnots::LocalBasis basis = knots.at(t_s);
+  Eigen::Matrix<double, 6, 24> by_twists;
+  for (Eigen::Index k = 0; k < 4; ++k)
+    by_twists.middleCols<6>(6 * k) = basis.weight[k] * Matrix6::Identity();
+  return saccade::covariance_at(covariance, basis.first, by_twists);
+}
+
+BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& input,
                              const PinholeCamera& camera, const RayDepth& depth,
                              const BatchAdjustmentOptions& options,
                              const std::function<void(std::size_t)>& progress) {
@@ -321,9 +335,9 @@ BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& st
     if (progress && step > done) progress(step - done);
     done = std::max(done, step);
   };
-  result.path = smoothed_path(start, options.smoothing_s);
+  result.path = smoothed_path(input, options.smoothing_s);
   const std::vector<double> views =
-      batch_views(start.keyframe_s, result.path.end_s(), options.window_s);
+      batch_views(input.keyframe_s, result.path.end_s(), options.window_s);
   for (int i = 0; i < options.rounds; ++i) {
     const Trajectory before = result.path;
     std::vector<ViewWindow> windows;
@@ -331,7 +345,7 @@ BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& st
       windows.push_back({events_of_view(events, t_s, options.window_s), &before, t_s});
     std::vector<WindowEdgels> found(windows.size());
     parallel_for(windows.size(), [&](std::size_t k) { found[k] = depth.find_edgels(windows[k]); });
-    BatchProblem problem(before, windows, found, start, camera, options);
+    BatchProblem problem(before, windows, found, input, camera, options);
     problem.solve(result.costs, [&] { advance_to(done + 1); });
     if (i + 1 == options.rounds) problem.judge(result);
     result.path = problem.path();

@@ -31,7 +31,7 @@ struct BatchAdjustmentOptions {
   int iterations = 10;              ///< of Levenberg-Marquardt in a round, at most
   double information_ratio = 0.04;  ///< of that of independent residuals: neighbours err alike
   bool use_imu = false;             ///< BatchInput::imu joins in
-  double imu_interval_s = 0.1;      ///< over which its readings are preintegrated
+  double imu_interval_s = 0.1;      ///< over which its samples are preintegrated
 
   /// Steps of work, as far as progress goes.
   [[nodiscard]] std::size_t steps() const {
@@ -47,14 +47,14 @@ struct BatchInput {
   std::vector<double> keyframe_s;  ///< times of the keyframes' views
   double typical_depth_m = 1;      ///< converts pixels to metres
   std::optional<MountedImu> imu;   ///< for options.use_imu
-  bool is_metric = true;           ///< the path is in metres; else the readings say the scale
+  bool is_metric = true;           ///< the path is in metres; else the samples say the scale
 };
 
 struct BatchAdjustment {
   Trajectory path;  ///< every millisecond
   SplineKnots knots;
   Eigen::MatrixXd covariance;  ///< of the correction's twists; empty where it is not determined
-  std::optional<InertialAlignment> inertial;  ///< what the readings say, in the last round
+  std::optional<InertialAlignment> inertial;  ///< what the samples say, in the last round
   CostLog costs;
   std::size_t observations = 0;  ///< in the last round
   double residual_px = 0;        ///< robust standard deviation of the events from their edges
@@ -67,13 +67,23 @@ struct BatchAdjustment {
 /// over all keyframes' windows, which overlap and so constrain each other, by Ceres with the edges
 /// eliminated first. The residual is that of path_edge_cost.h, its noise model that of
 /// edge_noise.h. The given poses of the start fix the gauge. With an inertial sensor its
-/// preintegrated readings join in (inertial_cost.h), with gravity, biases and time offset and, of a
+/// preintegrated samples join in (inertial_cost.h), with gravity, biases and time offset and, of a
 /// path that is not metric, the scale; the path stays in its unit. Deterministic for any number of
 /// threads. `progress` is called with the steps done since its last call, of options.steps() in
 /// all.
-[[nodiscard]] BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& start,
+[[nodiscard]] BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& input,
                                            const PinholeCamera& camera, const RayDepth& depth,
                                            const BatchAdjustmentOptions& options,
                                            const std::function<void(std::size_t)>& progress = {});
+
+/// The events that a keyframe's edges are sought in.
+[[nodiscard]] std::span<const Event> events_of_view(std::span<const Event> events, double t_s,
+                                                    double window_s);
+
+/// The keyframes' times, in order and at least one, and more between them and behind the last, so
+/// that a view is never farther than a third of a window from the next and from the end: where no
+/// window reaches, nothing constrains the path.
+[[nodiscard]] std::vector<double> batch_views(std::vector<double> keyframe_s, double end_s,
+                                              double window_s);
 
 }  // namespace saccade

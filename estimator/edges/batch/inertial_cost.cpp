@@ -14,21 +14,21 @@ InertialFrame InertialFrame::about(const Eigen::Vector3d& gravity_m_s2) {
   return frame;
 }
 
-Eigen::Vector3d InertialFrame::gravity_at(const Eigen::Vector2d& turn) const {
-  return gravity * (direction + across * turn).normalized();
+Eigen::Vector3d InertialFrame::gravity_at(const Eigen::Vector2d& tilt) const {
+  return gravity * (direction + across * tilt).normalized();
 }
 
-Eigen::Matrix<double, 3, 2> InertialFrame::by_turn(const Eigen::Vector2d& turn) const {
-  const Eigen::Vector3d turned = direction + across * turn;
-  const Eigen::Vector3d unit = turned.normalized();
+Eigen::Matrix<double, 3, 2> InertialFrame::by_tilt(const Eigen::Vector2d& tilt) const {
+  const Eigen::Vector3d rotated = direction + across * tilt;
+  const Eigen::Vector3d unit = rotated.normalized();
   const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - unit * unit.transpose();
-  return gravity / turned.norm() * flat * across;
+  return gravity / rotated.norm() * flat * across;
 }
 
 InertialCost::InertialCost(const std::array<InertialNode, 2>& nodes, const Preintegration& sum,
-                           const Eigen::Vector3d& place, const InertialFrame& frame,
+                           const Eigen::Vector3d& imu_in_camera, const InertialFrame& frame,
                            const Matrix9& root)
-    : nodes_(nodes), sum_(sum), place_(place), frame_(frame), root_(root) {
+    : nodes_(nodes), sum_(sum), imu_in_camera_(imu_in_camera), frame_(frame), root_(root) {
   set_num_residuals(9);
   mutable_parameter_block_sizes()->assign(controls(), PathCorrection::kSize);
   for (const int size : {3, 3, 6, InertialFrame::kSize})
@@ -38,10 +38,10 @@ InertialCost::InertialCost(const std::array<InertialNode, 2>& nodes, const Prein
 InertialCost::Pose InertialCost::pose(int node, double const* const* parameters,
                                       double offset_s) const {
   const InertialNode& at = nodes_[static_cast<std::size_t>(node)];
-  const std::size_t first = at.place.first - first_control();
+  const std::size_t first = at.basis.first - first_control();
   Twist twist = Twist::Zero();
   for (std::size_t k = 0; k < 4; ++k)
-    twist += at.place.weight[static_cast<Eigen::Index>(k)] *
+    twist += at.basis.weight[static_cast<Eigen::Index>(k)] *
              Eigen::Map<const Twist>(parameters[first + k]);
   const Rigid3 moved = Rigid3::exp(offset_s * at.motion);
   return {at.given * Rigid3::exp(twist) * moved,
@@ -67,36 +67,36 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   const ImuBias other{bias.head<3>(), bias.tail<3>()};
   const Eigen::Quaterniond rotation_error =
       sum_.rotation_with(other).conjugate() * Eigen::Quaterniond(rotation);
-  const Vector3 turned = so3_log(rotation_error);
+  const Vector3 rotated = so3_log(rotation_error);
   const Vector3 gained = back * (v_j - v_i - t_s * gravity);
   const Vector3 moved = back * (scale * baseline - t_s * v_i - 0.5 * t_s * t_s * gravity);
   Eigen::Matrix<double, 9, 1> error;
-  error.head<3>() = turned;
+  error.head<3>() = rotated;
   error.segment<3>(3) = gained - sum_.velocity_with(other);
-  error.tail<3>() = moved + rotation * place_ - place_ - sum_.position_with(other);
+  error.tail<3>() = moved + rotation * imu_in_camera_ - imu_in_camera_ - sum_.position_with(other);
   Eigen::Map<Eigen::Matrix<double, 9, 1>> whitened(residuals);
   whitened = root_ * error;
   if (jacobians == nullptr) return true;
 
   // By the right perturbations (v, w) of both poses; that of Log is J_r^-1 (Forster et al., 2017).
-  const Eigen::Matrix3d by_last = so3_left_jacobian_inverse(-turned);
+  const Eigen::Matrix3d by_last = so3_left_jacobian_inverse(-rotated);
   Rows6 by_i = Rows6::Zero(), by_j = Rows6::Zero();
   by_i.block<3, 3>(0, 3) = -by_last * rotation.transpose();
   by_j.block<3, 3>(0, 3) = by_last;
   by_i.block<3, 3>(3, 3) = skew(gained);
   by_i.block<3, 3>(6, 0) = -scale * Eigen::Matrix3d::Identity();
-  by_i.block<3, 3>(6, 3) = skew(moved + rotation * place_);
+  by_i.block<3, 3>(6, 3) = skew(moved + rotation * imu_in_camera_);
   by_j.block<3, 3>(6, 0) = scale * rotation;
-  by_j.block<3, 3>(6, 3) = -rotation * skew(place_);
+  by_j.block<3, 3>(6, 3) = -rotation * skew(imu_in_camera_);
   by_i = root_ * by_i;
   by_j = root_ * by_j;
   const Rows6 by_twist_i = by_i * at_i.by_twist, by_twist_j = by_j * at_j.by_twist;
-  const std::size_t later = nodes_[1].place.first - first_control();
+  const std::size_t later = nodes_[1].basis.first - first_control();
   for (std::size_t k = 0; k < n; ++k) {
     Rows6 by_control = Rows6::Zero();
-    if (k < 4) by_control += nodes_[0].place.weight[static_cast<Eigen::Index>(k)] * by_twist_i;
+    if (k < 4) by_control += nodes_[0].basis.weight[static_cast<Eigen::Index>(k)] * by_twist_i;
     if (k >= later)
-      by_control += nodes_[1].place.weight[static_cast<Eigen::Index>(k - later)] * by_twist_j;
+      by_control += nodes_[1].basis.weight[static_cast<Eigen::Index>(k - later)] * by_twist_j;
     write_block(jacobians[k], by_control);
   }
   Eigen::Matrix<double, 9, 3> by_v_i = Eigen::Matrix<double, 9, 3>::Zero(), by_v_j = by_v_i;
@@ -108,12 +108,12 @@ bool InertialCost::Evaluate(double const* const* parameters, double* residuals,
   Rows6 bias_jacobian = -sum_.bias_jacobian;
   const Vector3 drift =
       sum_.bias_jacobian.topLeftCorner<3, 3>() * Vector3(other.gyro - sum_.bias.gyro);
-  bias_jacobian.topRows<3>() = -so3_left_jacobian_inverse(turned) * so3_left_jacobian(-drift) *
+  bias_jacobian.topRows<3>() = -so3_left_jacobian_inverse(rotated) * so3_left_jacobian(-drift) *
                                sum_.bias_jacobian.topRows<3>();
   write_block(jacobians[n + 2], Rows6(root_ * bias_jacobian));
   Eigen::Matrix<double, 9, InertialFrame::kSize> by_frame;
   by_frame.setZero();
-  const Eigen::Matrix<double, 3, 2> falling = back * frame_.by_turn(shared.head<2>());
+  const Eigen::Matrix<double, 3, 2> falling = back * frame_.by_tilt(shared.head<2>());
   by_frame.block<3, 2>(3, 0) = -t_s * falling;
   by_frame.block<3, 2>(6, 0) = -0.5 * t_s * t_s * falling;
   by_frame.block<3, 1>(6, InertialFrame::kScale) = back * baseline;

@@ -17,7 +17,7 @@ constexpr double kAccelBiasSigma = 0.2;  ///< of the first bias [m/s^2], a consu
 // Random walk of the biases from one to the next, kBiasSpacing_s later [rad/s, m/s^2].
 constexpr double kBiasSpacing_s = 10;
 constexpr double kGyroBiasWalk = 1e-3, kAccelBiasWalk = 1e-2;
-constexpr double kOffsetSigma_s = 0.01;  ///< of the readings' clock from what the rotations say
+constexpr double kOffsetSigma_s = 0.01;  ///< of the samples' clock from what the rotations say
 // What the path's spline cannot follow, in rotation [rad] and position, relative to the depth.
 constexpr double kSplineError_rad = 3e-4, kSplineError = 1e-4;
 
@@ -96,7 +96,7 @@ void InertialFactors::add_to(ceres::Problem& problem, PathCorrection& correction
     for (std::size_t k = 0; k < cost->controls(); ++k)
       blocks.push_back(correction.data(cost->first_control() + k));
     blocks.insert(blocks.end(), {velocity(link.node), velocity(link.node + 1),
-                                 bias(bias_of(link.node)), shared()});
+                                 bias(bias_of(link.node)), frame()});
     problem.AddResidualBlock(cost, nullptr, blocks);
   }
   add_priors(problem);
@@ -104,7 +104,7 @@ void InertialFactors::add_to(ceres::Problem& problem, PathCorrection& correction
 }
 
 void InertialFactors::add_priors(ceres::Problem& problem) {
-  // Where no readings are; far beyond what a hand does.
+  // Where there are no samples; far beyond what a hand does.
   const Eigen::Matrix3d free = root_of_sigma<3>(Eigen::Vector3d::Constant(kFree));
   for (std::size_t j = 0; j < nodes_.size(); ++j)
     problem.AddResidualBlock(
@@ -118,19 +118,19 @@ void InertialFactors::add_priors(ceres::Problem& problem) {
   for (std::size_t i = 0; i + 1 < biases_; ++i)
     problem.AddResidualBlock(new LinearPriorCost<6>(walk, Twist::Zero(), {-1, 1}), nullptr, bias(i),
                              bias(i + 1));
-  const Eigen::Map<const InertialFrame::Vector> mean(shared());
+  const Eigen::Map<const InertialFrame::Vector> mean(frame());
   const InertialFrame::Vector sigma(kFree, kFree, start_.is_metric ? kKnownScale : kFree,
                                     kOffsetSigma_s);
   problem.AddResidualBlock(
       new LinearPriorCost<InertialFrame::kSize>(root_of_sigma<InertialFrame::kSize>(sigma), mean),
-      nullptr, shared());
+      nullptr, frame());
 }
 
 std::vector<double*> InertialFactors::unknowns() {
   std::vector<double*> blocks;
   for (std::size_t j = 0; j < nodes_.size(); ++j) blocks.push_back(velocity(j));
   for (std::size_t i = 0; i < biases_; ++i) blocks.push_back(bias(i));
-  blocks.push_back(shared());
+  blocks.push_back(frame());
   return blocks;
 }
 

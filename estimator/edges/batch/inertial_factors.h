@@ -20,11 +20,11 @@ struct InertialStart {
   double typical_depth_m = 1;
 };
 
-/// Gravity, biases, scale, time offset and the sensor's velocities, and the preintegrated readings
+/// Gravity, biases, scale, time offset and the sensor's velocities, and the preintegrated samples
 /// that constrain them together with a path's correction (InertialCost). Outlives the problem that it adds to.
 class InertialFactors {
  public:
-  /// `interval_s`: over which readings are preintegrated; `weight`: of a residual, over 1 / its sigma.
+  /// `interval_s`: over which samples are preintegrated; `weight`: of a residual, over 1 / its sigma.
   InertialFactors(const Trajectory& path, const SplineKnots& knots, const InertialStart& start,
                   double interval_s, double weight);
 
@@ -46,7 +46,7 @@ class InertialFactors {
   [[nodiscard]] InertialCost::Matrix9 root_of(const Preintegration& sum) const;
   [[nodiscard]] double* velocity(std::size_t node) { return &unknowns_[3 * node]; }
   [[nodiscard]] double* bias(std::size_t i) { return &unknowns_[3 * nodes_.size() + 6 * i]; }
-  [[nodiscard]] double* shared() { return &unknowns_[unknowns_.size() - InertialFrame::kSize]; }
+  [[nodiscard]] double* frame() { return &unknowns_[unknowns_.size() - InertialFrame::kSize]; }
   [[nodiscard]] std::size_t bias_of(std::size_t node) const;
   void add_priors(ceres::Problem& problem);
 
@@ -60,7 +60,7 @@ class InertialFactors {
   std::vector<double> times_s_;
   std::vector<Link> links_;
   std::size_t biases_ = 1;
-  std::vector<double> unknowns_;  ///< velocities, biases, the shared frame
+  std::vector<double> unknowns_;  ///< velocities, biases, the inertial frame
 };
 
 }  // namespace saccade

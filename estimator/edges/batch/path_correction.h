@@ -25,10 +25,10 @@ class PathCorrection {
     return Eigen::Map<const Twist>(twists_[i].data());
   }
   [[nodiscard]] Twist at(double t_s) const {
-    const SplineKnots::LocalBasis place = knots_.at(t_s);
+    const SplineKnots::LocalBasis basis = knots_.at(t_s);
     Twist twist = Twist::Zero();
     for (std::size_t k = 0; k < 4; ++k)
-      twist += place.weight[static_cast<Eigen::Index>(k)] * control(place.first + k);
+      twist += basis.weight[static_cast<Eigen::Index>(k)] * control(basis.first + k);
     return twist;
   }
   [[nodiscard]] Trajectory applied(const Trajectory& given) const {

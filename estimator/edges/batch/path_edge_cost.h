@@ -8,14 +8,15 @@
 
 namespace saccade {
 
-/// The unknowns of an edge (edge_residual.h) and, last, k [px]: how far further in each event of a
-/// run (event_runs.h) lies than the one before. h is of the polarity alone.
+/// The unknowns of an edge (edge_residual.h) and, last, k [px]: how much farther across the
+/// edge each event of a polarity run (polarity_runs.h) lies than the one before. h, the ON/OFF shift, is
+/// of the polarity alone.
 using BatchEdgeUnknowns = Eigen::Matrix<double, 5, 1>;
 
 /// One event against an edge of a keyframe (edge_residual.h) over its sigma (edge_noise.h), by the
 /// four twists of the path's correction at its time and the edge's unknowns: the offset is
 ///   c + k p (j - mean j),
-/// j the event's position in its run.
+/// j the event's position in its polarity run.
 class PathEdgeCost
     : public ceres::SizedCostFunction<1, PathCorrection::kSize, PathCorrection::kSize,
                                       PathCorrection::kSize, PathCorrection::kSize, 5> {

@@ -15,7 +15,7 @@ void CostLog::add_round(std::span<const ceres::IterationSummary> iterations, dou
 
 void CostLog::save(const std::filesystem::path& file) const {
   CsvTable table({"round", "iteration", "cost", "seconds"});
-  for (const CostStep& step : steps_)
+  for (const IterationCost& step : steps_)
     table.add({static_cast<long long>(step.round), static_cast<long long>(step.iteration),
                step.cost, step.seconds});
   table.save(file);

@@ -12,7 +12,7 @@ struct IterationSummary;
 namespace saccade {
 
 /// One iteration of a refinement.
-struct CostStep {
+struct IterationCost {
   int round = 0;  ///< costs of different rounds, which see different data, are no sequence
   int iteration = 0;
   double cost = 0;
@@ -33,7 +33,7 @@ class CostLog {
     steps_.push_back({rounds_, 0, before, 0});
     steps_.push_back({rounds_++, 1, after, now_s});
   }
-  [[nodiscard]] const std::vector<CostStep>& steps() const { return steps_; }
+  [[nodiscard]] const std::vector<IterationCost>& steps() const { return steps_; }
   [[nodiscard]] int rounds() const { return rounds_; }
   /// cost.csv: round, iteration, cost, seconds.
   void save(const std::filesystem::path& file) const;
@@ -42,7 +42,7 @@ class CostLog {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point begin_ = Clock::now();
-  std::vector<CostStep> steps_;
+  std::vector<IterationCost> steps_;
   int rounds_ = 0;
 };
 

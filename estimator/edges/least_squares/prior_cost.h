@@ -13,7 +13,7 @@ namespace saccade {
 
 /// A Gaussian prior on a linear function of unknowns x_1 .. x_n, blocks of kSize numbers each:
 ///   r = W (sum_k weight_k x_k - mean),   W^T W the information
-/// (Barfoot, State Estimation for Robotics, 2017, section 3.1). The one prior of all adjustments: a
+/// (Barfoot, State Estimation for Robotics, 2017, section 3.1). The one prior of all paths and edges: a
 /// single block is held at its mean, weights -1 and 1 make a random walk between neighbours, those
 /// of a spline a measurement of its value. A column of W that is 0 constrains nothing. `kRows` is
 /// kSize unless Ceres shall use a Schur eliminator that is compiled for fewer.

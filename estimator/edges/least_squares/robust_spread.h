@@ -15,7 +15,8 @@ inline constexpr double kInlier = 2.4;
 }
 
 /// The middle one of some values (of an even number, the upper), which are reordered.
-[[nodiscard]] inline double median_of(std::vector<double>& values) {
+template <class T>
+[[nodiscard]] T median_of(std::vector<T>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
-#include "estimator/edges/event_runs.h"
+#include "estimator/edges/polarity_runs.h"
 
 namespace saccade {
 namespace {
 
-/// Contrasts that an event lags behind the level between its own and the one before, on average.
+/// Contrasts that an event lags behind the log intensity midway between its own threshold and the one
+/// before, on average.
 constexpr double kMeanLag = 0.25;
 
 }  // namespace

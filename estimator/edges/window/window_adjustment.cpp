@@ -56,9 +56,7 @@ class WindowProblem {
         correction_(seconds_from_ns(window.events.front().t_ns),
                     seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
         observed_(window, edges, camera, correction_,
-                  [&](double t_s) {
-                    return t_s < priors.given_until_s ? options.given_pairs : options.pairs;
-                  }),
+                  [&](double t_s) { return t_s < priors.given_until_s ? options.given_pairs : 1; }),
         surface_(observed_.camera(), options.surface_spacing_px, 1 / priors.typical_depth_m) {}
 
   WindowAdjustment solve() {

@@ -16,20 +16,20 @@ struct WindowAdjustmentOptions {
   /// looks like it may go together, or each translation and rotation by itself.
   enum class PriorOf { kImageMotion, kPose };
 
-  double node_spacing_s = 0.04;  ///< the correction of the poses is linear between nodes
-  int edges = 1000;              ///< at most so many, evenly chosen
-  int pairs = 1;                 ///< of an edge's events between two nodes, at most, evenly in time
-  /// The same where the poses are given: there events determine the scale, so more of them count.
-  int given_pairs = 1;
+  double node_spacing_s = 0.02;  ///< the correction of the poses is linear between nodes
+  int edges = 800;               ///< at most so many, evenly chosen
+  /// Of an edge's events between two nodes at most one pair enters and, while the poses are given, so
+  /// many, evenly in time: only there events determine the scale.
+  int given_pairs = 5;
   int iterations = 10;  ///< of Levenberg-Marquardt, at most
   /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
-  double landmark_sigma_px = 0.3;      ///< across the edge
-  double landmark_depth_sigma = 0.01;  ///< relative, beside the landmark's own
+  double landmark_sigma_px = 0.1;       ///< across the edge
+  double landmark_depth_sigma = 0.003;  ///< relative, beside the landmark's own
   /// Sigmas of a node from the given path and, tighter, from its neighbours.
   PriorOf prior_of = PriorOf::kImageMotion;
-  double pose_sigma_px = 3;          ///< as image motion
-  double smoothness_sigma_px = 0.3;  ///< between neighbouring nodes
-  double fixed_sigma_px = 0.05;      ///< of poses before the active window
+  double pose_sigma_px = 1;          ///< as image motion
+  double smoothness_sigma_px = 0.1;  ///< between neighbouring nodes
+  double fixed_sigma_px = 0.02;      ///< of poses before the active window
   double rotation_sigma_ratio = 1;   ///< of kPose: on rotations, where a gyroscope measures them
   /// Of the edges from a smooth surface (CoarseSurface), relative to the typical inverse depth; 0:
   /// edges are independent.

@@ -15,7 +15,7 @@
 namespace saccade {
 
 /// A root W of the information about a twist (v, w) of a camera whose image is known to move by
-/// `sigma_px` at most, whatever is in view at half to twice the depth:
+/// `sigma_px`, RMS, whatever is in view at half to twice the depth:
 ///   W^T W = mean over pixels and depths of J^T J / sigma^2,  J the image motion of the twist
 /// (Longuet-Higgins and Prazdny, 1980). Motions that look alike are hardly distinguished.
 [[nodiscard]] Matrix6 image_motion_sqrt_information(const PinholeCamera& camera, double depth_m,

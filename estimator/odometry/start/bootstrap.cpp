@@ -10,6 +10,12 @@
 namespace saccade {
 namespace {
 
+constexpr int kFirstRounds = 1;        ///< of every hypothesis, before the best goes on
+constexpr int kRounds = 3;             ///< of the best
+constexpr double kMinGain = 1.1;       ///< of contrast: less is noise
+constexpr double kMinParallax_px = 5;  ///< of the path at the typical depth: less is a rotation
+constexpr double kRetry_s = 0.1;  ///< where a window gives no start the next begins so much later
+
 /// The events with from_s <= t < to_s, as seconds.
 std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
   const auto time_of = [](const Event& e) { return seconds_from_ns(e.t_ns); };
@@ -57,19 +63,19 @@ class StartFinder {
       : camera_(camera),
         options_(options),
         gyroscope_(gyroscope),
-        search_(options.plane, camera, gyroscope),
-        refinement_(refinement_of(options, gyroscope), camera) {}
+        search_(options.max_search_s, camera, gyroscope),
+        refinement_(measuring_rotation(options.refinement, gyroscope), camera) {}
 
   Bootstrap from(std::span<const Event> events) {
     Bootstrap start;
     const std::vector<PlaneFit> fits = search_.find(events);
-    if (fits.empty() || fits.front().gain < options_.min_gain) return start;
+    if (fits.empty() || fits.front().gain < kMinGain) return start;
     start.status = Bootstrap::Status::kNoParallax;
     const FreePath path = grown(events, best_of(events, fits));
     start.edges = path.edges;
     start.residual_px = path.residual_px;
     start.parallax_px = parallax_px(path.poses, camera_);
-    if (path.is_clear && start.parallax_px >= options_.min_parallax_px) {
+    if (path.is_clear && start.parallax_px >= kMinParallax_px) {
       start.status = Bootstrap::Status::kFound;
       start.path = in_world(path.poses, options_.depth_m);
     }
@@ -77,22 +83,14 @@ class StartFinder {
   }
 
  private:
-  [[nodiscard]] static PathRefinementOptions refinement_of(const BootstrapOptions& options,
-                                                           const Gyroscope& gyroscope) {
-    PathRefinementOptions refinement = options.refinement;
-    if (!gyroscope.is_empty())
-      refinement.adjustment.rotation_sigma_ratio = options.gyro_rotation_sigma_ratio;
-    return refinement;
-  }
-
   [[nodiscard]] FreePath best_of(std::span<const Event> events,
                                  const std::vector<PlaneFit>& fits) const {
     FreePath best;
     for (const PlaneFit& fit : fits) {
-      FreePath path = refined(events, path_of(fit, gyroscope_), options_.first_rounds);
+      FreePath path = refined(events, path_of(fit, gyroscope_), kFirstRounds);
       if (best.poses.empty() || path.events > best.events) best = std::move(path);
     }
-    return refined(events, best.poses, options_.rounds);
+    return refined(events, best.poses, kRounds);
   }
 
   [[nodiscard]] FreePath grown(std::span<const Event> events, FreePath path) const {
@@ -132,7 +130,7 @@ Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
     // Where the camera moved at some time, that is what there is to say.
     if (found.status != Bootstrap::Status::kNoMotion) start = found;
     if (found.status == Bootstrap::Status::kFound) break;
-    from_s += options.retry_s;
+    from_s += kRetry_s;
     if (from_s >= end_s) break;
     events = between(events, from_s, end_s);
   }

@@ -12,18 +12,11 @@
 namespace saccade {
 
 struct BootstrapOptions {
-  double depth_m = 1;      ///< the scale is free: the typical depth is called so
-  double window_s = 0.25;  ///< of the path that is found, at most
-  PlaneSearchOptions plane;
+  double depth_m = 1;          ///< the scale is free: the typical depth is called so
+  double window_s = 0.25;      ///< of the path that is found, at most
+  double max_search_s = 0.25;  ///< longest window of the first search, PlaneSearch
   PathRefinementOptions refinement = start_refinement();
-  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
-  double gyro_rotation_sigma_ratio = 0.05;
-  int first_rounds = 1;        ///< of every hypothesis, before the best goes on
-  int rounds = 3;              ///< of the best
-  double growth = 1.15;        ///< of its window, from round to round after these
-  double min_gain = 1.1;       ///< of contrast: less is noise
-  double min_parallax_px = 5;  ///< of the path at the typical depth: less is a rotation
-  double retry_s = 0.1;        ///< where a window gives no start the next begins so much later
+  double growth = 1.15;  ///< of its window, from round to round
 };
 
 /// A start without any pose given.

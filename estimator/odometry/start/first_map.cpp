@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// `path` with the given poses as they are, and what follows after the last of them.
-Trajectory with_given_poses(const Trajectory& path, const KnownPath& start) {
+Trajectory with_given_poses(const Trajectory& path, const PathEstimate& start) {
   const double until_s = start.given_until_s;
   const Rigid3 given_from_found =
       start.poses.at_clamped(until_s) * path.at_clamped(until_s).inverse();
@@ -24,23 +24,21 @@ Trajectory with_given_poses(const Trajectory& path, const KnownPath& start) {
 
 }  // namespace
 
-FirstMap first_map(std::span<const Event> events, const KnownPath& start, const Mapper& mapper,
+FirstMap first_map(std::span<const Event> events, const PathEstimate& start, const Mapper& mapper,
                    const PinholeCamera& camera, const FirstMapOptions& options,
                    const Gyroscope& gyroscope) {
   FirstMap first{start, mapper.map(within(events, start.poses), start)};
   const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
   if (is_enough() || start.given_until_s == kNoGivenPoses || events.empty()) return first;
-  PathRefinementOptions refined = options.refinement;
-  if (!gyroscope.is_empty())
-    refined.adjustment.rotation_sigma_ratio = options.gyro_rotation_sigma_ratio;
-  const PathRefinement refinement(refined, camera);
+  constexpr double kGrowth = 1.15;  ///< of the path, from round to round
+  const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
   const double start_s = start.poses.start_s();
   const double longest_s =
       std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start_s);
-  KnownPath path = start;
+  PathEstimate path = start;
   double length_s = path.poses.end_s() - start_s;
   while (!is_enough() && length_s < longest_s) {
-    length_s = std::min(options.growth * length_s, longest_s);
+    length_s = std::min(kGrowth * length_s, longest_s);
     const Trajectory longer = extrapolated(path.poses, start_s + length_s, gyroscope);
     const std::span<const Event> window = within(events, longer);
     if (window.empty()) continue;

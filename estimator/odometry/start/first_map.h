@@ -14,9 +14,6 @@ namespace saccade {
 struct FirstMapOptions {
   std::size_t min_edges = 0;  ///< with fewer, given poses are extrapolated; 0: never
   double window_s = 0.3;      ///< of the path with the given poses, to a millisecond; at most
-  double growth = 1.15;       ///< of the path, from round to round
-  /// Sigma of rotations, where a gyroscope measures them, over that of translations in px.
-  double gyro_rotation_sigma_ratio = 0.05;
   PathRefinementOptions refinement = given_refinement();
 
  private:
@@ -25,7 +22,6 @@ struct FirstMapOptions {
   [[nodiscard]] static PathRefinementOptions given_refinement() {
     PathRefinementOptions options = start_refinement();
     options.min_edges = 60;
-    options.adjustment.given_pairs = 5;
     options.rays.refiner.max_sigma = 0.09;
     return options;
   }
@@ -33,7 +29,7 @@ struct FirstMapOptions {
 
 /// The first keyframe and the path that it was made with.
 struct FirstMap {
-  KnownPath path;
+  PathEstimate path;
   Mapping mapping;
 };
 
@@ -44,7 +40,7 @@ struct FirstMap {
 /// get; the largest map is taken. `start` as of Odometry::run(): one without given poses is taken
 /// as it is. `events` in order of time; `camera` with its lens; `gyroscope`, where it is not empty,
 /// measures the rotation beyond the given poses. Deterministic.
-[[nodiscard]] FirstMap first_map(std::span<const Event> events, const KnownPath& start,
+[[nodiscard]] FirstMap first_map(std::span<const Event> events, const PathEstimate& start,
                                  const Mapper& mapper, const PinholeCamera& camera,
                                  const FirstMapOptions& options, const Gyroscope& gyroscope);
 

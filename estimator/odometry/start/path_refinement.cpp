@@ -1,8 +1,9 @@
 #include "estimator/odometry/start/path_refinement.h"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "estimator/edges/least_squares/robust_spread.h"
 
 namespace saccade {
 namespace {
@@ -11,9 +12,7 @@ double median_depth(const WindowEdgels& edges) {
   std::vector<float> inverse;
   inverse.reserve(edges.edges.size());
   for (const FittedEdgel& edge : edges.edges) inverse.push_back(edge.edge.inverse_depth);
-  const auto middle = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() / 2);
-  std::nth_element(inverse.begin(), middle, inverse.end());
-  return 1 / static_cast<double>(*middle);
+  return 1 / static_cast<double>(median_of(inverse));
 }
 
 Trajectory scaled(const Trajectory& path, double scale) {
@@ -28,13 +27,20 @@ Trajectory scaled(const Trajectory& path, double scale) {
 
 PathRefinementOptions start_refinement() {
   PathRefinementOptions options;
-  options.adjustment.edges = 800;
-  options.adjustment.node_spacing_s = 0.02;
   options.adjustment.prior_of = WindowAdjustmentOptions::PriorOf::kPose;
   options.adjustment.pose_sigma_px = 20;
   options.adjustment.smoothness_sigma_px = 0.3;
+  options.adjustment.fixed_sigma_px = 0.05;
   options.adjustment.surface_sigma = 0.02;
   options.adjustment.iterations = 20;
+  return options;
+}
+
+PathRefinementOptions measuring_rotation(PathRefinementOptions options,
+                                         const Gyroscope& gyroscope) {
+  /// Sigma of rotations over that of translations, as image motion.
+  constexpr double kRotationSigmaRatio = 0.05;
+  if (!gyroscope.is_empty()) options.adjustment.rotation_sigma_ratio = kRotationSigmaRatio;
   return options;
 }
 

@@ -8,6 +8,7 @@
 #include "core/trajectory.h"
 #include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/window/window_adjustment.h"
+#include "estimator/tracking/gyroscope.h"
 
 namespace saccade {
 
@@ -20,6 +21,9 @@ struct PathRefinementOptions {
 
 /// The refinement of a start by default: weak priors on the path, edges on a smooth surface.
 [[nodiscard]] PathRefinementOptions start_refinement();
+/// The same with tight priors on rotations, where a gyroscope measures them: it is not empty.
+[[nodiscard]] PathRefinementOptions measuring_rotation(PathRefinementOptions options,
+                                                       const Gyroscope& gyroscope);
 
 /// A path that is known up to a similarity, or from its given poses on.
 struct FreePath {

@@ -53,7 +53,7 @@ class PlaneContrast {
   WindowRays rays_;
   double px_per_rate_ = 0;
   std::vector<float> x_, y_;                ///< in image_; x < 0 where an event leaves it
-  std::vector<Eigen::Vector3f> turned_;     ///< R q
+  std::vector<Eigen::Vector3f> rotated_;    ///< R q
   std::vector<Eigen::Vector3f> in_middle_;  ///< X
 };
 

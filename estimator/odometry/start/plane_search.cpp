@@ -17,25 +17,29 @@ using Parameters = PlaneContrast::Parameters;
 /// From this image motion on rotation and translation are distinguished.
 constexpr double kRotation_px = 8;
 constexpr double kMinMotion_px = 3;
-constexpr double kGrowth = 2;  ///< of the window, at most
+constexpr double kMotion_px = 20;        ///< of the image over the window that is searched for
+constexpr double kEventsPerPixel = 0.5;  ///< of the first window
+constexpr double kSlopeSigma = 3;  ///< of the plane's slope from 0, where the events hardly say
+constexpr int kIterations = 40;    ///< of quasi-Newton steps, at most
+constexpr double kGrowth = 2;      ///< of the window, at most
 constexpr double kTranslationFractions[] = {1, 0.5, 1.5};
 
 /// -log contrast + (slope / sigma)^2 / 2, of parameters in pixels.
 class PlaneCost : public ceres::FirstOrderFunction {
  public:
   /// `finds_rotation`: the rotation is an unknown, too.
-  PlaneCost(PlaneContrast& contrast, const Parameters& px, double slope_sigma, bool finds_rotation)
-      : contrast_(contrast), px_(px), slope_sigma_(slope_sigma), finds_rotation_(finds_rotation) {}
+  PlaneCost(PlaneContrast& contrast, const Parameters& px, bool finds_rotation)
+      : contrast_(contrast), px_(px), finds_rotation_(finds_rotation) {}
 
   bool Evaluate(const double* const x, double* cost, double* gradient) const override {
     const Parameters at = Eigen::Map<const Parameters>(x).cwiseQuotient(px_);
     const PlaneContrast::Value value = contrast_.evaluate(at);
     if (!(value.contrast > 0)) return false;
-    const Eigen::Vector2d slope = at.tail<2>() / slope_sigma_;
+    const Eigen::Vector2d slope = at.tail<2>() / kSlopeSigma;
     *cost = -std::log(value.contrast) + slope.squaredNorm() / 2;
     if (gradient != nullptr) {
       Parameters by = -value.gradient / value.contrast;
-      by.tail<2>() += slope / slope_sigma_;
+      by.tail<2>() += slope / kSlopeSigma;
       if (!finds_rotation_) by.segment<3>(3).setZero();
       Eigen::Map<Parameters>(gradient, kSize) = by.cwiseQuotient(px_);
     }
@@ -46,7 +50,6 @@ class PlaneCost : public ceres::FirstOrderFunction {
  private:
   PlaneContrast& contrast_;
   Parameters px_;
-  double slope_sigma_;
   bool finds_rotation_;
 };
 
@@ -63,13 +66,13 @@ Parameters px_per_parameter(const PlaneContrast& contrast, const PlaneMotion& mo
 
 }  // namespace
 
-PlaneSearch::PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera,
+PlaneSearch::PlaneSearch(double max_window_s, const PinholeCamera& camera,
                          const Gyroscope& gyroscope)
-    : options_(options),
+    : max_window_s_(max_window_s),
       camera_(camera),
       gyroscope_(gyroscope),
-      contrast_(camera, options.blur_px, options.burst_fraction,
-                static_cast<std::size_t>(options.samples)) {}
+      contrast_(camera, RotationOptions().blur_px, RotationOptions().burst_fraction,
+                static_cast<std::size_t>(RotationOptions().samples)) {}
 
 std::span<const Event> PlaneSearch::window(std::span<const Event> events, double duration_s) const {
   return events.first(count_until(events, events.front().t_ns + ns_from_seconds(duration_s)));
@@ -97,12 +100,8 @@ double PlaneSearch::image_motion_px(const PlaneFit& fit) const {
 }
 
 PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
-  RotationOptions options;
-  options.samples = options_.samples;
-  options.blur_px = options_.blur_px;
-  options.burst_fraction = options_.burst_fraction;
-  RotationEstimator estimator(camera_, options);
-  const double most = options_.events_per_px * camera_.width * camera_.height;
+  RotationEstimator estimator(camera_, {});
+  const double most = kEventsPerPixel * camera_.width * camera_.height;
   std::span<const Event> part =
       events.first(std::min(events.size(), static_cast<std::size_t>(most)));
   PlaneFit fit;
@@ -116,11 +115,11 @@ PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
     fit.motion_px = image_motion_px(fit);
     const double duration_s = fit.end_s - fit.start_s;
     if (!found.is_valid || fit.motion_px >= kRotation_px || part.size() == events.size() ||
-        duration_s >= options_.max_window_s)
+        duration_s >= max_window_s_)
       return fit;
     const double growth = std::clamp(1.1 * kRotation_px / fit.motion_px, 1.1, kGrowth);
     const std::span<const Event> longer =
-        window(events, std::min(growth * duration_s, options_.max_window_s));
+        window(events, std::min(growth * duration_s, max_window_s_));
     if (longer.size() <= part.size()) return fit;
     part = longer;
     guess.rate = fit.motion.rate;
@@ -137,11 +136,10 @@ PlaneFit PlaneSearch::maximized(std::span<const Event> events, const PlaneFit& g
   if (!gyroscope_.is_empty()) fit.motion.rate = measured_rate(fit);
   const Parameters px = px_per_parameter(contrast_, fit.motion);
   Parameters at = PlaneContrast::parameters_of(fit.motion).cwiseProduct(px);
-  ceres::GradientProblem problem(
-      new PlaneCost(contrast_, px, options_.slope_sigma, gyroscope_.is_empty()));
+  ceres::GradientProblem problem(new PlaneCost(contrast_, px, gyroscope_.is_empty()));
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = ceres::BFGS;
-  solver.max_num_iterations = options_.iterations;
+  solver.max_num_iterations = kIterations;
   solver.function_tolerance = 1e-5;
   solver.logging_type = ceres::SILENT;
   ceres::GradientProblemSolver::Summary summary;
@@ -183,11 +181,11 @@ std::vector<PlaneFit> PlaneSearch::find(std::span<const Event> events) {
     while (true) {
       const std::span<const Event> part = window(events, duration_s);
       fit = maximized(part, fit);
-      if (fit.motion_px >= 0.9 * options_.motion_px || part.size() == events.size() ||
-          duration_s >= options_.max_window_s)
+      if (fit.motion_px >= 0.9 * kMotion_px || part.size() == events.size() ||
+          duration_s >= max_window_s_)
         break;
-      const double growth = std::clamp(options_.motion_px / fit.motion_px, 1.1, kGrowth);
-      duration_s = std::min(growth * duration_s, options_.max_window_s);
+      const double growth = std::clamp(kMotion_px / fit.motion_px, 1.1, kGrowth);
+      duration_s = std::min(growth * duration_s, max_window_s_);
     }
     fits.push_back(fit);
   }

@@ -11,17 +11,6 @@
 
 namespace saccade {
 
-struct PlaneSearchOptions {
-  double motion_px = 20;         ///< of the image over the window that is searched for
-  double max_window_s = 0.25;    ///< a slower motion ends here
-  double events_per_px = 0.5;    ///< of the first window
-  int samples = 20000;           ///< at most so many events of a window are used
-  double blur_px = 1;            ///< of the image of events
-  double burst_fraction = 0.15;  ///< ratio to the window's length, see BurstFilter
-  double slope_sigma = 3;        ///< of the plane's slope from 0, where the events hardly say
-  int iterations = 40;           ///< of quasi-Newton steps, at most
-};
-
 /// A motion before a plane that explains a window.
 struct PlaneFit {
   PlaneMotion motion;
@@ -37,9 +26,8 @@ struct PlaneFit {
 /// Deterministic.
 class PlaneSearch {
  public:
-  /// `gyroscope`: none where it is empty; outlives it.
-  PlaneSearch(const PlaneSearchOptions& options, const PinholeCamera& camera,
-              const Gyroscope& gyroscope);
+  /// A motion that is slow ends at `max_window_s`. `gyroscope`: none where it is empty; outlives it.
+  PlaneSearch(double max_window_s, const PinholeCamera& camera, const Gyroscope& gyroscope);
 
   /// From the first of `events` on; the sharpest first, none where nothing moves.
   [[nodiscard]] std::vector<PlaneFit> find(std::span<const Event> events);
@@ -53,7 +41,7 @@ class PlaneSearch {
   [[nodiscard]] PlaneFit maximized(std::span<const Event> events, const PlaneFit& guess);
   [[nodiscard]] double image_motion_px(const PlaneFit& fit) const;
 
-  PlaneSearchOptions options_;
+  double max_window_s_;
   PinholeCamera camera_;
   const Gyroscope& gyroscope_;
   PlaneContrast contrast_;

@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "core/trajectory.h"
 #include "estimator/reconstruction/observations/panorama_projector.h"
-#include "estimator/reconstruction/observations/pose_table.h"
+#include "estimator/run/pose_table.h"
 
 namespace saccade {
 

@@ -10,7 +10,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/rigid3.h"
-#include "estimator/reconstruction/observations/pose_table.h"
+#include "estimator/run/pose_table.h"
 
 namespace saccade {
 

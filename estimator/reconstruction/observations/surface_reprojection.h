@@ -7,8 +7,8 @@
 #include "core/event.h"
 #include "core/image.h"
 #include "core/trajectory.h"
-#include "estimator/reconstruction/observations/pose_table.h"
 #include "estimator/reconstruction/observations/reprojector.h"
+#include "estimator/run/pose_table.h"
 
 namespace saccade {
 

@@ -1,4 +1,4 @@
-#include "estimator/refinement/depth/refine_depth.h"
+#include "estimator/refinement/refinement_config.h"
 
 #include <fmt/core.h>
 

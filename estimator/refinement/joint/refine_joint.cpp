@@ -1,4 +1,4 @@
-#include "estimator/refinement/joint/refine_joint.h"
+#include "estimator/refinement/refinement_config.h"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,6 @@
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
-#include "estimator/edges/batch/batch_windows.h"
 #include "estimator/edges/least_squares/path_covariance.h"
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
@@ -29,7 +28,7 @@ struct BatchRun {
   std::vector<KeyframeEntry> keyframes;
   Events events;
   RunRecord::Window window;
-  BatchInput start;
+  BatchInput batch;
 };
 
 BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun& run) {
@@ -47,7 +46,7 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
   input.events = load_events(request, dataset);
   input.window = *run.record.window;
   const double first_s = seconds_from_ns(input.events.front().t_ns);
-  BatchInput& start = input.start;
+  BatchInput& batch = input.batch;
   std::vector<StampedPose> given;
   for (StampedPose pose : dataset.groundtruth().poses()) {
     if (!has_truth) break;
@@ -55,21 +54,21 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
     if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) given.push_back(pose);
   }
   std::vector<StampedPose> found =
-      known_path(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
-                 run.folder.string());
+      poses_not_lost(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
+                     run.folder.string());
   // Without given poses the first that was found fixes the position.
   if (!has_truth) given.assign(1, found.front());
-  start.is_metric = has_truth;
-  start.path = given;
+  batch.is_metric = has_truth;
+  batch.path = given;
   for (const StampedPose& pose : found)
-    if (start.path.empty() || pose.t_s > start.path.back().t_s) start.path.push_back(pose);
-  start.given = std::move(given);
+    if (batch.path.empty() || pose.t_s > batch.path.back().t_s) batch.path.push_back(pose);
+  batch.given = std::move(given);
   std::vector<double> depths;
   for (const KeyframeEntry& keyframe : input.keyframes) {
-    start.keyframe_s.push_back(keyframe.t_s);
+    batch.keyframe_s.push_back(keyframe.t_s);
     depths.push_back(keyframe.typical_depth_m);
   }
-  start.typical_depth_m = median(std::move(depths));
+  batch.typical_depth_m = median(std::move(depths));
   return input;
 }
 
@@ -125,7 +124,7 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   RunTiming timing;
   std::optional<ScopedTimer> io(timing.io_s);
   BatchRun input = load(request, dataset, run);
-  if (config.joint.use_imu) input.start.imu = load_mounted_imu(dataset, "joint.use_imu");
+  if (config.joint.use_imu) input.batch.imu = load_mounted_imu(dataset, "joint.use_imu");
   io.reset();
   const DepthConfig& method = input.odometry.odometry.mapping.depth;
   const PinholeCamera camera = input.odometry.camera.of(dataset.camera());
@@ -137,12 +136,13 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
     double wall_s = 0;
     {
       const ScopedTimer clock(wall_s);
-      result = adjust_batch(input.events, input.start, camera, depth, config.joint,
+      result = adjust_batch(input.events, input.batch, camera, depth, config.joint,
                             [&](std::size_t n) { progress.add(n); });
     }
     timing.wall_s.push_back(wall_s);
   }
-  const bool is_scaled = result.inertial && !input.start.is_metric;
+  const bool is_scaled = !input.batch.is_metric && result.inertial &&
+                         result.inertial->status == InertialAlignment::Status::kOk;
   if (is_scaled) {
     transform_to_metric_world(result);
     for (KeyframeEntry& keyframe : input.keyframes)

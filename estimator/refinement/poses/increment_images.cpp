@@ -22,8 +22,8 @@ std::vector<std::size_t> choose(const PinholeCamera& camera, double fraction,
       const bool chosen = is_chosen(numbers.size(), fraction);
       numbers.push_back(chosen ? images.pixels.size() : kNotChosen);
       if (!chosen) continue;
-      const Eigen::Vector2f& place = undistortion(x, y);
-      images.pixels.push_back({place, undistorted.ray(place.cast<double>())});
+      const Eigen::Vector2f& pixel = undistortion(x, y);
+      images.pixels.push_back({pixel, undistorted.ray(pixel.cast<double>())});
     }
   return numbers;
 }

@@ -17,7 +17,7 @@ namespace saccade {
 /// belong to them: they changed by less than one.
 struct IncrementImages {
   struct Pixel {
-    Eigen::Vector2f place;  ///< undistorted
+    Eigen::Vector2f pixel;  ///< undistorted
     Eigen::Vector3d ray;    ///< z = 1
   };
   std::vector<Pixel> pixels;

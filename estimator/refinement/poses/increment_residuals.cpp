@@ -10,7 +10,7 @@ IncrementResiduals::Row IncrementResiduals::sample(VisibleSurface& surfaces, dou
   Row row;
   for (const IncrementImages::Pixel& pixel : images_.pixels) {
     std::optional<Seen>& seen = row.emplace_back();
-    const auto hit = surfaces.at(t_s, pixel.place, pixel.ray);
+    const auto hit = surfaces.at(t_s, pixel.pixel, pixel.ray);
     if (!hit) continue;
     const SampleWithGradient<double> map = surface_.read(hit->view, hit->pixel);
     if (std::isfinite(map.value)) seen = {*hit, {map.dx, map.dy}};
@@ -23,9 +23,9 @@ double IncrementResiduals::sigma(const Seen& begin, const Seen& end) const {
   const double misplaced = begin.hit.view == end.hit.view
                                ? (end.slope - begin.slope).norm()
                                : std::hypot(begin.slope.norm(), end.slope.norm());
-  const double place = options_.reprojection_sigma_px * misplaced;
-  return std::sqrt(options_.log_intensity_sigma * options_.log_intensity_sigma + place * place +
-                   contrast_ * contrast_ / 6);
+  const double misplacement_sigma = options_.reprojection_sigma_px * misplaced;
+  return std::sqrt(options_.log_intensity_sigma * options_.log_intensity_sigma +
+                   misplacement_sigma * misplacement_sigma + contrast_ * contrast_ / 6);
 }
 
 void IncrementResiduals::add_to(PathProblem& problem) const {

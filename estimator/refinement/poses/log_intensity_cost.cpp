@@ -10,7 +10,7 @@ bool LogIntensityCost::Evaluate(double const* const* parameters, double* residua
   const LogIntensitySample seen =
       sample_log_intensity(surface_, o.hit, o.ray, o.time, o.controls, parameters);
   if (!seen.is_valid) return false;
-  residuals[0] = (seen.value - o.level - parameters[4][0]) / o.sigma;
+  residuals[0] = (seen.value - o.relative_log_intensity - parameters[4][0]) / o.sigma;
   if (jacobians == nullptr) return true;
   for (int k = 0; k < 4; ++k)
     write_block(jacobians[k],

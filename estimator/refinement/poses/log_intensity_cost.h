@@ -9,8 +9,8 @@
 namespace saccade {
 
 /// One event before the map, by the four control poses of map_from_camera at its time and the
-/// offset of its chain:
-///   r = (L(u, t) - level - offset) / sigma.
+/// offset of its event run:
+///   r = (L(u, t) - relative_log_intensity - offset) / sigma.
 class LogIntensityCost : public ceres::SizedCostFunction<1, kControlSize, kControlSize,
                                                          kControlSize, kControlSize, 1> {
  public:
@@ -18,8 +18,8 @@ class LogIntensityCost : public ceres::SizedCostFunction<1, kControlSize, kContr
     SplineKnots::LocalBasis time;
     std::array<Rigid3, 4> controls;  ///< of map_from_camera, before their corrections
     Eigen::Vector3d ray;
-    double level = 0;  ///< [log units]
-    double sigma = 1;  ///< [log units]
+    double relative_log_intensity = 0;  ///< [log units]
+    double sigma = 1;                   ///< [log units]
     MapSurface::Hit hit;
   };
   /// `surface` outlives this.

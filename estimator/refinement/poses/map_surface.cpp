@@ -71,10 +71,10 @@ std::optional<MapSurface::Hit> MapSurface::intersect(const MapSample& seen,
     const std::optional<ViewPlane> touching = plane(hit.view, hit.pixel);
     if (!touching) return std::nullopt;
     hit.plane = *touching;
-    const PlaneReprojection place =
+    const PlaneReprojection reprojection =
         reproject_on_plane(map_.camera(), view_from_camera, ray, hit.plane);
-    if (!place.is_valid) return std::nullopt;
-    hit.pixel = place.pixel;
+    if (!reprojection.is_valid) return std::nullopt;
+    hit.pixel = reprojection.pixel;
   }
   if (!plane(hit.view, hit.pixel)) return std::nullopt;
   return hit;

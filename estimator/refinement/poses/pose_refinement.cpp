@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimator/edges/least_squares/path_covariance.h"
-#include "estimator/refinement/poses/chain_residuals.h"
+#include "estimator/refinement/poses/event_run_residuals.h"
 #include "estimator/refinement/poses/increment_residuals.h"
 
 namespace saccade {
@@ -26,17 +26,17 @@ void refine_by(Residuals& residuals, const PoseRefinementOptions& options, Refin
 }  // namespace
 
 Matrix6 RefinedPath::covariance_at(double t_s) const {
-  const SplineKnots::LocalBasis place = map_from_camera.knots.at(t_s);
+  const SplineKnots::LocalBasis basis = map_from_camera.knots.at(t_s);
   std::array<Rigid3, 4> controls;
-  for (std::size_t k = 0; k < 4; ++k) controls[k] = map_from_camera.poses[place.first + k];
-  const PoseOverControls pose = pose_over(place, controls);
+  for (std::size_t k = 0; k < 4; ++k) controls[k] = map_from_camera.poses[basis.first + k];
+  const PoseOverControls pose = pose_over(basis, controls);
   const Eigen::Matrix3d camera_from_map = pose.world_from_body.rotation_matrix().transpose();
   Eigen::Matrix<double, 6, 24> by_controls = Eigen::Matrix<double, 6, 24>::Zero();
   for (Eigen::Index k = 0; k < 4; ++k) {
-    by_controls.block<3, 3>(0, 6 * k) = place.weight[k] * camera_from_map;
+    by_controls.block<3, 3>(0, 6 * k) = basis.weight[k] * camera_from_map;
     by_controls.block<3, 3>(3, 6 * k + 3) = pose.rotation_jacobian.middleCols<3>(3 * k);
   }
-  return saccade::covariance_at(covariance, place.first, by_controls);
+  return saccade::covariance_at(covariance, basis.first, by_controls);
 }
 
 RefinedPath refine_path(const MapSurface& surface, const PinholeCamera& camera,
@@ -51,9 +51,9 @@ RefinedPath refine_path(const MapSurface& surface, const PinholeCamera& camera,
     IncrementResiduals residuals(surface, images, mean_contrast, options);
     refine_by(residuals, options, path);
   } else {
-    const LogIntensityChains levels =
-        observe_log_intensity(events, camera, contrast, options.events, options.chain_events);
-    ChainResiduals residuals(surface, levels, options);
+    const EventRunObservations observed =
+        observe_log_intensity(events, camera, contrast, options.events, options.run_events);
+    EventRunResiduals residuals(surface, observed, options);
     refine_by(residuals, options, path);
   }
   return path;

@@ -6,8 +6,8 @@
 
 #include "core/spline/knots.h"
 #include "estimator/edges/least_squares/cost_log.h"
+#include "estimator/refinement/poses/event_run_observations.h"
 #include "estimator/refinement/poses/increment_images.h"
-#include "estimator/refinement/poses/log_intensity_chains.h"
 #include "estimator/refinement/poses/map_surface.h"
 #include "estimator/refinement/poses/path_problem.h"
 
@@ -20,10 +20,11 @@ struct PoseRefinementOptions {
   Residual residual = Residual::kEvents;
   double knot_spacing_s = 0.05;  ///< of the path's cubic spline
   int events = 200000;           ///< of kEvents: about so many at most, of evenly spread pixels
-  int chain_events = 1000;       ///< longest chain: longer ones drift apart on a real sensor
-  int window_events = 5000;      ///< of kFrames: in a window
-  int increments = 1000000;      ///< of kFrames: about so many at most, of evenly spread pixels
-  int rounds = 2;  ///< of finding the surface that each residual samples, and adjusting
+  int run_events =
+      1000;  ///< events of a run that share one offset: longer runs drift apart on a real sensor
+  int increments = 1000000;  ///< of kFrames: about so many at most, of evenly spread pixels
+  int window_events = 5000;  ///< of kFrames: in a window
+  int rounds = 2;            ///< of finding the surface that each residual samples, and adjusting
   double log_intensity_sigma = 0.05;   ///< of an observation from the map [log units]
   double reprojection_sigma_px = 0.2;  ///< of the pixel where the map shows it
 

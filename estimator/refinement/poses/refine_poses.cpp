@@ -1,4 +1,4 @@
-#include "estimator/refinement/poses/refine_poses.h"
+#include "estimator/refinement/refinement_config.h"
 
 #include <fmt/core.h>
 
@@ -73,7 +73,7 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
 
   const IntensityMap map(camera.undistorted(), references, IntensityMap::kEdgeBlur_px);
   const MapSurface surface(map);
-  std::vector<StampedPose> start = known_path(poses, first_s, last_s, run.folder.string());
+  std::vector<StampedPose> start = poses_not_lost(poses, first_s, last_s, run.folder.string());
   const Rigid3 map_from_world = map.world_from_map().inverse();
   for (StampedPose& pose : start) pose.world_from_camera = map_from_world * pose.world_from_camera;
   add_ends(events, poses);

@@ -47,7 +47,7 @@ MountedImu sensor_on(const Spline& motion, const Eigen::Vector3d& place = {0, 0,
 TEST(InertialAlignment, FindsWhatAPerfectPathHides) {
   const Spline motion = testing::handheld_motion(kEnd_s);
   const MountedImu imu = sensor_on(motion, {0.05, -0.03, 0.1});
-  const InertialAlignment found = align_inertially(path_of(motion), imu, {});
+  const InertialAlignment found = align_inertially(path_of(motion), imu, 0.5);
   ASSERT_EQ(found.status, Status::kOk);
   EXPECT_NEAR(found.scale, kScale, 1e-3 * kScale);
   const Eigen::Vector3d gravity = kPathFromWorld.rotation() * kGravity;
@@ -68,7 +68,7 @@ TEST(InertialAlignment, TellsHowWellItKnowsTheScaleOfANoisyPath) {
     imu.samples[i].angular_velocity += 1e-3 * std::sqrt(1000) * w;
     imu.samples[i].specific_force += 1e-2 * std::sqrt(1000) * f;
   }
-  const InertialAlignment found = align_inertially(path_of(motion, 5e-3, 5e-3), imu, {});
+  const InertialAlignment found = align_inertially(path_of(motion, 5e-3, 5e-3), imu, 0.5);
   ASSERT_EQ(found.status, Status::kOk);
   EXPECT_LT(found.scale_sigma, 0.01);
   EXPECT_LT(std::abs(found.scale / kScale - 1), 3 * found.scale_sigma);
@@ -82,7 +82,7 @@ TEST(InertialAlignment, FindsTheOffsetOfTheSensorsClock) {
   const Spline motion = testing::handheld_motion(kEnd_s);
   MountedImu imu = sensor_on(motion);
   for (ImuSample& sample : imu.samples) sample.t_ns -= 12'000'000;
-  const InertialAlignment found = align_inertially(path_of(motion), imu, {});
+  const InertialAlignment found = align_inertially(path_of(motion), imu, 0.5);
   ASSERT_EQ(found.status, Status::kOk);
   EXPECT_NEAR(found.time_offset_s, 0.012, 1e-4);
   EXPECT_NEAR(found.scale, kScale, 2e-3 * kScale);
@@ -93,7 +93,7 @@ TEST(InertialAlignment, AnEvenMotionHasNoScale) {
   for (int i = 0; i <= 60; ++i)
     poses.push_back({0.1 * i, {so3_exp({-1.6, 0, 0.02 * i}), {0.05 * i, 0.02 * i, 0}}});
   const Spline motion = Spline::interpolate(poses);
-  EXPECT_EQ(align_inertially(path_of(motion, 1e-3), sensor_on(motion), {}).status,
+  EXPECT_EQ(align_inertially(path_of(motion, 1e-3), sensor_on(motion), 0.5).status,
             Status::kUnobservableScale);
 }
 
@@ -106,7 +106,7 @@ TEST(InertialAlignment, APathThatWasNotFeltDisagrees) {
     pose.world_from_camera = {pose.world_from_camera.rotation(), {place.y(), -place.x(), 0}};
   }
   const InertialAlignment found =
-      align_inertially(Trajectory(std::move(poses)), sensor_on(motion), {});
+      align_inertially(Trajectory(std::move(poses)), sensor_on(motion), 0.5);
   EXPECT_EQ(found.status, Status::kInconsistent);
   EXPECT_GT(found.residual, 2);
 }
@@ -115,7 +115,7 @@ TEST(InertialAlignment, NeedsReadings) {
   const Spline motion = testing::handheld_motion(2);
   MountedImu imu = sensor_on(motion);
   imu.samples.resize(500);
-  EXPECT_EQ(align_inertially(path_of(motion), imu, {}).status, Status::kNoReadings);
+  EXPECT_EQ(align_inertially(path_of(motion), imu, 0.5).status, Status::kNoSamples);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "estimator/imu/mounted_imu.h"
+#include "estimator/imu/imu_input.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,7 +11,6 @@
 #include "core/io/files/file_list.h"
 #include "core/io/run/run_record.h"
 #include "core/process/parallel.h"
-#include "estimator/imu/stabilize_config.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/shared_folder.h"

@@ -9,10 +9,10 @@
 namespace saccade {
 namespace {
 
-constexpr int kHead = 4;
+constexpr int kHead = VelocityChain::kHead;
 constexpr int kSkipped = 3;  ///< the link of which nothing is known
 
-using Chain = VelocityChain<kHead>;
+using Chain = VelocityChain;
 
 Chain::Rows random_rows(std::uint64_t link) {
   const Random random(5);
@@ -53,7 +53,7 @@ struct Dense {
 
 TEST(VelocityChain, SolvesAsOneDenseLeastSquares) {
   constexpr int kLinks = 9;
-  const Chain::Head precision(0.3, 0, 2, 0.1);
+  const Chain::Head precision{{0.3, 0, 2, 0.1, 0, 1}};
   Chain chain(precision);
   Dense dense(kLinks, precision);
   for (int link = 0; link < kLinks; ++link) {

@@ -21,7 +21,7 @@ std::size_t edges_with(int min_edges) {
   options.depth.method = DepthConfig::Method::kRays;
   options.max_sigma = 0.01;
   options.depth.rays.refiner.max_sigma = options.depth.rays.fusion.max_sigma = 0.004;
-  KnownPath path;
+  PathEstimate path;
   path.poses = testing::trajectory_of(testing::corner_glide, kMapped_s);
   return Mapper(options, corner.camera()).map(events, path).keyframe.edges.size();
 }

@@ -80,7 +80,7 @@ TEST(MetricWorld, SaysWhatTheReadingsShow) {
   EXPECT_THAT(text, ::testing::HasSubstr("applied: false"));
 }
 
-TEST(MetricWorld, NeedsPoses) { EXPECT_EQ(align_odometry({}, {}, {}).status, Status::kNoReadings); }
+TEST(MetricWorld, NeedsPoses) { EXPECT_EQ(align_odometry({}, {}, {}).status, Status::kNoSamples); }
 
 }  // namespace
 }  // namespace saccade

@@ -10,13 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/document.h"
+#include "core/config/config.h"
 #include "core/io/covariance_file.h"
 #include "core/io/run/keyframe_list.h"
 #include "core/io/run/view_list.h"
 #include "core/io/tables/csv_reader.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/parallel.h"
+#include "estimator/odometry/odometry_config.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
@@ -67,7 +68,7 @@ void expect_glide(const fs::path& run) {
 
 constexpr const char* kQuick = R"(
 start: {truth_s: 0.2, truth_fraction: 0.4}
-keyframe: {distance: 0.05, active: 3, active_window_s: 0.1}
+keyframe: {distance: 0.05, active: 3}
 mapping: {duration_s: 0.3, min_edges: 0, image: false}
 adjustment: {rounds: 0, edges: 500}
 tracking: {event_map_ratio: 0.2}
@@ -276,8 +277,8 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
 }
 
 TEST_F(OdometryModule, OnlineItSaysHowLateItIsAndWhatItDropped) {
-  const RunSummary summary = run_odometry(
-      request("online", std::string("mode: online\nonline: {max_age_ms: 1000}\n") + kQuick));
+  const RunSummary summary =
+      run_odometry(request("online", std::string("mode: online\nmax_age_ms: 1000\n") + kQuick));
   EXPECT_GT(summary.poses, 20U);
   const std::string timing = read_file(folder_.path() / "online" / "timing.json");
   EXPECT_THAT(timing, HasSubstr("\"latency_ms\": {\"median\""));
@@ -315,7 +316,8 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
 
 TEST_F(OdometryModule, TheMethodSetsTheDefaults) {
   const auto printed = [](const std::string& yaml) {
-    return print_odometry_config(config::parse(yaml, "configuration"));
+    return config::print_documented(
+        config::read<OdometryConfig>(config::parse(yaml, "configuration")));
   };
   const std::string thesis = printed("method: thesis\nmapping: {events: 100000}\n");
   EXPECT_THAT(thesis, HasSubstr("relocation: never"));

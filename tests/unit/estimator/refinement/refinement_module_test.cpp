@@ -107,7 +107,7 @@ class RefinementModule : public testing::SharedFolder<RefinementModule> {
   }
 };
 
-constexpr const char* kPoses = "{kind: poses, poses: {contrast: 0.12, events: 20000}}";
+constexpr const char* kPoses = "{method: poses, poses: {contrast: 0.12, events: 20000}}";
 
 TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
   const RunSummary summary = run_refinement(request("poses", kPoses));
@@ -121,7 +121,7 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
   const RunRecord record = read_run_record(path("poses") / "run.yaml");
   EXPECT_EQ(record.module, "refine");
   EXPECT_EQ(record.from, path("track"));
-  EXPECT_THAT(record.config_yaml, HasSubstr("kind: poses"));
+  EXPECT_THAT(record.config_yaml, HasSubstr("method: poses"));
   EXPECT_EQ(read_covariances(path("poses") / "covariance.txt").size(), summary.poses);
   const CsvColumns costs(path("poses") / "cost.csv");
   EXPECT_GT(costs.rows(), 2U);
@@ -129,9 +129,8 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
 }
 
 TEST_F(RefinementModule, PosesByImagesOfEventsBecomeBetter) {
-  (void)run_refinement(request(
-      "images",
-      "{kind: poses, poses: {contrast: 0.12, residual: frames, increments: 100000, rounds: 1}}"));
+  (void)run_refinement(
+      request("images", "{method: poses, poses: {contrast: 0.12, residual: frames, rounds: 1}}"));
   const Errors before = errors_of(path("track"), sweep), after = errors_of(path("images"), sweep);
   EXPECT_LT(after.position_m, before.position_m);
   EXPECT_LT(after.rotation_rad, before.rotation_rad);
@@ -141,7 +140,7 @@ TEST_F(RefinementModule, PathAndMapOfARunOfOdometryGoTogether) {
   record(path("corner"), testing::corner_world(160, 120), wavy_glide, 0.5);
   RunRequest odometry = request("odometry", R"(
 start: {truth_s: 0.2, truth_fraction: 0.4}
-keyframe: {distance: 0.05, active: 3, active_window_s: 0.1}
+keyframe: {distance: 0.05, active: 3}
 mapping: {duration_s: 0.3, min_edges: 0, image: false}
 adjustment: {rounds: 0}
 tracking: {event_map_ratio: 0.2}
@@ -150,7 +149,7 @@ tracking: {event_map_ratio: 0.2}
   odometry.from.reset();
   (void)run_odometry(odometry);
   RunRequest joint =
-      request("joint", "{kind: joint, joint: {window_s: 0.5, edges: 200, rounds: 1}}");
+      request("joint", "{method: joint, joint: {window_s: 0.5, edges: 200, rounds: 1}}");
   joint.dataset = path("corner");
   joint.from = path("odometry");
   (void)run_refinement(joint);
@@ -176,7 +175,7 @@ TEST_F(RefinementModule, SaysWhatIsWrongWithTheRun) {
   EXPECT_THAT(error(std::nullopt), HasSubstr("--from"));
   EXPECT_THAT(error(path("absent")), HasSubstr("absent"));
   EXPECT_THAT(error(path("track"), "{}"), HasSubstr("poses.contrast"));
-  EXPECT_THAT(error(path("track"), "{kind: joint}"), HasSubstr("track"));
+  EXPECT_THAT(error(path("track"), "{method: joint}"), HasSubstr("track"));
   const fs::path broken = path("broken");
   fs::copy(path("track"), broken);
   fs::remove(broken / "poses.csv");
@@ -201,11 +200,11 @@ TEST_F(RefinementModule, OtherModulesRefineNothing) {
 
 TEST(RefinementConfigs, ShippedOnesAreRead) {
   for (const char* name : {"poses", "depth", "joint"})
-    EXPECT_THAT(print_refinement_config(config::load(std::string(SACCADE_SOURCE_DIR) +
-                                                     "/configs/refinement/" + name + ".yaml")),
-                HasSubstr(std::string("kind: ") + name));
-  EXPECT_THAT(print_refinement_config(config::load(std::string(SACCADE_SOURCE_DIR) +
-                                                   "/configs/refinement/poses_frames.yaml")),
+    EXPECT_THAT(find_module("refine").print_config(config::load(
+                    std::string(SACCADE_SOURCE_DIR) + "/configs/refinement/" + name + ".yaml")),
+                HasSubstr(std::string("method: ") + name));
+  EXPECT_THAT(find_module("refine").print_config(config::load(
+                  std::string(SACCADE_SOURCE_DIR) + "/configs/refinement/poses_frames.yaml")),
               HasSubstr("residual: frames"));
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/config/config.h"
-#include "estimator/rotation/rotation_config.h"
 #include "tests/support/error_of.h"
 #include "tests/support/shared_folder.h"
 #include "tests/unit/estimator/imu/turning_dataset.h"
@@ -35,17 +34,17 @@ class RotationModule : public testing::SharedFolder<RotationModule> {
 };
 
 TEST_F(RotationModule, ThePerfectSensorIsRight) {
-  EXPECT_LT(run("imu", "{source: imu, orientation: {method: gyroscope}}"), 1e-6);
+  EXPECT_LT(run("imu", "{method: imu, orientation: {method: gyroscope}}"), 1e-6);
 }
 
 TEST_F(RotationModule, AveragesTheReadings) {
-  EXPECT_LT(run("average", "{source: imu, averaging_s: 0.01, orientation: {method: gyroscope}}"),
+  EXPECT_LT(run("average", "{method: imu, averaging_s: 0.01, orientation: {method: gyroscope}}"),
             0.05);
 }
 
 TEST_F(RotationModule, BothFollowTheSensorOverAWindow) {
   // The corner also moves, which events alone take for a turn: the bias follows it.
-  EXPECT_LT(run("both", "{source: both, window_events: 4000}"), 2);
+  EXPECT_LT(run("both", "{method: both, window_events: 4000}"), 2);
 }
 
 TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
@@ -55,13 +54,13 @@ TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
       }),
       ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("window_events")));
   EXPECT_THAT(error_of([] {
-                return config::read<RotationConfig>(config::parse("source: eyes", "t.yaml")).seed;
+                return config::read<RotationConfig>(config::parse("method: eyes", "t.yaml")).seed;
               }),
               HasSubstr("t.yaml:1"));
 }
 
 TEST_F(RotationModule, WindowsOfTooFewEventsSayNothing) {
-  const std::string yaml = "{window_events: 100, max_window_s: 1.0e-4}";
+  const std::string yaml = "{window_events: 100}";
   run_rotation(testing::run_request(path("corner"), path("still"), yaml));
   EXPECT_TRUE(read_angular_velocities(path("still") / "angular_velocity.txt").empty());
 }
@@ -71,18 +70,18 @@ TEST_F(RotationModule, WithoutASensorItSaysWhatIsMissing) {
   RunRequest request;
   request.dataset = path("no_imu");
   request.output = path("x");
-  request.config = config::parse("source: both", "t.yaml");
+  request.config = config::parse("method: both", "t.yaml");
   EXPECT_THAT(error_of([&] { return run_rotation(request).found; }), HasSubstr("holds no imu.txt"));
 }
 
 TEST(RotationConfig, ShippedFilesAreRead) {
   const std::string folder = SACCADE_SOURCE_DIR "/configs/rotation/";
-  const auto source = [&](const char* name) {
-    return config::read<RotationConfig>(config::load(folder + name)).source;
+  const auto method = [&](const char* name) {
+    return config::read<RotationConfig>(config::load(folder + name)).method;
   };
-  EXPECT_EQ(source("events.yaml"), RotationConfig::Source::kEvents);
-  EXPECT_EQ(source("imu.yaml"), RotationConfig::Source::kImu);
-  EXPECT_EQ(source("both.yaml"), RotationConfig::Source::kBoth);
+  EXPECT_EQ(method("events.yaml"), RotationConfig::Method::kEvents);
+  EXPECT_EQ(method("imu.yaml"), RotationConfig::Method::kImu);
+  EXPECT_EQ(method("both.yaml"), RotationConfig::Method::kBoth);
 }
 
 }  // namespace

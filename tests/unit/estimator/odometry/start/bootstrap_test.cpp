@@ -106,7 +106,7 @@ TEST(Bootstrap, WaitsUntilTheCameraMoves) {
 TEST(Bootstrap, AMotionOfAFewPixelsEnds) {
   const auto slow = [](double t_s) { return glide(0.1 * t_s); };
   BootstrapOptions options = quick();
-  options.plane.max_window_s = 0.15;
+  options.max_search_s = 0.15;
   EXPECT_NE(find_start(recorded(slow, kEnd_s), world().camera(), options).status,
             Bootstrap::Status::kFound);
 }

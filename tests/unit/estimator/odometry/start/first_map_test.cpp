@@ -50,8 +50,8 @@ MappingOptions quick_mapping() {
   return options;
 }
 
-KnownPath given() {
-  KnownPath path;
+PathEstimate given() {
+  PathEstimate path;
   path.poses = testing::trajectory_of(shaken, kGiven_s);
   path.fixed_until_s = path.given_until_s = kGiven_s;
   return path;
@@ -73,7 +73,7 @@ Worst worst_of(const Trajectory& path, double from_s, double to_s) {
   return worst;
 }
 
-FirstMap made(const KnownPath& start, const FirstMapOptions& options,
+FirstMap made(const PathEstimate& start, const FirstMapOptions& options,
               const Gyroscope& gyroscope = {}) {
   return first_map(events(), start, Mapper(quick_mapping(), corner().camera()), corner().camera(),
                    options, gyroscope);
@@ -145,7 +145,7 @@ TEST(FirstMap, AGapInTheEventsIsGoneBeyond) {
   Events sparse = {events().front()};
   for (const Event& event : events())
     if (event.t_ns > ns_from_seconds(0.2)) sparse.push_back(event);
-  KnownPath start = given();
+  PathEstimate start = given();
   std::vector<StampedPose> late(start.poses.poses().begin() + 10, start.poses.poses().end());
   start.poses = Trajectory(std::move(late));
   const FirstMap first = first_map(sparse, start, Mapper(quick_mapping(), corner().camera()),
@@ -154,7 +154,7 @@ TEST(FirstMap, AGapInTheEventsIsGoneBeyond) {
 }
 
 TEST(FirstMap, AStartThatWasFoundIsTakenAsItIs) {
-  KnownPath start = given();
+  PathEstimate start = given();
   start.given_until_s = kNoGivenPoses;
   start.fixed_until_s = 0;
   EXPECT_DOUBLE_EQ(made(start, carried()).path.poses.end_s(), kGiven_s);

@@ -20,7 +20,7 @@ TEST(IncrementImages, AreSumsOfThresholdsOfAllPixels) {
     EXPECT_NEAR(images.increment(0, i), i == 9 ? 0.8 : 0, 1e-6);
     EXPECT_NEAR(images.increment(1, i), i == 9 ? 0.2 - 0.9 : 0, 1e-6);
   }
-  EXPECT_EQ(images.pixels[9].place, Eigen::Vector2f(1, 2));
+  EXPECT_EQ(images.pixels[9].pixel, Eigen::Vector2f(1, 2));
   EXPECT_LT((images.pixels[9].ray - Eigen::Vector3d(-0.125, 0.25, 1)).norm(), 1e-6);
 }
 

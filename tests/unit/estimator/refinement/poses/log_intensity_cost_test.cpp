@@ -18,7 +18,7 @@ LogIntensityCost::Observation some_observation(const MapSurface& surface) {
   o.time = controls.knots.at(0.12);
   for (std::size_t k = 0; k < 4; ++k) o.controls[k] = controls.poses[o.time.first + k];
   o.ray = corner_view().world.camera().ray({40, 50});
-  o.level = -0.3;
+  o.relative_log_intensity = -0.3;
   o.sigma = 0.06;
   o.hit.plane = *surface.plane(0, {44.3, 51.8});
   return o;

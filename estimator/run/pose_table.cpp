@@ -1,4 +1,4 @@
-#include "estimator/reconstruction/observations/pose_table.h"
+#include "estimator/run/pose_table.h"
 
 #include <cstddef>
 

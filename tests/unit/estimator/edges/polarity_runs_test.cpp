@@ -1,4 +1,4 @@
-#include "estimator/edges/event_runs.h"
+#include "estimator/edges/polarity_runs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

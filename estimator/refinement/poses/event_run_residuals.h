@@ -2,19 +2,19 @@
 
 #include <vector>
 
-#include "estimator/refinement/poses/log_intensity_chains.h"
+#include "estimator/refinement/poses/event_run_observations.h"
 #include "estimator/refinement/poses/path_problem.h"
 #include "estimator/refinement/poses/pose_refinement.h"
 
 namespace saccade {
 
 /// Residuals of single events, exactly what they say (log_intensity_cost.h).
-class ChainResiduals {
+class EventRunResiduals {
  public:
-  /// `surface` and `levels` outlive this.
-  ChainResiduals(const MapSurface& surface, const LogIntensityChains& levels,
-                 const PoseRefinementOptions& options)
-      : surface_(surface), levels_(levels), options_(options) {}
+  /// `surface` and `observed` outlive this.
+  EventRunResiduals(const MapSurface& surface, const EventRunObservations& observed,
+                    const PoseRefinementOptions& options)
+      : surface_(surface), observed_(observed), options_(options) {}
 
   /// Those of the points visible from the problem's path, and a weak prior of its control poses. This
   /// outlives the problem's solution.
@@ -23,9 +23,9 @@ class ChainResiduals {
  private:
   /// An observation with what it saw of the map.
   struct Seen {
-    const ChainObservation* observation;
+    const EventRunObservation* observation;
     MapSurface::Hit hit;
-    double level;  ///< that the map shows
+    double map_log_intensity;
     double sigma;
   };
   void find_surfaces(const SplineControls& path);
@@ -33,10 +33,10 @@ class ChainResiduals {
   void add_event(const Seen& seen, PathProblem& problem);
 
   const MapSurface& surface_;
-  const LogIntensityChains& levels_;
+  const EventRunObservations& observed_;
   const PoseRefinementOptions& options_;
   std::vector<double> offsets_;
-  std::vector<int> length_;  ///< of a chain as far as it is seen
+  std::vector<int> length_;  ///< of a run as far as it is seen
   std::vector<Seen> seen_;
 };
 

@@ -9,10 +9,11 @@
 
 namespace saccade {
 
-/// The most that run_positions() counts to: how far a run goes on says nothing of a single edge.
+/// A polarity run: events of one polarity that a pixel fires in a row. The most that run_positions()
+/// counts to: how far a run goes on says nothing of a single edge.
 inline constexpr int kMaxRunPosition = 4;
 
-/// Of every event how many of its polarity its pixel has fired in a row, at most kMaxRunPosition: the
+/// Of every event its position in its polarity run, from 1 on and at most kMaxRunPosition: the
 /// brightness has changed by so many contrasts since its change reversed, so that of an edge of some
 /// width the first event is where it begins and later ones are farther in. 0 in the first run of a
 /// pixel, which may have begun anywhere.
