@@ -11,7 +11,8 @@ namespace saccade::config {
 /// instead. Kept until version 1.0, which drops the table.
 struct FormerKey {
   /// Dotted, without list indices: a whole path ("intensity.levels.still_px") or the end of one
-  /// ("levels.still_px"). "key=value" is a former value of a choice.
+  /// ("levels.still_px"); a single word is a key of the root. "key=value" is a former value of a
+  /// choice.
   std::string_view old_key;
   std::string_view new_key;  ///< "" where the key was removed
   /// Of a removed key: what completes "is no longer a key: ...", e.g. "it is always 0.3 px".

@@ -176,10 +176,14 @@ void describe(config::Fields& fields, ExpectedMetric& expected) {
   fields.value("datasets", expected.datasets,
                "Names of the datasets. Default: all that the configuration runs over.");
   fields.value("metric", expected.metric, "Key of metrics.json.").required();
-  fields.value("at_most", expected.at_most,
-               "Upper bound of the mean over the seeds; of a speed, of the median.");
-  fields.value("at_least", expected.at_least,
-               "Lower bound of the mean over the seeds; of a speed, of the median.");
+  fields
+      .value("at_most", expected.at_most,
+             "Upper bound of the mean over the seeds; of a speed, of the median.")
+      .range(-1e12, 1e12);
+  fields
+      .value("at_least", expected.at_least,
+             "Lower bound of the mean over the seeds; of a speed, of the median.")
+      .range(-1e12, 1e12);
   fields.expect(expected.at_most || expected.at_least, "metric", "needs 'at_most' or 'at_least'");
 }
 

@@ -54,7 +54,7 @@ TEST(ReferencePages, EveryNumberHasARange) {
 
 TEST(ReferencePages, HoldTheKeysOfEveryChoice) {
   const std::string depth = reference_page("depth").markdown();
-  for (const char* section : {"## `thesis`", "## `rays`", "## `sweep`"})
+  for (const char* section : {"## `thesis`", "## `rays`", "## `rays.fusion`"})
     EXPECT_NE(depth.find(section), std::string::npos) << section;
   const std::string simulation = reference_page("simulate").markdown();
   EXPECT_NE(simulation.find("## `scene.meshes[]`"), std::string::npos);

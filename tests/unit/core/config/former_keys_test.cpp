@@ -34,7 +34,8 @@ std::string former_error(const std::string& text, const std::vector<std::string>
 TEST(FormerKeys, TheLongestEndOfThePathDecides) {
   EXPECT_EQ(answer("levels.still_px"), "'levels.still_px' is now 'no_event.spacing_px'");
   EXPECT_EQ(answer("intensity.levels.still_px"), "'levels.still_px' is now 'no_event.spacing_px'");
-  EXPECT_EQ(answer("other.still_px"), "'still_px' is no longer a key: it is always 0.3 px");
+  EXPECT_EQ(answer("still_px"), "'still_px' is no longer a key: it is always 0.3 px");
+  EXPECT_EQ(answer("other.still_px"), "none");
   EXPECT_EQ(answer("scene.file[3].legacy"),
             "'file.legacy' is no longer a key: meshes are read as they are");
   EXPECT_EQ(answer("instill_px"), "none");
