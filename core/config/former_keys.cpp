@@ -79,10 +79,6 @@ constexpr FormerKey kFormerKeys[] = {
     {"depth.same_depth", "", "it is always 0.05 (estimator/refinement/depth/depth_refinement.cpp)"},
     {"depth.sweep", "", "the method sets it (estimator/odometry/presets.cpp)"},
     {"depth.thesis", "", "the method sets it (estimator/odometry/presets.cpp)"},
-    {"dunes.across", "", "crests always follow one another along [0.45, 1] (kAcross)"},
-    {"dunes.bend_m", "", "it is always 0.75 m (kBend_m)"},
-    {"dunes.bend_wavelength_m", "", "it is always 2.6 m (kBendWavelength_m)"},
-    {"dunes.rise", "", "it is always 0.58 (kRise)"},
     {"edges.blur_sigma_px", "", "it is part of edges.preset: 0.8 px of accurate, 1.3 of fast, 1.1 of narrow_view"},
     {"edges.blur_size_px", "", "it is part of edges.preset: 3 px of accurate, 7 of fast, 5 of narrow_view"},
     {"edges.min_inlier_ratio", "", "it is always 0.55 (EdgeTrackerOptions::min_inlier_ratio)"},
@@ -391,12 +387,7 @@ constexpr FormerKey kFormerKeys[] = {
     {"tracking.template.blur_sigma_px", "", "the method sets it (estimator/odometry/presets.cpp)"},
     {"tracking.template.blur_size_px", "", "the method sets it (estimator/odometry/presets.cpp)"},
     {"tracking.template.redraw_px", "", "the method sets it (estimator/odometry/presets.cpp)"},
-    {"trajectory.profile", "", "a slider moves at constant speed; use waypoints for another profile"},
-    {"trajectory.start", "", "a circle starts in the direction of the world's x, or of y where its normal is along x"},
-    {"trajectory.translation_amplitude_m", "", "it is always 1 cm along every axis (simulator/motion/presets.cpp)"},
     {"trajectory.translation_frequency_hz", "", "the shake translates at 3.1, 2.3 and 1.7 Hz (ShakeOptions::translation_frequency_hz)"},
-    {"trajectory.up", "", "the world's +z points upwards in the image; state rotation_deg instead for another one"},
-    {"views.up", "", "the world's +z points upwards in the image; state rotation_deg instead for another one"},
     // rows end
     // clang-format on
 };

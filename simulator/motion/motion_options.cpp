@@ -20,14 +20,17 @@ constexpr double kLargestEntry = 1e10;  // of a pose: seconds, metres or a quate
 
 /// The keys stand beside those of the position, not in a section of their own.
 void describe_orientation(config::Fields& fields, PresetOrientation& options) {
-  const bool has_target = fields.reading() ? fields.has("look_at") : options.look_at.has_value();
+  const bool has_target =
+      fields.reading() ? fields.has("look_at") || fields.has("up") : options.look_at.has_value();
   if (has_target) {
     fields
         .value("look_at", options.look_at,
-               "Point in the world that stays at the principal point, in metres; the world's +z "
-               "points upwards in the image.")
+               "Point in the world that stays at the principal point, in metres.")
         .range(-kFarthest_m, kFarthest_m)
         .required();
+    fields.value("up", options.up, "Direction in the world that points upwards in the image.")
+        .range(-kFarthest_m, kFarthest_m);
+    fields.expect(options.up.norm() > 0, "up", "must not be zero");
     fields.expect(!fields.has("rotation_deg"), "rotation_deg", "cannot be combined with look_at");
   } else {
     fields
@@ -46,6 +49,9 @@ void describe_slider(config::Fields& fields, SliderOptions& options) {
       .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.direction.norm() > 0, "direction", "must not be zero");
   fields.value("distance_m", options.distance_m, "Length of the path, in metres.").at_least(0);
+  fields.choice("profile", options.profile,
+                {{"constant", SpeedProfile::kConstant}, {"smooth", SpeedProfile::kSmooth}},
+                "Speed over time: constant, or smooth, which starts and ends at rest.");
   describe_orientation(fields, options.orientation);
 }
 
@@ -54,7 +60,12 @@ void describe_circle(config::Fields& fields, CircleOptions& options) {
       .range(-kFarthest_m, kFarthest_m);
   fields.value("normal", options.normal, "Normal of the plane of the circle.")
       .range(-kFarthest_m, kFarthest_m);
+  fields.value("start", options.start, "Direction from the centre to the first position.")
+      .range(-kFarthest_m, kFarthest_m);
   fields.expect(options.normal.norm() > 0, "normal", "must not be zero");
+  fields.expect(options.normal.cross(options.start).norm() >
+                    1e-6 * options.normal.norm() * options.start.norm(),
+                "start", "must not be parallel to the normal");
   fields.value("radius_m", options.radius_m, "Radius of the circle, in metres.").above(0);
   fields
       .value("revolutions", options.revolutions,
@@ -106,6 +117,10 @@ void describe_shake(config::Fields& fields, ShakeOptions& options) {
              "Largest angular velocities about the axes of the camera, in rad/s; with the "
              "amplitudes they fix the frequencies.")
       .above(0);
+  fields
+      .value("translation_amplitude_m", options.translation_amplitude_m,
+             "Amplitudes of the translation along x, y and z, in metres.")
+      .at_least(0);
   describe_orientation(fields, options.orientation);
 }
 

@@ -25,11 +25,11 @@ void describe(config::Fields& fields, TransformOptions& options);
 
 /// Orientation of the camera (x right, y down, z forward): a fixed rotation
 ///   world_from_camera = Rz Ry Rx
-/// or towards a point with the world's +z upwards in the image. [-90, 0, 0] degrees looks level
-/// along +y.
+/// or towards a point with `up` upwards in the image. [-90, 0, 0] degrees looks level along +y.
 struct PresetOrientation {
   Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> look_at;  ///< [m], instead of rotation_deg
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// A waypoint by hand.
@@ -39,19 +39,26 @@ struct ViewOptions {
   PresetOrientation orientation;
 };
 
-/// Along a straight line at constant speed.
+enum class SpeedProfile {
+  kConstant,
+  kSmooth,  ///< from rest to rest with the least jerk
+};
+
+/// Along a straight line.
 struct SliderOptions {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();        ///< [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of any length > 0
   double distance_m = 1;
+  SpeedProfile profile = SpeedProfile::kConstant;
   PresetOrientation orientation;
 };
 
-/// At constant speed around `centre` in the plane across `normal`, counter-clockwise seen from the
-/// normal's tip. It starts in the direction of the world's x, or of y where the normal is along x.
+/// At constant speed around `centre` in the plane across `normal`, from the direction `start` on,
+/// counter-clockwise seen from the normal's tip.
 struct CircleOptions {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d start = Eigen::Vector3d::UnitX();
   double radius_m = 1;
   double revolutions = 1;
   PresetOrientation orientation;
@@ -73,12 +80,13 @@ struct LissajousOptions {
 };
 
 /// Mostly rotation, as when a hand trembles: about each camera axis a sine with this amplitude and
-/// greatest rate, which fix its frequency. The translation is a tremor of 1 cm (presets.cpp).
+/// greatest rate, which fix its frequency.
 struct ShakeOptions {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   PresetOrientation orientation;
   Eigen::Vector3d rotation_amplitude_deg{5, 5, 5};
   Eigen::Vector3d peak_rate_rad_s{2, 1.6, 1.2};  ///< > 0
+  Eigen::Vector3d translation_amplitude_m{0.01, 0.01, 0.01};
 };
 
 /// Smooth random motion about a pose: on every axis a sum of sines with random frequencies within

@@ -32,7 +32,12 @@ Vector3d oscillate(const Oscillation& o, double t) {
 Preset slider(const SliderOptions& o, double duration_s) {
   const Vector3d path = o.distance_m * o.direction.normalized();
   return {[o, path, duration_s](double t) -> Rigid3 {
-            const Vector3d position = o.from + t / duration_s * path;
+            double s = t / duration_s;
+            if (o.profile == SpeedProfile::kSmooth) {
+              s = std::clamp(s, 0.0, 1.0);
+              s = s * s * s * (10 + s * (-15 + 6 * s));
+            }
+            const Vector3d position = o.from + s * path;
             return {orientation_at(o.orientation, position), position};
           },
           duration_s};
@@ -40,11 +45,7 @@ Preset slider(const SliderOptions& o, double duration_s) {
 
 Preset circle(const CircleOptions& o, double duration_s) {
   const Vector3d normal = o.normal.normalized();
-  constexpr double kNearlyParallel = 1e-6;
-  const Vector3d start = normal.cross(Vector3d::UnitX()).norm() > kNearlyParallel
-                             ? Vector3d::UnitX()
-                             : Vector3d::UnitY();
-  const Vector3d x = (start - start.dot(normal) * normal).normalized();
+  const Vector3d x = (o.start - o.start.dot(normal) * normal).normalized();
   const Vector3d y = normal.cross(x);
   const double rate = kTurn * o.revolutions / duration_s;
   return {[o, x, y, rate](double t) -> Rigid3 {
@@ -71,7 +72,7 @@ Preset shake(const ShakeOptions& o) {
   LissajousOptions sines{
       .centre = o.position, .orientation = o.orientation, .position = {}, .rotation = {}};
   // Frequencies of a hand's tremor, without a common period.
-  sines.position = {Vector3d::Constant(0.01), {3.1, 2.3, 1.7}, Vector3d::Zero()};
+  sines.position = {o.translation_amplitude_m, Vector3d(3.1, 2.3, 1.7), Vector3d::Zero()};
   sines.rotation.amplitude = o.rotation_amplitude_deg;
   // The rate of a sin(w t) is at most a w.
   const Vector3d amplitude = kDegree * o.rotation_amplitude_deg;
@@ -133,9 +134,9 @@ Eigen::Quaterniond orientation_at(const PresetOrientation& options, const Vector
   if (forward.norm() < kNearlyZero)
     throw InputError("look_at", "the camera itself passes through this point");
   const Vector3d z = forward.normalized();
-  const Vector3d across = z.cross(Vector3d::UnitZ());
+  const Vector3d across = z.cross(options.up.normalized());
   if (across.norm() < kNearlyZero)
-    throw InputError("look_at", "the camera looks straight up or down; state rotation_deg instead");
+    throw InputError("up", "the camera looks along this direction; another one must be up");
   const Vector3d x = across.normalized();
   Eigen::Matrix3d rotation;
   rotation << x, z.cross(x), z;

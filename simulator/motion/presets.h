@@ -16,7 +16,8 @@ struct Preset {
 /// The closed form behind a preset source. Throws InputError where a view direction is undefined.
 [[nodiscard]] Preset make_preset(const MotionOptions& options);
 
-/// The camera's rotation at `position`; throws InputError naming `look_at` where it is undefined.
+/// The camera's rotation at `position`; throws InputError naming `look_at` or `up` where it is
+/// undefined.
 [[nodiscard]] Eigen::Quaterniond orientation_at(const PresetOrientation& options,
                                                 const Eigen::Vector3d& position);
 

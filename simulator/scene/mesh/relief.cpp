@@ -16,12 +16,6 @@ constexpr double kMaxWaves = 2048;
 /// Who draws random numbers; the octaves of the swell follow from kSwell on.
 enum ReliefStream : std::uint64_t { kBend, kCrest, kSwell = 16 };
 
-// The shape of dunes, as wind from one side makes them.
-const Eigen::Vector2d kAcross(0.45, 1);    // from crest to crest; of any length
-constexpr double kRise = 0.58;             // fraction of a wavelength on the gentle side
-constexpr double kBend_m = 0.75;           // largest displacement of crests from straight lines
-constexpr double kBendWavelength_m = 2.6;  // of that displacement and of the crests' height
-
 /// A function of one variable and its derivative.
 struct Slope {
   double value, derivative;
@@ -32,12 +26,12 @@ Slope fade(double t) {
   return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
 }
 
-/// One period of a dune: up over the first kRise of it, down over the rest.
-Slope profile(double phase) {
+/// One period of a dune: up over the first `rise` of it, down over the rest.
+Slope profile(double phase, double rise) {
   const double t = phase - std::floor(phase);
-  const bool rising = t < kRise;
-  const double length = rising ? kRise : kRise - 1;
-  const Slope side = fade(rising ? t / kRise : (1 - t) / (1 - kRise));
+  const bool rising = t < rise;
+  const double length = rising ? rise : rise - 1;
+  const Slope side = fade(rising ? t / rise : (1 - t) / (1 - rise));
   return {side.value, side.derivative / length};
 }
 
@@ -75,9 +69,25 @@ void describe(config::Fields& fields, ReliefOptions& options) {
                 "height_m", dunes.height_m,
                 "Height of the highest crests above the troughs, in metres. 0 disables the dunes.")
             .at_least(0);
+        group
+            .value("across", dunes.across,
+                   "Direction from crest to crest; its length does not matter.")
+            .range(-1e6, 1e6);
+        group.expect(dunes.across[0] != 0 || dunes.across[1] != 0, "across", "must not be zero");
         group.value("wavelength_m", dunes.wavelength_m, "Distance from crest to crest, in metres.")
             .above(0);
         expect_few_waves(group, "wavelength_m", dunes.wavelength_m);
+        group.value("rise", dunes.rise, "Fraction of a wavelength on the gentle side of a dune.")
+            .range(0.05, 0.95);
+        group
+            .value("bend_m", dunes.bend_m,
+                   "Largest displacement of the crests from straight lines, in metres.")
+            .at_least(0);
+        group
+            .value("bend_wavelength_m", dunes.bend_wavelength_m,
+                   "Wavelength of that displacement and of the crests' height, in metres.")
+            .above(0);
+        expect_few_waves(group, "bend_wavelength_m", dunes.bend_wavelength_m);
       },
       "Rows of dunes whose crests bend, rise and sink.");
   fields.group(
@@ -134,9 +144,9 @@ Elevation SmoothNoise::at(const Eigen::Vector2d& point) const {
 Relief::Relief(const ReliefOptions& options)
     : options_(checked(options)),
       size_(options.size_m[0], options.size_m[1]),
-      across_(kAcross.normalized()),
-      bend_(options.seed, kBend, size_, kBendWavelength_m),
-      crest_(options.seed, kCrest, size_, kBendWavelength_m) {
+      across_(Eigen::Vector2d(options.dunes.across[0], options.dunes.across[1]).normalized()),
+      bend_(options.seed, kBend, size_, options.dunes.bend_wavelength_m),
+      crest_(options.seed, kCrest, size_, options.dunes.bend_wavelength_m) {
   const auto& [shortest, longest] = options.swell.wavelength_m;
   double total = 0;
   for (double length = longest; length >= shortest; length /= 2) {
@@ -161,9 +171,9 @@ Elevation Relief::dunes(const Eigen::Vector2d& point) const {
   const auto& dunes = options_.dunes;
   const Elevation bend = bend_.at(point);
   const Elevation crest = crest_.at(point);
-  const double phase = (across_.dot(point) + kBend_m * bend.height) / dunes.wavelength_m;
-  const Eigen::Vector2d phase_slope = (across_ + kBend_m * bend.slope) / dunes.wavelength_m;
-  const Slope shape = profile(phase);
+  const double phase = (across_.dot(point) + dunes.bend_m * bend.height) / dunes.wavelength_m;
+  const Eigen::Vector2d phase_slope = (across_ + dunes.bend_m * bend.slope) / dunes.wavelength_m;
+  const Slope shape = profile(phase, dunes.rise);
   const double height = dunes.height_m * (0.75 + 0.25 * crest.height);
   return {height * shape.value, height * shape.derivative * phase_slope +
                                     0.25 * dunes.height_m * shape.value * crest.slope};

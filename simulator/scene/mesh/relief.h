@@ -28,7 +28,11 @@ struct ReliefOptions {
 
   struct Dunes {
     double height_m = 0.6;
+    std::array<double, 2> across{1, 0};  ///< direction from crest to crest; of any length > 0
     double wavelength_m = 3;
+    double rise = 0.65;
+    double bend_m = 0.8;
+    double bend_wavelength_m = 4;
   } dunes;
   struct Swell {
     double height_m = 0.3;

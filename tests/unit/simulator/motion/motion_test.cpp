@@ -86,11 +86,13 @@ TEST(Motion, ViewsLookAtAPointWithUpUpwards) {
       "source: waypoints\n"
       "views:\n"
       "  - {t_s: 0, position: [0, -2, 1], look_at: [0, 0, 1]}\n"
-      "  - {t_s: 2, position: [3, 0, 0], look_at: [3, 1, -1]}\n"
+      "  - {t_s: 2, position: [3, 0, 0], look_at: [3, 0, -1], up: [0, 1, 0]}\n"
       "  - {t_s: 4, position: [0, 0, 0], rotation_deg: [0, 10, 20]}\n");
   // Level along +y: the camera's x to the right is the world's x, its y down is -z.
   expect_pose(motion.pose(0), {0, -2, 1}, turned(-90, 0, 0));
-  expect_pose(motion.pose(2), {3, 0, 0}, turned(-135, 0, 0));
+  const Eigen::Quaterniond down = motion.pose(2).rotation();
+  EXPECT_LT((down * Vector3d::UnitZ() - Vector3d(0, 0, -1)).norm(), 1e-6);
+  EXPECT_LT((down * Vector3d::UnitY() - Vector3d(0, -1, 0)).norm(), 1e-6);
   expect_pose(motion.pose(4), {0, 0, 0}, turned(0, 10, 20));
 }
 
@@ -154,19 +156,24 @@ TEST(Motion, TransformScalesThenTurnsThenShifts) {
 
 // --- presets ---
 
-TEST(Motion, SliderMovesEvenly) {
-  const Spline constant = motion_of(
-      "source: slider\nfrom: [1, 0, 0]\ndirection: [0, 2, 0]\ndistance_m: 4\nduration_s: 2\n");
+TEST(Motion, SliderMovesEvenlyOrFromRestToRest) {
+  const std::string slider =
+      "source: slider\nfrom: [1, 0, 0]\ndirection: [0, 2, 0]\ndistance_m: 4\nduration_s: 2\n";
+  const Spline constant = motion_of(slider);
   EXPECT_EQ(constant.end_s(), 2);
   for (const double t : {0.0, 0.7, 2.0}) {
     expect_pose(constant.pose(t), {1, 2 * t, 0}, Eigen::Quaterniond::Identity());
     EXPECT_LT(constant.state(t).acceleration_in_world.norm(), 1e-6);
   }
+  const Spline smooth = motion_of(slider + "profile: smooth\n");
+  expect_pose(smooth.pose(1), {1, 2, 0}, Eigen::Quaterniond::Identity());
+  for (const double t : {0.0, 2.0}) EXPECT_LT(smooth.state(t).velocity_in_world.norm(), 1e-3);
+  EXPECT_NEAR(smooth.state(1).velocity_in_world.y(), 4.0 / 2 * 15 / 8, 1e-4);
 }
 
 TEST(Motion, CircleHasItsCentripetalAccelerationAlsoAtTheEnds) {
   const Spline motion = motion_of(
-      "source: circle\ncentre: [1, 2, 3]\nradius_m: 0.5\nnormal: [0, 0, 3]\n"
+      "source: circle\ncentre: [1, 2, 3]\nradius_m: 0.5\nnormal: [0, 0, 3]\nstart: [1, 0, 5]\n"
       "revolutions: 2\nduration_s: 4\nlook_at: [1, 2, 3]\n");
   const double w = std::numbers::pi;
   for (const double t : {0.0, 0.25, 1.7, 4.0}) {
@@ -294,7 +301,7 @@ TEST(Motion, BadPresetsNameTheKey) {
               AllOf(HasSubstr("a.yaml:2"), HasSubstr("radius_m"), HasSubstr("circle")));
   EXPECT_THAT(error_in("source: slider\nduration_s: 0\n"), HasSubstr("duration_s"));
   EXPECT_THAT(error_in("source: slider\ndirection: [0, 0, 0]\n"), HasSubstr("direction"));
-  EXPECT_THAT(error_in("source: circle\nnormal: [0, 0, 0]\n"), HasSubstr("normal"));
+  EXPECT_THAT(error_in("source: circle\nstart: [0, 0, 1]\n"), HasSubstr("start"));
   EXPECT_THAT(error_in("source: random_6dof\nfrequency_hz: [2, 1]\n"), HasSubstr("frequency_hz"));
   EXPECT_THAT(error_in("source: circle\nlook_at: [0, 0, 1]\nrotation_deg: [0, 0, 1]\n"),
               HasSubstr("cannot be combined with look_at"));

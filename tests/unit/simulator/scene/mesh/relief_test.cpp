@@ -136,6 +136,8 @@ TEST_F(ReliefFiles, MistakesAreErrorsWithTheirPlace) {
   fails("seed: 1\ntriangles: 1\n", "ground.relief.yaml:2: triangles");
   fails("triangles: 1e9\n", "triangles");
   fails("texture: none.png\n", "no such file");
+  fails("dunes: {across: [0, 0]}\n", "must not be zero");
+  fails("dunes: {rise: 1}\n", "dunes.rise");
   fails("swell: {wavelength_m: [2, 1]}\n", "must not fall");
   fails("swell: {wavelength_m: [1e-6, 1]}\n", "at most 2048 times");
   fails("dunes: {heigth_m: 1}\n", "did you mean 'height_m'");
