@@ -52,13 +52,13 @@ Scene scene(std::int64_t kind) {
   } else {
     builder.add(terrain(224, 0.1, 3), Eigen::Affine3d::Identity());
   }
-  LightOptions lamp;
+  LightOptions light;
   std::vector<LightOptions> lights;
   for (const double x : {-1.0, 0.0, 1.0}) {
-    lamp.position = {x, 0.3, 0.5};
-    lamps.push_back(lamp);
+    light.position = {x, 0.3, 0.5};
+    lights.push_back(light);
   }
-  if (kind == 2) builder.light(0.1, lamps);
+  if (kind == 2) builder.light(0.1, lights);
   return std::move(builder).build(Background(0.5));
 }
 
