@@ -362,7 +362,7 @@ constexpr FormerKey kFormerKeys[] = {
     {"thesis.match_sigma_px", "", "it is always 0.7 px (kMatchSigma_px)"},
     {"thesis.min_inlier_probability", "", "it is always 0.5 (kMinInlierProbability)"},
     {"thesis.patch_radius_px", "", "it is always 5 px (SearchOptions)"},
-    {"thesis.search", "", "it is always 5 px (SearchOptions)"},
+    {"thesis.search", "", "its options are constants (SearchOptions)"},
     {"thesis.search.iterations", "", "it is always 10 (SearchOptions)"},
     {"thesis.search.max_shift_px", "", "it is always 5 px (SearchOptions)"},
     {"thesis.search.min_alignment", "", "it is always 0.25 (SearchOptions)"},

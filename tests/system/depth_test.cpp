@@ -85,8 +85,8 @@ TEST_F(DepthCommand, RefusesWhatItCannotDo) {
                        path("nowhere.txt")}),
               HasSubstr("nowhere.txt"));
   EXPECT_THAT(refused({"run", "depth", "--data", path("walls"), "-o", path("no"), "--set",
-                       "thesis.search.iteration=3"}),
-              HasSubstr("iterations"));
+                       "window.duration=0.3"}),
+              HasSubstr("duration_s"));
   EXPECT_THAT(refused({"eval", "--depth", "a.exr", "--cloud", "b.ply", "--data", path("walls")}),
               HasSubstr("name one of"));
   EXPECT_THAT(refused({"eval", "--depth", path("none.exr"), "--data", path("walls")}),
