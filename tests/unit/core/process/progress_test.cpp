@@ -22,6 +22,7 @@ TEST(Progress, TextHoldsShareRateAndTimeLeft) {
 }
 
 TEST(Progress, LogsHoldOneLineForShortWork) {
+  set_progress_quiet(false);  // whatever ran before in this process
   ::testing::internal::CaptureStderr();
   {
     Progress progress("work", 4000, "steps");
