@@ -376,7 +376,7 @@ TEST(EdgeFallback, HandsOverThePoseOfItsLastFrame) {
 
 TEST(EdgeFallback, PosesThatDoNotFitAreLost) {
   EdgeFallback fallback(tracker_from(accurate()));
-  fallback.reset_near(0, corner_motion(0) * Rigid3(so3_exp({0, 3, 0}), {}));
+  fallback.reset_near(0, corner_motion(0) * Rigid3(so3_exp({0, 3, 0}), Eigen::Vector3d::Zero()));
   std::vector<TrackedPose> poses;
   TrackTiming timing;
   EXPECT_GT(fallback.follow(recording().events, poses, timing), 0U);

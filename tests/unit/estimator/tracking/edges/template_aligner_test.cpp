@@ -220,8 +220,8 @@ TEST(TemplateAligner, InformationIsOfTheOrderOfTheError) {
 TEST(TemplateAligner, TooFewVisiblePointsAreAStatus) {
   for (const bool sampled_hessian : {false, true}) {
     const Alignment alignment(options_with(500, 30, sampled_hessian));
-    for (const Rigid3& away :
-         {offset_of(0, 1000), Rigid3({1, 0, 0, 0}, {0, 0, -10}), Rigid3(so3_exp({0, 3, 0}), {})}) {
+    for (const Rigid3& away : {offset_of(0, 1000), Rigid3({1, 0, 0, 0}, {0, 0, -10}),
+                               Rigid3(so3_exp({0, 3, 0}), Eigen::Vector3d::Zero())}) {
       const AlignResult result = alignment.align(away);
       EXPECT_EQ(result.status, AlignStatus::kTooFewVisible);
       EXPECT_LT(result.visible_ratio, 0.3);
