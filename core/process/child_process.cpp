@@ -91,17 +91,6 @@ double largest_memory_mb(pid_t pid) {
   return largest;
 }
 
-/// "NAME=value" of this program's environment with `changes` in it.
-std::vector<std::string> environment_with(const std::map<std::string, std::string>& changes) {
-  std::vector<std::string> all;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string text = *entry;
-    if (!changes.contains(text.substr(0, text.find('=')))) all.push_back(text);
-  }
-  for (const auto& [name, value] : changes) all.push_back(name + "=" + value);
-  return all;
-}
-
 /// As the system wants a list of texts; valid as long as they are.
 std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -120,12 +109,11 @@ std::string ChildEnd::text() const {
 
 ChildProcess::ChildProcess(const std::filesystem::path& program,
                            const std::vector<std::string>& words, const std::filesystem::path& log,
-                           const ChildSettings& settings) {
+                           const std::filesystem::path& working_folder) {
   append(log, "$ " + shell_line(words) + "\n");
-  const std::vector<std::string> environment = environment_with(settings.environment);
-  const SpawnSetup setup(log, settings.working_folder);
+  const SpawnSetup setup(log, working_folder);
   const int error = posix_spawnp(&pid_, program.c_str(), &setup.files, &setup.attributes,
-                                 pointers_to(words).data(), pointers_to(environment).data());
+                                 pointers_to(words).data(), environ);
   if (error != 0)
     throw InputError(program.string(),
                      fmt::format("cannot be started: {}", std::generic_category().message(error)));

@@ -3,7 +3,6 @@
 #include <sys/types.h>
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,21 +23,15 @@ struct ChildEnd {
   [[nodiscard]] std::string text() const;
 };
 
-/// What a process gets that differs from what this program has.
-struct ChildSettings {
-  std::filesystem::path working_folder;            ///< empty: this program's
-  std::map<std::string, std::string> environment;  ///< added to this program's, or in its place
-};
-
 /// A program that runs beside this one, in a process group of its own, so that Ctrl-C in the
 /// terminal reaches it through stop() alone. It reads nothing.
 class ChildProcess {
  public:
   /// `program`: a file, or a name that is looked for in $PATH. `words`: what it is called and its
-  /// arguments. What it prints is appended to `log`, behind the words. Throws InputError when it
-  /// cannot be started or the log not be written.
+  /// arguments. What it prints is appended to `log`, behind the words. `working_folder`: empty is
+  /// this program's. Throws InputError when it cannot be started or the log not be written.
   ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& words,
-               const std::filesystem::path& log, const ChildSettings& settings = {});
+               const std::filesystem::path& log, const std::filesystem::path& working_folder = {});
   ~ChildProcess();  ///< kills what is still running
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;

@@ -1,5 +1,6 @@
 #include "estimator/depth/depth_config.h"
 
+#include <array>
 #include <span>
 
 #include "core/check.h"
@@ -50,21 +51,23 @@ constexpr DepthMethodRow kDepthMethods[] = {
      .make = make_sweep},
 };
 
-void describe_limits(config::Fields& fields, DepthLimits& limits) {
-  fields.value("near", limits.near_m, "Smallest depth that may occur, in metres.").range(1e-3, 1e6);
-  fields.value("far", limits.far_m, "Largest depth that may occur, in metres.").range(1e-3, 1e6);
-  fields.expect(limits.near_m < limits.far_m, "near", "must be below far");
-}
-
 }  // namespace
+
+void describe_depth_range(config::Fields& fields, DepthLimits& limits, std::string_view help) {
+  std::array<double, 2> range{limits.near_m, limits.far_m};
+  fields.value("depth_range_m", range, help).range(1e-3, 1e6);
+  fields.expect(range[0] < range[1], "depth_range_m", "the first depth must be below the second");
+  limits.near_m = range[0];
+  limits.far_m = range[1];
+}
 
 void describe(config::Fields& fields, DepthConfig& config) {
   config::describe_method(fields, "method", config.method,
                           std::span<const DepthMethodRow>(kDepthMethods), config,
                           "Method that estimates depth.");
-  fields.group(
-      "range_m", [&](config::Fields& f) { describe_limits(f, config.limits); },
-      "Depths that may occur; a wide range costs time and lets more wrong depths through.");
+  describe_depth_range(fields, config.limits,
+                       "Nearest and farthest depth that may occur, in metres. A wide range costs "
+                       "time and lets more wrong depths through.");
   fields.group(
       "window", [&](config::Fields& f) { describe(f, config.window); },
       "Part of the events from which one view is estimated.");

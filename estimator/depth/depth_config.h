@@ -32,6 +32,9 @@ struct DepthConfig {
 
 void describe(config::Fields& fields, DepthConfig& config);
 
+/// Describes the key `depth_range_m`, a list of two depths.
+void describe_depth_range(config::Fields& fields, DepthLimits& limits, std::string_view help);
+
 /// The method that the configuration names. `camera` with its lens; `mean_depth_m` of the scene, >
 /// 0.
 [[nodiscard]] std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,

@@ -13,7 +13,7 @@ void describe_trajectory(config::Fields& fields, TrajectoryFormat& format) {
   fields.choice("columns", format.columns, {{"tum", Columns::kTum}, {"euroc", Columns::kEuroc}},
                 "Order of the columns: t x y z qx qy qz qw (`tum`) or t x y z qw qx qy qz "
                 "(`euroc`).");
-  fields.choice("time_unit", format.time_unit,
+  fields.choice("timestamp_unit", format.timestamp_unit,
                 {{"s", StampUnit::kSeconds},
                  {"ms", StampUnit::kMilliseconds},
                  {"us", StampUnit::kMicroseconds},
@@ -49,7 +49,7 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
   fields.choice("events", config.events, formats,
                 "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout "
                 "of DSEC (`h5`, `hdf5`), or lines t,x,y,p (`csv`).");
-  fields.choice("time_unit", config.event_unit,
+  fields.choice("timestamp_unit", config.event_unit,
                 {{"us", StampUnit::kMicroseconds}, {"ns", StampUnit::kNanoseconds}},
                 "Time unit of h5 and csv.");
 }
@@ -64,17 +64,19 @@ void describe(config::Fields& fields, AdapterConfig& config) {
                "Command that prints the version of the program. Empty: none.");
   fields.value("files", config.files,
                "Further placeholders and the files that they stand for, relative to the adapter.");
-  fields.value("environment", config.environment,
-               "Environment variables of the program, with placeholders.");
   fields.group(
       "input", [&](config::Fields& input) { describe_input(input, config); },
       "Events that the program receives.");
-  fields
-      .value("groundtruth_start_s", config.groundtruth_start_s,
-             "Duration of the ground-truth poses that the program receives, from the first event "
-             "on, in "
-             "seconds. 0 gives none.")
-      .at_least(0);
+  fields.group(
+      "start",
+      [&](config::Fields& start) {
+        start
+            .value("truth_s", config.truth_s,
+                   "How long poses of the ground truth are given, in seconds from the first event "
+                   "on. 0 gives none.")
+            .range(0, 1e3);
+      },
+      "What the program is given at the start.");
   fields.group(
       "output", [&](config::Fields& output) { describe_output(output, config.output); },
       "Results that the program leaves in {out}.");
@@ -89,10 +91,6 @@ void describe(config::Fields& fields, AdapterConfig& config) {
         key == std::string("command") ? config.command : config.version_command;
     const std::string problem = placeholder_problem(text, config);
     fields.expect(problem.empty(), key, problem);
-  }
-  for (const auto& [name, value] : config.environment) {
-    const std::string problem = placeholder_problem(value, config);
-    fields.expect(problem.empty(), "environment", "." + name + " " + problem);
   }
 }
 

@@ -21,7 +21,7 @@ struct TrajectoryFormat {
 
   std::string file = "trajectory.txt";
   Columns columns = Columns::kTum;
-  StampUnit time_unit = StampUnit::kSeconds;
+  StampUnit timestamp_unit = StampUnit::kSeconds;
   Convention poses = Convention::kWorldFromCamera;
   double time_offset_s = 0;
 };
@@ -38,10 +38,9 @@ struct AdapterConfig {
   std::string command;
   std::string version_command;
   std::map<std::string, std::filesystem::path> files;  ///< by placeholder
-  std::map<std::string, std::string> environment;
-  std::string events = "txt";  ///< ending of the file
+  std::string events = "txt";                          ///< ending of the file
   StampUnit event_unit = StampUnit::kMicroseconds;
-  double groundtruth_start_s = 0;
+  double truth_s = 0;  ///< of the poses that are given at the start
   AdapterOutput output;
   double timeout_s = 3600;
   std::uint64_t seed = 1;

@@ -56,8 +56,8 @@ std::string placeholder_problem(std::string_view text, const AdapterConfig& conf
     if (std::find(names.begin(), names.end(), name) == names.end())
       problem = fmt::format("holds the unknown placeholder '{{{}}}'; {}", name,
                             config::suggestion(std::string(name), names, "placeholders"));
-    else if (name == "groundtruth_start" && !(config.groundtruth_start_s > 0))
-      problem = "holds {groundtruth_start}, which needs groundtruth_start_s above 0";
+    else if (name == "groundtruth_start" && !(config.truth_s > 0))
+      problem = "holds {groundtruth_start}, which needs start.truth_s above 0";
   };
   if (!split_template(
           text, [](std::string_view) {}, check) &&

@@ -19,14 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the adapter hands {name} to the program.
-bool uses_placeholder_of(const AdapterConfig& config, std::string_view name) {
-  const auto uses = [&](const std::string& text) { return uses_placeholder(text, name); };
-  return uses(config.command) ||
-         std::any_of(config.environment.begin(), config.environment.end(),
-                     [&](const auto& variable) { return uses(variable.second); });
-}
-
 /// `t,x,y,p` below a line with these names, times in the unit, p 0 or 1.
 void write_events_csv(const fs::path& file, std::span<const Event> events, StampUnit unit) {
   const TimeNs ns_per_unit = unit == StampUnit::kNanoseconds ? 1 : 1000;
@@ -67,18 +59,18 @@ void write_imu_window(const fs::path& file, const Dataset& dataset,
 
 }  // namespace
 
-Trajectory groundtruth_start(const Dataset& dataset, double from_s, double groundtruth_start_s) {
+Trajectory groundtruth_start(const Dataset& dataset, double from_s, double truth_s) {
   std::vector<StampedPose> start;
   for (const StampedPose& pose : dataset.groundtruth().poses()) {
-    if (pose.t_s > from_s + groundtruth_start_s) break;
+    if (pose.t_s > from_s + truth_s) break;
     if (pose.t_s <= from_s) start.clear();
     start.push_back(pose);
   }
   if (start.empty())
     throw InputError(dataset.folder().string(),
                      fmt::format("groundtruth.txt holds no pose of the first {:.4g} s, which "
-                                 "groundtruth_start_s asks for",
-                                 groundtruth_start_s));
+                                 "start.truth_s asks for",
+                                 truth_s));
   return Trajectory(std::move(start));
 }
 
@@ -105,12 +97,12 @@ ExternalInput write_external_input(const fs::path& folder, const AdapterConfig& 
                   {"threads", std::to_string(request.threads)},
                   {"width", std::to_string(camera.width)},
                   {"height", std::to_string(camera.height)}};
-  if (uses_placeholder_of(config, "imu")) {
+  if (uses_placeholder(config.command, "imu")) {
     write_imu_window(folder / "imu.txt", dataset, window);
     input.values["imu"] = folder / "imu.txt";
   }
-  if (config.groundtruth_start_s > 0) {
-    const Trajectory start = groundtruth_start(dataset, first_s, config.groundtruth_start_s);
+  if (config.truth_s > 0) {
+    const Trajectory start = groundtruth_start(dataset, first_s, config.truth_s);
     write_tum_trajectory(folder / "groundtruth.txt", start.poses());
     input.values["groundtruth_start"] = folder / "groundtruth.txt";
     window.start_s = std::max(window.start_s, start.end_s());

@@ -20,10 +20,9 @@ struct ExternalInput {
   RunRecord::Window window;  ///< to be scored: after the given true poses
 };
 
-/// The true poses from `from_s` to `from_s + groundtruth_start_s`, and the one before. Throws
+/// The true poses from `from_s` to `from_s + truth_s`, and the one before. Throws
 /// InputError where there is none.
-[[nodiscard]] Trajectory groundtruth_start(const Dataset& dataset, double from_s,
-                                           double groundtruth_start_s);
+[[nodiscard]] Trajectory groundtruth_start(const Dataset& dataset, double from_s, double truth_s);
 
 /// Writes events and calibration into `folder`, and what else the adapter's placeholders ask for: the
 /// start of the ground truth, inertial samples. Times are those of the dataset. The folder contains

@@ -30,8 +30,6 @@ ExternalCall call_of(const AdapterConfig& config, const std::string& command,
                      const Placeholders& values, const fs::path& run) {
   ExternalCall call;
   call.words = substituted_words(command, values);
-  for (const auto& [name, value] : config.environment)
-    call.environment[name] = substituted(value, values);
   call.working_folder = run / "output";
   call.log = run / "log.txt";
   call.timeout_s = config.timeout_s;

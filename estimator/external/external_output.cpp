@@ -27,7 +27,7 @@ bool is_column_names(std::string_view line) {
 }
 
 double stamp_of(TextRow& row, const TrajectoryFormat& format) {
-  switch (format.time_unit) {
+  switch (format.timestamp_unit) {
     case StampUnit::kSeconds:
       return row.number("t") + format.time_offset_s;
     case StampUnit::kMilliseconds:

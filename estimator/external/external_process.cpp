@@ -54,8 +54,7 @@ Clock::time_point after(double seconds) {
 ExternalEnd run_external_program(const ExternalCall& call) {
   const InterruptGuard interrupt;
   const Clock::time_point start = Clock::now();
-  ChildProcess process(call.words.front(), call.words, call.log,
-                       {call.working_folder, call.environment});
+  ChildProcess process(call.words.front(), call.words, call.log, call.working_folder);
   ExternalEnd result;
   double seen_mb = 0;
   std::optional<ChildEnd> end = wait_until(process, after(call.timeout_s), &interrupt, seen_mb);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,6 @@ namespace saccade {
 /// One call of an external program.
 struct ExternalCall {
   std::vector<std::string> words;  ///< program and arguments
-  std::map<std::string, std::string> environment;
   std::filesystem::path working_folder;
   std::filesystem::path log;  ///< its output is appended
   double timeout_s = 3600;

@@ -11,7 +11,9 @@ namespace saccade {
 struct GyroscopeNoise {
   double density = 1e-3;      ///< [rad/s/sqrt(Hz)]
   double random_walk = 2e-5;  ///< [rad/s^2/sqrt(Hz)]
-  double bias_sigma = 0.1;    ///< of one component of the bias at the start [rad/s]
+  /// Of one component of the bias at the start [rad/s]: some degrees per second, the zero-rate
+  /// offset of a consumer gyroscope. The first rest replaces it.
+  double bias_sigma = 0.1;
 };
 
 /// The bias of a gyroscope, measured while the sensor is at rest (thesis 3.1.3), window by window:

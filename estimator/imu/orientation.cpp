@@ -37,19 +37,15 @@ std::vector<ImuOrientation> run(Filter filter, std::span<const ImuSample> sample
 
 void describe(config::Fields& fields, GyroscopeNoise& noise) {
   fields
-      .value("noise_density", noise.density,
+      .value("gyro_noise_density", noise.density,
              "Density of the white noise of the angular velocity, in rad/s/sqrt(Hz) (Kalibr's "
              "gyroscope_noise_density).")
       .range(1e-9, 10);
   fields
-      .value("random_walk", noise.random_walk,
+      .value("gyro_random_walk", noise.random_walk,
              "Random walk of the bias, in rad/s^2/sqrt(Hz) (Kalibr's gyroscope_random_walk). 0 "
              "keeps the bias constant.")
       .range(0, 10);
-  fields
-      .value("bias_sigma", noise.bias_sigma,
-             "Standard deviation of one component of the bias at the start, in rad/s.")
-      .range(1e-9, 10);
 }
 
 void describe(config::Fields& fields, OrientationOptions& options) {
@@ -71,8 +67,7 @@ void describe(config::Fields& fields, OrientationOptions& options) {
         .range(1e-3, 1000);
   if (options.method == Method::kComplementary)
     describe_complementary(fields, options.complementary);
-  if (options.method != Method::kGyroscope)
-    fields.section("gyroscope", options.gyroscope, "Noise of the gyroscope.");
+  if (options.method != Method::kGyroscope) describe(fields, options.gyroscope);
 }
 
 std::vector<ImuOrientation> estimate_orientations(std::span<const ImuSample> samples,

@@ -105,17 +105,22 @@ void describe(config::Fields& fields, StabilizeConfig& config) {
   fields.section("orientation", config.orientation,
                  "Orientation from the inertial sensor. Not used with --poses-from.");
   fields
-      .value("smoothing_time_s", config.smoothing.time_constant_s,
+      .value("time_constant_s", config.smoothing.time_constant_s,
              "Time constant of the low-pass filter of the steady orientation, in seconds. Larger "
              "values remove slower motion; 0.4 corresponds to the thesis's 0.1 per frame (3.18).")
       .range(1e-4, 1e6);
   fields.value("lock_roll", config.smoothing.lock_roll,
                "Keeps the rows of the stabilized image horizontal.");
-  fields
-      .value("window_s", config.window_s,
-             "Length of a window of events that are rotated to one steady orientation, in "
-             "seconds.")
-      .range(1e-4, 1e4);
+  fields.group(
+      "window",
+      [&](config::Fields& window) {
+        window
+            .value("duration_s", config.window_s,
+                   "Duration of a window, in seconds. Shorter windows follow the steady "
+                   "orientation more closely and hold fewer events.")
+            .range(1e-4, 1e4);
+      },
+      "Part of the events that is rotated to one steady orientation.");
   fields.value("seed", config.seed,
                "Seed of the run. It changes nothing here: no random numbers are drawn.");
 }

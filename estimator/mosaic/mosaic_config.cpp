@@ -5,26 +5,16 @@
 
 namespace saccade {
 
-void describe(config::Fields& fields, RateOffsetOptions& options) {
-  fields.value(
-      "estimate", options.estimate,
-      "Whether a constant error of the angular velocity, which a gyroscope's bias leaves, is "
-      "estimated by contrast maximisation and removed.");
-  fields
-      .value("max_rad_s", options.max_rad_s,
-             "Largest magnitude of a component of that error, in rad/s; larger values admit "
-             "panoramas that are sharp because they are too small.")
-      .range(1e-6, 100);
-}
-
 void describe(config::Fields& fields, MosaicConfig& config) {
   using Extent = MosaicConfig::Extent;
   fields.section("orientation", config.orientation,
                  "Orientation of the camera from the inertial sensor; not used with --poses-from.");
-  fields.section("rate_offset", config.rate_offset,
-                 "Constant error of the angular velocity, estimated from events.");
+  fields.value(
+      "estimate_rate_offset", config.estimate_rate_offset,
+      "Whether a constant error of the angular velocity, which a gyroscope's bias leaves, is "
+      "estimated by contrast maximisation and removed.");
   fields
-      .value("pixels_per_radian", config.pixels_per_radian,
+      .value("panorama_px_per_rad", config.panorama_px_per_rad,
              "Least resolution of the panorama, in pixels per radian; ~ takes the camera's focal "
              "length. Time and memory grow with its square.")
       .range(1, 10000);

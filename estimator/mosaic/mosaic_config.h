@@ -7,7 +7,6 @@
 #include "core/config/fields.h"
 #include "estimator/imu/orientation.h"
 #include "estimator/mosaic/mosaic.h"
-#include "estimator/mosaic/rate_offset.h"
 
 namespace saccade {
 
@@ -19,9 +18,9 @@ struct MosaicConfig {
   };
 
   OrientationOptions orientation;
-  RateOffsetOptions rate_offset;
+  bool estimate_rate_offset = false;
   MosaicOptions mosaic;
-  std::optional<double> pixels_per_radian;  ///< nullopt: that of the sensor's middle
+  std::optional<double> panorama_px_per_rad;  ///< nullopt: that of the sensor's middle
   Extent extent = Extent::kSwept;
   std::optional<double> contrast_on;  ///< nullopt: the dataset's
   std::optional<double> contrast_off;

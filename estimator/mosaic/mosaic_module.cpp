@@ -52,7 +52,7 @@ struct MosaicRun {
 };
 
 double resolution_of(const PinholeCamera& camera, const MosaicConfig& config) {
-  return config.pixels_per_radian.value_or(std::max(camera.fx, camera.fy));
+  return config.panorama_px_per_rad.value_or(std::max(camera.fx, camera.fy));
 }
 
 Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
@@ -68,8 +68,8 @@ Panorama panorama_of(const PinholeCamera& camera, const Trajectory& poses,
 Trajectory corrected(const Trajectory& world_from_camera, std::span<const Event> events,
                      const MosaicSource& source, const PinholeCamera& camera,
                      const MosaicConfig& config) {
-  const Eigen::Vector3d rate = sharpest_rate_offset(
-      events, camera, world_from_camera, resolution_of(camera, config), config.rate_offset);
+  const Eigen::Vector3d rate =
+      sharpest_rate_offset(events, camera, world_from_camera, resolution_of(camera, config));
   const Trajectory without_offset =
       without_rate(world_from_camera, rate, seconds_from_ns(events.front().t_ns));
   return source.imu ? gravity_aligned(without_offset, *source.imu) : without_offset;
@@ -93,7 +93,7 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset,
     if (run.events.empty())
       throw InputError(dataset.folder().string(),
                        "holds no events within the time of the orientations");
-    if (config.rate_offset.estimate) {
+    if (config.estimate_rate_offset) {
       const ScopedTimer clock(offset_s);
       poses = corrected(poses, run.events, source, dataset.camera(), config);
     }

@@ -17,9 +17,12 @@ namespace {
 
 /// Resolutions of the panorama, each half of the next.
 constexpr int kPyramidLevels = 3;
+/// Bound on a component of the error [rad/s], twice the bias of a consumer gyroscope: a panorama
+/// that collapses is sharp, too.
+constexpr double kMaxRateOffset = 0.2;
 
-Events subsampled(std::span<const Event> events, int most) {
-  const std::size_t every = events.size() / static_cast<std::size_t>(most) + 1;
+Events subsampled(std::span<const Event> events, std::size_t most) {
+  const std::size_t every = events.size() / most + 1;
   Events sample;
   for (std::size_t i = 0; i < events.size(); i += every) sample.push_back(events[i]);
   return sample;
@@ -60,8 +63,7 @@ class PanoramaContrast {
 
 /// Maximises along the three axes by parabolas through points at distance `step`, which shrinks where
 /// nothing improves.
-Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate, double step,
-                         double most) {
+Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate, double step) {
   constexpr int kMaxIterations = 40;
   const double least = step / 16;
   double here = contrast(rate);
@@ -70,7 +72,8 @@ Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate,
     for (std::size_t k = 0; k < moves.size(); ++k) {
       const auto axis = static_cast<int>(k / 2);
       const double to = rate[axis] + (k % 2 == 0 ? step : -step);
-      moves[k] = (std::clamp(to, -most, most) - rate[axis]) * Eigen::Vector3d::Unit(axis);
+      moves[k] = (std::clamp(to, -kMaxRateOffset, kMaxRateOffset) - rate[axis]) *
+                 Eigen::Vector3d::Unit(axis);
     }
     std::array<double, 6> values{};
     parallel_for(values.size(), [&](std::size_t k) { values[k] = contrast(rate + moves[k]); });
@@ -81,7 +84,7 @@ Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate,
       const double curvature = up + down - 2 * here;
       const double top = curvature < 0 ? (down - up) / (2 * curvature) : (up > down ? 2.0 : -2.0);
       const double to = rate[axis] + step * std::clamp(top, -2.0, 2.0);
-      move[axis] = std::clamp(to, -most, most) - rate[axis];
+      move[axis] = std::clamp(to, -kMaxRateOffset, kMaxRateOffset) - rate[axis];
     }
     const double there = contrast(rate + move);
     const auto best = std::max_element(values.begin(), values.end());
@@ -132,8 +135,8 @@ Trajectory without_rate(const Trajectory& world_from_camera, const Eigen::Vector
 
 Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events, const PinholeCamera& camera,
                                      const Trajectory& world_from_camera, double pixels_per_radian,
-                                     const RateOffsetOptions& options) {
-  const Events sample = subsampled(events, options.events);
+                                     std::size_t max_events) {
+  const Events sample = subsampled(events, max_events);
   const double duration_s =
       std::max(seconds_from_ns(sample.back().t_ns - sample.front().t_ns), 1e-3);
   const auto orientations = orientations_of(world_from_camera, events);
@@ -143,8 +146,7 @@ Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events, const Pinhol
         panorama_around(FieldOfView(camera), orientations, pixels_per_radian / (1 << level));
     // One pixel between the first and the last event.
     const double step = 1 / (panorama.pixels_per_radian() * duration_s);
-    rate = maximise(PanoramaContrast(sample, camera, world_from_camera, panorama), rate, step,
-                    options.max_rad_s);
+    rate = maximise(PanoramaContrast(sample, camera, world_from_camera, panorama), rate, step);
   }
   return rate;
 }

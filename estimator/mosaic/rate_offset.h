@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -10,12 +11,6 @@
 #include "core/trajectory.h"
 
 namespace saccade {
-
-struct RateOffsetOptions {
-  bool estimate = false;
-  int events = 100000;     ///< size of the sample of events, evenly taken
-  double max_rad_s = 0.2;  ///< of a component: a panorama that collapses is sharp, too
-};
 
 /// Orientations at the first event, at the last one and every ms in between; at least one event.
 [[nodiscard]] std::vector<Eigen::Matrix3d> orientations_of(const Trajectory& world_from_camera,
@@ -30,11 +25,12 @@ struct RateOffsetOptions {
 /// that maximises the contrast of all events in a panorama,
 ///   max over b of  sum_x H(x; b)^2,   H the image of events in the panorama of without_rate(b)
 /// (Gallego, Rebecq and Scaramuzza, CVPR 2018), from coarse panoramas to the one of
-/// `pixels_per_radian`. `events` lie within the time of the orientations, at least one.
+/// `pixels_per_radian`. `events` lie within the time of the orientations, at least one; a sample of
+/// `max_events` of them is used, evenly taken.
 [[nodiscard]] Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events,
                                                    const PinholeCamera& camera,
                                                    const Trajectory& world_from_camera,
                                                    double pixels_per_radian,
-                                                   const RateOffsetOptions& options);
+                                                   std::size_t max_events = 100000);
 
 }  // namespace saccade

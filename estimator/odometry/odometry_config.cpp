@@ -13,7 +13,7 @@ void describe_start(config::Fields& fields, StartOptions& options) {
       .range(0, 1e3);
   if (options.truth_s == 0) {
     fields
-        .value("depth_m", options.found.depth_m,
+        .value("initial_depth_m", options.found.depth_m,
                "The typical depth of the scene at the start, in metres: events alone do not "
                "determine the scale, so this value defines it.")
         .above(0);
@@ -106,29 +106,12 @@ void describe_adjustment(config::Fields& fields, MappingOptions& options) {
       .range(1, 1000);
 }
 
-void describe_range(config::Fields& fields, DepthLimits& limits) {
-  fields
-      .value("near", limits.near_m,
-             "Smallest depth that may occur, in metres, or, without given poses, in the unit of "
-             "start.depth_m.")
-      .range(1e-3, 1e6);
-  fields.value("far", limits.far_m, "Largest depth that may occur, in the same unit.")
-      .range(1e-3, 1e6);
-  fields.expect(limits.near_m < limits.far_m, "near", "must be below far");
-}
-
 /// What odometry lets a user set of the options of depth and tracking.
 void describe_parts(config::Fields& fields, OdometryOptions& options) {
   using config::Fields;
-  MappingOptions& mapping = options.mapping;
-  fields.group(
-      "depth",
-      [&](Fields& f) {
-        f.group(
-            "range_m", [&](Fields& range) { describe_range(range, mapping.depth.limits); },
-            "Depths that may occur.");
-      },
-      "Depth of keyframes.");
+  describe_depth_range(fields, options.mapping.depth.limits,
+                       "Nearest and farthest depth that may occur at a keyframe, in metres, or, "
+                       "without given poses, in the unit of start.initial_depth_m.");
   fields.group(
       "tracking",
       [&](Fields& f) {
@@ -173,22 +156,9 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                 {{"offline", OdometryMode::kOffline}, {"online", OdometryMode::kOnline}},
                 "Whether tracking waits for keyframes, so that the result is the same on any "
                 "machine, or events are played at the pace of their recording.");
-  if (odometry.mode == OdometryMode::kOnline)
-    fields
-        .value("max_age_ms", odometry.max_age_ms,
-               "Age of the events of a frame, in milliseconds, above which all that have arrived "
-               "are dropped. Larger values drop less and lag more.")
-        .above(0);
   fields.group(
       "keyframe", [&](Fields& f) { describe_keyframe(f, odometry.keyframe); },
       "When keyframes are made, and how many make up the map.");
-  fields.choice(
-      "relocation", odometry.relocation,
-      {{"never", Relocation::kNever},
-       {"lost", Relocation::kLost},
-       {"inconsistent", Relocation::kInconsistent}},
-      "When the camera is searched for at the keyframes: never, when tracking is lost, or "
-      "also when the events are much less consistent with the map than usual.");
   fields.group(
       "mapping", [&](Fields& f) { describe_mapping(f, odometry.mapping); },
       "What a keyframe is made of.");

@@ -196,6 +196,10 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
 RunSummary run_odometry(const RunRequest& request) {
   OdometryConfig config = config::read<OdometryConfig>(request.config);
   if (request.seed) config.seed = *request.seed;
+  return run_odometry(request, config);
+}
+
+RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config) {
   check(request);
   RunWriter writer(request);
 

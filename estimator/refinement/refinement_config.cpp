@@ -32,16 +32,26 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
             "whose thresholds differ between pixels they drift.")
         .range(2, 1e9);
   } else {
-    fields
-        .value("window_events", options.window_events,
-               "Events of the window over which the brightness increments of an image are summed. "
-               "Larger windows make fewer images.")
-        .range(100, 1e9);
+    fields.group(
+        "window",
+        [&](config::Fields& window) {
+          window
+              .value("events", options.window_events,
+                     "Events over which the brightness increments of an image are summed. More "
+                     "events make fewer images.")
+              .range(100, 1e9);
+        },
+        "Part of the events that makes one image of brightness increments.");
   }
   fields
-      .value("contrast", config.contrast,
-             "Contrast threshold of the events, in units of log intensity; ~ takes the run's, or "
-             "else the dataset's.")
+      .value("contrast_on", config.contrast_on,
+             "Contrast threshold of ON events, in log units; ~ takes the run's, or else the "
+             "dataset's.")
+      .range(1e-3, 10);
+  fields
+      .value("contrast_off", config.contrast_off,
+             "Contrast threshold of OFF events, in log units; ~ takes the run's, or else the "
+             "dataset's.")
       .range(1e-3, 10);
   fields
       .value(
@@ -54,15 +64,20 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
 void describe_joint(config::Fields& fields, RefinementConfig& config) {
   BatchAdjustmentOptions& options = config.joint;
   fields
-      .value("smoothing_s", options.smoothing_s,
+      .value("knot_spacing_s", options.smoothing_s,
              "Spacing of the knots of the spline that smooths the given path, in seconds. Smaller "
              "follows faster motion; larger removes more of the path's jitter.")
       .range(1e-3, 10);
-  fields
-      .value("window_s", options.window_s,
-             "Length of the window of events around each keyframe in which its edges are found, in "
-             "seconds. Longer windows overlap more and so reduce drift.")
-      .range(1e-3, 100);
+  fields.group(
+      "window",
+      [&](config::Fields& window) {
+        window
+            .value("duration_s", options.window_s,
+                   "Duration of the window, in seconds. Longer windows overlap more and so reduce "
+                   "drift.")
+            .range(1e-3, 100);
+      },
+      "Part of the events around each keyframe in which its edges are found.");
   fields
       .value("edges", options.edges,
              "The most edges of a keyframe that are adjusted. More reduce drift and take longer.")

@@ -19,7 +19,8 @@ namespace saccade {
 struct RefinementConfig {
   std::string method = "of_run";  ///< a row of refinement_methods()
   PoseRefinementOptions poses;
-  std::optional<double> contrast;  ///< C [log units]; default: the run's, else the dataset's
+  /// [log units]; default: the run's, else the dataset's.
+  std::optional<double> contrast_on, contrast_off;
   BatchAdjustmentOptions joint;
   std::uint64_t seed = 1;
 };

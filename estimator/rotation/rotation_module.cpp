@@ -131,11 +131,17 @@ void describe(config::Fields& fields, RotationConfig& config) {
                 "(`events`), the gyroscope less its estimated bias (`imu`), or the fusion of "
                 "both by their variances (`both`).");
   if (config.method != Method::kImu) {
-    fields
-        .value("window_events", config.events.window_events,
-               "Number of events per window, about two per pixel of the sensor. Larger windows "
-               "average more noise, but the rotation may change too much within them.")
-        .range(100, 1e8);
+    fields.group(
+        "window",
+        [&](config::Fields& window) {
+          window
+              .value("events", config.events.window_events,
+                     "Number of events per window, about two per pixel of the sensor. Larger "
+                     "windows average more noise, but the rotation may change too much within "
+                     "them.")
+              .range(100, 1e8);
+        },
+        "Part of the events that gives one angular velocity.");
   }
   if (config.method == Method::kImu) {
     fields.section("orientation", config.orientation,
@@ -146,8 +152,7 @@ void describe(config::Fields& fields, RotationConfig& config) {
                "sample.")
         .range(0, 10);
   }
-  if (config.method == Method::kBoth)
-    fields.section("gyroscope", config.gyroscope, "Noise of the gyroscope.");
+  if (config.method == Method::kBoth) describe(fields, config.gyroscope);
   fields.value("seed", config.seed,
                "Seed of the run. It changes nothing here: no random numbers are drawn.");
 }

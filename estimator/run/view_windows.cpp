@@ -10,7 +10,6 @@
 namespace saccade {
 namespace {
 
-using By = ViewWindowOptions::By;
 using Reference = ViewWindowOptions::Reference;
 
 /// Of the frame nearest to the middle and within; the middle without one.
@@ -43,18 +42,16 @@ double reference_time(Reference reference, const std::vector<StampedFile>& frame
 }  // namespace
 
 void describe(config::Fields& fields, ViewWindowOptions& options) {
-  fields.choice("by", options.by, {{"time", By::kTime}, {"events", By::kEvents}},
-                "Quantity that is equal in all windows: their duration or their number of events.");
-  if (options.by == By::kTime)
-    fields
-        .value("duration_s", options.duration_s,
-               "Longest duration of a window, in seconds; all windows are equally long.")
-        .range(1e-4, 1e5);
-  if (options.by == By::kEvents)
-    fields
-        .value("events", options.events,
-               "Largest number of events of a window; all windows hold equally many.")
-        .range(100, 1e9);
+  fields
+      .value("duration_s", options.duration_s,
+             "Longest duration of a window, in seconds; all windows are equally long. It does not "
+             "count where `events` is stated.")
+      .range(1e-4, 1e5);
+  fields
+      .value("events", options.events,
+             "Largest number of events of a window; all windows hold equally many. ~ cuts by "
+             "duration instead.")
+      .range(100, 1e9);
   fields.choice(
       "reference", options.reference,
       {{"start", Reference::kStart},
@@ -79,8 +76,8 @@ std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Traject
   const double start_s = seconds_from_ns(events.front().t_ns);
   const double length_s = seconds_from_ns(events.back().t_ns) - start_s;
   const auto size = static_cast<double>(events.size());
-  const bool by_time = options.by == By::kTime;
-  const double pieces = by_time ? length_s / options.duration_s : size / options.events;
+  const bool by_time = !options.events;
+  const double pieces = by_time ? length_s / options.duration_s : size / *options.events;
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(pieces - 1e-9)));
   std::size_t begin = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,12 +14,10 @@ namespace saccade {
 
 /// How the events of a run are cut into windows, one view each.
 struct ViewWindowOptions {
-  enum class By { kTime, kEvents };
   enum class Reference { kStart, kMiddle, kEnd, kFrame };
 
-  By by = By::kTime;
-  double duration_s = 0.4;  ///< of kTime
-  int events = 200000;      ///< of kEvents
+  double duration_s = 0.4;    ///< without `events`
+  std::optional<int> events;  ///< in each; nullopt: all windows are equally long
   /// kFrame: the middle where no frame lies within the window.
   Reference reference = Reference::kStart;
 };

@@ -16,7 +16,7 @@ void describe_gyroscope(config::Fields& fields, MotionModelOptions& options) {
              "reading.")
       .range(-10, 10);
   fields
-      .value("gyro_offset_s", options.gyro_offset_s,
+      .value("time_offset_s", options.time_offset_s,
              "True time of a reading of the gyroscope minus its time stamp, in seconds.")
       .range(-1, 1);
 }
@@ -44,7 +44,7 @@ void describe(config::Fields& fields, MotionModelOptions& options) {
 Gyroscope load_gyroscope(const MotionModelOptions& options, const Dataset& dataset) {
   if (options.prediction != MotionModelOptions::Prediction::kImu) return {};
   ImuInput imu = load_imu_input(dataset, "motion.prediction: imu");
-  for (ImuSample& sample : imu.samples) sample.t_ns += ns_from_seconds(options.gyro_offset_s);
+  for (ImuSample& sample : imu.samples) sample.t_ns += ns_from_seconds(options.time_offset_s);
   return {imu.samples, imu.camera_from_imu, options.gyro_bias};
 }
 

@@ -24,7 +24,7 @@ struct MotionModelOptions {
   double acceleration_per_speed = 0;
   double gyro_sigma = 0.05;                             ///< of a reading, its bias included [rad/s]
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< sensor frame [rad/s]
-  double gyro_offset_s = 0;
+  double time_offset_s = 0;
 };
 
 void describe(config::Fields& fields, MotionModelOptions& options);

@@ -56,9 +56,14 @@ void describe_edge_method(config::Fields& fields, TrackConfig& config) {
 void describe_intensity_method(config::Fields& fields, TrackConfig& config) {
   describe(fields, config.intensity);
   fields
-      .value("contrast", config.contrast,
-             "Contrast threshold of both polarities in log units; ~ takes the dataset's. An error "
-             "of a few percent costs accuracy, see the sweep tracking_contrast.")
+      .value(
+          "contrast_on", config.contrast_on,
+          "Contrast threshold of ON events in log units; ~ takes the dataset's. An error of a few "
+          "percent costs accuracy, see the sweep tracking_contrast.")
+      .above(0);
+  fields
+      .value("contrast_off", config.contrast_off,
+             "Contrast threshold of OFF events in log units; ~ takes the dataset's.")
       .above(0);
 }
 

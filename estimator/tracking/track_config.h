@@ -28,7 +28,7 @@ struct TrackConfig {
   MotionModelOptions motion = edges.motion;
   IntensityOptions intensity;
   PolarityOptions polarity;
-  std::optional<double> contrast;  ///< [log units]; default: the dataset's
+  std::optional<double> contrast_on, contrast_off;  ///< [log units]; default: the dataset's
   /// tx ty tz qx qy qz qw, world from camera at the start; default: the ground truth.
   std::optional<std::array<double, 7>> initial_pose;
   std::uint64_t seed = 1;
@@ -53,7 +53,7 @@ struct TrackMethod {
   void (*describe)(config::Fields&, TrackConfig&) = nullptr;
   std::unique_ptr<Tracker> (*make)(const TrackConfig&, const TrackWorld&);
   bool takes_frames = false;      ///< the dataset's grey frames in place of its events
-  bool needs_contrast = false;    ///< contrast thresholds, from intensity.contrast or the dataset
+  bool needs_contrast = false;    ///< contrast thresholds, from the configuration or the dataset
   bool needs_prediction = false;  ///< motion.prediction: none is an error
   bool smooths_map = false;       ///< at its edges, by intensity.map_blur_px
   /// Abrupt at high speed, which carries a tracker through a shaken camera, and smooth at low speed;

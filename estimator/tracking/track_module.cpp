@@ -67,12 +67,14 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
 
 EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
   if (!method_of(config).needs_contrast) return {};
-  if (config.contrast) return {*config.contrast, *config.contrast};
   const DatasetFacts& facts = dataset.facts();
-  if (!facts.contrast_on || !facts.contrast_off)
+  const auto on = config.contrast_on ? config.contrast_on : facts.contrast_on;
+  const auto off = config.contrast_off ? config.contrast_off : facts.contrast_off;
+  if (!on || !off)
     throw InputError(dataset.folder().string(),
-                     "does not state its contrast thresholds; state intensity.contrast");
-  return {*facts.contrast_on, *facts.contrast_off};
+                     "does not state its contrast thresholds; state intensity.contrast_on and "
+                     "intensity.contrast_off");
+  return {*on, *off};
 }
 
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,

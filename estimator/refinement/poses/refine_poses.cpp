@@ -18,13 +18,15 @@ namespace {
 
 EventContrast contrast_of(const RefinementConfig& config, const TrackConfig& tracked,
                           const Dataset& dataset) {
-  if (config.contrast) return {*config.contrast, *config.contrast};
-  if (tracked.contrast) return {*tracked.contrast, *tracked.contrast};
   const DatasetFacts& facts = dataset.facts();
-  if (!facts.contrast_on || !facts.contrast_off)
+  std::optional<double> on = config.contrast_on, off = config.contrast_off;
+  if (!on) on = tracked.contrast_on ? tracked.contrast_on : facts.contrast_on;
+  if (!off) off = tracked.contrast_off ? tracked.contrast_off : facts.contrast_off;
+  if (!on || !off)
     throw InputError(dataset.folder().string(),
-                     "does not state its contrast thresholds; state poses.contrast");
-  return {*facts.contrast_on, *facts.contrast_off};
+                     "does not state its contrast thresholds; state poses.contrast_on and "
+                     "poses.contrast_off");
+  return {*on, *off};
 }
 
 /// The run's poses begin and end with the means of some events; the path reaches over all of them.

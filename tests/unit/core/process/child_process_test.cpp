@@ -54,11 +54,12 @@ TEST(ChildProcess, TellsItsMemoryAlone) {
   EXPECT_EQ(process.memory_mb(), 0);
 }
 
-TEST(ChildProcess, GetsItsFolderAndEnvironment) {
+TEST(ChildProcess, GetsItsFolderAndTheEnvironment) {
   const TemporaryFolder folder;
   const std::string log = folder.path() / "log";
-  ChildProcess process("sh", {"sh", "-c", "pwd; echo $COLOUR; test -n \"$PATH\""}, log,
-                       {folder.path(), {{"COLOUR", "green"}}});
+  ChildProcess process("env",
+                       {"env", "COLOUR=green", "sh", "-c", "pwd; echo $COLOUR; test -n \"$PATH\""},
+                       log, folder.path());
   EXPECT_EQ(end_of(process).exit_code, 0);
   EXPECT_THAT(read_file(log), HasSubstr("\n" + folder.path().string() + "\ngreen\n"));
 }

@@ -41,10 +41,12 @@ TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
 
 TEST(DepthConfig, ReadsWhatItPrints) {
   const std::string yaml =
-      "{window: {by: events, events: 5000, reference: end}, range_m: {near: 1, far: 9}, "
+      "{window: {events: 5000, reference: end}, depth_range_m: [1, 9], "
       "thesis: {initial_depth_m: 2, events_per_px: 0.1}, seed: 5}";
   const DepthConfig config = parsed(yaml);
   EXPECT_EQ(config.window.events, 5000);
+  EXPECT_EQ(config.limits.near_m, 1);
+  EXPECT_EQ(config.limits.far_m, 9);
   EXPECT_EQ(config.thesis.events_per_px, 0.1);
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parsed(printed)), printed);
@@ -54,9 +56,11 @@ TEST(DepthConfig, NamesWhatIsWrong) {
   const auto error = [](const std::string& yaml) { return error_of([&] { return parsed(yaml); }); };
   EXPECT_THAT(error("method: guess"), HasSubstr("t.yaml:1"));
   EXPECT_THAT(error("window: {duration_s: 0}"), HasSubstr("window.duration_s"));
-  EXPECT_THAT(error("window: {events: 100}"), HasSubstr("by: events"));
-  EXPECT_THAT(error("range_m: {near: 3, far: 2}"), HasSubstr("must be below far"));
-  EXPECT_THAT(error("range_m: {near: 0}"), HasSubstr("range_m.near"));
+  EXPECT_THAT(error("window: {events: 10}"), HasSubstr("window.events"));
+  EXPECT_THAT(error("window: {by: events}"), HasSubstr("window.events"));
+  EXPECT_THAT(error("depth_range_m: [3, 2]"), HasSubstr("must be below the second"));
+  EXPECT_THAT(error("depth_range_m: [0, 2]"), HasSubstr("depth_range_m"));
+  EXPECT_THAT(error("range_m: {near: 1}"), HasSubstr("depth_range_m"));
   EXPECT_THAT(error("thesis: {events_per_px: -1}"), HasSubstr("events_per_px"));
   EXPECT_THAT(error("thesis: {event_per_px: 3}"), HasSubstr("events_per_px"));
   EXPECT_THAT(error("thesis: {max_sigma: 0}"), HasSubstr("max_sigma"));

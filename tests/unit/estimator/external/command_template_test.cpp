@@ -31,8 +31,8 @@ TEST(AdapterConfig, NamesTheWrongPlaceholder) {
   EXPECT_THAT(error("{command: 'x {event}'}"), HasSubstr("did you mean 'events'?"));
   EXPECT_THAT(error("{command: 'x {nowhere_near}'}"), HasSubstr("valid placeholders: events"));
   EXPECT_THAT(error("{command: 'x {events'}"), HasSubstr("{{ or }}"));
-  EXPECT_THAT(error("{command: 'x {groundtruth_start}'}"), HasSubstr("groundtruth_start_s"));
-  EXPECT_THAT(error("{environment: {A: '{programm}'}, files: {program: x.py}}"),
+  EXPECT_THAT(error("{command: 'x {groundtruth_start}'}"), HasSubstr("start.truth_s"));
+  EXPECT_THAT(error("{command: 'env A={programm} x', files: {program: x.py}}"),
               HasSubstr("did you mean 'program'?"));
   EXPECT_THAT(error("{output: {trajectory: {columns: kitti}}}"), HasSubstr("tum"));
   EXPECT_EQ(error("{command: '{program} {events} {out}', files: {program: x.py}}"), "no error");

@@ -34,10 +34,13 @@ class External : public testing::SharedFolder<External> {
  protected:
   /// Runs `sh -c SCRIPT`; what run.yaml says.
   [[nodiscard]] RunRecord run(const std::string& script, const std::string& more = "") const {
+    return run_command("sh -c \"" + script + "\"", more);
+  }
+  [[nodiscard]] RunRecord run_command(const std::string& command, const std::string& more) const {
     set_progress_quiet(true);
     fs::remove_all(output());
     const RunRequest request =
-        testing::run_request(path("data"), output(), "command: sh -c \"" + script + "\"\n" + more);
+        testing::run_request(path("data"), output(), "command: " + command + "\n" + more);
     static_cast<void>(run_external(request));
     return read_run_record(output() / "run.yaml");
   }
@@ -67,7 +70,7 @@ TEST_F(External, HandsOverTheStartOfTheTruthAndScoresWhatFollows) {
   const RunRecord record =
       run("cp {groundtruth_start} {out}/trajectory.txt; ls {input} > {out}/listing; "
           "head -n 1 {events} > {out}/event; cp {calib} {out}",
-          "groundtruth_start_s: 0.05\ninput: {events: csv}\n");
+          "start: {truth_s: 0.05}\ninput: {events: csv}\n");
   const Trajectory truth = Dataset::open(path("data")).groundtruth();
   const Trajectory start = read_tum_trajectory(output() / "trajectory.txt");
   EXPECT_LT(start.size(), truth.size() / 2);
@@ -108,9 +111,9 @@ TEST_F(External, WhatCannotBeginIsAnError) {
   EXPECT_FALSE(fs::exists(path("none")));
 }
 
-TEST_F(External, AProgramGetsItsEnvironment) {
-  const RunRecord record = run("echo $WORKERS; exit 1", "environment: {WORKERS: '{threads}'}\n");
-  EXPECT_EQ(record.problem(), "crashed: exit code 1; log: 1");
+TEST_F(External, AProgramGetsItsEnvironmentByEnv) {
+  const RunRecord record = run_command("env SEED={seed} sh -c 'echo $SEED; exit 1'", "seed: 7\n");
+  EXPECT_EQ(record.problem(), "crashed: exit code 1; log: 7");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_F(ExternalTrajectory, ReadsTum) {
 TEST_F(ExternalTrajectory, ReadsEurocInNanosecondsWithColumnNames) {
   TrajectoryFormat format;
   format.columns = TrajectoryFormat::Columns::kEuroc;
-  format.time_unit = StampUnit::kNanoseconds;
+  format.timestamp_unit = StampUnit::kNanoseconds;
   format.time_offset_s = -1403636579;
   const auto poses =
       read("timestamp,x,y,z,qw,qx,qy,qz\n1403636579250000000,1,2,3,0.8,0,0.6,0\n", format);
@@ -47,7 +47,7 @@ TEST_F(ExternalTrajectory, ReadsEurocInNanosecondsWithColumnNames) {
 TEST_F(ExternalTrajectory, TurnsCameraFromWorldAround) {
   TrajectoryFormat format;
   format.poses = TrajectoryFormat::Convention::kCameraFromWorld;
-  format.time_unit = StampUnit::kMilliseconds;
+  format.timestamp_unit = StampUnit::kMilliseconds;
   const auto poses = read("250 1 2 3 0 0 0.6 0.8\n", format);
   EXPECT_DOUBLE_EQ(poses.at(0).t_s, 0.25);
   const Rigid3 given(Eigen::Quaterniond(0.8, 0, 0, 0.6), {1, 2, 3});

@@ -33,7 +33,7 @@ class StabilizeModule : public testing::SharedFolder<StabilizeModule> {
 
  protected:
   [[nodiscard]] static RunRequest request(const std::string& name,
-                                          const std::string& yaml = "window_s: 0.05") {
+                                          const std::string& yaml = "window: {duration_s: 0.05}") {
     return testing::run_request(path("corner"), path(name), yaml);
   }
 };

@@ -81,7 +81,7 @@ TEST_F(MosaicModule, TakesTheOrientationOfAnotherRun) {
 }
 
 TEST_F(MosaicModule, MayShowTheWholeSphere) {
-  (void)run_mosaic(request("sphere", "{extent: sphere, pixels_per_radian: 20}"));
+  (void)run_mosaic(request("sphere", "{extent: sphere, panorama_px_per_rad: 20}"));
   const Panorama panorama = read_panorama(path("sphere") / "mosaic.yaml");
   EXPECT_EQ(panorama, Panorama::sphere(panorama.around));
   EXPECT_GE(panorama.pixels_per_radian(), 20);
@@ -102,8 +102,8 @@ TEST_F(MosaicModule, NamesWhatIsMissing) {
   write_tum_trajectory(path("late.txt"), late);
   run.poses_from = path("late.txt");
   EXPECT_THAT(error_of([&] { return run_mosaic(run); }), HasSubstr("no events within the time"));
-  EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "pixels_per_radian: 0")); }),
-              HasSubstr("pixels_per_radian"));
+  EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "panorama_px_per_rad: 0")); }),
+              HasSubstr("panorama_px_per_rad"));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "snapshot_events: [5000, 0]")); }),
               HasSubstr("snapshot_events"));
   EXPECT_THAT(error_of([&] { return run_mosaic(request("none", "depth: {}")); }),

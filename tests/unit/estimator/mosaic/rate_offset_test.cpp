@@ -55,8 +55,7 @@ TEST(RateOffset, FindsTheBiasOfAGyroscope) {
   const Events events = world.simulate(swing, kEnd_s, 0.1);
   const Eigen::Vector3d bias(0.04, -0.03, 0.05);
   const Trajectory biased = without_rate(true_poses(), -bias, 0);
-  const Eigen::Vector3d found = sharpest_rate_offset(events, camera(), biased, camera().fx,
-                                                     {.estimate = true, .events = 30000});
+  const Eigen::Vector3d found = sharpest_rate_offset(events, camera(), biased, camera().fx, 30000);
   EXPECT_LT((found - bias).norm(), 0.2 * bias.norm()) << found.transpose();
 }
 

@@ -74,6 +74,10 @@ adjustment: {rounds: 0, edges: 500}
 tracking: {event_map_ratio: 0.2}
 )";
 
+OdometryConfig quick() {
+  return config::read<OdometryConfig>(config::parse(kQuick, "configuration"));
+}
+
 /// With the adjustment of every keyframe.
 std::string adjusted() {
   std::string yaml = kQuick;
@@ -258,13 +262,14 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
     events.insert(events.end(), some.begin(), some.end());
   }
   const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  std::string yaml = std::string(kQuick) + "relocation: inconsistent\n";
-  yaml.replace(yaml.find("ratio: 0.2"), 10, "ratio: 0.1");
-  RunRequest run = request("found", yaml);
+  OdometryConfig config = quick();
+  config.odometry.tracker.event_frame.event_map_ratio = 0.1;
+  config.odometry.relocation = Relocation::kInconsistent;
+  RunRequest run = request("found");
   run.dataset = folder_.path() / "leap";
   testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
                            poses_until(kEnd_s));
-  (void)run_odometry(run);
+  (void)run_odometry(run, config);
   EXPECT_THAT(read_file(run.output / "poses.csv"), HasSubstr("relocalised"));
   const CsvColumns poses(run.output / "poses.csv");
   const std::size_t t_s = poses.require("t_s");
@@ -277,8 +282,10 @@ TEST_F(OdometryModule, FindsTheCameraAgainAtAKeyframe) {
 }
 
 TEST_F(OdometryModule, OnlineItSaysHowLateItIsAndWhatItDropped) {
-  const RunSummary summary =
-      run_odometry(request("online", std::string("mode: online\nmax_age_ms: 1000\n") + kQuick));
+  OdometryConfig config = quick();
+  config.odometry.mode = OdometryMode::kOnline;
+  config.odometry.max_age_ms = 1000;
+  const RunSummary summary = run_odometry(request("online"), config);
   EXPECT_GT(summary.poses, 20U);
   const std::string timing = read_file(folder_.path() / "online" / "timing.json");
   EXPECT_THAT(timing, HasSubstr("\"latency_ms\": {\"median\""));
@@ -300,7 +307,8 @@ keyframe: {distance: 1}
 
 TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   std::string yaml = adjusted();
-  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33, "truth_s: 0, depth_m: 2.2");
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
+               "truth_s: 0, initial_depth_m: 2.2");
   const RunSummary summary = run_odometry(request("with", yaml));
   EXPECT_EQ(summary.lost_poses, 0U);
   fs::remove(dataset() / "groundtruth.txt");
@@ -315,12 +323,15 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
 }
 
 TEST_F(OdometryModule, TheMethodSetsTheDefaults) {
-  const auto printed = [](const std::string& yaml) {
-    return config::print_documented(
-        config::read<OdometryConfig>(config::parse(yaml, "configuration")));
+  const auto read = [](const std::string& yaml) {
+    return config::read<OdometryConfig>(config::parse(yaml, "configuration"));
+  };
+  const auto printed = [&](const std::string& yaml) {
+    return config::print_documented(read(yaml));
   };
   const std::string thesis = printed("method: thesis\nmapping: {events: 100000}\n");
-  EXPECT_THAT(thesis, HasSubstr("relocation: never"));
+  EXPECT_EQ(read(thesis).odometry.relocation, Relocation::kNever);
+  EXPECT_EQ(read("{}").odometry.relocation, Relocation::kLost);
   EXPECT_THAT(thesis, HasSubstr("events: 100000"));
   EXPECT_EQ(printed("{}"), printed("method: edges")) << "the default";
   EXPECT_THAT(printed("{}"), HasSubstr("active: 3"));

@@ -107,7 +107,8 @@ class RefinementModule : public testing::SharedFolder<RefinementModule> {
   }
 };
 
-constexpr const char* kPoses = "{method: poses, poses: {contrast: 0.12, events: 20000}}";
+constexpr const char* kPoses =
+    "{method: poses, poses: {contrast_on: 0.12, contrast_off: 0.12, events: 20000}}";
 
 TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
   const RunSummary summary = run_refinement(request("poses", kPoses));
@@ -129,8 +130,9 @@ TEST_F(RefinementModule, PosesOfATrackedRunBecomeBetter) {
 }
 
 TEST_F(RefinementModule, PosesByImagesOfEventsBecomeBetter) {
-  (void)run_refinement(
-      request("images", "{method: poses, poses: {contrast: 0.12, residual: frames, rounds: 1}}"));
+  (void)run_refinement(request("images",
+                               "{method: poses, poses: {contrast_on: 0.12, contrast_off: 0.12, "
+                               "residual: frames, rounds: 1}}"));
   const Errors before = errors_of(path("track"), sweep), after = errors_of(path("images"), sweep);
   EXPECT_LT(after.position_m, before.position_m);
   EXPECT_LT(after.rotation_rad, before.rotation_rad);
@@ -148,8 +150,8 @@ tracking: {event_map_ratio: 0.2}
   odometry.dataset = path("corner");
   odometry.from.reset();
   (void)run_odometry(odometry);
-  RunRequest joint =
-      request("joint", "{method: joint, joint: {window_s: 0.5, edges: 200, rounds: 1}}");
+  RunRequest joint = request(
+      "joint", "{method: joint, joint: {window: {duration_s: 0.5}, edges: 200, rounds: 1}}");
   joint.dataset = path("corner");
   joint.from = path("odometry");
   (void)run_refinement(joint);
@@ -174,7 +176,7 @@ TEST_F(RefinementModule, SaysWhatIsWrongWithTheRun) {
   };
   EXPECT_THAT(error(std::nullopt), HasSubstr("--from"));
   EXPECT_THAT(error(path("absent")), HasSubstr("absent"));
-  EXPECT_THAT(error(path("track"), "{}"), HasSubstr("poses.contrast"));
+  EXPECT_THAT(error(path("track"), "{}"), HasSubstr("poses.contrast_on"));
   EXPECT_THAT(error(path("track"), "{method: joint}"), HasSubstr("track"));
   const fs::path broken = path("broken");
   fs::copy(path("track"), broken);

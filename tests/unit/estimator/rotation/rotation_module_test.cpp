@@ -44,15 +44,15 @@ TEST_F(RotationModule, AveragesTheReadings) {
 
 TEST_F(RotationModule, BothFollowTheSensorOverAWindow) {
   // The corner also moves, which events alone take for a turn: the bias follows it.
-  EXPECT_LT(run("both", "{method: both, window_events: 4000}"), 2);
+  EXPECT_LT(run("both", "{method: both, window: {events: 4000}}"), 2);
 }
 
 TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
   EXPECT_THAT(
       error_of([] {
-        return config::read<RotationConfig>(config::parse("window_event: 2", "t.yaml")).seed;
+        return config::read<RotationConfig>(config::parse("window: {event: 200}", "t.yaml")).seed;
       }),
-      ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("window_events")));
+      ::testing::AllOf(HasSubstr("t.yaml:1"), HasSubstr("did you mean 'events'?")));
   EXPECT_THAT(error_of([] {
                 return config::read<RotationConfig>(config::parse("method: eyes", "t.yaml")).seed;
               }),
@@ -60,7 +60,7 @@ TEST_F(RotationModule, NamesWhatItDoesNotKnow) {
 }
 
 TEST_F(RotationModule, WindowsOfTooFewEventsSayNothing) {
-  const std::string yaml = "{window_events: 100}";
+  const std::string yaml = "{window: {events: 100}}";
   run_rotation(testing::run_request(path("corner"), path("still"), yaml));
   EXPECT_TRUE(read_angular_velocities(path("still") / "angular_velocity.txt").empty());
 }

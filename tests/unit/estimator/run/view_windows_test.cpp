@@ -5,7 +5,6 @@
 namespace saccade {
 namespace {
 
-using By = ViewWindowOptions::By;
 using Reference = ViewWindowOptions::Reference;
 
 Trajectory still(double start_s, double end_s) { return Trajectory({{start_s, {}}, {end_s, {}}}); }
@@ -20,8 +19,8 @@ Events stream(int count, TimeNs step_ns) {
 TEST(ViewWindows, HoldAllEventsOnceAndAreEven) {
   const Events events = stream(1001, 1'000'000);  // 1 s
   const Trajectory trajectory = still(0, 1);
-  for (const auto& options : {ViewWindowOptions{.by = By::kTime, .duration_s = 0.3},
-                              ViewWindowOptions{.by = By::kEvents, .events = 300}}) {
+  for (const auto& options :
+       {ViewWindowOptions{.duration_s = 0.3}, ViewWindowOptions{.events = 300}}) {
     const auto windows = cut_windows(events, trajectory, options);
     ASSERT_EQ(windows.size(), 4U);
     const Event* next = events.data();

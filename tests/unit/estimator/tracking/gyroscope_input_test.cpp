@@ -34,7 +34,7 @@ TEST(GyroscopeInput, ReadingsAreOfALaterTimeThanTheirStamps) {
     return load_gyroscope(options, dataset).mean_rate(50'000'000, 50'000'000).x();
   };
   EXPECT_NEAR(rate(), 0.5, 1e-9);
-  options.gyro_offset_s = 0.005;
+  options.time_offset_s = 0.005;
   EXPECT_NEAR(rate(), 0.45, 1e-9);
 }
 

@@ -44,7 +44,8 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   EXPECT_EQ(best.motion.acceleration_sigma_px, 300);
   EXPECT_EQ(best.motion.acceleration_per_speed, 6);
   EXPECT_EQ(best.reference.new_view_deg, 15);
-  EXPECT_FALSE(best.contrast) << "the dataset's";
+  EXPECT_FALSE(best.contrast_on) << "the dataset's";
+  EXPECT_FALSE(best.contrast_off) << "the dataset's";
   const auto polarity = config::read<TrackConfig>(config::load(folder + "polarity.yaml"));
   EXPECT_EQ(polarity.method, "polarity");
   EXPECT_EQ(polarity.polarity.events, 3000);
@@ -69,7 +70,8 @@ TEST(TrackConfig, PrintedConfigurationMeansTheSame) {
 TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
   const TrackConfig config = parse(
       "{method: intensity, reference: {new_view_deg: 7}, intensity: {events: 321, "
-      "map_blur_px: 0, contrast: 0.17}, motion: {acceleration_sigma_px: 3}}");
+      "map_blur_px: 0, contrast_on: 0.17, contrast_off: 0.18}, motion: {acceleration_sigma_px: "
+      "3}}");
   const std::string printed = config::print(config);
   EXPECT_EQ(config::print(parse(printed)), printed);
   const TrackConfig again = parse(printed);
@@ -77,7 +79,8 @@ TEST(TrackConfig, PrintedIntensityConfigurationMeansTheSame) {
   EXPECT_EQ(again.reference.new_view_deg, 7);
   EXPECT_EQ(again.intensity.events, 321);
   EXPECT_EQ(again.intensity.map_blur_px, 0);
-  EXPECT_EQ(again.contrast, 0.17);
+  EXPECT_EQ(again.contrast_on, 0.17);
+  EXPECT_EQ(again.contrast_off, 0.18);
   EXPECT_EQ(again.motion.acceleration_sigma_px, 3);
   EXPECT_EQ(again.motion.acceleration_per_speed, 6) << "of the method, without a key";
 }
@@ -111,8 +114,8 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{edges: {event_map_ratio: 0}}", "edges.event_map_ratio"},
       {"{edges: {event_window: slides}}", "edges.event_window"},
       {"{edges: {event_frame: surface}}", "edges.event_frame"},
-      {"{motion: {prediction: constant_velocity, gyro_offset_s: 0.1}}", "prediction: imu"},
-      {"{motion: {prediction: imu, gyro_offset_s: 2}}", "motion.gyro_offset_s"},
+      {"{motion: {prediction: constant_velocity, time_offset_s: 0.1}}", "prediction: imu"},
+      {"{motion: {prediction: imu, time_offset_s: 2}}", "motion.time_offset_s"},
       {"{motion: {prediction: none, acceleration_sigma_px: 100}}", "acceleration_sigma_px"},
       {"{reference: {planar_depth_m: 0}}", "reference.planar_depth_m"},
       {"{reference: {frame: -1}}", "reference.frame"},
@@ -126,7 +129,9 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
       {"{method: intensity, intensity: {correction_fraction: 1.5}}",
        "intensity.correction_fraction"},
-      {"{method: intensity, intensity: {contrast: 0}}", "intensity.contrast"},
+      {"{method: intensity, intensity: {contrast_on: 0}}", "intensity.contrast_on"},
+      {"{method: intensity, intensity: {contrast_off: 0}}", "intensity.contrast_off"},
+      {"{method: intensity, intensity: {contrast: 0.2}}", "intensity.contrast_on"},
       {"{intensity: {events: 500}}", "intensity"},
       {"{method: polarity, motion: {prediction: none}}", "polarity needs a motion.prediction"},
       {"{method: polarity, polarity: {events: 0}}", "polarity.events"},

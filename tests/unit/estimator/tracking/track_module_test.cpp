@@ -228,7 +228,7 @@ TEST_F(TrackModule, FollowsTheTrueMotionByLogIntensity) {
   const RunSummary summary = run_track(
       request("run",
               "{method: intensity, reference: {planar_depth_m: 1.5}, intensity: {events: 500, "
-              "contrast: 0.12}, motion: {prediction: constant_velocity}}"));
+              "contrast_on: 0.12, contrast_off: 0.12}, motion: {prediction: constant_velocity}}"));
   EXPECT_EQ(summary.poses, summary.events / 500);
   EXPECT_EQ(summary.lost_poses, 0U);
   const Trajectory trajectory = read_tum_trajectory(folder_.path() / "run/trajectory.txt");
@@ -253,7 +253,7 @@ TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
 
 TEST_F(TrackModule, WithoutContrastNamesTheCure) {
   EXPECT_THAT(error(request("run", "{method: intensity, reference: {planar_depth_m: 1.5}}")),
-              HasSubstr("intensity.contrast"));
+              HasSubstr("intensity.contrast_on"));
 }
 
 TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {
