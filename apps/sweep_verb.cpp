@@ -21,7 +21,7 @@ struct SweepVerbOptions {
   std::string file;
   std::filesystem::path output;
   std::string launcher = "local";
-  std::vector<std::string> slurm_options;  ///< after those of the file
+  SlurmOptions slurm;
   std::vector<std::string> overrides;
   std::vector<std::string> seeds;
   int threads = 0;  ///< 0: as the file states it
@@ -37,9 +37,7 @@ SweepConfig load(const SweepVerbOptions& options) {
   for (const std::string& seed : options.seeds) seeds += (seeds.empty() ? "" : ", ") + seed;
   if (!seeds.empty()) overrides.push_back("seeds=[" + seeds + "]");
   if (options.threads > 0) overrides.push_back(fmt::format("threads={}", options.threads));
-  auto sweep = config::read<SweepConfig>(config::load(options.file, overrides));
-  for (const std::string& option : options.slurm_options) sweep.slurm.options.push_back(option);
-  return sweep;
+  return config::read<SweepConfig>(config::load(options.file, overrides));
 }
 
 void show(const SweepVerbOptions& options, const SweepSummary& summary, bool generates) {
@@ -55,7 +53,7 @@ void sweep(const SweepVerbOptions& options) {
   set_progress_quiet(options.quiet);
   const SweepConfig config = load(options);
   const std::unique_ptr<Launcher> launcher =
-      make_launcher(options.launcher, {{}, options.output, config.slurm});
+      make_launcher(options.launcher, {{}, options.output, options.slurm});
   if (options.print_config) {
     fmt::print("{}", config::print_documented(config));
     return;
@@ -83,11 +81,20 @@ void sweep(const SweepVerbOptions& options) {
 void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
   verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm.")
       ->capture_default_str();
-  verb.add_option("--slurm-option", options.slurm_options,
+  verb.add_option("--slurm-option", options.slurm.options,
                   "Option for sbatch, e.g. --slurm-option=--partition=long (repeatable).")
       ->type_name("OPTION")
       ->take_all()
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->check([](const std::string& option) {
+        return option.starts_with('-') ? "" : "must be an option of sbatch, such as --account=NAME";
+      });
+  verb.add_option("--slurm-jobs-per-task", options.slurm.jobs_per_task,
+                  "Jobs that one task of a Slurm array runs one after another. More reduce Slurm's "
+                  "overhead for jobs of less than a second, and the parallelism.")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(whole_number(1, 10000));
   verb.add_option(
           "-j,--jobs", options.jobs,
           "Number of jobs at a time (default: as many as the cores allow; on Slurm, as many as it "

@@ -213,6 +213,12 @@ TEST(Sweep, RefusesWhatItCannotDo) {
   EXPECT_THAT(error({"sweep", sweep, "-o", note.parent_path()}), HasSubstr("no sweep"));
   EXPECT_THAT(error({"sweep", sweep, "-o", folder.path() / "out", "--launcher", "cloud"}),
               HasSubstr("valid launchers: local, slurm"));
+  EXPECT_THAT(error({"sweep", sweep, "-o", "x", "--slurm-option=partition=long"}),
+              HasSubstr("option of sbatch"));
+  EXPECT_THAT(error({"sweep", sweep, "-o", "x", "--slurm-jobs-per-task", "0"}),
+              HasSubstr("--slurm-jobs-per-task"));
+  EXPECT_THAT(error({"sweep", sweep, "-o", "x", "--set", "slurm.jobs_per_task=2"}),
+              HasSubstr("--slurm-jobs-per-task"));
   EXPECT_THAT(error({"sweep", sweep}), HasSubstr("-o DIR"));
   EXPECT_THAT(error({"sweep", sweep, "-o", "x", "--set", "repet=2"}),
               HasSubstr("did you mean 'repeat'?"));

@@ -236,7 +236,6 @@ void describe_execution(config::Fields& fields, SweepConfig& sweep) {
       .above(0);
   fields.value("metrics", sweep.metrics,
                "Keys of metrics.json that sweep.md and its charts show. Default: the usual ones.");
-  fields.section("slurm", sweep.slurm, "Resources of each job with --launcher slurm.");
   fields.list(
       "expected", sweep.expected,
       "Metrics that a benchmark must reach, each {configuration, datasets, metric, at_most, "

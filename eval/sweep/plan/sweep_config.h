@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/config/fields.h"
-#include "eval/sweep/launch/slurm_options.h"
 #include "eval/sweep/plan/generate.h"
 #include "eval/sweep/plan/settings.h"
 
@@ -70,7 +69,6 @@ struct SweepConfig {
   int threads = 1;
   std::optional<double> duration_s;
   std::vector<std::string> metrics;  ///< empty: the usual ones
-  SlurmOptions slurm;
   std::vector<ExpectedMetric> expected;
 
   [[nodiscard]] const std::vector<std::uint64_t>& seeds_of(
