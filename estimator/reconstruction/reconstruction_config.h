@@ -17,8 +17,9 @@ namespace saccade {
 /// The configuration of `saccade run reconstruct`; describe() names the keys, ranges and defaults.
 struct ReconstructionConfig : ImageMethodOptions {
   /// The whole as one view, at a grey frame that it can be compared with.
-  ViewWindowOptions window{
-      .duration_s = 3600, .events = 1000000, .reference = ViewWindowOptions::Reference::kFrame};
+  ViewWindowOptions window{.duration_s = 3600,
+                           .events = std::nullopt,
+                           .reference = ViewWindowOptions::Reference::kFrame};
   DepthSourceOptions depth;
   std::optional<double> contrast_on;  ///< nullopt: the dataset's
   std::optional<double> contrast_off;

@@ -20,7 +20,7 @@ TEST(ViewWindows, HoldAllEventsOnceAndAreEven) {
   const Events events = stream(1001, 1'000'000);  // 1 s
   const Trajectory trajectory = still(0, 1);
   for (const auto& options :
-       {ViewWindowOptions{.duration_s = 0.3}, ViewWindowOptions{.events = 300}}) {
+       {ViewWindowOptions{.duration_s = 0.3, .events = {}}, ViewWindowOptions{.events = 300}}) {
     const auto windows = cut_windows(events, trajectory, options);
     ASSERT_EQ(windows.size(), 4U);
     const Event* next = events.data();
@@ -38,7 +38,7 @@ TEST(ViewWindows, TheViewLiesWhereItIsAskedFor) {
   const Trajectory trajectory = still(0, 1);
   for (const auto& [reference, expected_s] :
        {std::pair{Reference::kStart, 0.0}, {Reference::kMiddle, 0.05}, {Reference::kEnd, 0.1}}) {
-    const auto windows = cut_windows(events, trajectory, {.reference = reference});
+    const auto windows = cut_windows(events, trajectory, {.events = {}, .reference = reference});
     ASSERT_EQ(windows.size(), 1U);
     EXPECT_NEAR(windows[0].reference_s, expected_s, 1e-12);
   }
@@ -48,7 +48,9 @@ TEST(ViewWindows, TheViewLiesAtTheFrameNearestToTheMiddle) {
   const Events events = stream(101, 1'000'000);
   const Trajectory trajectory = still(0, 1);
   const auto view_at = [&](const std::vector<StampedFile>& frames) {
-    return cut_windows(events, trajectory, {.reference = Reference::kFrame}, frames)[0].reference_s;
+    return cut_windows(events, trajectory, {.events = {}, .reference = Reference::kFrame},
+                       frames)[0]
+        .reference_s;
   };
   EXPECT_EQ(view_at({{0.01, ""}, {0.04, ""}, {0.07, ""}, {0.2, ""}}), 0.04);
   // One outside of the window is no place for its view.
@@ -60,7 +62,7 @@ TEST(ViewWindows, AStillCameraHasNoWindow) {
   Events events = stream(10, 1'000'000);
   for (int i = 0; i < 10; ++i) events.push_back({1'000'000'000 + i, 0, 0, 1});
   const Trajectory trajectory = still(0, 2);
-  EXPECT_EQ(cut_windows(events, trajectory, {.duration_s = 0.1}).size(), 2U);
+  EXPECT_EQ(cut_windows(events, trajectory, {.duration_s = 0.1, .events = {}}).size(), 2U);
   EXPECT_TRUE(cut_windows({}, trajectory, {}).empty());
 }
 
