@@ -3,7 +3,6 @@
 #include <chrono>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "core/config/config.h"
 #include "core/io/dataset/dataset_writer.h"

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <map>
 #include <sstream>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
-#include <span>
 
 #include "core/config/config.h"
 #include "core/error.h"

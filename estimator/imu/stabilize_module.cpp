@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/config/config.h"

@@ -11,7 +11,6 @@
 #include "core/io/run/run_record.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
-#include "core/stopwatch.h"
 #include "core/trajectory.h"
 #include "estimator/run/repeat.h"
 #include "estimator/run/run_request.h"

@@ -1,7 +1,6 @@
 #include "simulator/sensor/sample_times.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace saccade {
 

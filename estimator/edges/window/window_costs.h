@@ -3,8 +3,6 @@
 #include <array>
 #include <utility>
 
-#include <Eigen/Core>
-
 #include <ceres/sized_cost_function.h>
 
 #include "core/camera.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
