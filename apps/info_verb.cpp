@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/common_options.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "eval/describe.h"

@@ -1,7 +1,6 @@
 #include "core/camera.h"
 
 #include <cmath>
-#include <string>
 
 #include <Eigen/LU>
 

@@ -1,7 +1,6 @@
 #include "core/srgb.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace saccade {

@@ -6,7 +6,6 @@
 
 #include "core/image.h"
 #include "core/io/dataset/dataset.h"
-#include "core/rigid3.h"
 #include "eval/metrics/image_metrics.h"
 #include "eval/metrics/metrics.h"
 

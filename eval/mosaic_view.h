@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
-
-#include <Eigen/Core>
 
 #include "core/image.h"
 #include "core/panorama.h"

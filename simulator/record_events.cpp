@@ -5,6 +5,7 @@
 #include "core/io/events/labels_h5.h"
 #include "core/process/progress.h"
 #include "simulator/recording_loop.h"
+#include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/event_labels.h"
 #include "simulator/sensor/frame_camera.h"
 

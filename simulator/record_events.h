@@ -1,7 +1,6 @@
 #pragma once
 
 #include "simulator/camera_recording.h"
-#include "simulator/sensor/event_camera.h"
 
 namespace saccade {
 

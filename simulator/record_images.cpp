@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "core/io/images/exr_file.h"
 #include "core/panorama.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
-#include "simulator/sensor/image_renderer.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {

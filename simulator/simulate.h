@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/io/dataset/dataset_record.h"
-#include "simulator/sensor/event_tile.h"
+#include "simulator/sensor/rays/ray_tracer.h"
 #include "simulator/simulation_config.h"
 
 namespace saccade {

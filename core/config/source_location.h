@@ -21,12 +21,18 @@ struct SourceLocation {
   int line = 0;  ///< 1-based; 0 where a line means nothing
 
   /// "walls.yaml:12", "--set events.contrast_on", or "" without a source.
-  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string text() const {
+    if (!source) return {};
+    return line > 0 ? source->name + ":" + std::to_string(line) : source->name;
+  }
 };
 
 /// "walls.yaml:12: events.log_eps = 2 is above 1" with the separator " = "; where the location is a
 /// `--set` of this very key, it names the key already: "--set events.log_eps: 2 is above 1".
-[[nodiscard]] InputError error_at(const SourceLocation& location, const std::string& name,
-                                  const std::string& separator, const std::string& problem);
+[[nodiscard]] inline InputError error_at(const SourceLocation& location, const std::string& name,
+                                         const std::string& separator, const std::string& problem) {
+  const bool named = location.source && location.source->name == "--set " + name;
+  return {location.text(), named ? problem : name + separator + problem};
+}
 
 }  // namespace saccade::config

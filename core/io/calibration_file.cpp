@@ -5,7 +5,7 @@
 
 #include <array>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "core/config/convert.h"
 #include "core/config/document.h"

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/check.h"
 #include "core/error.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -11,7 +14,9 @@ namespace saccade {
 class BandedLeastSquares {
  public:
   /// `reach`: no row touches unknowns further than this apart. `right_sides`: columns of r and x.
-  BandedLeastSquares(Eigen::Index unknowns, Eigen::Index reach, Eigen::Index right_sides);
+  BandedLeastSquares(Eigen::Index unknowns, Eigen::Index reach, Eigen::Index right_sides)
+      : band_(Eigen::MatrixXd::Zero(reach + 1, unknowns)),
+        right_(Eigen::MatrixXd::Zero(unknowns, right_sides)) {}
 
   /// Adds rows over the unknowns first .. first + jacobian.cols() - 1; `residual`: rows x
   /// right_sides.
@@ -29,10 +34,37 @@ class BandedLeastSquares {
   }
 
   /// The solution, unknowns x right_sides; nullopt when the rows do not determine it. Call once.
-  [[nodiscard]] std::optional<Eigen::MatrixXd> solve();
+  [[nodiscard]] std::optional<Eigen::MatrixXd> solve() {
+    if (!factorize()) return std::nullopt;
+    const Eigen::Index n = band_.cols();
+    Eigen::MatrixXd x = std::move(right_);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      x.row(i) /= band_(0, i);
+      const Eigen::Index below = std::min(band_.rows() - 1, n - 1 - i);
+      for (Eigen::Index k = 1; k <= below; ++k) x.row(i + k) -= band_(k, i) * x.row(i);
+    }
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+      const Eigen::Index below = std::min(band_.rows() - 1, n - 1 - i);
+      for (Eigen::Index k = 1; k <= below; ++k) x.row(i) -= band_(k, i) * x.row(i + k);
+      x.row(i) /= band_(0, i);
+    }
+    return x;
+  }
 
  private:
-  [[nodiscard]] bool factorize();
+  [[nodiscard]] bool factorize() {
+    const Eigen::Index n = band_.cols();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!(band_(0, i) > 0)) return false;
+      const Eigen::Index below = std::min(band_.rows() - 1, n - 1 - i);
+      band_.col(i).head(below + 1) /= std::sqrt(band_(0, i));
+      for (Eigen::Index k = 1; k <= below; ++k) {
+        band_.col(i + k).head(below + 1 - k) -=
+            band_(k, i) * band_.col(i).segment(k, below + 1 - k);
+      }
+    }
+    return true;
+  }
 
   Eigen::MatrixXd band_;   ///< (reach + 1) x unknowns: (k, i) is the entry (i + k, i)
   Eigen::MatrixXd right_;  ///< unknowns x right_sides

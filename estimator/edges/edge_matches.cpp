@@ -1,7 +1,6 @@
 #include "estimator/edges/edge_matches.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/process/parallel.h"
 

@@ -2,8 +2,6 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
-#include <string_view>
 
 #include "core/io/dataset/dataset.h"
 #include "core/io/run/run_record.h"

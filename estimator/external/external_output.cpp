@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/event.h"
+#include "core/io/covariance_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
 #include "core/io/tables/text_table.h"

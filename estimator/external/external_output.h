@@ -1,10 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
-#include "core/io/covariance_file.h"
 #include "core/trajectory.h"
 #include "estimator/external/adapter_config.h"
 

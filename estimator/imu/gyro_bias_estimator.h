@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 #include "core/imu_sample.h"
@@ -23,16 +25,25 @@ struct GyroscopeNoise {
 /// rest so far, and later windows change it less and less.
 class GyroBiasEstimator {
  public:
-  explicit GyroBiasEstimator(const GyroscopeNoise& noise);
+  explicit GyroBiasEstimator(const GyroscopeNoise& noise)
+      : noise_(noise), rest_(noise.density), variance_(noise.bias_sigma * noise.bias_sigma) {}
 
   /// Adds a sample that holds for `dt_s` > 0.
-  void add(const ImuSample& sample, double dt_s);
+  void add(const ImuSample& sample, double dt_s) {
+    variance_ += noise_.random_walk * noise_.random_walk * dt_s;
+    const auto window = rest_.add(sample, dt_s, bias_, sigma());
+    if (!window) return;
+    const double mean_variance = noise_.density * noise_.density / window->length_s;
+    const double gain = variance_ / (variance_ + mean_variance);
+    bias_ += gain * (window->mean_rate - bias_);  // (3.17)
+    variance_ = (1 - gain) * (1 - gain) * variance_ + gain * gain * mean_variance;
+  }
 
   /// Discards the unfinished window, as after a gap.
   void interrupt() { rest_.interrupt(); }
 
   [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]
-  [[nodiscard]] double sigma() const;                                  ///< of one component [rad/s]
+  [[nodiscard]] double sigma() const { return std::sqrt(variance_); }  ///< of one component [rad/s]
   [[nodiscard]] bool is_at_rest() const { return rest_.is_at_rest(); }  ///< in the last window
 
  private:

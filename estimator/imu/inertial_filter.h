@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/event.h"
 #include "core/imu_sample.h"
 #include "estimator/imu/gyro_bias_estimator.h"
 

@@ -36,8 +36,13 @@ struct MosaicInput {
 /// The log intensity that a rotating camera observes, in all directions of the panorama: the rotation
 /// camera (thesis 3.4.1). It is image reconstruction with directions in place of reprojections by
 /// depth. Few events give a poor image, never an error.
-[[nodiscard]] Reconstruction make_mosaic(const MosaicInput& input, const Panorama& panorama,
-                                         const MosaicOptions& options,
-                                         const ProgressCallback& progress = {});
+[[nodiscard]] inline Reconstruction make_mosaic(const MosaicInput& input, const Panorama& panorama,
+                                                const MosaicOptions& options,
+                                                const ProgressCallback& progress = {}) {
+  const ReferenceGrid grid(panorama);
+  PanoramaObservations source(input.camera, panorama, input.thresholds, options.observations());
+  return make_image_solver(options)->solve(source, input.events, input.world_from_camera, grid,
+                                           progress);
+}
 
 }  // namespace saccade

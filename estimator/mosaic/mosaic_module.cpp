@@ -3,10 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/config/config.h"
 #include "core/error.h"

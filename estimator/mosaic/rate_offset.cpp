@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 #include "core/panorama.h"
 #include "core/process/parallel.h"

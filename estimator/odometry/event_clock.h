@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <thread>
 
 #include "core/event.h"
 
@@ -14,11 +15,16 @@ class EventClock {
   explicit EventClock(TimeNs first_ns) : first_ns_(first_ns), start_(Clock::now()) {}
 
   /// Sleeps until an event of this time has arrived.
-  void wait_for(TimeNs t_ns) const;
+  void wait_for(TimeNs t_ns) const { std::this_thread::sleep_until(arrival(t_ns)); }
   /// How long ago it arrived [ms]; below 0 for one that is yet to come.
-  [[nodiscard]] double age_ms(TimeNs t_ns) const;
+  [[nodiscard]] double age_ms(TimeNs t_ns) const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - arrival(t_ns)).count();
+  }
   /// The time of the events that arrive now.
-  [[nodiscard]] TimeNs now_ns() const;
+  [[nodiscard]] TimeNs now_ns() const {
+    return first_ns_ +
+           std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_).count();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -1,6 +1,5 @@
 #include "estimator/odometry/metric_world.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/check.h"

@@ -2,12 +2,11 @@
 
 #include <filesystem>
 #include <span>
-#include <vector>
 
 #include "core/io/covariance_file.h"
 #include "estimator/imu/inertial_alignment.h"
 #include "estimator/odometry/keyframe.h"
-#include "estimator/tracking/edges/edge_tracker.h"
+#include "estimator/tracking/tracker.h"
 
 namespace saccade {
 

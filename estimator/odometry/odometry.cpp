@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <future>
-#include <utility>
 
 #include "core/error.h"
 #include "core/process/parallel.h"

@@ -57,7 +57,15 @@ class ImageEstimator {
                  std::unique_ptr<ImageSolver> solver)
       : camera_(camera), options_(options), solver_(std::move(solver)) {}
   /// Thread-safe; the result depends on the window alone.
-  [[nodiscard]] Reconstruction reconstruct(const ReconstructionWindow& window) const;
+  [[nodiscard]] Reconstruction reconstruct(const ReconstructionWindow& window) const {
+    const Rigid3 world_from_reference = window.world_from_reference();
+    ImageF inverse_depth(camera_.width, camera_.height);
+    window.scene.draw(world_from_reference.inverse(), camera_.undistorted(), inverse_depth);
+    const ReferenceGrid grid(std::move(inverse_depth));
+    SurfaceObservations source(camera_, window.scene, world_from_reference, grid.inverse_depth(),
+                               window.thresholds, options_);
+    return solver_->solve(source, window.events, *window.trajectory, grid);
+  }
 
  private:
   PinholeCamera camera_;

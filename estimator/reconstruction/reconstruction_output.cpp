@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"
-#include "core/io/run/view_list.h"
 #include "core/process/parallel.h"
 
 namespace saccade {

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <cstdint>
 #include <map>
 
 #include "core/error.h"

@@ -2,8 +2,6 @@
 
 #include <span>
 
-#include <Eigen/Core>
-
 #include "core/camera.h"
 #include "core/event.h"
 #include "estimator/rotation/rotation_contrast.h"

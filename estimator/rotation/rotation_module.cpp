@@ -11,6 +11,7 @@
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/rotation/rate_fusion.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/gyroscope.h"
@@ -173,14 +174,8 @@ RunSummary run_rotation(const RunRequest& request) {
   timing.events = events.size();
   Rates rates;
   Progress progress("rotation", timing.events * static_cast<std::size_t>(request.repeat), "events");
-  for (int i = 0; i < request.repeat; ++i) {
-    double wall_s = 0;
-    {
-      const ScopedTimer clock(wall_s);
-      rates = find_rates(config, dataset.camera(), events, imu, progress);
-    }
-    timing.wall_s.push_back(wall_s);
-  }
+  repeat_timed(request.repeat, timing.wall_s,
+               [&] { rates = find_rates(config, dataset.camera(), events, imu, progress); });
   const double first_s = rates.empty() ? 0 : rates.front().t_s;
   const double last_s = rates.empty() ? 0 : rates.back().t_s;
   timing.sequence_s = last_s - first_s;

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <string_view>
 
-#include "core/check.h"
 #include "core/io/files/sha256.h"
 #include "core/median.h"
 #include "core/version.h"

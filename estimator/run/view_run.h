@@ -6,14 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include "core/check.h"
+#include "core/error.h"
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/run/run_record.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
-#include "core/stopwatch.h"
 #include "core/trajectory.h"
 #include "estimator/run/repeat.h"
+#include "estimator/run/run_input.h"
 #include "estimator/run/run_request.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_windows.h"
@@ -32,13 +34,33 @@ struct ViewInput {
 
 /// Loads poses and events; fills the timing's io_s, events and sequence_s. Throws InputError where
 /// poses are missing or no event lies within their time.
-[[nodiscard]] ViewInput load_view_input(const RunRequest& request, const Dataset& dataset,
-                                        RunTiming& timing);
+[[nodiscard]] inline ViewInput load_view_input(const RunRequest& request, const Dataset& dataset,
+                                               RunTiming& timing) {
+  const ScopedTimer clock(timing.io_s);
+  ViewInput input;
+  input.trajectory = load_poses(request, dataset);
+  input.loaded = load_events(request, dataset);
+  input.window = window_of(request, seconds_from_ns(input.loaded.front().t_ns),
+                           seconds_from_ns(input.loaded.back().t_ns));
+  const std::span<const Event> events = input.events();
+  if (events.empty())
+    throw InputError(dataset.folder().string(), "holds no events within the time of the poses");
+  timing.events = events.size();
+  timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
+  return input;
+}
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;
 
 /// Adds stages of the same names; a list that is empty takes the names over.
-void add_stages(StageSeconds& sums, const StageSeconds& stages);
+inline void add_stages(StageSeconds& sums, const StageSeconds& stages) {
+  if (sums.empty()) {
+    sums = stages;
+    return;
+  }
+  SACCADE_CHECK(sums.size() == stages.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].second += stages[i].second;
+}
 
 /// estimate(window) for every window, in parallel, `repeat` times; the last results, which state
 /// their `stages_s`. Fills the timing's wall_s and stages_s; with several threads the stages are

@@ -1,7 +1,6 @@
 #include "estimator/tracking/map_view.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "core/rigid3.h"
-#include "estimator/tracking/edges/edge_tracker.h"
 #include "estimator/tracking/map_extraction.h"
+#include "estimator/tracking/tracker.h"
 
 namespace saccade {
 

@@ -1,7 +1,5 @@
 #include "estimator/tracking/track_config.h"
 
-#include <utility>
-
 #include "estimator/tracking/frames/frame_tracker.h"
 
 namespace saccade {

@@ -4,8 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/image.h"
 #include "eval/metrics/depth_truth.h"
 #include "eval/metrics/metrics.h"
 

@@ -1,7 +1,5 @@
 #include "eval/metrics/sharpness.h"
 
-#include <cmath>
-
 #include "core/camera.h"
 #include "core/io/events/event_file.h"
 #include "core/process/parallel.h"

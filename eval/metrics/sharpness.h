@@ -5,7 +5,6 @@
 #include "core/image.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/stabilized_events.h"
-#include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
 
 namespace saccade {

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
 
+#include "core/check.h"
 #include "eval/metrics/metrics.h"
 
 namespace saccade {
@@ -18,13 +22,51 @@ struct Statistics {
 };
 
 /// `samples`: at least one.
-[[nodiscard]] Statistics statistics_of(std::span<const double> samples);
+[[nodiscard]] inline Statistics statistics_of(std::span<const double> samples) {
+  SACCADE_CHECK(!samples.empty());
+  const double n = static_cast<double>(samples.size());
+  Statistics result;
+  double sum = 0;
+  double sum_of_squares = 0;
+  result.max = samples.front();
+  for (const double sample : samples) {
+    sum += sample;
+    sum_of_squares += sample * sample;
+    result.max = std::max(result.max, sample);
+  }
+  result.mean = sum / n;
+  result.rmse = std::sqrt(sum_of_squares / n);
+  // A second pass: mean of squares minus square of the mean loses small sigmas to cancellation.
+  double squared_deviations = 0;
+  for (const double sample : samples)
+    squared_deviations += (sample - result.mean) * (sample - result.mean);
+  result.sigma = std::sqrt(squared_deviations / n);
+  return result;
+}
 
 /// 97.5 % quantile of Student's t with `freedom` >= 1 degrees of freedom, to 0.003: the 95 %
 /// interval of a mean of n values is mean +- student_95(n - 1) s / sqrt(n).
-[[nodiscard]] double student_95(std::size_t freedom);
+[[nodiscard]] inline double student_95(std::size_t freedom) {
+  SACCADE_CHECK(freedom >= 1);
+  constexpr std::array kFirst{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262};
+  if (freedom <= kFirst.size()) return kFirst[freedom - 1];
+  // Expansion about the normal distribution's quantile.
+  const auto n = static_cast<double>(freedom);
+  return 1.960 + 2.372 / n + 2.823 / (n * n);
+}
 
 /// Sets `key`.{mean,sigma,max,rmse}; all null where `samples` is empty.
-void set_statistics(Metrics& metrics, const std::string& key, std::span<const double> samples);
+inline void set_statistics(Metrics& metrics, const std::string& key,
+                           std::span<const double> samples) {
+  std::optional<Statistics> s;
+  if (!samples.empty()) s = statistics_of(samples);
+  const auto set = [&](const char* name, double Statistics::*member) {
+    metrics.set(key + "." + name, s ? std::optional(*s.*member) : std::nullopt);
+  };
+  set("mean", &Statistics::mean);
+  set("sigma", &Statistics::sigma);
+  set("max", &Statistics::max);
+  set("rmse", &Statistics::rmse);
+}
 
 }  // namespace saccade

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "core/image.h"
 #include "core/io/files/atomic_file.h"

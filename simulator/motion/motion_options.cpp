@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/config/fields.h"
-
 namespace saccade {
 namespace {
 

@@ -1,9 +1,7 @@
 #include "simulator/scene/scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/check.h"

@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "core/event.h"
 #include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/event_options.h"

@@ -1,7 +1,6 @@
 #include "tests/support/brute_force.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>

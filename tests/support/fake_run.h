@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "core/rigid3.h"
-
 namespace saccade::testing {
 
 /// Writes the dataset of corner_world() under corner_motion(): events, frames, depth maps and

@@ -7,7 +7,6 @@
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
-#include "core/srgb.h"
 #include "core/version.h"
 
 namespace saccade {

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "core/check.h"
 #include "core/io/tables/csv_file.h"
 #include "core/io/tables/csv_reader.h"
 #include "core/io/tables/h5_table.h"

@@ -1,5 +1,7 @@
 #include "core/io/files/file_list.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "core/io/files/atomic_file.h"

@@ -1,7 +1,6 @@
 #include "core/io/images/image_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>

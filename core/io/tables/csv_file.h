@@ -1,9 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 

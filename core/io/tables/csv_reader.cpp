@@ -2,6 +2,7 @@
 
 #include <fast_float/fast_float.h>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/io/tables/text_table.h"

@@ -59,10 +59,6 @@ class EventRays {
     [[nodiscard]] Eigen::Vector3f project(const Eigen::Vector2f& pixel, float rho) const {
       return pixel_from_reference * pixel.homogeneous() - rho * centre_term;
     }
-    /// d project / dt.
-    [[nodiscard]] Eigen::Vector3f project_rate(const Eigen::Vector2f& pixel, float rho) const {
-      return pixel_rate * pixel.homogeneous() - rho * centre_rate;
-    }
   };
 
   [[nodiscard]] std::size_t size() const { return line.size(); }

@@ -4,8 +4,6 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "estimator/depth/rays/ray_gatherer.h"
 
 namespace saccade {

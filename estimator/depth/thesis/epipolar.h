@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/SVD>
+
 #include <Eigen/Core>
 
 #include "core/camera.h"
@@ -23,9 +25,13 @@ class EpipolarLine {
     return ray_.z() - inverse_depth * centre_.z() > kMinDepthRatio;
   }
   /// u(rho) [px]; is_in_front(rho) holds.
-  [[nodiscard]] Eigen::Vector2d pixel(double inverse_depth) const;
+  [[nodiscard]] Eigen::Vector2d pixel(double inverse_depth) const {
+    return camera_.project(ray_ - inverse_depth * centre_);
+  }
   /// du/drho [px m].
-  [[nodiscard]] Eigen::Vector2d derivative(double inverse_depth) const;
+  [[nodiscard]] Eigen::Vector2d derivative(double inverse_depth) const {
+    return -camera_.project_jacobian(ray_ - inverse_depth * centre_) * centre_;
+  }
 
  private:
   /// Depth in the frame over depth in the reference view; below it pi' is too large to linearise.
@@ -39,7 +45,20 @@ class EpipolarLine {
 /// Inverse depth in the first view of the point that both rays see (thesis 5.5-5.13): the DLT's
 /// A X = 0 from P1 = [I | 0] and P2 = [I | -centre], X the right singular vector of the least
 /// singular value, 1 / z = X_4 / X_3. May be negative or infinite where the rays diverge.
-[[nodiscard]] double triangulate(const Eigen::Vector3d& first_ray,
-                                 const Eigen::Vector3d& second_ray, const Eigen::Vector3d& centre);
+[[nodiscard]] inline double triangulate(const Eigen::Vector3d& first_ray,
+                                        const Eigen::Vector3d& second_ray,
+                                        const Eigen::Vector3d& centre) {
+  Eigen::Matrix<double, 3, 4> first = Eigen::Matrix<double, 3, 4>::Identity();
+  Eigen::Matrix<double, 3, 4> second = first;
+  second.col(3) = -centre;
+  Eigen::Matrix4d a;  // A X = 0 of (5.12)
+  a.row(0) = first_ray.x() * first.row(2) - first_ray.z() * first.row(0);
+  a.row(1) = first_ray.y() * first.row(2) - first_ray.z() * first.row(1);
+  a.row(2) = second_ray.x() * second.row(2) - second_ray.z() * second.row(0);
+  a.row(3) = second_ray.y() * second.row(2) - second_ray.z() * second.row(1);
+  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(a, Eigen::ComputeFullV);
+  const Eigen::Vector4d point = svd.matrixV().col(3);
+  return point.w() / point.z();  // 1 / z of (5.13)
+}
 
 }  // namespace saccade

@@ -1,6 +1,5 @@
 #include "estimator/depth/thesis/grid_keypoints.h"
 
-#include <cstddef>
 #include <numeric>
 #include <optional>
 

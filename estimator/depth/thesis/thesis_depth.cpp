@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/depth/outlier_removal.h"
 #include "estimator/depth/thesis/derotated_frame.h"
 #include "estimator/depth/thesis/epipolar.h"
+#include "estimator/depth/thesis/grid_keypoints.h"
 #include "estimator/mean_time.h"
 
 namespace saccade {

@@ -9,7 +9,6 @@
 #include "estimator/depth/depth_estimator.h"
 #include "estimator/depth/thesis/depth_filter.h"
 #include "estimator/depth/thesis/epipolar_search.h"
-#include "estimator/depth/thesis/grid_keypoints.h"
 
 namespace saccade {
 

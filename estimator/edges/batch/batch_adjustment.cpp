@@ -4,11 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "core/check.h"

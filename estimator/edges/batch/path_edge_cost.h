@@ -1,10 +1,12 @@
 #pragma once
 
 #include <ceres/sized_cost_function.h>
+#include <cmath>
 
 #include "core/camera.h"
 #include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/edge_residual.h"
+#include "estimator/edges/least_squares/jacobian_block.h"
 
 namespace saccade {
 
@@ -32,7 +34,24 @@ class PathEdgeCost
 
   /// False where the ray leads away from the keyframe's view.
   bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
+                double** jacobians) const override {
+    const Eigen::Map<const BatchEdgeUnknowns> unknowns(parameters[4]);
+    EdgeUnknowns edge = unknowns.head<4>();
+    edge[1] += run_offset_ * unknowns[4];
+    Twist twist = Twist::Zero();
+    for (int k = 0; k < 4; ++k) twist += weight_[k] * Eigen::Map<const Twist>(parameters[k]);
+    EdgeDerivatives by;
+    residuals[0] =
+        edge_residual(observation_, camera_, twist, edge, jacobians != nullptr ? &by : nullptr) /
+        sigma_px_;
+    if (!std::isfinite(residuals[0])) return false;
+    if (jacobians == nullptr) return true;
+    for (int k = 0; k < 4; ++k) write_block(jacobians[k], weight_[k] / sigma_px_ * by.motion);
+    Eigen::Matrix<double, 1, 5> by_unknowns;
+    by_unknowns << by.edge, run_offset_ * by.edge[1];
+    write_block(jacobians[4], by_unknowns / sigma_px_);
+    return true;
+  }
 
  private:
   EdgeObservation observation_;

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <span>
 #include <vector>
+
+#include "core/stopwatch.h"
 
 namespace ceres {
 struct IterationSummary;
@@ -23,9 +24,7 @@ struct IterationCost {
 class CostLog {
  public:
   /// Since the refinement began [s].
-  [[nodiscard]] double now_s() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count();
-  }
+  [[nodiscard]] double now_s() const { return stopwatch_.seconds(); }
   /// Appends the iterations of a round whose adjustment began at `start_s`.
   void add_round(std::span<const ceres::IterationSummary> iterations, double start_s);
   /// Appends what independent problems of one view cost together, before and after; a round.
@@ -39,9 +38,7 @@ class CostLog {
   void save(const std::filesystem::path& file) const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  Clock::time_point begin_ = Clock::now();
+  Stopwatch stopwatch_;
   std::vector<IterationCost> steps_;
   int rounds_ = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "core/time_search.h"
 #include "estimator/odometry/start/extrapolated_path.h"
+#include "estimator/odometry/start/plane_search.h"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,6 @@
 #include "core/event.h"
 #include "core/trajectory.h"
 #include "estimator/odometry/start/path_refinement.h"
-#include "estimator/odometry/start/plane_search.h"
 
 namespace saccade {
 

@@ -3,9 +3,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "core/image.h"
 #include "estimator/reconstruction/observations/intensity_observations.h"
 #include "estimator/reconstruction/observations/reference_grid.h"
 

@@ -1,7 +1,6 @@
 #include "estimator/reconstruction/gradient/poisson.h"
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <numeric>

@@ -1,7 +1,6 @@
 #include "estimator/reconstruction/surface/plane_candidates.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <Eigen/Cholesky>

@@ -2,18 +2,16 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
-#include "core/median.h"
 #include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/refinement/depth/depth_refinement.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 
 namespace saccade {
@@ -91,23 +89,17 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
 
   const RayDepth depth(method.rays, method.limits, dataset.camera());
   std::vector<RefinedDepth> refined(windows.size());
-  for (int i = 0; i < request.repeat; ++i) {
-    double wall_s = 0;
-    {
-      const ScopedTimer clock(wall_s);
-      parallel_for(windows.size(), [&](std::size_t k) {
-        refined[k] = refine_depth_of(windows[k], points[k], dataset.camera(), depth,
-                                     method.rays.kTimeSlices);
-      });
-    }
-    timing.wall_s.push_back(wall_s);
-  }
+  repeat_timed(request.repeat, timing.wall_s, [&] {
+    parallel_for(windows.size(), [&](std::size_t k) {
+      refined[k] =
+          refine_depth_of(windows[k], points[k], dataset.camera(), depth, method.rays.kTimeSlices);
+    });
+  });
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
   io.emplace(timing.io_s);
   std::vector<DepthResult> results;
-  RunSummary summary;
   std::size_t edges = 0, found = 0;
   for (RefinedDepth& view : refined) {
     edges += view.edges;
@@ -121,10 +113,8 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
   writer.finish("refine", request, dataset, window, config.seed, config::print(config), timing);
 
-  summary.found = fmt::format("{} points from {} edges in {} views", found, edges, windows.size());
-  summary.events = timing.events;
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(
+      timing, fmt::format("{} points from {} edges in {} views", found, edges, windows.size()));
 }
 
 }  // namespace saccade

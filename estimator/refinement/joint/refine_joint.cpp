@@ -15,6 +15,7 @@
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/tracking/pose_output.h"
 
@@ -132,15 +133,10 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   BatchAdjustment result;
   Progress progress("refine", config.joint.steps() * static_cast<std::size_t>(request.repeat),
                     "steps");
-  for (int i = 0; i < request.repeat; ++i) {
-    double wall_s = 0;
-    {
-      const ScopedTimer clock(wall_s);
-      result = adjust_batch(input.events, input.batch, camera, depth, config.joint,
-                            [&](std::size_t n) { progress.add(n); });
-    }
-    timing.wall_s.push_back(wall_s);
-  }
+  repeat_timed(request.repeat, timing.wall_s, [&] {
+    result = adjust_batch(input.events, input.batch, camera, depth, config.joint,
+                          [&](std::size_t n) { progress.add(n); });
+  });
   const bool is_scaled = !input.batch.is_metric && result.inertial &&
                          result.inertial->status == InertialAlignment::Status::kOk;
   if (is_scaled) {
@@ -148,13 +144,10 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
     for (KeyframeEntry& keyframe : input.keyframes)
       keyframe.typical_depth_m *= result.inertial->scale;
   }
-  double depth_s = 0;
-  std::vector<Keyframe> keyframes;
-  {
-    const ScopedTimer clock(depth_s);
-    keyframes =
-        keyframes_on(input, result.path, camera.undistorted(), depth, config.joint.window_s);
-  }
+  const Stopwatch mapping;
+  const std::vector<Keyframe> keyframes =
+      keyframes_on(input, result.path, camera.undistorted(), depth, config.joint.window_s);
+  const double depth_s = mapping.seconds();
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     KeyframeEntry& entry = input.keyframes[k];
     entry.world_from_camera = keyframes[k].world_from_camera;
@@ -177,14 +170,10 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   writer.finish("refine", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
-  RunSummary summary;
-  summary.events = input.events.size();
-  summary.poses = input.poses.size();
-  summary.found =
-      fmt::format("{} poses and {} keyframes by {} events, residual {:.3f} px", summary.poses,
-                  input.keyframes.size(), result.observations, result.residual_px);
-  summary.wall_s = median(timing.wall_s);
-  return summary;
+  return summary_of(
+      timing,
+      fmt::format("{} poses and {} keyframes by {} events, residual {:.3f} px", input.poses.size(),
+                  input.keyframes.size(), result.observations, result.residual_px));
 }
 
 }  // namespace saccade

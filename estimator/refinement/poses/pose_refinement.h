@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
 #include "core/spline/knots.h"
 #include "estimator/edges/least_squares/cost_log.h"

@@ -4,10 +4,10 @@
 
 #include "core/error.h"
 #include "core/io/covariance_file.h"
-#include "core/median.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/reference_view.h"
@@ -81,15 +81,10 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   add_ends(events, poses);
   RefinedPath path;
   Progress progress("refine", events.size() * static_cast<std::size_t>(request.repeat), "events");
-  for (int i = 0; i < request.repeat; ++i) {
-    double wall_s = 0;
-    {
-      const ScopedTimer clock(wall_s);
-      path = refine_path(surface, camera, contrast, events, start, config.poses);
-    }
+  repeat_timed(request.repeat, timing.wall_s, [&] {
+    path = refine_path(surface, camera, contrast, events, start, config.poses);
     progress.add(events.size());
-    timing.wall_s.push_back(wall_s);
-  }
+  });
   timing.events = events.size();
   timing.poses = poses.size();
   timing.sequence_s = window.end_s - window.start_s;
@@ -104,13 +99,10 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   io.reset();
   writer.finish("refine", request, dataset, window, config.seed, config::print(config), timing);
 
-  RunSummary summary;
-  summary.events = events.size();
-  summary.poses = poses.size();
+  RunSummary summary =
+      summary_of(timing, fmt::format("{} poses by {} events, residual {:.3f}", poses.size(),
+                                     path.observations, path.residual));
   summary.lost_poses = count_lost(poses);
-  summary.found = fmt::format("{} poses by {} events, residual {:.3f}", summary.poses,
-                              path.observations, path.residual);
-  summary.wall_s = median(timing.wall_s);
   return summary;
 }
 

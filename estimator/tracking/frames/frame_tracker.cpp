@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
 #include "core/stopwatch.h"
-#include "estimator/tracking/pose_solver.h"
 #include "estimator/tracking/robust_loss.h"
 
 namespace saccade {

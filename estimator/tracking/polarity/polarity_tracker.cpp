@@ -6,7 +6,6 @@
 
 #include "core/stopwatch.h"
 #include "estimator/mean_time.h"
-#include "estimator/tracking/pose_solver.h"
 
 namespace saccade {
 namespace {

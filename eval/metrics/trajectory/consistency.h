@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -12,13 +14,30 @@ namespace saccade {
 /// over the covariances within the scored interval, e the twist of truth^-1 estimate at their
 /// times. 6 for errors that are as large as P says, more where it promises too much. nullopt
 /// without truth, estimate or a covariance that is positive definite.
-[[nodiscard]] std::optional<double> nees(std::span<const StampedCovariance> covariances,
-                                         const TrajectoryScoreInput& input);
+[[nodiscard]] inline std::optional<double> nees(std::span<const StampedCovariance> covariances,
+                                                const TrajectoryScoreInput& input) {
+  const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
+  if (!interval || input.estimate.empty()) return std::nullopt;
+  double sum = 0, count = 0;
+  for (const StampedCovariance& entry : covariances) {
+    if (entry.t_s < interval->start_s || entry.t_s > interval->end_s) continue;
+    const Eigen::LLT<Matrix6> factor(entry.covariance);
+    if (factor.info() != Eigen::Success) continue;
+    const Twist error =
+        (input.truth.at_clamped(entry.t_s).inverse() * input.estimate.at_clamped(entry.t_s)).log();
+    sum += error.dot(factor.solve(error));
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
 
 constexpr double kNeesOfTruth = 6;  ///< of errors as large as the covariances say
 
 /// The factor between a NEES and the 6 of errors as large as the covariances say, above or below:
 /// max(NEES / 6, 6 / NEES), 1 at best. `nees` > 0.
-[[nodiscard]] double nees_factor(double nees);
+[[nodiscard]] inline double nees_factor(double nees) {
+  return std::max(nees / kNeesOfTruth, kNeesOfTruth / nees);
+}
 
 }  // namespace saccade

@@ -2,8 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "eval/picture/chart/axis.h"
-
 namespace saccade {
 namespace {
 

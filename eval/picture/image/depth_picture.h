@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
 #include <span>
-#include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"

@@ -9,7 +9,6 @@
 
 #include "core/io/images/image_file.h"
 #include "core/time_search.h"
-#include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/depth_picture.h"
 #include "eval/picture/view/view_pictures.h"
 #include "eval/picture/write_video.h"

@@ -1,7 +1,5 @@
 #include "eval/picture/view/sensor_view.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

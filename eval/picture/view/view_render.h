@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "eval/picture/render.h"
-#include "eval/picture/view/sensor_view.h"
 #include "eval/picture/view/view_pictures.h"
 #include "eval/run_folder.h"
 

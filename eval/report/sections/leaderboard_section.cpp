@@ -1,7 +1,5 @@
 #include "eval/report/sections/page_sections.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "eval/report/reference/published_rows.h"

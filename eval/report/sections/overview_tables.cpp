@@ -6,7 +6,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <set>
-#include <utility>
 
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"

@@ -10,7 +10,6 @@
 #include "core/io/files/file_list.h"
 #include "core/io/images/image_file.h"
 #include "eval/metrics/sharpness.h"
-#include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/log_picture.h"
 #include "eval/picture/view/stabilized_view.h"
 #include "eval/report/html.h"

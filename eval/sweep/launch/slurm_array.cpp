@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
-#include <vector>
 
 #include "core/check.h"
 #include "core/config/config.h"

@@ -1,7 +1,6 @@
 #include "eval/sweep/result/manifest.h"
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>

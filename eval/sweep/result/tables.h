@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/io/tables/csv_file.h"
-#include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/results.h"
 
 namespace saccade {

@@ -4,9 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <memory>
 #include <type_traits>
 #include <utility>
 

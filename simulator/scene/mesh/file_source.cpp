@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 #include <span>
-#include <utility>
 
 #include "core/error.h"
 #include "core/io/files/input_log.h"

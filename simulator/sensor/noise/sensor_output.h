@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,22 +23,55 @@ class SensorOutput {
 
   /// All times are multiples of `unit_ns`.
   SensorOutput(const NoiseOptions& options, int width, int height, TimeNs unit_ns,
-               std::uint64_t seed);
+               std::uint64_t seed) {
+    const OutputStageInput input{options, width, height, unit_ns, seed};
+    for (const NoiseModel& model : noise_models())
+      if (model.make_stage != nullptr)
+        stages_.push_back({model.make_stage(input), model.is_on(options)});
+  }
 
   /// Takes `events`, in SensedEventOrder over all calls, and hands out what no later event can
   /// precede. Contract: later calls bring only events with t_ns >= complete_ns.
-  void push(std::span<const SensedEvent> events, TimeNs complete_ns, const Sink& sink);
+  void push(std::span<const SensedEvent> events, TimeNs complete_ns, const Sink& sink) {
+    fired_ += events.size();
+    SensedEvents held;
+    for (const Stage& each : stages_) {
+      if (!each.is_on) continue;
+      each.stage->push(events);
+      held.clear();
+      each.stage->release(complete_ns, held);
+      events = held;
+    }
+    recorded_ += events.size();
+    if (!events.empty()) sink(events);
+  }
   /// Hands out what still waits, stamped beyond the last time if need be.
-  void finish(const Sink& sink);
+  void finish(const Sink& sink) { push({}, std::numeric_limits<TimeNs>::max(), sink); }
 
   /// Number of events handed out so far, and of those that met a full queue.
   [[nodiscard]] std::uint64_t recorded() const { return recorded_; }
-  [[nodiscard]] std::uint64_t lost() const;
+  [[nodiscard]] std::uint64_t lost() const {
+    std::uint64_t lost = 0;
+    for (const Stage& each : stages_) lost += each.stage->lost();
+    return lost;
+  }
 
   /// Everything that later output depends on, for load() of an output made with the same arguments.
-  [[nodiscard]] std::string state() const;
+  [[nodiscard]] std::string state() const {
+    StateWriter state;
+    state.value(fired_);
+    state.value(recorded_);
+    for (const Stage& each : stages_) each.stage->save(state);
+    return state.bytes();
+  }
   /// Throws InputError where the state does not fit.
-  void load(std::string_view state);
+  void load(std::string_view state) {
+    StateReader reader(state);
+    reader.value(fired_);
+    reader.value(recorded_);
+    for (const Stage& each : stages_) each.stage->load(reader);
+    if (!reader.at_end()) throw InputError("saved state", "is longer than that of this sensor");
+  }
 
  private:
   struct Stage {

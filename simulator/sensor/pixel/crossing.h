@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "simulator/sensor/pixel/event_pixel.h"
 #include "simulator/sensor/signal/cell_bounds.h"

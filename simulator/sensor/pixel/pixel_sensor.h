@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "simulator/sensor/pixel/crossing.h"
 #include "simulator/sensor/pixel/pixel_noise.h"

@@ -1,7 +1,6 @@
 #include "simulator/sensor/rays/ray_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>

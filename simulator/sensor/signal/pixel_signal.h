@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "simulator/sensor/rays/ray_tracer.h"

@@ -1,8 +1,5 @@
 #include "simulator/sensor/signal/ray_sample.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "simulator/sensor/signal/cell_bounds.h"
 #include "simulator/sensor/signal/mipmap_bounds.h"
 

@@ -1,6 +1,5 @@
 #include "simulator/sensor/visibility/visibility_predictor.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 #include <benchmark/benchmark.h>
 
-#include <utility>
 #include <vector>
 
 #include "core/depth_mesh.h"

@@ -2,8 +2,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-
 #include "simulator/sensor/image_renderer.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/unit/simulator/scene/plane_scene.h"

@@ -1,6 +1,5 @@
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "core/io/files/scratch_folder.h"
 #include "core/process/progress.h"
 #include "simulator/recording_loop.h"

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "core/random.h"
 #include "tests/support/shared_data.h"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/config/config.h"
-#include "estimator/depth/depth_module.h"
 #include "tests/support/error_of.h"
 
 namespace saccade {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <string>
 
-#include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"

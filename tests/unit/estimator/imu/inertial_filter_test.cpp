@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <vector>
 
 #include "core/random.h"
 #include "core/rigid3.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/handheld_motion.h"
 #include "tests/support/jacobian_check.h"
 

@@ -9,7 +9,6 @@
 
 #include "core/config/document.h"
 #include "core/io/covariance_file.h"
-#include "core/io/images/image_file.h"
 #include "core/io/run/run_record.h"
 #include "core/io/run/view_list.h"
 #include "core/io/tables/csv_reader.h"

@@ -1,11 +1,9 @@
 #include "estimator/tracking/intensity_map.h"
+#include "estimator/tracking/tracker.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-
-#include "estimator/tracking/frames/grey_frames.h"
 
 namespace saccade {
 namespace {

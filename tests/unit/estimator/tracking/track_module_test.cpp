@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/config/document.h"
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/ply_file.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "tests/support/command.h"
 #include "tests/support/fake_run.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/config/config.h"
-#include "simulator/scene/scene_builder.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "core/process/parallel.h"
 #include "tests/support/closed_form_plane.h"

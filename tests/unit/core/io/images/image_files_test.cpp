@@ -4,8 +4,6 @@
 #include <ImfArray.h>
 #include <ImfRgbaFile.h>
 
-#include <cmath>
-
 #include "core/io/files/file_bytes.h"
 #include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "estimator/depth/depth_config.h"
 #include "tests/support/planar_world.h"

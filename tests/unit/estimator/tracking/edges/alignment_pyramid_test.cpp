@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/unit/estimator/tracking/edges/synthetic_template.h"
 
 namespace saccade {

@@ -1,6 +1,5 @@
 #include "eval/metrics/trajectory/relative_error.h"
 
-#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>

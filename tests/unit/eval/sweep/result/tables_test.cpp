@@ -5,6 +5,7 @@
 
 #include "core/io/images/image_file.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/sweep/result/charts.h"
 #include "eval/table/number_text.h"
 #include "tests/unit/eval/sweep/sweep_files.h"
 

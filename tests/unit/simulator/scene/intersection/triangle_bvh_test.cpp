@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/random.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 
