@@ -43,7 +43,7 @@ ReferencePage reference_page(const std::string& name) {
   if (name == "sweep") return sweep_page();
   const Module& module = find_module(name);
   return {name, "saccade run " + name, fmt::format("Module `{}`: {}", name, module.help),
-          fmt::format("saccade run {} --data DATASET -o RUN --set seed=2", name),
+          fmt::format("saccade run {} --data DATASET -c CONFIG.yaml -o RUN", name),
           module.reference()};
 }
 

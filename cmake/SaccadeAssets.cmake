@@ -1,4 +1,4 @@
-# Files that a room's library carries inside itself, so that it needs nothing beside it when installed. Run as a
+# Files that a library carries inside itself, so that it needs nothing beside it when installed. Run as a
 # script (cmake -P) this file writes the source that holds them.
 if(CMAKE_SCRIPT_MODE_FILE)
   set(source "// Generated from ${FOLDER}.\n#include \"${HEADER}\"\n\nnamespace saccade::assets {\n\n")
@@ -12,9 +12,9 @@ if(CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-# saccade_embed_assets(<room> <folder> <header> <file>...): `header` declares saccade::assets::<file with _ for .>. The files
+# saccade_embed_assets(<library> <folder> <header> <file>...): `header` declares saccade::assets::<file with _ for .>. The files
 # lie in ${PROJECT_BINARY_DIR}/generated/<folder>, where a bundler wrote them.
-function(saccade_embed_assets room folder header)
+function(saccade_embed_assets library folder header)
   set(output ${PROJECT_BINARY_DIR}/generated/${folder}.cpp)
   set(made ${PROJECT_BINARY_DIR}/generated/${folder})
   list(TRANSFORM ARGN PREPEND ${made}/ OUTPUT_VARIABLE files)
@@ -22,5 +22,5 @@ function(saccade_embed_assets room folder header)
     COMMAND ${CMAKE_COMMAND} -DFOLDER=${made} -DHEADER=${header} "-DNAMES=${ARGN}" -DOUTPUT=${output}
             -P ${PROJECT_SOURCE_DIR}/cmake/SaccadeAssets.cmake
     COMMENT "Embedding ${folder}" VERBATIM)
-  target_sources(saccade_${room} PRIVATE ${output})
+  target_sources(saccade_${library} PRIVATE ${output})
 endfunction()

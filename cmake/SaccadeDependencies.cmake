@@ -1,4 +1,4 @@
-# Every outside library of the rooms. The installed package finds the same list again (saccadeConfig.cmake.in).
+# Every library from outside that these use. The installed package finds the same list again (saccadeConfig.cmake.in).
 find_package(Eigen3 3.4 REQUIRED)
 find_package(SlimOpenCV REQUIRED)
 find_package(OpenEXR REQUIRED)

@@ -3,9 +3,9 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
-foreach(room IN LISTS SACCADE_ROOMS)
-  install(TARGETS saccade_${room} EXPORT saccadeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade FILES_MATCHING PATTERN *.h)
+foreach(library IN LISTS SACCADE_LIBRARIES)
+  install(TARGETS saccade_${library} EXPORT saccadeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${library} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade FILES_MATCHING PATTERN *.h)
 endforeach()
 install(TARGETS saccade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 

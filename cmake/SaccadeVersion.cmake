@@ -19,12 +19,12 @@ if(CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-function(saccade_add_version room)
+function(saccade_add_version library)
   set(output ${PROJECT_BINARY_DIR}/generated/version.cpp)
   add_custom_target(saccade_version BYPRODUCTS ${output}
     COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DOUTPUT=${output} -DSACCADE_VERSION=${PROJECT_VERSION}
             -P ${PROJECT_SOURCE_DIR}/cmake/SaccadeVersion.cmake
     COMMENT "Looking up the commit" VERBATIM)
-  target_sources(saccade_${room} PRIVATE ${output})
-  add_dependencies(saccade_${room} saccade_version)
+  target_sources(saccade_${library} PRIVATE ${output})
+  add_dependencies(saccade_${library} saccade_version)
 endfunction()

@@ -25,7 +25,7 @@ struct Module {
   std::vector<config::ReferenceKey> (*reference)() = nullptr;
 };
 
-/// All modules. A new one is a row here and the files of its room.
+/// All modules. A new one is a row here and the files of its folder.
 [[nodiscard]] std::span<const Module> modules();
 
 /// Throws InputError that lists the modules when there is none of this name.

@@ -1,7 +1,9 @@
 #include "eval/evaluate.h"
 
+#include <utility>
 #include <vector>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "core/io/covariance_file.h"
 #include "core/io/files/atomic_file.h"
@@ -10,6 +12,7 @@
 #include "core/io/trajectory_file.h"
 #include "eval/depth_views.h"
 #include "eval/image_views.h"
+#include "eval/metrics/catalogue.h"
 #include "eval/metrics/orientation_metrics.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory/consistency.h"
@@ -29,6 +32,14 @@ void check_depth(const std::optional<double>& mean_depth_m) {
 
 void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
   for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
+}
+
+/// Every score has a row in the catalogue, which says how it is called, shown and judged. (What
+/// "speed." is followed by stands in the timing.json of a run.)
+Metrics catalogued(Metrics metrics) {
+  for (const auto& [key, value] : metrics.values())
+    SACCADE_CHECK(key.starts_with("speed.") || is_catalogued(key));
+  return metrics;
 }
 
 /// The orientations that `run` estimated, and the events that it stabilized.
@@ -108,6 +119,7 @@ Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOpti
   if (options.refined)
     merge(metrics,
           refined_ratios(metrics, score_refined(*options.refined, run, dataset, mean_depth_m)), "");
+  metrics = catalogued(std::move(metrics));
   write_atomically(run_folder / "metrics.json",
                    to_json(metrics, score_inputs(run_folder, dataset)));
   if (!depths.empty()) write_depth_views_csv(run_folder / "depth_views.csv", depth_errors);
@@ -124,7 +136,7 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
   input.estimate = read_estimate(estimate_file);
   input.truth = dataset.groundtruth();
   input.mean_depth_m = mean_depth_m ? mean_depth_m : dataset.facts().mean_depth_m;
-  const Metrics metrics = score_trajectory(input);
+  const Metrics metrics = catalogued(score_trajectory(input));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }
@@ -143,7 +155,8 @@ Metrics evaluate_depth(const ExternalDepth& depth, const std::filesystem::path& 
     views = {depth.is_cloud ? load_cloud(depth.file, dataset, t_s)
                             : load_depth_map(depth.file, dataset, t_s)};
   }
-  const Metrics metrics = score_depth(views, compare_views(views, dataset), dataset.camera());
+  const Metrics metrics =
+      catalogued(score_depth(views, compare_views(views, dataset), dataset.camera()));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }
@@ -160,7 +173,7 @@ Metrics evaluate_image(const std::filesystem::path& file, const std::optional<do
     if (!at_s) throw InputError("--at-s", "state the time of the view of --image");
     views = {load_image(file, dataset, *at_s)};
   }
-  const Metrics metrics = score_images(views, dataset);
+  const Metrics metrics = catalogued(score_images(views, dataset));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }

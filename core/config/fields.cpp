@@ -44,12 +44,18 @@ void Fields::record(std::string_view key, const std::string& type, const Node& i
                     std::string_view help) {
   if (reference_ == nullptr) return;
   const std::string shown = initial.kind == Node::Kind::kMap ? "" : to_flow_yaml(initial);
-  reference_->keys.push_back({name_of(key), type, shown, {}, std::string(help), {}});
+  reference_->keys.push_back(
+      {.name = name_of(key), .type = type, .initial = shown, .help = std::string(help)});
 }
 
 bool Fields::explored(std::string_view key, bool current) {
   if (reference_ == nullptr) return current;
   return reference_->take(name_of(key), {"false", "true"}, current ? 1 : 0) == 1;
+}
+
+bool Fields::is_zero(std::string_view key, double value) {
+  if (reference_ == nullptr) return value == 0;
+  return reference_->take(name_of(key), {"above 0", "0"}, value == 0 ? 1 : 0) == 1;
 }
 
 void Fields::require(const std::string& name) {

@@ -90,6 +90,8 @@ class Fields {
   [[nodiscard]] bool reading() const { return mode_ != Mode::kPrint && mode_ != Mode::kCheck; }
   /// Whether the input states this key; false unless reading.
   [[nodiscard]] bool has(std::string_view key) const { return form(key) != Form::kAbsent; }
+  /// Whether the number at a key is 0, for a describe() that branches on it: the reference tries both.
+  [[nodiscard]] bool is_zero(std::string_view key, double value);
   /// What the input gives for a key that takes several forms; kAbsent unless reading.
   [[nodiscard]] Form form(std::string_view key) const;
 

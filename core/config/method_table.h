@@ -15,8 +15,8 @@ namespace saccade::config {
 ///   constexpr DepthMethodRow kDepthMethods[] = {
 ///       {.name = "rays",
 ///        .help = "Edge points of a space sweep, each refined by a regression.",
-///        .describe = describe_options<&DepthConfig::rays>,
-///        .make = make<RayDepth, &DepthConfig::rays>},
+///        .describe = describe_rays,
+///        .make = make_rays},
 ///   };
 /// (estimator/depth/depth_config.cpp).
 template <class Config, class Method, class... Inputs>
@@ -36,14 +36,23 @@ template <class Row>
   return rows.front();
 }
 
+/// `help`, then the name and help of every row: the text of the key that chooses among them.
+template <class Rows>
+[[nodiscard]] std::string with_methods(std::string_view help, const Rows& rows) {
+  std::string text(help);
+  for (const auto& row : rows) text.append(" ").append(row.name).append(": ").append(row.help);
+  return text;
+}
+
 /// Describes `key`, whose value is the name of one of the rows, and the section of that row alone:
-/// keys of other methods are errors that say to which method they belong.
+/// keys of other methods are errors that say to which method they belong. `help` is what the methods
+/// have in common; those of the rows are appended.
 template <class Row, class Config>
 void describe_method(Fields& fields, std::string_view key, std::string& name,
                      std::span<const Row> rows, Config& config, std::string_view help) {
   Names<std::string> names;
   for (const Row& row : rows) names.emplace_back(row.name, std::string(row.name));
-  fields.choice(key, name, names, help);
+  fields.choice(key, name, names, with_methods(help, rows));
   const Row& row = find_method(rows, name);
   if (row.describe == nullptr) return;
   fields.group(

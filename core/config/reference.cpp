@@ -81,6 +81,7 @@ class Explorer {
       const Keys before = keys_;
       for (const ReferenceRecord& run : runs) add_new(run.keys, conditions_[choice.name]);
       add_conditions(choice, runs, base.keys, before);
+      add_other_initials(choice, runs, base.keys);
       find_choices(choice, runs);
       for (const ReferenceRecord& run : runs) explore_choices(run);
     }
@@ -138,6 +139,22 @@ class Explorer {
     }
   }
 
+  /// The defaults of the keys of `base` that a value of the choice changes.
+  void add_other_initials(const ReferenceRecord::Choice& choice,
+                          const std::vector<ReferenceRecord>& runs, const Keys& base) {
+    if (choice.name.back() == kFormMark) return;
+    for (const ReferenceKey& usual : base) {
+      if (usual.name == choice.name) continue;
+      const auto key = find_key(keys_, usual.name);
+      for (std::size_t value = 0; value < runs.size(); ++value) {
+        const auto other = find_key(runs[value].keys, usual.name);
+        if (other == runs[value].keys.end() || other->initial == usual.initial) continue;
+        key->other_initials.push_back("`" + other->initial + "` with " +
+                                      condition_text(choice, {value}));
+      }
+    }
+  }
+
   /// Whether the key is valid wherever it is stated, whatever the choices say.
   [[nodiscard]] bool takes_any_form(const std::string& name) const {
     return std::any_of(of_any_form_.begin(), of_any_form_.end(),
@@ -175,13 +192,19 @@ std::string cell(const std::string& text) {
 
 std::string code(const std::string& text) { return text.empty() ? "" : "`" + cell(text) + "`"; }
 
+std::string initials(const ReferenceKey& key) {
+  std::string text = code(key.initial);
+  for (const std::string& other : key.other_initials)
+    text += (text.empty() ? "" : "; ") + cell(other);
+  return text;
+}
+
 std::string row(const ReferenceKey& key, const ReferenceKey* section) {
   const std::string condition = own_conditions(key, section);
   const std::string own_name =
       key.name.substr(section_of(key.name).empty() ? 0 : section_of(key.name).size() + 1);
-  return "| " + code(own_name) + " | " + key.type + " | " + code(key.initial) + " | " +
-         cell(key.rule) + " | " + cell(key.help) + (condition.empty() ? "" : " ") + condition +
-         " |\n";
+  return "| " + code(own_name) + " | " + key.type + " | " + initials(key) + " | " + cell(key.rule) +
+         " | " + cell(key.help) + (condition.empty() ? "" : " ") + condition + " |\n";
 }
 
 }  // namespace
@@ -195,6 +218,7 @@ std::size_t ReferenceRecord::take(const std::string& name, const std::vector<std
 
 Form ReferenceRecord::form(const std::string& name) {
   of_any_form.insert(name);
+  if (held.contains(name)) return Form::kText;
   return static_cast<Form>(take(name + kFormMark, {"absent", "number", "text", "list", "map"}, 0));
 }
 

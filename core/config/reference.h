@@ -16,9 +16,10 @@ struct ReferenceKey {
   std::string name;     ///< dotted from the root; of the items of a list "meshes[].file"
   std::string type;     ///< "number", "list of 3 numbers", "choice", "section"
   std::string initial;  ///< the default as YAML; of a section ""
-  std::string rule;     ///< "0 to 100"; "" where every value is allowed
+  std::vector<std::string> other_initials = {};  ///< "`12` with `method: equations`"
+  std::string rule = {};                         ///< "0 to 100"; "" where every value is allowed
   std::string help;
-  std::vector<std::string> conditions;  ///< "`method: rays`"; the key exists where all hold
+  std::vector<std::string> conditions = {};  ///< "`method: rays`"; the key exists where all hold
 };
 
 /// What one run of a description declares while some choices are held at a value.
@@ -37,12 +38,13 @@ struct ReferenceRecord {
   /// Notes a choice; the value that is held, else `current`.
   std::size_t take(const std::string& name, const std::vector<std::string>& values,
                    std::size_t current);
+  /// A choice that is held counts as stated: a preset sets the defaults of other keys only then.
   [[nodiscard]] Form form(const std::string& name);
   void add_rule(const std::string& name, const std::string& rule);
 };
 
 /// All keys that `describe` can declare, in its order, those of choices that are not taken by
-/// default included. Every choice is tried with all its values while the others stay as they are;
+/// default included, with the defaults that each choice gives them. Every choice is tried with all its values while the others stay as they are;
 /// keys that need two choices at once are found where the second choice appears with the first.
 [[nodiscard]] std::vector<ReferenceKey> explore_keys(
     const std::function<void(ReferenceRecord&)>& describe);

@@ -53,6 +53,12 @@ constexpr DepthMethodRow kDepthMethods[] = {
 
 }  // namespace
 
+std::vector<std::string_view> depth_method_names() {
+  std::vector<std::string_view> names;
+  for (const DepthMethodRow& row : kDepthMethods) names.push_back(row.name);
+  return names;
+}
+
 void describe_depth_range(config::Fields& fields, DepthLimits& limits, std::string_view help) {
   std::array<double, 2> range{limits.near_m, limits.far_m};
   fields.value("depth_range_m", range, help).range(1e-3, 1e6);
@@ -71,7 +77,7 @@ void describe(config::Fields& fields, DepthConfig& config) {
   fields.group(
       "window", [&](config::Fields& f) { describe(f, config.window); },
       "Part of the events from which one view is estimated.");
-  fields.value("seed", config.seed, "Seed of random numbers; no method draws any yet.");
+  fields.value("seed", config.seed, "Without effect: this module draws no random numbers.");
 }
 
 std::unique_ptr<DepthEstimator> make_depth_estimator(const DepthConfig& config,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/config/fields.h"
@@ -34,6 +35,9 @@ void describe(config::Fields& fields, DepthConfig& config);
 
 /// Describes the key `depth_range_m`, a list of two depths.
 void describe_depth_range(config::Fields& fields, DepthLimits& limits, std::string_view help);
+
+/// The values of `method`, in the order of the table in depth_config.cpp.
+[[nodiscard]] std::vector<std::string_view> depth_method_names();
 
 /// The method that the configuration names. `camera` with its lens; `mean_depth_m` of the scene, >
 /// 0.

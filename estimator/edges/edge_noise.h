@@ -7,12 +7,12 @@
 
 namespace saccade {
 
-/// The noise model of the event-to-edge residual (edge_residual.h), the same in every adjustment:
-/// an event scatters about its edge by a Gaussian of sigma_px(), outliers by Cauchy's loss
-///   rho(r) = a^2 ln(1 + (r / (a sigma))^2),   a = kCauchyScale,
-/// and an edge's own unknowns have Gaussian priors with the sigmas below: c, m, h and k about 0, rho about
-/// the regressed depth or, in the window adjustment, that of a landmark, there with Cauchy's loss. One
-/// set of values serves ideal and noisy sensors and all adjustments.
+/// The noise model of the event-to-edge residual r (edge_residual.h): an event scatters about its edge
+/// by a Gaussian of sigma = sigma_px(), and outliers have Cauchy's loss
+///   a^2 ln(1 + (r / (a sigma))^2),   a = kCauchyScale.
+/// An edge's own unknowns have Gaussian priors of the sigmas below: c, m, h and (in the batch adjustment
+/// alone) k about 0, rho about the regressed or a landmark's inverse depth. The joint solution of the
+/// window adjustment has Cauchy's loss on them, too; its final fit_edge(), and all others, have none.
 struct EdgeNoise {
   static constexpr double kMinSigma_px = 0.1;
   static constexpr double kCauchyScale = 2;
@@ -27,7 +27,7 @@ struct EdgeNoise {
     return std::max(kMinSigma_px, static_cast<double>(edge.residual_px));
   }
 
-  /// Sigmas of rho, c, m and h: the depth is known to its own size alone, next to nothing.
+  /// Sigmas of rho, c, m and h. That of rho is as large as rho: it hardly constrains the depth.
   [[nodiscard]] static EdgeUnknowns prior_sigma(double inverse_depth) {
     return {inverse_depth, kOffsetSigma_px, kTiltSigma, kHysteresisSigma_px};
   }

@@ -14,8 +14,8 @@ namespace saccade {
 /// g is how much larger a pixel of the sensor is in the view: it is on the sensor that events
 /// scatter, and a residual in the view would be made small by any motion that shrinks the picture.
 /// With q = K^-1 u the event's ray, rho the edge's inverse depth, c its offset, m its tilt and h
-/// the shift [px] per contrast of lag l: of refine depth l = p, so that h is the ON/OFF shift; of the
-/// window adjustment also the shift between successive events of a polarity run.
+/// the shift [px] per contrast of lag l: of refine depth and the batch adjustment l = p, so that h is the
+/// ON/OFF shift; of the window adjustment also that between successive events of a polarity run.
 struct EdgeObservation {
   Rigid3 view_from_camera;  ///< at the event's time, before any correction
   Eigen::Vector3d ray;      ///< q, z = 1

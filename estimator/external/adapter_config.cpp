@@ -44,11 +44,12 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
   config::Names<std::string> formats{{"csv", "csv"}};
-  for (const EventFormat& format : event_formats())
+  std::string help = "Format of the events: `csv`: lines t,x,y,p.";
+  for (const EventFormat& format : event_formats()) {
     formats.emplace_back(format.ending.substr(1), format.ending.substr(1));
-  fields.choice("events", config.events, formats,
-                "Format of the events: text lines t x y p in seconds (`txt`), HDF5 in the layout "
-                "of DSEC (`h5`, `hdf5`), or lines t,x,y,p (`csv`).");
+    help.append(" `").append(format.ending.substr(1)).append("`: ").append(format.help);
+  }
+  fields.choice("events", config.events, formats, help);
   fields.choice("timestamp_unit", config.event_unit,
                 {{"us", StampUnit::kMicroseconds}, {"ns", StampUnit::kNanoseconds}},
                 "Time unit of h5 and csv.");

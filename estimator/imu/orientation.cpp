@@ -39,7 +39,8 @@ void describe(config::Fields& fields, GyroscopeNoise& noise) {
   fields
       .value("gyro_noise_density", noise.density,
              "Density of the white noise of the angular velocity, in rad/s/sqrt(Hz) (Kalibr's "
-             "gyroscope_noise_density).")
+             "gyroscope_noise_density). Larger values rely more on the accelerometer and take more "
+             "for rest; smaller ones trust the gyroscope longer and miss rests.")
       .range(1e-9, 10);
   fields
       .value("gyro_random_walk", noise.random_walk,

@@ -1,5 +1,6 @@
 #include "estimator/odometry/odometry_config.h"
 
+#include "core/config/method_table.h"
 #include "estimator/odometry/presets.h"
 
 namespace saccade {
@@ -7,11 +8,13 @@ namespace {
 
 void describe_start(config::Fields& fields, StartOptions& options) {
   fields
-      .value("truth_s", options.truth_s,
-             "How long poses of the ground truth are given, in seconds from the first event on; no "
-             "later one is read. 0 reads none: the start is found from events alone, up to scale.")
+      .value(
+          "truth_s", options.truth_s,
+          "How long poses of the ground truth are given, in seconds from the first event on, but "
+          "at most truth_fraction of the recording; no later one is read. Longer fixes the scale "
+          "better. 0 reads none: the start is found from events alone, up to scale.")
       .range(0, 1e3);
-  if (options.truth_s == 0) {
+  if (fields.is_zero("truth_s", options.truth_s)) {
     fields
         .value("initial_depth_m", options.found.depth_m,
                "The typical depth of the scene at the start, in metres: events alone do not "
@@ -21,7 +24,8 @@ void describe_start(config::Fields& fields, StartOptions& options) {
   }
   fields
       .value("truth_fraction", options.truth_fraction,
-             "The largest fraction of the recording's time in which poses are given.")
+             "The largest fraction of the recording's time in which poses are given: with a short "
+             "recording it counts instead of truth_s.")
       .above(0)
       .at_most(1);
   fields
@@ -39,8 +43,11 @@ void describe_keyframe(config::Fields& fields, KeyframeOptions& options) {
              "baselines.")
       .range(1e-3, 100);
   fields
-      .value("interval_s", options.interval_s,
-             "The least time between two keyframes, in seconds. It bounds the cost of the mapping.")
+      .value(
+          "interval_s", options.interval_s,
+          "The least time between two keyframes, in seconds. It bounds the cost of the mapping. 0 "
+          "leaves it to distance alone; a time longer than the recording makes no keyframe after "
+          "the first.")
       .range(0, 1e3);
   fields
       .value("handover_s", options.handover_s,
@@ -116,9 +123,10 @@ void describe_parts(config::Fields& fields, OdometryOptions& options) {
       "tracking",
       [&](Fields& f) {
         MotionModelOptions& motion = options.tracker.motion;
-        f.value("event_map_ratio", options.tracker.event_frame.event_map_ratio,
-                "Events per frame and template pixel, r of (4.21). Smaller ratios make more and "
-                "shorter frames of fewer events.")
+        f.value(
+             "event_map_ratio", options.tracker.event_frame.event_map_ratio,
+             "Events per frame and template pixel, r of (4.21), but at least 200 events. Smaller "
+             "ratios make more and shorter frames of fewer events.")
             .range(1e-4, 100);
         f.choice("prediction", motion.prediction,
                  {{"none", MotionModelOptions::Prediction::kNone},
@@ -144,9 +152,9 @@ void describe(config::Fields& fields, OdometryConfig& config) {
   for (const OdometryMethod& row : odometry_methods())
     methods.emplace_back(row.name, std::string(row.name));
   fields.choice("method", config.method, methods,
-                "How keyframes are made: edges takes edges with depth by regression over event "
-                "rays and adjusts them together with the poses; thesis takes the gradients of the "
-                "reconstruction (fig. 7.1). It sets the defaults of the keys below.");
+                config::with_methods("How keyframes are made, which sets the defaults of the keys "
+                                     "below.",
+                                     odometry_methods()));
   if (fields.reading()) odometry = odometry_preset(config.method);
   fields.section("camera", config.camera,
                  "How the camera is assumed to differ from its calibration.");
@@ -171,14 +179,18 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                    {"events", BatchMode::kEvents},
                    {"events_and_imu", BatchMode::kEventsAndImu}},
                   "Whether the whole path and the edges of all keyframes are adjusted together "
-                  "after the last event, with or without the samples of the inertial sensor. Of "
-                  "mode: offline, and where no pose was lost; it is slow.");
+                  "after the last event, with or without the samples of the inertial sensor. Slow. "
+                  "Only with mode: offline; skipped if a pose was lost.");
   }
   describe_parts(fields, odometry);
-  fields.value("align_imu", config.align_imu,
-               "Whether scale, gravity, biases and time offset are found from gyroscope and "
-               "accelerometer once the path is there. A run without given poses is then in metres "
-               "and upright.");
+  fields.value(
+      "align_imu", config.align_imu,
+      "Whether scale, gravity, biases and time offset are found from gyroscope and "
+      "accelerometer after the last event. A run without given poses is then written in "
+      "metres and upright; inertial.yaml says where the samples are too few, the motion too "
+      "uniform or the path too wrong for that, and the run stays as it is. The shape of the "
+      "path stays the same, unlike with batch_adjustment: events_and_imu; the gyroscope "
+      "helps to track with tracking.prediction: imu.");
   fields.value("seed", config.seed, "Seed of the random template points of the tracking.");
 }
 

@@ -68,8 +68,13 @@ OdometryOptions thesis() {
   return options;
 }
 
-constexpr OdometryMethod kMethods[] = {{.name = "edges", .preset = edges},
-                                       {.name = "thesis", .preset = thesis}};
+constexpr OdometryMethod kMethods[] = {
+    {.name = "edges",
+     .help = "Edges with depth by regression over event rays, adjusted together with the poses.",
+     .preset = edges},
+    {.name = "thesis",
+     .help = "Gradients of the reconstruction at the dense depth (fig. 7.1).",
+     .preset = thesis}};
 
 }  // namespace
 

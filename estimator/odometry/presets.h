@@ -12,6 +12,7 @@ namespace saccade {
 /// odometry_config.cpp.
 struct OdometryMethod {
   std::string_view name;  ///< value of the key `method`
+  std::string_view help;  ///< a sentence
   OdometryOptions (*preset)();
 };
 

@@ -27,7 +27,8 @@ constexpr ImageMethodRow kImageMethods[] = {
      .describe = describe_method_options<&ImageMethodOptions::gradient>,
      .make = make_solver<GradientReconstruction, &ImageMethodOptions::gradient>},
     {.name = ImageMethodOptions::kEquations,
-     .help = "One linear equation of the log intensity per event, solved by least squares.",
+     .help =
+         "Linear equations of the log intensity at and between events, solved by least squares.",
      .describe = describe_method_options<&ImageMethodOptions::equations>,
      .make = make_solver<EquationReconstruction, &ImageMethodOptions::equations>},
 };
@@ -41,8 +42,7 @@ void describe(config::Fields& fields, ImageMethodOptions& options, bool has_surf
   fields.group(
       "observations", [&](config::Fields& f) { describe(f, options.observations(), has_surfaces); },
       "Observations of the log intensity by events and by their absence; the defaults depend on "
-      "the "
-      "method.");
+      "the method.");
 }
 
 std::unique_ptr<ImageSolver> make_image_solver(const ImageMethodOptions& options) {

@@ -16,7 +16,7 @@ void describe(config::Fields& fields, ReconstructionConfig& config) {
   fields.value("figures", config.figures,
                "Whether to write the data of the thesis's figures 6.1 (Poisson's equation) and 6.2 "
                "(depth propagation), computed from the truth, to figures/.");
-  fields.value("seed", config.seed, "Seed of random numbers; none are drawn.");
+  fields.value("seed", config.seed, "Without effect: this module draws no random numbers.");
 }
 
 std::unique_ptr<ImageEstimator> make_image_estimator(const ReconstructionConfig& config,

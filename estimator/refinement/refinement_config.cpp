@@ -25,11 +25,11 @@ void describe_poses(config::Fields& fields, RefinementConfig& config) {
                "average the errors of the map's picture and take longer.")
         .range(1000, 1e9);
     fields
-        .value(
-            "run_events", options.run_events,
-            "The most events of a pixel that share one unknown offset of the log intensity (an "
-            "event run); 2 compares neighbouring events alone. Longer runs say more; with a sensor "
-            "whose thresholds differ between pixels they drift.")
+        .value("run_events", options.run_events,
+               "The most events of a pixel that share one unknown offset of the log intensity (an "
+               "event run); 2, the least, compares neighbouring events alone (run_events: 1 of "
+               "reconstruct). Longer runs say more; with a sensor whose thresholds differ between "
+               "pixels they drift.")
         .range(2, 1e9);
   } else {
     fields.group(
@@ -100,7 +100,7 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
 
 constexpr RefinementMethod kMethods[] = {
     {.name = "of_run",
-     .help = "The method that fits the run's module.",
+     .help = "The method that fits the run's module, with its defaults.",
      .describe = nullptr,
      .module = "",
      .run = nullptr},
@@ -126,12 +126,9 @@ constexpr RefinementMethod kMethods[] = {
 std::span<const RefinementMethod> refinement_methods() { return kMethods; }
 
 void describe(config::Fields& fields, RefinementConfig& config) {
-  config::describe_method(
-      fields, "method", config.method, refinement_methods(), config,
-      "What is refined: poses of a run of track, depth of a run of depth, path and map of a run of "
-      "odometry (joint), or of_run, which takes the one that fits the run, with its defaults.");
-  fields.value("seed", config.seed,
-               "Seed of the run. It changes nothing here: no random numbers are drawn.");
+  config::describe_method(fields, "method", config.method, refinement_methods(), config,
+                          "What is refined.");
+  fields.value("seed", config.seed, "Without effect: this module draws no random numbers.");
 }
 
 }  // namespace saccade

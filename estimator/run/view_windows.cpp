@@ -44,13 +44,13 @@ double reference_time(Reference reference, const std::vector<StampedFile>& frame
 void describe(config::Fields& fields, ViewWindowOptions& options) {
   fields
       .value("duration_s", options.duration_s,
-             "Longest duration of a window, in seconds; all windows are equally long. It does not "
-             "count where `events` is stated.")
+             "The events are cut into the fewest windows of equal duration that are no longer than "
+             "this, in seconds. It does not count where `events` is stated.")
       .range(1e-4, 1e5);
   fields
       .value("events", options.events,
-             "Largest number of events of a window; all windows hold equally many. ~ cuts by "
-             "duration instead.")
+             "The events are cut into the fewest windows of equally many events that hold no more "
+             "than this. ~ cuts by duration instead.")
       .range(100, 1e9);
   fields.choice(
       "reference", options.reference,

@@ -35,8 +35,9 @@ void describe(config::Fields& fields, MotionModelOptions& options) {
   if (options.prediction == Prediction::kNone) return;
   fields
       .value("acceleration_sigma_px", options.acceleration_sigma_px,
-             "Standard deviation of the change of the image velocity within a second, in px/s. A "
-             "smaller one smooths steady motion; a larger one follows abrupt motion.")
+             "Standard deviation of the change of the image velocity, in px/s, within a second; "
+             "after t seconds it is sqrt(t) times as large. A smaller one smooths steady motion; a "
+             "larger one follows abrupt motion.")
       .range(1, 1e6);
   if (options.prediction == Prediction::kImu) describe_gyroscope(fields, options);
 }

@@ -144,9 +144,7 @@ const TrackMethod& method_of(const TrackConfig& config) {
 void describe(config::Fields& fields, TrackConfig& config) {
   using config::Fields;
   config::describe_method(fields, "method", config.method, track_methods(), config,
-                          "Method of tracking: edges against event frames (the thesis), the log "
-                          "intensity at each event, brightness increments against the signs of the "
-                          "events, or grey frames.");
+                          "What is compared with the map.");
   const TrackMethod& method = method_of(config);
   if (fields.has("method") && method.has_speed_dependent_motion)
     config.motion = speed_dependent_motion();

@@ -46,14 +46,14 @@ struct TrackWorld {
 };
 
 /// A method of tracking. A new one is a pair of files, its options in TrackConfig, and a row in
-/// track_config.cpp: nothing else names methods.
+/// track_config.cpp, by which the module, the help and the tests know it.
 struct TrackMethod {
   std::string_view name;  ///< value of `method`, and of the section that holds its options
   std::string_view help;
   void (*describe)(config::Fields&, TrackConfig&) = nullptr;
   std::unique_ptr<Tracker> (*make)(const TrackConfig&, const TrackWorld&);
   bool takes_frames = false;      ///< the dataset's grey frames in place of its events
-  bool needs_contrast = false;    ///< contrast thresholds, from the configuration or the dataset
+  bool needs_contrast = false;    ///< TrackConfig::contrast_on, contrast_off, or the dataset's
   bool needs_prediction = false;  ///< motion.prediction: none is an error
   bool smooths_map = false;       ///< at its edges, by intensity.map_blur_px
   /// Abrupt at high speed, which carries a tracker through a shaken camera, and smooth at low speed;

@@ -70,9 +70,11 @@ EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
   const auto on = config.contrast_on ? config.contrast_on : facts.contrast_on;
   const auto off = config.contrast_off ? config.contrast_off : facts.contrast_off;
   if (!on || !off)
-    throw InputError(dataset.folder().string(),
-                     "does not state its contrast thresholds; state intensity.contrast_on and "
-                     "intensity.contrast_off");
+    throw InputError(
+        dataset.folder().string(),
+        fmt::format("does not state its contrast thresholds; state {0}.contrast_on and "
+                    "{0}.contrast_off",
+                    config.method));
   return {*on, *off};
 }
 

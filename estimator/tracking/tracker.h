@@ -64,7 +64,7 @@ struct Recording {
 /// Called with the number of measurements done since its last call.
 using TrackProgress = std::function<void(std::size_t)>;
 
-/// 6-DoF pose of a camera against a known map (thesis chapter 4): what the four methods share. All
+/// 6-DoF pose of a camera against a known map (thesis chapter 4): what the methods share. All
 /// are deterministic and use one thread. Lost tracking is a status of the pose, never an error.
 class Tracker {
  public:

@@ -24,23 +24,23 @@ constexpr const char* kDataset = "dataset.yaml";
 std::vector<MetricInfo> trajectory_rows() {
   return {
       {.key = "trajectory.dt_rel_percent.mean", .label = "dt_rel [%]", .unit = "%",
-       .needs = kTruePathAndDepth, .floor = 0.001, .board = "dt_rel, mean [%]", .in_tables = true,
+       .needs = kTruePathAndDepth, .floor = 0.001, .board = "dt_rel, mean", .in_tables = true,
        .in_figures = true},
       {.key = "trajectory.dt_rel_percent.*", .unit = "%", .needs = kTruePathAndDepth},
       {.key = "trajectory.dtheta_deg.mean", .label = "dtheta [deg]", .unit = "deg",
-       .needs = kTruePath, .floor = 0.001, .board = "dtheta, mean [deg]", .in_tables = true,
+       .needs = kTruePath, .floor = 0.001, .board = "dtheta, mean", .in_tables = true,
        .in_figures = true},
       {.key = "trajectory.dtheta_deg.*", .unit = "deg", .needs = kTruePath},
       {.key = "trajectory.dt_m.*", .unit = "m", .scale = 1000, .needs = kTruePath},
       {.key = "trajectory.none.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath,
        .floor = 1e-5},
       {.key = "trajectory.se3.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath,
-       .board = "ATE after SE(3), RMSE [m]"},
+       .board = "ATE after SE(3), RMSE"},
       {.key = "trajectory.sim3.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath},
       {.key = "trajectory.*.rot_rmse_deg", .unit = "deg", .needs = kTruePath},
       {.key = "trajectory.*.scale", .better = kNeither, .needs = kTruePath},
       {.key = "trajectory.se3_5s.mean_percent", .unit = "%", .needs = kTruePath,
-       .board = "error after SE(3) by the first 5 s, mean [% of the path]"},
+       .board = "error after SE(3) by the first 5 s, mean, of the path"},
       {.key = "trajectory.nees", .better = kNeither,
        .needs = "trajectory, ground truth, covariances",
        .board = "poses' covariances, factor between NEES and 6"},
@@ -116,10 +116,10 @@ std::vector<MetricInfo> rotation_rows() {
   return {
       {.key = "orientation.roll_pitch_rmse_deg", .unit = "deg",
        .needs = "orientations, ground truth", .floor = 0.001,
-       .board = "roll and pitch, RMSE [deg]"},
+       .board = "roll and pitch, RMSE"},
       {.key = "orientation.rate_rmse_rad_s", .unit = "rad/s",
        .needs = "angular velocities, true twists", .floor = 0.0001,
-       .board = "angular velocity, RMSE [rad/s]"},
+       .board = "angular velocity, RMSE"},
       {.key = "orientation.rate_rmse_percent", .unit = "%",
        .needs = "angular velocities, true twists"},
       {.key = "orientation.rate_peak_rad_s", .unit = "rad/s", .better = kNeither,
@@ -169,7 +169,7 @@ std::vector<MetricInfo> speed_rows() {
       {.key = "speed.events_per_s", .label = "events/s", .unit = "1/s", .better = kHigher,
        .needs = kTiming, .in_tables = true, .is_speed = true},
       {.key = "speed.realtime_factor", .label = "x real time", .better = kHigher, .needs = kTiming,
-       .board = "speed [x real time]", .in_tables = true, .is_speed = true},
+       .board = "speed, x real time", .in_tables = true, .is_speed = true},
       {.key = "speed.wall_s", .unit = "s", .scale = 1000, .needs = kTiming, .is_speed = true},
       {.key = "speed.events", .label = "processed events", .better = kNeither, .needs = kTiming,
        .in_tables = true, .is_speed = true},
@@ -232,14 +232,26 @@ std::span<const MetricInfo> metric_catalogue() {
   return catalogue;
 }
 
-MetricInfo metric_info(std::string_view key) {
+namespace {
+
+/// nullptr where there is none.
+const MetricInfo* row_of(std::string_view key) {
   const std::span<const MetricInfo> all = metric_catalogue();
   auto row = std::find_if(all.begin(), all.end(),
                           [&](const MetricInfo& metric) { return metric.key == key; });
   if (row == all.end())
     row = std::find_if(all.begin(), all.end(),
                        [&](const MetricInfo& metric) { return matches(metric.key, key); });
-  MetricInfo metric = row == all.end() ? MetricInfo{} : *row;
+  return row == all.end() ? nullptr : &*row;
+}
+
+}  // namespace
+
+bool is_catalogued(std::string_view key) { return row_of(key) != nullptr; }
+
+MetricInfo metric_info(std::string_view key) {
+  const MetricInfo* row = row_of(key);
+  MetricInfo metric = row == nullptr ? MetricInfo{} : *row;
   metric.key = key;
   if (metric.label.empty()) metric.label = key;
   return metric;

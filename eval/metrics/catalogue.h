@@ -26,10 +26,10 @@ struct MetricInfo {
   /// asked for.
   std::optional<double> floor = {};
   std::optional<double> tolerance = {};  ///< smallest relative change; nullopt: --tolerance
-  std::string board = {};                ///< title of its leaderboard; empty: it has none
-  bool in_tables = false;                ///< a column where a table's reader named none
-  bool in_figures = false;               ///< drawn where a sweep names no metrics
-  bool is_speed = false;  ///< summarised by the median: its spread says nothing of the method
+  std::string board = {};   ///< title of its leaderboard, without the unit; empty: it has none
+  bool in_tables = false;   ///< a column where a table's reader named none
+  bool in_figures = false;  ///< drawn where a sweep names no metrics
+  bool is_speed = false;    ///< summarised by the median: its spread says nothing of the method
 
   [[nodiscard]] bool higher_is_better() const { return better == Better::kHigher; }
   /// Unit of scale * value.
@@ -44,6 +44,9 @@ struct MetricInfo {
 /// pattern it matches. A key that the catalogue does not have is its own label, and an error of
 /// which less is better.
 [[nodiscard]] MetricInfo metric_info(std::string_view key);
+
+/// Whether a row has that very key or a pattern that it matches.
+[[nodiscard]] bool is_catalogued(std::string_view key);
 
 /// The metrics that tables show where their reader named none, in their order.
 [[nodiscard]] std::span<const MetricInfo> default_metrics();

@@ -106,10 +106,20 @@ std::string board_caption(const Leaderboard& board) {
                      board.sequences.size() > 1 ? ", over sequences for the overall score" : "");
 }
 
-Table::Cell score_cell(const LeaderboardScore& score) {
+/// As people are shown it.
+std::optional<PooledValue> scaled(std::optional<PooledValue> value, double scale) {
+  if (!value) return value;
+  value->mean *= scale;
+  if (value->low) *value->low *= scale;
+  if (value->high) *value->high *= scale;
+  return value;
+}
+
+Table::Cell score_cell(const LeaderboardScore& score, double scale) {
   if (!score.value) return {score.failed > 0 ? score.problem : "–", {}};
-  if (score.failed == 0) return {"", score.value, score.note};
-  return {"", score.value,
+  const std::optional<PooledValue> shown = scaled(score.value, scale);
+  if (score.failed == 0) return {"", shown, score.note};
+  return {"", shown,
           fmt::format("{} of {} failed", score.failed, score.failed + score.value->count)};
 }
 
@@ -156,6 +166,9 @@ std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries)
     Leaderboard board;
     board.key = metric.key;
     board.label = metric.board;
+    if (const std::string unit = metric.shown_unit(); !unit.empty())
+      board.label += " [" + unit + "]";
+    board.scale = metric.scale;
     board.higher_is_better = metric.higher_is_better();
     std::vector<std::string> methods;
     for (const LeaderboardEntry& entry : entries) {
@@ -185,8 +198,9 @@ Table leaderboard_table(const Leaderboard& board) {
           {std::to_string(row.rank), PooledValue{static_cast<double>(row.rank), {}, {}, 1}});
     else
       cells.push_back({fmt::format("{} of {}", row.complete, board.sequences.size()), {}});
-    if (several) cells.push_back({row.overall ? "" : "–", row.overall});
-    for (const LeaderboardScore& score : row.scores) cells.push_back(score_cell(score));
+    if (several) cells.push_back({row.overall ? "" : "–", scaled(row.overall, board.scale)});
+    for (const LeaderboardScore& score : row.scores)
+      cells.push_back(score_cell(score, board.scale));
     table.rows.push_back(std::move(cells));
   }
   mark_best(table, board);

@@ -44,7 +44,8 @@ struct LeaderboardRow {
 /// The methods by one metric.
 struct Leaderboard {
   std::string key;    ///< "trajectory.dt_rel_percent.mean"
-  std::string label;  ///< "dt_rel, mean [%]"
+  std::string label;  ///< "dt_rel, mean [%]", with the unit that people are shown
+  double scale = 1;   ///< from a score to that unit
   bool higher_is_better = false;
   std::vector<std::string> sequences;  ///< in the order in which the entries name them
   std::vector<LeaderboardRow> rows;    ///< best first, those that lack sequences behind
@@ -55,13 +56,15 @@ struct Leaderboard {
 /// none. Contract: at least one, all finite.
 [[nodiscard]] PooledValue pooled(std::span<const double> values);
 
-/// One per metric that any of the entries has, in a fixed order; `trajectory.nees`, best at 6, as
-/// nees_factor(); runs that came to nothing stand in those of trajectories. Scores are pooled over seeds as they are; over sequences, which
-/// differ in difficulty by factors, as logarithms:
+/// One per metric that any of the entries has, in a fixed order, in the metric's own unit;
+/// `trajectory.nees`, best at 6, as nees_factor(); runs that came to nothing stand in those of
+/// trajectories. Scores are pooled over seeds as they are; over sequences, which differ in
+/// difficulty by factors, as logarithms:
 ///   overall = exp(mean of ln score),  interval = exp(interval of the mean of ln score),
 /// the interval from three sequences on.
 [[nodiscard]] std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries);
 
+/// Its scores times its scale.
 [[nodiscard]] Table leaderboard_table(const Leaderboard& board);
 
 }  // namespace saccade

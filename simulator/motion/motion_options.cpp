@@ -22,8 +22,10 @@ void describe_orientation(config::Fields& fields, PresetOrientation& options) {
       fields.reading() ? fields.has("look_at") || fields.has("up") : options.look_at.has_value();
   if (has_target) {
     fields
-        .value("look_at", options.look_at,
-               "Point in the world that stays at the principal point, in metres.")
+        .value(
+            "look_at", options.look_at,
+            "Point in the world that stays at the principal point, in metres; it stands in place "
+            "of rotation_deg, and up needs it.")
         .range(-kFarthest_m, kFarthest_m)
         .required();
     fields.value("up", options.up, "Direction in the world that points upwards in the image.")

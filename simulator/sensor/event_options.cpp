@@ -91,11 +91,14 @@ void describe(config::Fields& fields, EventOptions& options) {
   fields
       .value("time_tolerance_us", options.time_tolerance_us,
              "Bound of the time error of every event before rounding to the unit, in microseconds; "
-             "smaller values cost more evaluations.")
+             "smaller values cost more evaluations. With sampling: frames it bounds nothing: there "
+             "the frames decide.")
       .range(1e-3, 1000);
   fields
-      .value("samples_per_pixel", options.samples_per_pixel,
-             "Number of rays whose mean radiance a pixel sees: 1, 4 or 16. Cost grows with it.")
+      .value(
+          "samples_per_pixel", options.samples_per_pixel,
+          "Number of rays whose mean radiance a pixel sees: 1, 4 or 16, no other. Cost grows with "
+          "it.")
       .range(1, 16);
   fields.expect(options.samples_per_pixel == 1 || options.samples_per_pixel == 4 ||
                     options.samples_per_pixel == 16,
@@ -105,8 +108,9 @@ void describe(config::Fields& fields, EventOptions& options) {
                 "Resolution of the recorded times.");
   fields
       .value("max_step_px", options.max_step_px,
-             "Largest image motion between two samples of a pixel, in pixels; smaller values miss "
-             "fewer thin objects and trace more rays.")
+             "Largest image motion between two samples of a pixel, in pixels: twice as much where "
+             "one triangle fills the surroundings, half as much where surfaces occlude each other "
+             "unpredictably. Smaller values miss fewer thin objects and trace more rays.")
       .range(0.01, 2);
   fields.choice("sampling", options.sampling,
                 {{"asynchronous", Sampling::kAsynchronous}, {"frames", Sampling::kFrames}},

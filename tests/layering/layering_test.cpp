@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Rooms = std::set<std::string>;
+using Libraries = std::set<std::string>;
 
-const std::map<std::string, Rooms> kMayInclude{
+const std::map<std::string, Libraries> kMayInclude{
     {"core", {"core"}},
     {"simulator", {"core", "simulator"}},
     {"estimator", {"core", "estimator"}},
@@ -56,7 +56,7 @@ std::vector<Include> read_includes(const std::string& text) {
   return includes;
 }
 
-std::string room_of(const fs::path& path) { return path.begin()->string(); }
+std::string library_of(const fs::path& path) { return path.begin()->string(); }
 
 /// What is wrong with the includes of the file `path` (relative to the root), one line each.
 /// `has_header`: a .cpp has a .h of the same name beside it.
@@ -66,16 +66,16 @@ std::vector<std::string> check_source(const fs::path& path, const std::string& t
   const auto report = [&](int line, const std::string& what) {
     errors.push_back(path.string() + ":" + std::to_string(line) + ": " + what);
   };
-  const std::string room = room_of(path);
+  const std::string library = library_of(path);
   const std::vector<Include> includes = read_includes(text);
   for (const Include& include : includes) {
-    const std::string target = room_of(include.path);
+    const std::string target = library_of(include.path);
     if (!kMayInclude.contains(target)) {
       if (include.quoted) {
         report(include.line, "\"" + include.path + "\" is not written from the root");
       }
-    } else if (!kMayInclude.at(room).contains(target)) {
-      report(include.line, room + " must not include " + target + " (" + include.path + ")");
+    } else if (!kMayInclude.at(library).contains(target)) {
+      report(include.line, library + " must not include " + target + " (" + include.path + ")");
     }
   }
   const std::string own = fs::path(path).replace_extension(".h").generic_string();
@@ -109,9 +109,9 @@ std::string read_text(const fs::path& path) {
 
 std::vector<fs::path> find_sources(const fs::path& root) {
   std::vector<fs::path> sources;
-  for (const auto& [room, allowed] : kMayInclude) {
-    if (!fs::exists(root / room)) continue;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / room)) {
+  for (const auto& [library, allowed] : kMayInclude) {
+    if (!fs::exists(root / library)) continue;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / library)) {
       const fs::path relative = entry.path().lexically_relative(root);
       const fs::path extension = relative.extension();
       // The outside project of the package test sees installed headers, like any user.
@@ -242,13 +242,13 @@ TEST(DefinedTypes, AreThoseOfTheOutermostLevelThatAreNotOnlyDeclared) {
   EXPECT_EQ(types, expected);
 }
 
-// All rooms are linked into one program: of two types of one name the linker would keep one's
+// All libraries are linked into one program: of two types of one name the linker would keep one's
 // functions for both.
 TEST(Layering, EveryTypeHasANameOfItsOwn) {
   const fs::path root = SACCADE_SOURCE_DIR;
   std::map<std::string, fs::path> where;
   for (const fs::path& source : find_sources(root)) {
-    if (source.extension() != ".h" || room_of(source) == "tests") continue;
+    if (source.extension() != ".h" || library_of(source) == "tests") continue;
     for (const std::string& type : defined_types(read_text(root / source))) {
       const auto [first, is_new] = where.emplace(type, source);
       EXPECT_TRUE(is_new) << type << " in " << source << " and " << first->second;

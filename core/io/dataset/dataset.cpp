@@ -79,8 +79,8 @@ PinholeCamera read_camera(const fs::path& folder, const std::optional<DatasetRec
   if (camera.width == 0)
     throw InputError(
         folder.string(),
-        "the sensor size is unknown: there is no picture to take it from, and events.h5 "
-        "does not state it; state it in camera.yaml (cam0: resolution) or "
+        "the sensor size is unknown: there is no picture to take it from, and the events "
+        "do not state it; state it in camera.yaml (cam0: resolution) or "
         "dataset.yaml (width, height)");
   camera.check((fs::exists(calib) ? calib : chain).string());
   return camera;
@@ -127,9 +127,8 @@ Dataset Dataset::open(const fs::path& folder) {
   const fs::path record_file = folder / "dataset.yaml";
   if (fs::exists(record_file)) dataset.record_ = read_dataset_record(record_file);
   if (!dataset.record_ && dataset.events_file_.empty() && !fs::exists(folder / "images.txt"))
-    throw InputError(
-        folder.string(),
-        "is no dataset: it holds no dataset.yaml, events.h5, events.txt or images.txt");
+    throw InputError(folder.string(), "is no dataset: it holds no dataset.yaml, " +
+                                          event_file_names() + " or images.txt");
   dataset.frames_ = read_list_if_there(folder / "images.txt");
   dataset.depth_maps_ = read_list_if_there(folder / "depth.txt");
   dataset.flow_maps_ = read_list_if_there(folder / "flow.txt");
@@ -142,7 +141,7 @@ Dataset Dataset::open(const fs::path& folder) {
 
 Events Dataset::load_events(double start_s, double end_s) const {
   if (events_file_.empty())
-    throw InputError(folder_.string(), "holds no events (events.h5 or events.txt)");
+    throw InputError(folder_.string(), "holds no events (" + event_file_names() + ")");
   return read_events(events_file_, {camera_.width, camera_.height},
                      {clamped_ns(start_s), clamped_ns(end_s)});
 }

@@ -26,9 +26,24 @@ std::unique_ptr<EventWriter> make_text(const std::filesystem::path& file, Timest
 }
 
 constexpr EventFormat kEventFormats[] = {
-    {".h5", true, read_h5, read_h5_info, make_h5},
-    {".hdf5", true, read_h5, read_h5_info, make_h5},
-    {".txt", false, read_events_text, read_events_text_info, make_text},
+    {.ending = ".h5",
+     .help = "HDF5 in the layout of DSEC.",
+     .states_sensor = true,
+     .read = read_h5,
+     .read_info = read_h5_info,
+     .make_writer = make_h5},
+    {.ending = ".hdf5",
+     .help = "The same.",
+     .states_sensor = true,
+     .read = read_h5,
+     .read_info = read_h5_info,
+     .make_writer = make_h5},
+    {.ending = ".txt",
+     .help = "Text lines t x y p, t in seconds.",
+     .states_sensor = false,
+     .read = read_events_text,
+     .read_info = read_events_text_info,
+     .make_writer = make_text},
 };
 
 /// The row of the file's ending; text, the last row, where the table does not hold it.
@@ -40,6 +55,13 @@ const EventFormat& format_of(const std::filesystem::path& file) {
 }  // namespace
 
 std::span<const EventFormat> event_formats() { return kEventFormats; }
+
+std::string event_file_names() {
+  std::string names;
+  for (const EventFormat& format : kEventFormats)
+    names.append(names.empty() ? "" : ", ").append("events").append(format.ending);
+  return names;
+}
 
 const EventFormat* find_event_format(const std::filesystem::path& file) {
   for (const EventFormat& format : kEventFormats)

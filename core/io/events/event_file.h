@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/event.h"
@@ -17,7 +18,7 @@ struct SensorSize {
   int height = 0;
 };
 
-/// Unit of the integer times in events.h5; in memory they are always ns.
+/// Unit of integer times in a file; in memory they are always ns.
 enum class TimestampUnit { kMicroseconds, kNanoseconds };
 
 /// Half-open window start <= t < end [ns].
@@ -32,7 +33,7 @@ struct EventFileInfo {
   TimeNs first_ns = 0;  ///< 0 when there are no events
   TimeNs last_ns = 0;
   TimestampUnit unit = TimestampUnit::kNanoseconds;
-  SensorSize sensor;  ///< as the file states it; only HDF5 can
+  SensorSize sensor;  ///< where the format states it (EventFormat::states_sensor)
 };
 
 /// Events of a file in the format of its ending (event_formats(); any other ending: text), in
@@ -53,8 +54,8 @@ class EventWriter {
   [[nodiscard]] virtual std::uint64_t count() const = 0;
 };
 
-/// The writer for the file's ending, as read_events() chooses; `unit` and `sensor` matter to HDF5
-/// only.
+/// The writer for the file's ending, as read_events() chooses; `unit` and `sensor` matter only to
+/// formats that store them.
 [[nodiscard]] std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
                                                              TimestampUnit unit,
                                                              SensorSize sensor = {});
@@ -63,6 +64,7 @@ class EventWriter {
 /// in event_file.cpp; datasets, adapters and `saccade convert` read the table.
 struct EventFormat {
   std::string_view ending;  ///< with its dot
+  std::string_view help;    ///< a sentence: what such a file holds
   bool states_sensor;       ///< EventFileInfo::sensor
   Events (*read)(const std::filesystem::path&, SensorSize, TimeWindow);
   EventFileInfo (*read_info)(const std::filesystem::path&);
@@ -71,6 +73,8 @@ struct EventFormat {
 };
 
 [[nodiscard]] std::span<const EventFormat> event_formats();
+/// What the events of a dataset folder are called: "events.h5, events.txt", in the table's order.
+[[nodiscard]] std::string event_file_names();
 /// The row of the file's ending; nullptr where the table does not hold it.
 [[nodiscard]] const EventFormat* find_event_format(const std::filesystem::path& file);
 

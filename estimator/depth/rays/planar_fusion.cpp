@@ -56,7 +56,7 @@ void describe(config::Fields& fields, FusionOptions& options) {
   fields
       .value("max_sigma", options.max_sigma,
              "Points whose plane has a larger standard deviation, divided by the inverse depth, "
-             "are dropped.")
+             "are dropped; larger values give more and less accurate points.")
       .above(0);
 }
 

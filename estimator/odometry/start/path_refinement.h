@@ -34,9 +34,9 @@ struct FreePath {
   bool is_clear = false;   ///< there were enough edges in every round
 };
 
-/// Path and edges of a window, adjusted alternately: edges are found with the path (RayDepth), then
-/// both are adjusted (window_adjustment.h). Of a path without given poses no pose is fixed, and the
-/// typical depth stays the unit of length.
+/// Path and edges of a start's window (not the module `refine`), adjusted alternately: edges are
+/// found with the path (RayDepth), then both are adjusted (window_adjustment.h). Of a path without
+/// given poses no pose is fixed, and the typical depth stays the unit of length.
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);

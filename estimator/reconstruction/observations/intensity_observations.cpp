@@ -22,22 +22,25 @@ constexpr double kMinSquaredMotionRatio = 0.25;
 void describe(config::Fields& fields, ObservationOptions& options, bool has_surfaces) {
   fields
       .value("event_sigma", options.event_sigma,
-             "Standard deviation of the log intensity at an event, beside the threshold, in log "
-             "units; noisy recordings need more.")
+             "Standard deviation of the log intensity at an event about the sum of its pixel's "
+             "thresholds, in log units; noisy recordings need more.")
       .range(1e-4, 10);
   fields
       .value("run_events", options.run_events,
-             "Events of a pixel in a row (an event run) that share one unknown offset; thresholds "
-             "of real pixels drift, so that long runs bend the image, and short ones lose its "
-             "largest waves.")
+             "Events of a pixel in a row (an event run) that share one unknown offset; the event "
+             "before them shares it, too, so that 1 compares neighbouring events alone. Thresholds "
+             "of real pixels drift, so that long runs bend the image; short ones lose its low "
+             "spatial frequencies.")
       .range(1, 1e9);
   fields.value("no_event_constraints", options.no_event_constraints,
                "Whether a pixel that moved without an event constrains the log intensity to within "
                "a threshold.");
   fields
-      .value("no_event_spacing_px", options.no_event_spacing_px,
-             "Image motion from one no-event constraint of a pixel to the next, in pixels; smaller "
-             "values give better images of smooth parts and take longer.")
+      .value(
+          "no_event_spacing_px", options.no_event_spacing_px,
+          "Image motion after which no-event constraints are added anew, in pixels: with method: "
+          "gradient to every pixel, with equations to every fourth, another one each time. "
+          "Smaller values give better images of smooth parts and take longer.")
       .range(0.1, 1000);
   if (!has_surfaces) return;
   fields

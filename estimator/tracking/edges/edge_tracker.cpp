@@ -79,8 +79,9 @@ void describe(config::Fields& fields, EdgeTrackerOptions& options) {
   fields
       .value(
           "event_map_ratio", options.event_frame.event_map_ratio,
-          "Events per frame, relative to the template's lit pixels (4.21). A smaller ratio gives "
-          "more poses, each of fewer events; a larger one blurs fast motion.")
+          "Events per frame, relative to the template's lit pixels (4.21), but at least 200 "
+          "events. "
+          "A smaller ratio gives more poses, each of fewer events; a larger one blurs fast motion.")
       .range(1e-4, 100);
   fields.choice(
       "event_frame", options.event_frame.kind,

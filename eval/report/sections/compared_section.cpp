@@ -153,8 +153,9 @@ std::vector<PageChart> compared_speed(std::span<const Leaderboard> boards,
   for (const Leaderboard& board : boards) {
     const bool drawn_as_mean = !sequence.empty() && board.sequences.size() == 1;
     if (&board == &*speeds || drawn_as_mean) continue;
-    const std::vector<SpeedAndScore> points = speeds_and_scores(
+    std::vector<SpeedAndScore> points = speeds_and_scores(
         board, *speeds, sequence.empty() ? board.sequences : std::vector{sequence});
+    for (SpeedAndScore& point : points) point.score *= board.scale;  // as people are shown it
     if (points.size() > 1) charts.push_back(speed_chart(board, points, sequence, styles));
   }
   return charts;

@@ -12,9 +12,11 @@ namespace saccade {
 
 void describe(config::Fields& fields, ShotOptions& options) {
   fields
-      .value("rate_hz", options.rate_hz,
-             "Rate of the shot noise events of a pixel in the dark, ON and OFF together, in events "
-             "per second; it falls to a quarter in bright light. 0 disables shot noise.")
+      .value(
+          "rate_hz", options.rate_hz,
+          "Rate of the shot noise events of a pixel at radiance 0, ON and OFF together, in events "
+          "per second; it falls linearly to a quarter at radiance 1 and stays there above. 0 "
+          "disables shot noise.")
       .range(0, kMaxNoiseRate_hz);
 }
 

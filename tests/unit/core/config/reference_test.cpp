@@ -92,6 +92,38 @@ TEST(Reference, StatesTypeDefaultRuleAndHelp) {
   EXPECT_EQ(key_of(reference<Nested>(), "scale").type, "number or list of numbers");
 }
 
+/// A method and a preset that set defaults, and a number that is special where it is 0.
+struct Preset {
+  std::string method = "mean";
+  std::string preset = "good";
+  double sigma_px = 1;
+  double period_s = 2;
+  double phase = 0;
+};
+
+void describe(Fields& fields, Preset& options) {
+  fields.choice("method", options.method, {{"mean", "mean"}, {"median", "median"}}, "The method.");
+  double sigma_px = options.method == "median" ? 3 : options.sigma_px;
+  fields.choice("preset", options.preset, {{"good", "good"}, {"fast", "fast"}}, "The preset.");
+  if (fields.has("preset") && options.preset == "fast") sigma_px = 5;
+  fields.value("sigma_px", sigma_px, "Of the weight.").above(0);
+  fields.value("period_s", options.period_s, "The period; 0 is none.").at_least(0);
+  if (!fields.is_zero("period_s", options.period_s))
+    fields.value("phase", options.phase, "The phase.");
+}
+
+TEST(Reference, StatesTheDefaultsThatAChoiceChanges) {
+  const auto keys = reference<Preset>();
+  EXPECT_EQ(key_of(keys, "sigma_px").initial, "1");
+  EXPECT_THAT(key_of(keys, "sigma_px").other_initials,
+              ElementsAre("`3` with `method: median`", "`5` with `preset: fast`"));
+  EXPECT_THAT(key_of(keys, "preset").other_initials, IsEmpty());
+  EXPECT_THAT(key_of(keys, "phase").conditions, ElementsAre("`period_s: above 0`"));
+  EXPECT_THAT(to_markdown(keys),
+              HasSubstr("| `sigma_px` | number | `1`; `3` with `method: median`; "
+                        "`5` with `preset: fast` | > 0 |"));
+}
+
 TEST(Reference, AsMarkdownHasATableForEachSection) {
   const std::string text = to_markdown(reference<Nested>());
   EXPECT_THAT(text, HasSubstr("| `window_s` | number | `0.1` |  | The window. Only with "

@@ -152,9 +152,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string_view>& method) {
   return std::string(method.param);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryDepthMethod,
-                         ::testing::Values(DepthConfig::Method::kThesis, DepthConfig::Method::kRays,
-                                           DepthConfig::Method::kSweep),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryDepthMethod, ::testing::ValuesIn(depth_method_names()),
                          name_of);
 
 TEST(RayDepth, ForwardMotionServesAsWell) {

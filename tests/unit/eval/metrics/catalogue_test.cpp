@@ -47,6 +47,12 @@ TEST(MetricInfo, FillsInTheFamilies) {
   EXPECT_EQ(metric_info("speed.wall_s.median").label, "speed.wall_s.median");
 }
 
+TEST(MetricInfo, KnowsWhatHasARow) {
+  EXPECT_TRUE(is_catalogued("trajectory.poses"));
+  EXPECT_TRUE(is_catalogued("trajectory.rpe.per_second.pairs"));
+  EXPECT_FALSE(is_catalogued("trajectory.new_error_m"));
+}
+
 TEST(MetricInfo, AMetricOfSomebodyElseIsAnError) {
   const MetricInfo metric = metric_info("mine.error");
   EXPECT_EQ(metric.label, "mine.error");

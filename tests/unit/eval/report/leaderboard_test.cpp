@@ -108,6 +108,21 @@ TEST(Leaderboard, TheTableHasTheBestOfEveryColumnInBold) {
   EXPECT_FALSE(table.rows[2][2].best);
 }
 
+TEST(Leaderboard, ShowsFractionsInPercentAndMetresInMillimetres) {
+  const Leaderboard depth =
+      leaderboards(std::vector{scored("a", "walls", 0.02, "depth.rel_median")}).at(0);
+  EXPECT_EQ(depth.label, "depth, median relative error [%]");
+  EXPECT_EQ(depth.rows[0].scores[0].value->mean, 0.02) << "the score itself is unchanged";
+  EXPECT_EQ(leaderboard_table(depth).rows[0][2].value->mean, 2);
+  const Leaderboard path =
+      leaderboards(std::vector{scored("a", "walls", 0.005, "trajectory.se3.ate_rmse_m"),
+                               scored("a", "desk", 0.005, "trajectory.se3.ate_rmse_m")})
+          .at(0);
+  EXPECT_EQ(path.label, "ATE after SE(3), RMSE [mm]");
+  EXPECT_NEAR(leaderboard_table(path).rows[0][2].value->mean, 5, 1e-12) << "overall";
+  EXPECT_EQ(leaderboards(std::vector{scored("a", "walls", 1)}).at(0).label, "dt_rel, mean [%]");
+}
+
 // 6 is what a covariance promises, 3 is half and 60 ten times that.
 TEST(Leaderboard, RanksNeesByTheFactorThatItIsOff) {
   constexpr const char* kKey = "trajectory.nees";

@@ -1,15 +1,15 @@
 # One static library per folder core, simulator, estimator, eval: saccade_<folder>, alias saccade::<folder>.
-set(SACCADE_ROOMS core simulator estimator eval)
+set(SACCADE_LIBRARIES core simulator estimator eval)
 
-# saccade_add_room(<room> PUBLIC <targets> PRIVATE <targets> HEADER_ONLY <targets>)
-# HEADER_ONLY dependencies are used in the room's own sources alone and need not be found by an outside project.
-function(saccade_add_room room)
+# saccade_add_library(<library> PUBLIC <targets> PRIVATE <targets> HEADER_ONLY <targets>)
+# HEADER_ONLY dependencies are used in the library's own sources alone and need not be found by an outside project.
+function(saccade_add_library library)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PUBLIC;PRIVATE;HEADER_ONLY")
-  set(target saccade_${room})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${room}/*.cpp)
+  set(target saccade_${library})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${library}/*.cpp)
   add_library(${target} STATIC ${sources})
-  add_library(saccade::${room} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${room})
+  add_library(saccade::${library} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${library})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/saccade>)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:${ARG_HEADER_ONLY}>)
