@@ -16,8 +16,8 @@ namespace saccade {
 struct ViewWindowOptions {
   enum class Reference { kStart, kMiddle, kEnd, kFrame };
 
-  double duration_s = 0.4;    ///< without `events`
-  std::optional<int> events;  ///< in each; nullopt: all windows are equally long
+  double duration_s = 0.4;      ///< without `events`
+  std::optional<int> events{};  ///< in each; nullopt: all windows are equally long
   /// kFrame: the middle where no frame lies within the window.
   Reference reference = Reference::kStart;
 };
