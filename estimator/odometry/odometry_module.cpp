@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
+#include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
 #include "estimator/run/run_input.h"
