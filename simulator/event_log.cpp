@@ -14,7 +14,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32474f4c44434153;  // of this layout
+constexpr std::uint64_t kMagic = 0x33474f4c44434153;  // of this layout
 
 /// An event in the journal.
 struct Packed {
@@ -25,7 +25,8 @@ struct Packed {
   std::uint16_t unused;
 };
 static_assert(sizeof(Packed) == 16);
-static_assert(std::is_trivially_copyable_v<EventStatistics>);
+static_assert(std::is_trivially_copyable_v<EventStatistics> &&
+              std::is_trivially_copyable_v<AuditResult>);
 
 std::uint64_t checksum_of(std::string_view bytes) {
   return crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
@@ -56,8 +57,9 @@ void EventLog::read_checkpoint() {
     state_ = std::move(text);
     return;
   }
-  SACCADE_CHECK(text.size() == sizeof(EventStatistics));
-  std::memcpy(&statistics_.emplace(), text.data(), text.size());
+  SACCADE_CHECK(text.size() == sizeof(EventStatistics) + sizeof(AuditResult));
+  std::memcpy(&statistics_.emplace(), text.data(), sizeof(EventStatistics));
+  std::memcpy(&audit_, text.data() + sizeof(EventStatistics), sizeof(AuditResult));
 }
 
 void EventLog::append(std::span<const SensedEvent> events) {
@@ -79,10 +81,13 @@ void EventLog::checkpoint(double reached_s, std::string_view state) {
   write_checkpoint(state);
 }
 
-void EventLog::complete(const EventStatistics& statistics) {
+void EventLog::complete(const EventStatistics& statistics, const AuditResult& audit) {
   head_.is_complete = 1;
   statistics_ = statistics;
-  write_checkpoint({reinterpret_cast<const char*>(&*statistics_), sizeof *statistics_});
+  audit_ = audit;
+  std::string payload(reinterpret_cast<const char*>(&statistics), sizeof statistics);
+  payload.append(reinterpret_cast<const char*>(&audit), sizeof audit);
+  write_checkpoint(payload);
 }
 
 void EventLog::write_checkpoint(std::string_view payload) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/io/files/block_journal.h"
+#include "simulator/sensor/adaptive/audit_result.h"
 #include "simulator/sensor/event_tile.h"
 #include "simulator/sensor/pixel/sensed_event.h"
 
@@ -36,6 +37,8 @@ class EventLog {
   [[nodiscard]] std::string take_state() { return std::move(state_); }
   /// Of a log that holds the whole recording.
   [[nodiscard]] const std::optional<EventStatistics>& statistics() const { return statistics_; }
+  /// Of such a log; without pixels where nothing was audited.
+  [[nodiscard]] const AuditResult& audit() const { return audit_; }
 
   /// Events in order.
   void append(std::span<const SensedEvent> events);
@@ -44,7 +47,7 @@ class EventLog {
   /// Everything up to `reached_s` is appended and `state` goes on from there.
   void checkpoint(double reached_s, std::string_view state);
   /// The recording is complete.
-  void complete(const EventStatistics& statistics);
+  void complete(const EventStatistics& statistics, const AuditResult& audit = {});
 
   /// Hands out all events up to the last checkpoint, in order, in parts.
   void replay(const std::function<void(std::span<const SensedEvent>)>& use) const;
@@ -69,6 +72,7 @@ class EventLog {
   Head head_;
   std::string state_;
   std::optional<EventStatistics> statistics_;
+  AuditResult audit_;
   std::optional<BlockJournal> journal_;
   std::vector<std::byte> packed_;
   Clock::time_point next_;

@@ -5,6 +5,7 @@
 #include "core/io/events/labels_h5.h"
 #include "core/process/progress.h"
 #include "simulator/recording_loop.h"
+#include "simulator/sensor/adaptive/adaptive_camera.h"
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/event_labels.h"
 #include "simulator/sensor/frame_camera.h"
@@ -56,14 +57,30 @@ void write(const CameraRecording& recording) {
   labels->close();
 }
 
+/// From so many triangles on the exact search for what may come into view costs more than the rays
+/// that it saves.
+constexpr std::size_t kManyTriangles = 10'000;
+
 }  // namespace
+
+Sampling chosen_sampling(Sampling sampling, const Scene& scene) {
+  if (sampling != Sampling::kAuto) return sampling;
+  return scene.is_lit() && scene.triangle_count() >= kManyTriangles ? Sampling::kAdaptive
+                                                                    : Sampling::kExact;
+}
 
 EventStatistics record_events(const CameraRecording& recording) {
   if (!recording.log.statistics()) {
-    if (recording.events.sampling == Sampling::kFrames)
-      fill<FrameCamera>(recording);
-    else
-      fill<EventCamera>(recording);
+    switch (chosen_sampling(recording.events.sampling, recording.scene)) {
+      case Sampling::kFrames:
+        fill<FrameCamera>(recording);
+        break;
+      case Sampling::kAdaptive:
+        fill<AdaptiveCamera>(recording);
+        break;
+      default:
+        fill<EventCamera>(recording);
+    }
   }
   write(recording);
   return *recording.log.statistics();

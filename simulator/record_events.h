@@ -4,6 +4,10 @@
 
 namespace saccade {
 
+/// What `auto` stands for in a scene: kAdaptive where lights shine on many triangles, else kExact;
+/// any other sampling stands for itself.
+[[nodiscard]] Sampling chosen_sampling(Sampling sampling, const Scene& scene);
+
 /// Records the events into the log, from where an interrupted program left off, and writes them
 /// from there. The bytes do not depend on interruptions.
 EventStatistics record_events(const CameraRecording& recording);

@@ -20,7 +20,10 @@ void record_into(EventLog& log, Camera& camera, double duration_s,
     if (t_s < duration_s && log.wants_checkpoint()) log.checkpoint(t_s, camera.state());
     progress(t_s);
   });
-  log.complete(camera.statistics());
+  if constexpr (requires { camera.audit(); })
+    log.complete(camera.statistics(), camera.audit());
+  else
+    log.complete(camera.statistics());
 }
 
 }  // namespace saccade

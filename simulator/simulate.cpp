@@ -17,6 +17,31 @@
 namespace saccade {
 namespace {
 
+DatasetRecord::Figure figure_of(const AuditFigure& figure) {
+  return {figure.value, figure.low, figure.high};
+}
+
+DatasetRecord::Audit audit_record(const AuditResult& audit) {
+  return {static_cast<std::int64_t>(audit.pixels),
+          static_cast<std::int64_t>(audit.exact_events),
+          figure_of(audit.precision_10us),
+          figure_of(audit.recall_10us),
+          figure_of(audit.precision_1us),
+          figure_of(audit.recall_1us),
+          figure_of(audit.p99_dt_us)};
+}
+
+const char* sampling_name(Sampling sampling) {
+  switch (sampling) {
+    case Sampling::kAdaptive:
+      return "adaptive";
+    case Sampling::kFrames:
+      return "frames";
+    default:
+      return "exact";
+  }
+}
+
 DatasetRecord facts(const CameraRecording& recording, const EventStatistics& events,
                     double path_length_m) {
   DatasetRecord record;
@@ -31,7 +56,11 @@ DatasetRecord facts(const CameraRecording& recording, const EventStatistics& eve
   record.surface_samples = static_cast<std::int64_t>(events.surface_samples);
   if (recording.events.noise.readout.on())
     record.lost_events = static_cast<std::int64_t>(events.lost);
-  record.time_bound_us = 1e6 * events.time_bound_s;
+  const Sampling sampling = chosen_sampling(recording.events.sampling, recording.scene);
+  record.sampling = sampling_name(sampling);
+  if (sampling != Sampling::kAdaptive) record.time_bound_us = 1e6 * events.time_bound_s;
+  if (const AuditResult& audit = recording.log.audit(); audit.pixels > 0)
+    record.audit = audit_record(audit);
   record.path_length_m = path_length_m;
   return record;
 }

@@ -33,40 +33,67 @@ constexpr double kNeighbourhood_px = 1.4143 * (0.5 + kRings) * kTileSize;
 
 EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
                          const PinholeCamera& camera, const EventOptions& options,
-                         std::uint64_t seed)
+                         std::uint64_t seed, std::span<const std::size_t> only)
     : motion_(world_from_camera),
       rays_(camera, options.samples_per_pixel),
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       motions_(rays_.tile_count()),
       delivery_(options, camera, seed) {
-  tiles_.reserve(rays_.tile_count());
-  for (std::size_t i = 0; i < rays_.tile_count(); ++i) tiles_.push_back(make_event_tile(world_, i));
+  make_tiles(only);
+}
+
+void EventCamera::make_tiles(std::span<const std::size_t> only) {
+  tiles_.resize(rays_.tile_count());
+  senses_.assign(rays_.tile_count(), only.empty());
+  for (const std::size_t i : only) senses_[i] = true;
+  for (std::size_t i = 0; i < tiles_.size(); ++i)
+    if (senses_[i]) tiles_[i] = make_event_tile(world_, i);
+  for (const std::size_t i : only)
+    for_each_around(i, [&](std::size_t near) {
+      if (tiles_[near] == nullptr) tiles_[near] = make_depth_tile(world_, near);
+    });
 }
 
 void EventCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
+  while (t_s_ < duration_s) {
+    sense_slice(duration_s);
+    for (const auto& tile : tiles_)
+      if (tile != nullptr) tile->take_events(delivery_.pending());
+    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
+  }
+}
+
+void EventCamera::advance(double duration_s, const Take& take) {
+  sense_slice(duration_s);
+  SensedEvents events;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    if (!senses_[i]) continue;
+    events.clear();
+    tiles_[i]->take_events(events);
+    take(i, events);
+  }
+}
+
+void EventCamera::sense_slice(double duration_s) {
   if (!started_) {
     const SplineTable first(motion_, 0, std::min(kLongestSlice_s, duration_s));
     for_each_tile([&](EventTile& tile, std::size_t) { tile.start(first, 0); });
     started_ = true;
   }
-  while (t_s_ < duration_s) {
-    const double fastest = bound_speeds(t_s_);
-    const double slice_s = std::clamp(kSliceMotion_px / fastest, kShortestSlice_s, kLongestSlice_s);
-    const double until_s = next_motion_change_s(duration_s);
-    // No sliver at the end: the rest is split evenly.
-    const double slices_left = std::ceil((until_s - t_s_) / slice_s);
-    const double end_s = slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;
-    const SplineTable poses(motion_, t_s_, end_s);
-    for_each_tile([&](EventTile& tile, std::size_t i) {
-      TileMotion motion = motions_[i];
-      motion.pixels *= end_s - t_s_;
-      tile.advance({poses, end_s}, motion);
-    });
-    t_s_ = end_s;
-    for (const auto& tile : tiles_) tile->take_events(delivery_.pending());
-    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
-  }
+  const double fastest = bound_speeds(t_s_);
+  const double slice_s = std::clamp(kSliceMotion_px / fastest, kShortestSlice_s, kLongestSlice_s);
+  const double until_s = next_motion_change_s(duration_s);
+  // No sliver at the end: the rest is split evenly.
+  const double slices_left = std::ceil((until_s - t_s_) / slice_s);
+  const double end_s = slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;
+  const SplineTable poses(motion_, t_s_, end_s);
+  for_each_tile([&](EventTile& tile, std::size_t i) {
+    TileMotion motion = motions_[i];
+    motion.pixels *= end_s - t_s_;
+    tile.advance({poses, end_s}, motion);
+  });
+  t_s_ = end_s;
 }
 
 double EventCamera::next_motion_change_s(double duration_s) const {
@@ -80,7 +107,8 @@ double EventCamera::next_motion_change_s(double duration_s) const {
 std::string EventCamera::state() const {
   StateWriter state;
   state.value(t_s_);
-  for (const auto& tile : tiles_) tile->save(state);
+  for (const auto& tile : tiles_)
+    if (tile != nullptr) tile->save(state);
   delivery_.save(state);
   return state.bytes();
 }
@@ -88,7 +116,8 @@ std::string EventCamera::state() const {
 void EventCamera::resume(std::string_view bytes) {
   StateReader state(bytes);
   state.value(t_s_);
-  for (const auto& tile : tiles_) tile->load(state);
+  for (const auto& tile : tiles_)
+    if (tile != nullptr) tile->load(state);
   delivery_.load(state);
   if (!state.at_end()) throw InputError("saved state", "is too long; start the simulation afresh");
   started_ = true;
@@ -97,7 +126,11 @@ void EventCamera::resume(std::string_view bytes) {
 template <class Work>
 void EventCamera::for_each_tile(const Work& work) {
   parallel_for(
-      tiles_.size(), [&](std::size_t i) { work(*tiles_[i], i); }, kTilesPerTask);
+      tiles_.size(),
+      [&](std::size_t i) {
+        if (tiles_[i] != nullptr) work(*tiles_[i], i);
+      },
+      kTilesPerTask);
 }
 
 double EventCamera::bound_speeds(double t_s) {
@@ -108,6 +141,7 @@ double EventCamera::bound_speeds(double t_s) {
   const PinholeCamera& camera = rays_.camera();
   const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlice_s);
   for_each_tile([&](EventTile&, std::size_t i) {
+    if (!senses_[i]) return;
     const Tile tile = rays_.tile(i);
     const Eigen::Vector3d centre = camera.ray(
         Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
@@ -129,23 +163,29 @@ double EventCamera::bound_speeds(double t_s) {
   return fastest;
 }
 
-InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
+template <class Use>
+void EventCamera::for_each_around(std::size_t tile, const Use& use) const {
   const int tx = static_cast<int>(tile) % rays_.tiles_x();
   const int ty = static_cast<int>(tile) / rays_.tiles_x();
-  InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
   for (int y = std::max(0, ty - kRings); y <= std::min(ty + kRings, rays_.tiles_y() - 1); ++y)
-    for (int x = std::max(0, tx - kRings); x <= std::min(tx + kRings, rays_.tiles_x() - 1); ++x) {
-      const InverseDepthRange near =
-          tiles_[static_cast<std::size_t>(y * rays_.tiles_x() + x)]->inverse_depths();
-      range.low = std::min(range.low, near.low);
-      range.high = std::max(range.high, near.high);
-    }
+    for (int x = std::max(0, tx - kRings); x <= std::min(tx + kRings, rays_.tiles_x() - 1); ++x)
+      use(static_cast<std::size_t>(y * rays_.tiles_x() + x));
+}
+
+InverseDepthRange EventCamera::neighbourhood(std::size_t tile) const {
+  InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
+  for_each_around(tile, [&](std::size_t around) {
+    const InverseDepthRange near = tiles_[around]->inverse_depths();
+    range.low = std::min(range.low, near.low);
+    range.high = std::max(range.high, near.high);
+  });
   return range;
 }
 
 EventStatistics EventCamera::statistics() const {
   EventStatistics total;
-  for (const auto& tile : tiles_) total.add(tile->statistics());
+  for (const auto& tile : tiles_)
+    if (tile != nullptr) total.add(tile->statistics());
   total.lost = delivery_.lost();
   return total;
 }

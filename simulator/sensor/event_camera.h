@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -28,9 +29,11 @@ namespace saccade {
 class EventCamera {
  public:
   /// `scene` and `world_from_camera` (from 0 to the recording's end) must outlive the camera;
-  /// `seed` is that of its imperfections.
+  /// `seed` is that of its imperfections. `only`: the tiles of PixelRays that sense, in order; none
+  /// stated: all of them.
   EventCamera(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
-              const EventOptions& options, std::uint64_t seed = 1);
+              const EventOptions& options, std::uint64_t seed = 1,
+              std::span<const std::size_t> only = {});
 
   /// Receives the events up to a time [s], in SensedEventOrder over all calls; state() may be
   /// called.
@@ -38,6 +41,12 @@ class EventCamera {
 
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
+
+  /// The first slice of record() that is not sensed yet, without a delivery: the events of tile `i`
+  /// go to take(i, events) in the order in which they were found.
+  using Take = std::function<void(std::size_t tile, std::span<const SensedEvent> events)>;
+  void advance(double duration_s, const Take& take);
+  [[nodiscard]] double reached_s() const { return t_s_; }
 
   /// All that later events depend on, between two calls of the sink.
   [[nodiscard]] std::string state() const;
@@ -48,9 +57,15 @@ class EventCamera {
   [[nodiscard]] EventStatistics statistics() const;
 
  private:
-  /// work(tile, index) for all tiles, in parallel.
+  /// work(tile, index) for all tiles that are there, in parallel.
   template <class Work>
   void for_each_tile(const Work& work);
+  void make_tiles(std::span<const std::size_t> only);
+  /// The next slice.
+  void sense_slice(double duration_s);
+  /// The tiles in reach of one, itself among them.
+  template <class Use>
+  void for_each_around(std::size_t tile, const Use& use) const;
   /// Bound of the image speed of every tile over [t, t + longest slice], into motions_; the
   /// largest.
   double bound_speeds(double t_s);
@@ -61,7 +76,8 @@ class EventCamera {
   const Spline& motion_;
   PixelRays rays_;
   TileContext world_;
-  std::vector<std::unique_ptr<EventTile>> tiles_;
+  std::vector<std::unique_ptr<EventTile>> tiles_;  ///< nullptr: not in reach of one that senses
+  std::vector<bool> senses_;                        ///< the others only tell what they see
   std::vector<TileMotion> motions_;  ///< per tile, in px per second
   double t_s_ = 0;                   ///< up to which all tiles have sensed
   bool started_ = false;

@@ -21,8 +21,10 @@ struct SensorPreset {
 
 /// How the signal is sampled.
 enum class Sampling {
-  kAsynchronous,  ///< every pixel at its own times, crossings located on the continuous signal
-  kFrames,        ///< whole frames, linear in between (ESIM; Rebecq et al., CoRL 2018): a baseline
+  kExact,     ///< every pixel at its own times, crossings located on the continuous signal
+  kAdaptive,  ///< with rays where the signal asks for them, and an exact audit of some pixels
+  kAuto,      ///< one of these two, by scene and configuration
+  kFrames,    ///< whole frames, linear in between (ESIM; Rebecq et al., CoRL 2018): a baseline
 };
 
 /// What a ray sees of a texture.
@@ -40,7 +42,8 @@ struct EventOptions {
   int samples_per_pixel = 1;
   TimestampUnit timestamp_unit = TimestampUnit::kMicroseconds;
   double max_step_px = 0.5;
-  Sampling sampling = Sampling::kAsynchronous;
+  Sampling sampling = Sampling::kExact;
+  double audit_fraction = 0.01;
   double frames_lambda_px = 0.5;
   double frames_rate_hz = 0;
   TextureFilter texture_filter = TextureFilter::kBilinear;

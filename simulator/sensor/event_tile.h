@@ -79,5 +79,8 @@ class EventTile {
 /// Tile `index` of `context.rays`, for its number of rays per pixel.
 [[nodiscard]] std::unique_ptr<EventTile> make_event_tile(const TileContext& context,
                                                          std::size_t index);
+/// The same tile without senses: it traces its rays at the end of each slice for inverse_depths().
+[[nodiscard]] std::unique_ptr<EventTile> make_depth_tile(const TileContext& context,
+                                                         std::size_t index);
 
 }  // namespace saccade

@@ -36,6 +36,22 @@ void describe(config::Fields& fields, DatasetRecord::Counts& counts) {
   fields.value("imu_samples", counts.imu_samples, "inertial readings").at_least(0);
 }
 
+void describe(config::Fields& fields, DatasetRecord::Figure& figure) {
+  fields.value("value", figure.value, "measured").at_least(0);
+  fields.value("low", figure.low, "of the 95 % interval").at_least(0);
+  fields.value("high", figure.high, "of the 95 % interval").at_least(0);
+}
+
+void describe(config::Fields& fields, DatasetRecord::Audit& audit) {
+  fields.value("pixels", audit.pixels, "recorded exactly, too").at_least(0);
+  fields.value("events", audit.events, "exact ones of these pixels").at_least(0);
+  fields.section("precision_10us", audit.precision_10us, "events with an exact one within 10 us");
+  fields.section("recall_10us", audit.recall_10us, "exact events that were found within 10 us");
+  fields.section("precision_1us", audit.precision_1us, "the same within 1 us");
+  fields.section("recall_1us", audit.recall_1us, "the same within 1 us");
+  fields.section("p99_dt_us", audit.p99_dt_us, "99th percentile of the time error [us]");
+}
+
 void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("format_version", record.format_version, "of this file").required().range(1, 1);
   fields.value("name", record.name, "scene");
@@ -62,6 +78,8 @@ void describe(config::Fields& fields, DatasetRecord& record) {
              "of every event's time, before rounding to the unit [us]")
       .at_least(0);
   fields.value("path_length_m", record.path_length_m, "of the camera [m]").at_least(0);
+  fields.value("sampling", record.sampling, "of the events").one_of({"exact", "adaptive", "frames"});
+  fields.section("audit", record.audit, "of sampled events against exact ones");
   fields.embed("config", record.config_yaml, "the resolved configuration");
   fields.value("sha256", record.sha256, "of every other file");
 }

@@ -23,6 +23,22 @@ struct DatasetRecord {
     std::int64_t imu_samples = 0;
   };
 
+  /// A measured figure with its 95 % confidence interval.
+  struct Figure {
+    double value = 0;
+    double low = 0;
+    double high = 0;
+  };
+  /// How events that were sampled agree with the exact ones of some pixels, one-to-one per pixel and
+  /// polarity within 1 or 10 us.
+  struct Audit {
+    std::int64_t pixels = 0;
+    std::int64_t events = 0;  ///< exact ones
+    Figure precision_10us, recall_10us;
+    Figure precision_1us, recall_1us;
+    Figure p99_dt_us;
+  };
+
   int format_version = 1;
   std::string name;          ///< of the scene
   std::string tool_version;  ///< empty: not written by this program
@@ -44,6 +60,8 @@ struct DatasetRecord {
   std::optional<std::int64_t> lost_events;      ///< met a full readout
   std::optional<double> time_bound_us;  ///< of every event's time, before rounding to the unit
   std::optional<double> path_length_m;  ///< of the camera
+  std::optional<std::string> sampling;  ///< of the events: exact, adaptive or frames
+  std::optional<Audit> audit;           ///< of events that were sampled adaptively
   std::map<std::string, std::string> sha256;  ///< of every file but dataset.yaml, by relative path
 };
 

@@ -1,0 +1,248 @@
+#include "simulator/sensor/adaptive/adaptive_tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "simulator/sensor/signal/linear_signal.h"
+
+namespace saccade {
+namespace {
+
+/// A crossing is narrowed down to so many tolerances; the line through both ends is more exact by
+/// far where the signal is smooth, and half of this is the error where it jumps.
+const double kBracketTolerances = getenv("kBracketTolerances") ? atof(getenv("kBracketTolerances")) : 4;
+/// Samples of one surface are at most so many texels apart: a texture is bilinear between four
+/// texels, so that within this distance its extrema are few.
+const double kMaxTexels = getenv("kMaxTexels") ? atof(getenv("kMaxTexels")) : 0.5;
+/// Two triangles of one object are one surface where the depth changes by less than this from one
+/// sample to the next, relative.
+constexpr double kContinuousDepth = 0.02;
+/// Where a pixel comes to see another surface without a crossing, the change is located to this
+/// fraction of a step: what is seen before and after may still cross.
+const double kChangeFraction = getenv("kChangeFraction") ? atof(getenv("kChangeFraction")) : 0.125;
+/// Next to an edge of a surface the steps of a pixel are this fraction of the others': there thin
+/// things, and gaps between them, pass by.
+const double kNearEdgeFraction = getenv("kNearEdgeFraction") ? atof(getenv("kNearEdgeFraction")) : 0.25;
+/// The error of a line is estimated from the slope before it; it may be larger by this factor.
+const double kErrorMargin = getenv("kErrorMargin") ? atof(getenv("kErrorMargin")) : 2;
+/// The slope before a line may equal its own by chance: its error is at least this part of its
+/// change.
+const double kLeastError = getenv("kLeastError") ? atof(getenv("kLeastError")) : 0.05;
+/// The error of a line that the photoreceptor's low pass is given [log units].
+constexpr double kFilteredError = 5e-3;
+/// Nearer to an end, relative to its length, an interval is not divided.
+constexpr double kLeastFraction = 0.05;
+/// Below this rate a signal does not move [1/s].
+constexpr double kLeastSlope = 1e-12;
+
+}  // namespace
+
+AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const EventOptions& options,
+                           const PixelNoise& noise, std::uint64_t seed, std::size_t index)
+    : scene_(scene),
+      rays_(rays),
+      options_(options),
+      index_(index),
+      bracket_s_(kBracketTolerances * 1e-6 * options.time_tolerance_us),
+      is_filtered_(noise.filter.on()),
+      pixels_(options, noise, seed, rays.tile(index)),
+      sampler_(scene, rays, options, index, statistics_) {}
+
+void AdaptiveTile::start(const AdaptiveSlice& slice) {
+  sampler_.set_poses(slice.poses);
+  std::array<SampleRequest, kTilePixels> requests;
+  std::array<ViewSample, kTilePixels> samples;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) requests[i] = {i, slice.from_s};
+  sampler_.trace({requests.data(), pixels_.size()}, {samples.data(), pixels_.size()});
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    views_[i] = {samples[i], 0, false};
+    pixels_.start(i, samples[i].log_intensity, slice.from_s);
+  }
+  update_speed(slice);
+}
+
+void AdaptiveTile::advance(const AdaptiveSlice& slice, double around_px_s) {
+  sampler_.set_poses(slice.poses);
+  const double steps = std::max(
+      1.0, std::ceil(around_px_s * (slice.to_s - slice.from_s) / options_.max_step_px));
+  for (double k = 1; k <= steps; ++k)
+    sense_step(k == steps ? slice.to_s : std::lerp(slice.from_s, slice.to_s, k / steps));
+  update_speed(slice);
+}
+
+void AdaptiveTile::update_speed(const AdaptiveSlice& slice) {
+  speed_px_s_ = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const ViewSample& seen = views_[i].now;
+    const Eigen::Vector3d& ray = rays_.rays(index_)[i * rays_.rays_per_pixel()];
+    for (const RelativeTwists* twists : {&slice.first, &slice.last})
+      speed_px_s_ = std::max(speed_px_s_, point_motion(rays_.camera(), ray, seen.distance,
+                                                       twists->relative_to(seen.triangle))
+                                              .norm());
+  }
+}
+
+InverseDepthRange AdaptiveTile::inverse_depths() const {
+  InverseDepthRange range{std::numeric_limits<double>::infinity(), 0};
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const double distance = views_[i].now.distance;
+    const double inverse = distance > 0 ? 1 / distance : 0;
+    range.low = std::min(range.low, inverse);
+    range.high = std::max(range.high, inverse);
+  }
+  return range;
+}
+
+void AdaptiveTile::find_edges(std::span<const ViewSample> next) {
+  const Tile tile = rays_.tile(index_);
+  const auto width = static_cast<std::size_t>(tile.width);
+  is_near_edge_.reset();
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    if (is_continuous(views_[a].now, views_[b].now) && is_continuous(next[a], next[b])) return;
+    is_near_edge_.set(a);
+    is_near_edge_.set(b);
+  };
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (!is_continuous(views_[i].now, next[i])) is_near_edge_.set(i);
+    if (i % width + 1 < width) compare(i, i + 1);
+    if (i + width < pixels_.size()) compare(i, i + width);
+  }
+}
+
+void AdaptiveTile::sense_step(double to_s) {
+  std::array<SampleRequest, kTilePixels> requests;
+  std::array<ViewSample, kTilePixels> samples;
+  std::size_t count = pixels_.size();
+  for (std::size_t i = 0; i < count; ++i) requests[i] = {i, to_s};
+  step_s_ = to_s - views_[0].now.t_s;
+  for (bool is_first = true; count > 0; is_first = false) {
+    sampler_.trace({requests.data(), count}, {samples.data(), count});
+    if (is_first) find_edges({samples.data(), count});
+    std::size_t open = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = requests[k].pixel;
+      ahead_[i].push_back(samples[k]);
+      if (const std::optional<double> t_s = sense_lines(i))
+        requests[open++] = {i, *t_s, lights_known(i) ? &views_[i].now : nullptr};
+    }
+    count = open;
+  }
+}
+
+std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
+  Pixel& pixel = views_[i];
+  std::vector<ViewSample>& ahead = ahead_[i];
+  while (!ahead.empty()) {
+    const ViewSample next = ahead.back();
+    const Judgement judgement = judge(i, pixel, next);
+    if (judgement.is_line) {
+      sense_line(i, pixel, next);
+      ahead.pop_back();
+    } else if (judgement.needs_ray) {
+      return judgement.t_s;
+    } else {
+      ahead.push_back(sampler_.resample({i, judgement.t_s}, next));
+      ahead.back().triangles = next.triangles;
+      ahead.back().lights = next.lights;
+    }
+  }
+  return std::nullopt;
+}
+
+bool AdaptiveTile::lights_known(std::size_t i) const {
+  const ViewSample& now = views_[i].now;
+  const ViewSample& next = ahead_[i].back();
+  return sampler_.rays_per_pixel() == 1 && now.lights == next.lights && now.triangle != kNothing &&
+         next.triangle != kNothing &&
+         (now.triangle == next.triangle ||
+          scene_.object(now.triangle) == scene_.object(next.triangle));
+}
+
+bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) const {
+  if (a.triangles == b.triangles && a.lights == b.lights) return true;
+  return a.triangle != kNothing && b.triangle != kNothing && a.lights == b.lights &&
+         scene_.object(a.triangle) == scene_.object(b.triangle) &&
+         std::abs(a.distance - b.distance) < kContinuousDepth * std::min(a.distance, b.distance);
+}
+
+auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const
+    -> Judgement {
+  const ViewSample& now = pixel.now;
+  const double length_s = next.t_s - now.t_s;
+  if (length_s <= bracket_s_) return {};
+  const bool is_same = now.triangles == next.triangles && now.lights == next.lights;
+  const bool needs_ray = !is_same || sampler_.rays_per_pixel() > 1;
+  const double middle_s = 0.5 * (now.t_s + next.t_s);
+  const bool is_continuous_there = is_continuous(now, next);
+  const double change = next.log_intensity - now.log_intensity;
+  if (is_near_edge_[i] && length_s > 1.001 * kNearEdgeFraction * step_s_)
+    return {false, now.t_s + kNearEdgeFraction * step_s_, true};
+  if (is_continuous_there && std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) > kMaxTexels)
+    return {false, middle_s, needs_ray};
+
+  // How far the signal may be from the line in its middle: a parabola with the slope before it, or
+  // any curve of the same change.
+  const double slope = change / length_s;
+  double error = is_continuous_there ? 0.25 * std::abs(change) : std::abs(change);
+  if (is_continuous_there && pixel.has_slope)
+    error = std::max(kErrorMargin * 0.25 * std::abs(slope - pixel.before_s) * length_s,
+                     kLeastError * std::abs(change));
+  if (is_filtered_ && error > kFilteredError) return {false, middle_s, needs_ray};
+
+  const Thresholds& thresholds = pixels_.thresholds(i);
+  const Band& band = thresholds.band();
+  const double from = thresholds.signal(LinearSample{now.t_s, now.log_intensity});
+  const double to = thresholds.signal(LinearSample{next.t_s, next.log_intensity});
+  if (band.contains(to)) {
+    if (!is_continuous_there) {
+      if (length_s <= kChangeFraction * step_s_) return {};
+      return {false, middle_s, true};
+    }
+    const double margin = std::min(band.upper - std::max(from, to), std::min(from, to) - band.lower);
+    return error <= margin ? Judgement{} : Judgement{false, middle_s, needs_ray};
+  }
+  if (!is_continuous_there) return {false, middle_s, true};
+  // At a fraction f of the line a parabola departs from it by 4 f (1 - f) of that in the middle.
+  const double level = to >= band.upper ? band.upper : band.lower;
+  const double fraction = std::clamp((level - from) / (to - from), 0.0, 1.0);
+  const double middle_error_s = error / std::max(std::abs(slope), kLeastSlope);
+  const auto is_exact = [&](double f) {
+    return 2 * 4 * f * (1 - f) * middle_error_s <= bracket_s_;
+  };
+  if (!is_exact(fraction))
+    return {false, now.t_s + std::clamp(fraction, kLeastFraction, 1 - kLeastFraction) * length_s,
+            needs_ray};
+  // A line across several thresholds.
+  const double contrast = 0.5 * (band.upper - band.lower);
+  if (std::abs(to - level) >= contrast && !is_exact(0.5)) return {false, middle_s, needs_ray};
+  return {};
+}
+
+void AdaptiveTile::sense_line(std::size_t i, Pixel& pixel, const ViewSample& next) {
+  const LinearSample from{pixel.now.t_s, pixel.now.log_intensity};
+  const LinearSample to{next.t_s, next.log_intensity};
+  const Thresholds& thresholds = pixels_.thresholds(i);
+  if (pixels_.is_noisy() || !thresholds.band().contains(thresholds.signal(to)))
+    pixels_.sense(i, LinearSignal(options_.log_eps, 1e-6 * options_.time_tolerance_us), from, to);
+  pixel.has_slope = is_continuous(pixel.now, next);
+  pixel.before_s = (to.log_intensity - from.log_intensity) / (to.t_s - from.t_s);
+  pixel.now = next;
+}
+
+void AdaptiveTile::save(StateWriter& state) const {
+  for (std::size_t i = 0; i < pixels_.size(); ++i) state.value(views_[i]);
+  pixels_.save(state);
+  state.value(speed_px_s_);
+  state.value(statistics_);
+}
+
+void AdaptiveTile::load(StateReader& state) {
+  for (std::size_t i = 0; i < pixels_.size(); ++i) state.value(views_[i]);
+  pixels_.load(state);
+  state.value(speed_px_s_);
+  state.value(statistics_);
+}
+
+}  // namespace saccade

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "simulator/motion/spline_table.h"
+#include "simulator/scene/scene.h"
+#include "simulator/sensor/adaptive/view_sampler.h"
+#include "simulator/sensor/event_options.h"
+#include "simulator/sensor/motion/image_motion.h"
+#include "simulator/sensor/motion/object_motion.h"
+#include "simulator/sensor/noise/state_bytes.h"
+#include "simulator/sensor/pixel/pixel_bank.h"
+#include "simulator/sensor/pixel/pixel_noise.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+
+namespace saccade {
+
+/// The camera during a slice, as all tiles share it.
+struct AdaptiveSlice {
+  const SplineTable& poses;  ///< cover it
+  double from_s, to_s;
+  const RelativeTwists& first;  ///< at its start
+  const RelativeTwists& last;   ///< and at its end
+};
+
+/// 4 x 4 event pixels that are sampled with rays: all of them after every `max_step_px` of image
+/// motion, and each in between wherever its line between two samples may be wrong about a crossing.
+class AdaptiveTile {
+ public:
+  /// All outlive the tile.
+  AdaptiveTile(const Scene& scene, const PixelRays& rays, const EventOptions& options,
+               const PixelNoise& noise, std::uint64_t seed, std::size_t index);
+
+  /// Sets the pixels' references to the signal at the start of the slice.
+  void start(const AdaptiveSlice& slice);
+  /// Senses to the end of the slice. `around_px_s`: how fast what the tiles around see moves.
+  void advance(const AdaptiveSlice& slice, double around_px_s);
+
+  /// How fast what the pixels see now moves over the image, at most [px/s].
+  [[nodiscard]] double speed_px_s() const { return speed_px_s_; }
+  /// Of the surfaces that they see now.
+  [[nodiscard]] InverseDepthRange inverse_depths() const;
+
+  /// Moves out the events found since the last call; times rounded to the unit.
+  void take_events(SensedEvents& out) { pixels_.take_events(out); }
+  [[nodiscard]] const EventStatistics& statistics() const { return statistics_; }
+
+  void save(StateWriter& state) const;
+  void load(StateReader& state);
+
+ private:
+  /// A pixel between two samples of the whole tile.
+  struct Pixel {
+    ViewSample now;     ///< up to which it has sensed
+    double before_s = 0;  ///< slope of the signal before that [1/s]
+    bool has_slope = false;
+  };
+  /// What to do with the interval from a pixel's last sample to the next known one.
+  struct Judgement {
+    bool is_line = true;  ///< the line between both ends is good enough
+    double t_s = 0;       ///< else where to sample next
+    bool needs_ray = true;
+  };
+
+  void sense_step(double to_s);
+  /// Finds the pixels next to an edge of what they see, now or at the end of the step.
+  void find_edges(std::span<const ViewSample> next);
+  /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
+  /// good; the time of the sample that is missing where one is not.
+  [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
+  [[nodiscard]] Judgement judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
+  /// Whether what a pixel sees of one object before its next sample is lit as at both ends.
+  [[nodiscard]] bool lights_known(std::size_t i) const;
+  [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
+  void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
+  void update_speed(const AdaptiveSlice& slice);
+
+  const Scene& scene_;
+  const PixelRays& rays_;
+  const EventOptions& options_;
+  std::size_t index_;
+  double bracket_s_;
+  bool is_filtered_;
+  PixelBank pixels_;
+  EventStatistics statistics_;
+  ViewSampler sampler_;
+  std::array<Pixel, kTilePixels> views_;
+  double speed_px_s_ = 0;
+  double step_s_ = 0;                        ///< length of the step at work
+  std::bitset<kTilePixels> is_near_edge_;    ///< in it
+  std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
+};
+
+}  // namespace saccade

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/spline/spline.h"
+#include "simulator/scene/scene.h"
+#include "simulator/sensor/adaptive/audit_result.h"
+#include "simulator/sensor/adaptive/event_matcher.h"
+#include "simulator/sensor/event_camera.h"
+#include "simulator/sensor/event_options.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+
+namespace saccade {
+
+/// Records a random share of a camera's tiles exactly, beside another camera that records all of
+/// them, and compares the events of both as they leave the pixels, before latency and readout.
+/// The tiles are drawn by the seed, one from each of equal parts of the image.
+class Audit {
+ public:
+  /// The arguments of the audited camera; nothing is audited where audit_fraction is 0.
+  Audit(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
+        const EventOptions& options, std::uint64_t seed);
+
+  /// Events of a tile of the audited camera, in the order in which they were found.
+  void add(std::size_t tile, std::span<const SensedEvent> events);
+  /// All events of the audited camera up to `t_s` have been added: records up to there, too.
+  void advance(double t_s, double duration_s);
+
+  /// Of a whole recording, with intervals from bootstrap samples of the tiles.
+  [[nodiscard]] AuditResult result() const;
+
+  void save(StateWriter& state) const;
+  void load(StateReader& state);
+
+ private:
+  struct AuditedTile {
+    Tile tile;
+    std::vector<EventMatcher> matchers;  ///< two for each pixel
+    MatchCounts counts;
+
+    EventMatcher& matcher(const SensedEvent& event);
+  };
+
+  [[nodiscard]] AuditedTile* audited(std::size_t tile);
+
+  PixelRays rays_;
+  std::uint64_t seed_;
+  double end_s_ = 0;               ///< of the recording
+  std::vector<std::size_t> index_;  ///< of the audited tiles, in order
+  std::vector<AuditedTile> tiles_;  ///< these
+  std::optional<EventCamera> exact_;
+};
+
+}  // namespace saccade

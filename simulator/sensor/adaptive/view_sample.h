@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "simulator/scene/scene.h"
+
+namespace saccade {
+
+/// What a pixel sees at an instant: its log intensity, and as much of the surface as tells whether
+/// two samples lie on one.
+struct ViewSample {
+  double t_s = 0;
+  double log_intensity = 0;  ///< ln(eps + mean radiance)
+  double distance = 0;       ///< z depth along the pixel's first ray; 0 = background
+  double x = 0, y = 0;       ///< of the first ray on the texture, in texels of its pyramid level
+  TriangleId triangle = kNothing;    ///< that the first ray sees
+  std::uint64_t triangles = 0;       ///< a hash of those of all rays
+  std::uint64_t lights = 0;          ///< a hash of the lights that light all of them
+  LightSet lights_of_ray = 0;        ///< that light the first
+};
+
+}  // namespace saccade

@@ -1,0 +1,130 @@
+#include "simulator/sensor/adaptive/view_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+#include "simulator/sensor/rays/tile_trace.h"
+#include "simulator/sensor/signal/ray_sample.h"
+
+namespace saccade {
+namespace {
+
+/// One number for a sequence of them (FNV-1a over whole words).
+void mix(std::uint64_t value, std::uint64_t& hash) { hash = (hash ^ value) * 0x100000001b3ULL; }
+
+/// Adds one of a pixel's rays; the first tells where the pixel looks.
+void add(const SurfaceSample& seen, TriangleId triangle, bool is_first, ViewSample& sample) {
+  mix(triangle, sample.triangles);
+  mix(seen.lights, sample.lights);
+  if (!is_first) return;
+  const double texel = seen.level > 0 ? std::exp2(-seen.level) : 1.0;
+  sample.distance = seen.distance;
+  sample.x = seen.texture == nullptr ? 0 : seen.x * texel;
+  sample.y = seen.texture == nullptr ? 0 : seen.y * texel;
+  sample.triangle = triangle;
+  sample.lights_of_ray = seen.lights;
+}
+
+}  // namespace
+
+SurfaceSample ViewSampler::surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
+                                   const Ray& ray, TriangleId triangle) const {
+  if (options_.texture_filter == TextureFilter::kBilinear)
+    return scene_.sample_surface(ray, triangle);
+  return scene_.sample_surface(ray, triangle,
+                               differential_in_world(rays_, camera.rotation, direction));
+}
+
+void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples) {
+  SACCADE_CHECK(samples.size() == requests.size());
+  const std::size_t per_pixel = rays_.rays_per_pixel();
+  const std::size_t count = requests.size() * per_pixel;
+  std::array<Ray, kRayPacket> rays;
+  std::array<TriangleId, kRayPacket> triangles;
+  std::array<SurfaceSample, kRayPacket> seen;
+  std::fill(samples.begin(), samples.end(), ViewSample{});
+  CameraFrame camera;
+  double camera_s = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t first = 0; first < count; first += kRayPacket) {
+    const std::size_t n = std::min(kRayPacket, count - first);
+    const auto direction = [&](std::size_t k) -> const Eigen::Vector3d& {
+      return directions(requests[k / per_pixel].pixel)[k % per_pixel];
+    };
+    const auto look = [&](std::size_t k) {
+      const double t_s = requests[k / per_pixel].t_s;
+      if (t_s == camera_s) return;
+      camera = poses_->at(t_s);
+      camera_s = t_s;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      look(first + k);
+      rays[k] = {camera.position, camera.rotation * direction(first + k), camera_s};
+    }
+    scene_.visible({rays.data(), n}, {triangles.data(), n});
+    for (std::size_t k = 0; k < n; ++k) {
+      if (options_.texture_filter == TextureFilter::kMipmap) look(first + k);
+      seen[k] = surface(camera, direction(first + k), rays[k], triangles[k]);
+    }
+    illuminate(requests, first, {rays.data(), n}, {triangles.data(), n}, {seen.data(), n});
+    for (std::size_t k = 0; k < n; ++k) {
+      ViewSample& sample = samples[(first + k) / per_pixel];
+      add(seen[k], triangles[k], (first + k) % per_pixel == 0, sample);
+      sample.log_intensity += seen[k].radiance();  // the sum, until all of them are there
+    }
+  }
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    samples[i].t_s = requests[i].t_s;
+    samples[i].log_intensity = log_intensity(
+        samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
+  }
+  statistics_.rays += count;
+}
+
+void ViewSampler::illuminate(std::span<const SampleRequest> requests, std::size_t first,
+                             std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                             std::span<SurfaceSample> seen) {
+  if (!scene_.is_lit()) return;
+  std::array<Ray, kRayPacket> unknown;
+  std::array<TriangleId, kRayPacket> unknown_triangles;
+  std::array<SurfaceSample, kRayPacket> unlit;
+  std::array<std::size_t, kRayPacket> owners;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const ViewSample* like = requests[(first + k) / rays_.rays_per_pixel()].like;
+    if (like != nullptr && triangles[k] != kNothing && like->triangle != kNothing &&
+        (triangles[k] == like->triangle ||
+         scene_.object(triangles[k]) == scene_.object(like->triangle))) {
+      seen[k].lights = like->lights_of_ray;
+      seen[k].irradiance = scene_.irradiance(rays[k], triangles[k], seen[k]);
+      continue;
+    }
+    unknown[n] = rays[k];
+    unknown_triangles[n] = triangles[k];
+    unlit[n] = seen[k];
+    owners[n++] = k;
+  }
+  scene_.illuminate({unknown.data(), n}, {unknown_triangles.data(), n}, {unlit.data(), n});
+  for (std::size_t k = 0; k < n; ++k) seen[owners[k]] = unlit[k];
+  statistics_.lit_points += n;
+}
+
+ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like) {
+  SACCADE_CHECK(rays_.rays_per_pixel() == 1);
+  const CameraFrame camera = poses_->at(request.t_s);
+  const Eigen::Vector3d& direction = directions(request.pixel)[0];
+  const Ray ray{camera.position, camera.rotation * direction, request.t_s};
+  SurfaceSample seen = surface(camera, direction, ray, like.triangle);
+  seen.lights = like.lights_of_ray;
+  seen.irradiance = scene_.irradiance(ray, like.triangle, seen);
+  ViewSample sample;
+  add(seen, like.triangle, true, sample);
+  sample.t_s = request.t_s;
+  sample.log_intensity = log_intensity(seen.radiance(), options_.log_eps);
+  ++statistics_.surface_samples;
+  return sample;
+}
+
+}  // namespace saccade

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "simulator/motion/spline_table.h"
+#include "simulator/scene/scene.h"
+#include "simulator/sensor/adaptive/view_sample.h"
+#include "simulator/sensor/event_options.h"
+#include "simulator/sensor/rays/pixel_rays.h"
+#include "simulator/sensor/rays/ray_tracer.h"
+
+namespace saccade {
+
+/// A pixel at an instant that is to be sampled.
+struct SampleRequest {
+  std::size_t pixel;  ///< within the tile
+  double t_s;
+  /// Sample just before or after, whose lights also light what is seen of the same object; nullptr:
+  /// not known.
+  const ViewSample* like = nullptr;
+};
+
+/// Samples pixels of one tile at any times of a slice with rays, up to kRayPacket in a packet,
+/// whatever their times are. Counts what it does.
+class ViewSampler {
+ public:
+  /// All outlive the sampler.
+  ViewSampler(const Scene& scene, const PixelRays& rays, const EventOptions& options,
+              std::size_t tile, EventStatistics& statistics)
+      : scene_(scene), rays_(rays), options_(options), tile_(tile), statistics_(statistics) {}
+
+  /// The camera's motion during what follows; outlives it.
+  void set_poses(const SplineTable& poses) { poses_ = &poses; }
+
+  /// What the pixels see, by rays, shadow rays included.
+  void trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
+
+  /// What a pixel with one ray sees at `t_s` if it sees the triangle and the lights of `like`, as
+  /// it does just before and just after: without a ray.
+  [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like);
+
+  [[nodiscard]] std::size_t rays_per_pixel() const { return rays_.rays_per_pixel(); }
+
+ private:
+  [[nodiscard]] std::span<const Eigen::Vector3d> directions(std::size_t pixel) const {
+    return rays_.rays(tile_).subspan(pixel * rays_.rays_per_pixel(), rays_.rays_per_pixel());
+  }
+  [[nodiscard]] SurfaceSample surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
+                                      const Ray& ray, TriangleId triangle) const;
+
+  /// Finds the light on samples, `first` the first one's ray among those of all requests.
+  void illuminate(std::span<const SampleRequest> requests, std::size_t first,
+                  std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                  std::span<SurfaceSample> seen);
+
+  const Scene& scene_;
+  const PixelRays& rays_;
+  const EventOptions& options_;
+  std::size_t tile_;
+  EventStatistics& statistics_;
+  const SplineTable* poses_ = nullptr;
+};
+
+}  // namespace saccade
