@@ -68,14 +68,17 @@ class AdaptiveTile {
   };
 
   void sense_step(double to_s);
+  /// Samples pixels while a triangle passes that another pixel sees, and puts all samples up to
+  /// `next` into ahead_.
+  void sample_transits(std::span<const ViewSample> next);
   /// Finds the pixels next to an edge of what they see, now or at the end of the step.
   void find_edges(std::span<const ViewSample> next);
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
   [[nodiscard]] Judgement judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
-  /// Whether what a pixel sees of one object before its next sample is lit as at both ends.
-  [[nodiscard]] bool lights_known(std::size_t i) const;
+  /// Whether nothing but the triangles of two samples can be seen between them.
+  [[nodiscard]] bool are_neighbours(const ViewSample& a, const ViewSample& b) const;
   [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
   void update_speed(const AdaptiveSlice& slice);
@@ -93,6 +96,8 @@ class AdaptiveTile {
   double speed_px_s_ = 0;
   double step_s_ = 0;                        ///< length of the step at work
   std::bitset<kTilePixels> is_near_edge_;    ///< in it
+  std::vector<SampleRequest> transits_;         ///< scratch
+  std::vector<ViewSample> transit_samples_;     ///< scratch
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
 

@@ -68,7 +68,7 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
       if (options_.texture_filter == TextureFilter::kMipmap) look(first + k);
       seen[k] = surface(camera, direction(first + k), rays[k], triangles[k]);
     }
-    illuminate(requests, first, {rays.data(), n}, {triangles.data(), n}, {seen.data(), n});
+    scene_.illuminate({rays.data(), n}, {triangles.data(), n}, {seen.data(), n});
     for (std::size_t k = 0; k < n; ++k) {
       ViewSample& sample = samples[(first + k) / per_pixel];
       add(seen[k], triangles[k], (first + k) % per_pixel == 0, sample);
@@ -81,34 +81,7 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
         samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
   }
   statistics_.rays += count;
-}
-
-void ViewSampler::illuminate(std::span<const SampleRequest> requests, std::size_t first,
-                             std::span<const Ray> rays, std::span<const TriangleId> triangles,
-                             std::span<SurfaceSample> seen) {
-  if (!scene_.is_lit()) return;
-  std::array<Ray, kRayPacket> unknown;
-  std::array<TriangleId, kRayPacket> unknown_triangles;
-  std::array<SurfaceSample, kRayPacket> unlit;
-  std::array<std::size_t, kRayPacket> owners;
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    const ViewSample* like = requests[(first + k) / rays_.rays_per_pixel()].like;
-    if (like != nullptr && triangles[k] != kNothing && like->triangle != kNothing &&
-        (triangles[k] == like->triangle ||
-         scene_.object(triangles[k]) == scene_.object(like->triangle))) {
-      seen[k].lights = like->lights_of_ray;
-      seen[k].irradiance = scene_.irradiance(rays[k], triangles[k], seen[k]);
-      continue;
-    }
-    unknown[n] = rays[k];
-    unknown_triangles[n] = triangles[k];
-    unlit[n] = seen[k];
-    owners[n++] = k;
-  }
-  scene_.illuminate({unknown.data(), n}, {unknown_triangles.data(), n}, {unlit.data(), n});
-  for (std::size_t k = 0; k < n; ++k) seen[owners[k]] = unlit[k];
-  statistics_.lit_points += n;
+  if (scene_.is_lit()) statistics_.lit_points += count;
 }
 
 ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like) {
@@ -121,10 +94,25 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   seen.irradiance = scene_.irradiance(ray, like.triangle, seen);
   ViewSample sample;
   add(seen, like.triangle, true, sample);
+  sample.triangles = like.triangles;
+  sample.lights = like.lights;
   sample.t_s = request.t_s;
   sample.log_intensity = log_intensity(seen.radiance(), options_.log_eps);
   ++statistics_.surface_samples;
   return sample;
+}
+
+std::optional<ViewSample> ViewSampler::resample(const SampleRequest& request,
+                                                const ViewSample& before,
+                                                const ViewSample& after) {
+  const CameraFrame camera = poses_->at(request.t_s);
+  const Ray ray{camera.position, camera.rotation * directions(request.pixel)[0], request.t_s};
+  const std::array<TriangleId, 2> triangles{before.triangle, after.triangle};
+  const TriangleId nearest = scene_.nearest_among(triangles, ray);
+  if (nearest != kNothing) return resample(request, nearest == before.triangle ? before : after);
+  if (before.triangle == kNothing) return resample(request, before);
+  if (after.triangle == kNothing) return resample(request, after);
+  return std::nullopt;
 }
 
 }  // namespace saccade

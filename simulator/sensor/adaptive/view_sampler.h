@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -18,9 +19,6 @@ namespace saccade {
 struct SampleRequest {
   std::size_t pixel;  ///< within the tile
   double t_s;
-  /// Sample just before or after, whose lights also light what is seen of the same object; nullptr:
-  /// not known.
-  const ViewSample* like = nullptr;
 };
 
 /// Samples pixels of one tile at any times of a slice with rays, up to kRayPacket in a packet,
@@ -38,10 +36,17 @@ class ViewSampler {
   /// What the pixels see, by rays, shadow rays included.
   void trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
 
+  /// What a pixel with one ray sees at `t_s` just between two samples if it is the triangle of one
+  /// of them, with its lights: without a ray and in double precision, which single precision may
+  /// confuse next to their edges. Neither is hit: nullopt.
+  [[nodiscard]] std::optional<ViewSample> resample(const SampleRequest& request,
+                                                   const ViewSample& before,
+                                                   const ViewSample& after);
   /// What a pixel with one ray sees at `t_s` if it sees the triangle and the lights of `like`, as
   /// it does just before and just after: without a ray.
   [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like);
 
+  [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
   [[nodiscard]] std::size_t rays_per_pixel() const { return rays_.rays_per_pixel(); }
 
  private:
@@ -50,11 +55,6 @@ class ViewSampler {
   }
   [[nodiscard]] SurfaceSample surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
                                       const Ray& ray, TriangleId triangle) const;
-
-  /// Finds the light on samples, `first` the first one's ray among those of all requests.
-  void illuminate(std::span<const SampleRequest> requests, std::size_t first,
-                  std::span<const Ray> rays, std::span<const TriangleId> triangles,
-                  std::span<SurfaceSample> seen);
 
   const Scene& scene_;
   const PixelRays& rays_;
