@@ -2,40 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "simulator/sensor/signal/linear_signal.h"
-#include "simulator/sensor/visibility/transit.h"
 
 namespace saccade {
 namespace {
 
 /// Two triangles that a pixel sees one after the other within this part of a step are the only ones
 /// there: which one it sees in between is a matter of their edges alone.
-const double kNeighbours = getenv("kNeighbours") ? atof(getenv("kNeighbours")) : 0.03;
+constexpr double kNeighbours = 0.004;
 /// A crossing is narrowed down to so many tolerances; the line through both ends is more exact by
 /// far where the signal is smooth, and half of this is the error where it jumps.
-const double kBracketTolerances = getenv("kBracketTolerances") ? atof(getenv("kBracketTolerances")) : 4;
+constexpr double kBracketTolerances = 4;
 /// Samples of one surface are at most so many texels apart: a texture is bilinear between four
 /// texels, so that within this distance its extrema are few.
-const double kMaxTexels = getenv("kMaxTexels") ? atof(getenv("kMaxTexels")) : 0.5;
+constexpr double kMaxTexels = 0.5;
 /// Two triangles of one object are one surface where the depth changes by less than this from one
 /// sample to the next, relative.
 constexpr double kContinuousDepth = 0.02;
 /// Where a pixel comes to see another surface without a crossing, the change is located to this
 /// fraction of a step: what is seen before and after may still cross.
-const double kChangeFraction = getenv("kChangeFraction") ? atof(getenv("kChangeFraction")) : 0.03;
+constexpr double kChangeFraction = 0.03;
 /// Before and after such a change the signal may be so many times as steep as before.
-const double kChangeMargin = getenv("kChangeMargin") ? atof(getenv("kChangeMargin")) : 3;
+constexpr double kChangeMargin = 3;
 /// Next to an edge of a surface the steps of a pixel are this fraction of the others': there thin
 /// things, and gaps between them, pass by.
-const double kNearEdgeFraction = getenv("kNearEdgeFraction") ? atof(getenv("kNearEdgeFraction")) : 1;
+constexpr double kNearEdgeFraction = 0.25;
 /// The error of a line is estimated from the slope before it; it may be larger by this factor.
-const double kErrorMargin = getenv("kErrorMargin") ? atof(getenv("kErrorMargin")) : 8;
+constexpr double kErrorMargin = 8;
 /// The slope before a line may equal its own by chance: its error is at least this part of its
 /// change.
-const double kLeastError = getenv("kLeastError") ? atof(getenv("kLeastError")) : 0.2;
+constexpr double kLeastError = 0.2;
 /// The error of a line that the photoreceptor's low pass is given [log units].
 constexpr double kFilteredError = 5e-3;
 /// Nearer to an end, relative to its length, an interval is not divided.
@@ -117,57 +115,6 @@ void AdaptiveTile::find_edges(std::span<const ViewSample> next) {
   }
 }
 
-void AdaptiveTile::sample_transits(std::span<const ViewSample> next) {
-  for (std::size_t i = 0; i < next.size(); ++i) ahead_[i].push_back(next[i]);
-  std::array<TriangleId, 2 * kTilePixels> seen;
-  std::size_t count = 0;
-  const auto add = [&](TriangleId triangle) {
-    const auto end = seen.begin() + static_cast<std::ptrdiff_t>(count);
-    if (triangle != kNothing && std::find(seen.begin(), end, triangle) == end)
-      seen[count++] = triangle;
-  };
-  for (std::size_t i = 0; i < next.size(); ++i) {
-    add(views_[i].now.triangle);
-    add(next[i].triangle);
-  }
-  if (count < 2) return;
-  const double from_s = views_[0].now.t_s;
-  const double to_s = next[0].t_s;
-  const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
-  std::array<CameraFrame, 3> cameras;
-  for (std::size_t m = 0; m < 3; ++m) cameras[m] = sampler_.camera_at(times_s[m]);
-  transits_.clear();
-  const std::span<const Eigen::Vector3d> rays = rays_.rays(index_);
-  for (std::size_t n = 0; n < count; ++n) {
-    TransitTriangle transit{seen[n], {}};
-    for (std::size_t m = 0; m < 3; ++m)
-      transit.at[m] =
-          scene_.edge_functions(seen[n], cameras[m].position, cameras[m].rotation, times_s[m]);
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      const ViewSample& now = views_[i].now;
-      if (now.triangle == seen[n] || next[i].triangle == seen[n]) continue;
-      const Eigen::Vector3d& ray = rays[i * rays_.rays_per_pixel()];
-      const bool has_background = now.distance == 0 || next[i].distance == 0;
-      if (!has_background && transit.is_occluded(ray, std::max(now.distance, next[i].distance)))
-        continue;
-      transit.find_transits(ray, [&](double begin, double end) {
-        if (begin > 0 && end < 1)
-          transits_.push_back({i, std::lerp(from_s, to_s, 0.5 * (begin + end))});
-      });
-    }
-  }
-  if (transits_.empty()) return;
-  // Of a pixel the latest first, as ahead_ has them.
-  std::sort(transits_.begin(), transits_.end(), [](const SampleRequest& a, const SampleRequest& b) {
-    return a.pixel != b.pixel ? a.pixel < b.pixel : a.t_s > b.t_s;
-  });
-  transit_samples_.resize(transits_.size());
-  sampler_.trace(transits_, transit_samples_);
-  for (std::size_t k = 0; k < transits_.size(); ++k)
-    if (transits_[k].t_s < ahead_[transits_[k].pixel].back().t_s)
-      ahead_[transits_[k].pixel].push_back(transit_samples_[k]);
-}
-
 void AdaptiveTile::sense_step(double to_s) {
   std::array<SampleRequest, kTilePixels> requests;
   std::array<ViewSample, kTilePixels> samples;
@@ -176,15 +123,11 @@ void AdaptiveTile::sense_step(double to_s) {
   step_s_ = to_s - views_[0].now.t_s;
   for (bool is_first = true; count > 0; is_first = false) {
     sampler_.trace({requests.data(), count}, {samples.data(), count});
-    if (is_first) {
-      find_edges({samples.data(), count});
-      sample_transits({samples.data(), count});
-    }
+    if (is_first) find_edges({samples.data(), count});
     std::size_t open = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = requests[k].pixel;
-      if (!is_first)
-        ahead_[i].push_back(samples[k]);
+      ahead_[i].push_back(samples[k]);
       if (const std::optional<double> t_s = sense_lines(i))
         requests[open++] = {i, *t_s};
     }

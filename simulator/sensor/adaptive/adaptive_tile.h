@@ -68,9 +68,6 @@ class AdaptiveTile {
   };
 
   void sense_step(double to_s);
-  /// Samples pixels while a triangle passes that another pixel sees, and puts all samples up to
-  /// `next` into ahead_.
-  void sample_transits(std::span<const ViewSample> next);
   /// Finds the pixels next to an edge of what they see, now or at the end of the step.
   void find_edges(std::span<const ViewSample> next);
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
@@ -96,8 +93,6 @@ class AdaptiveTile {
   double speed_px_s_ = 0;
   double step_s_ = 0;                        ///< length of the step at work
   std::bitset<kTilePixels> is_near_edge_;    ///< in it
-  std::vector<SampleRequest> transits_;         ///< scratch
-  std::vector<ViewSample> transit_samples_;     ///< scratch
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
 
