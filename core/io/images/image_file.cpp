@@ -1,6 +1,8 @@
 #include "core/io/images/image_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -9,6 +11,8 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/files/file_bytes.h"
+#include "core/io/images/dds_file.h"
+#include "core/io/images/tga_file.h"
 
 namespace saccade {
 namespace {
@@ -51,6 +55,21 @@ ImageRgba8 rgba_from(cv::Mat mat) {
   return copied<Rgba8>(rgba);
 }
 
+bool is_named_tga(const std::string& location) {
+  std::string ending = std::filesystem::path(location).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".tga";
+}
+
+/// KTX and KTX 2 begin alike.
+bool is_ktx(std::span<const std::byte> bytes) {
+  constexpr std::array<unsigned char, 5> kBegin{0xAB, 'K', 'T', 'X', ' '};
+  return bytes.size() >= kBegin.size() &&
+         std::ranges::equal(bytes.first(kBegin.size()), kBegin, [](std::byte a, unsigned char b) {
+           return std::to_integer<unsigned char>(a) == b;
+         });
+}
+
 std::string encode(const cv::Mat& mat) {
   std::vector<unsigned char> bytes;
   SACCADE_CHECK(cv::imencode(".png", mat, bytes));
@@ -70,10 +89,14 @@ ImageRgb8 read_image_rgb(const std::filesystem::path& file) {
 }
 
 ImageRgba8 read_image_rgba(const std::filesystem::path& file) {
-  return rgba_from(read(file, cv::IMREAD_UNCHANGED));
+  return decode_image_rgba(read_file_bytes(file), file.string());
 }
 
 ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes, const std::string& location) {
+  if (is_dds(bytes)) return decode_dds(bytes, location);
+  if (is_ktx(bytes))
+    throw InputError(location, "is a KTX picture, which cannot be decoded: convert it to PNG");
+  if (is_named_tga(location)) return decode_tga(bytes, location);
   return rgba_from(decode(bytes, location, cv::IMREAD_UNCHANGED));
 }
 

@@ -19,7 +19,8 @@ using ImageRgba8 = Image<Rgba8>;
 /// byte. InputError with the path when a file is missing or no picture.
 [[nodiscard]] ImageU8 read_image_grey(const std::filesystem::path& file);
 [[nodiscard]] ImageRgb8 read_image_rgb(const std::filesystem::path& file);
-/// With the alpha channel; 255 where the file has none.
+/// With the alpha channel; 255 where the file has none. Takes TGA, by the file's name, and DDS as
+/// well.
 [[nodiscard]] ImageRgba8 read_image_rgba(const std::filesystem::path& file);
 /// The same from memory; `location` is what errors name.
 [[nodiscard]] ImageRgba8 decode_image_rgba(std::span<const std::byte> bytes,
