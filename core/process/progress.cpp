@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 namespace saccade {
 namespace {
@@ -45,6 +46,13 @@ void set_progress_quiet(bool now_quiet) { quiet = now_quiet; }
 
 void show_notice(const std::string& line) {
   if (!quiet) std::fputs((line + "\n").c_str(), stderr);
+}
+
+void show_warning(const std::string& line) {
+  static std::mutex mutex;
+  static std::set<std::string> shown;
+  const std::scoped_lock lock(mutex);
+  if (shown.insert(line).second) std::fputs(("warning: " + line + "\n").c_str(), stderr);
 }
 
 std::string progress_text(const ProgressState& state) {

@@ -13,6 +13,10 @@ void set_progress_quiet(bool quiet);
 /// Shows a line on stderr, unless progress is not shown.
 void show_notice(const std::string& line);
 
+/// Shows "warning: <line>" on stderr, quiet or not, for what a result lacks; the same line once in a
+/// process. Thread-safe.
+void show_warning(const std::string& line);
+
 /// What one line of progress says.
 struct ProgressState {
   std::string label;
