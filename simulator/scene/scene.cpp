@@ -211,14 +211,15 @@ void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> tr
   for (std::size_t k = 0; k < n; ++k) {
     SurfaceSample& surface = samples[owners[k]];
     surface.lights = lights[k];
-    surface.irradiance = state_->illumination->irradiance(points[k], lights[k]);
+    surface.irradiance = state_->surfaces[triangles[owners[k]]].with_self_light(
+        state_->illumination->irradiance(points[k], lights[k]));
   }
 }
 
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
   if (!state_->illumination || !(surface.distance > 0)) return 1;
-  return state_->illumination->irradiance(state_->surface_point(ray, surface.distance, triangle),
-                                          surface.lights);
+  return state_->surfaces[triangle].with_self_light(state_->illumination->irradiance(
+      state_->surface_point(ray, surface.distance, triangle), surface.lights));
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }

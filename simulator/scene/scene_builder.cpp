@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/process/progress.h"
 #include "simulator/motion/motion.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/texture/picture.h"
@@ -37,6 +39,25 @@ Eigen::Vector3d anchor_point(Anchor anchor, const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d center = box.center();
   return anchor == Anchor::kCenter ? center
                                    : Eigen::Vector3d(center.x(), center.y(), box.min().z());
+}
+
+/// Turns +y to +z.
+Eigen::Matrix3d z_from_y() {
+  Eigen::Matrix3d turn;
+  turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return turn;
+}
+
+/// glTF defines +y as up, other formats leave it open. Who turns a mesh by hand knows that.
+void remark_up_axis(const MeshOptions& options, SceneRemarks& remarks) {
+  std::string ending = options.file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if ((ending == ".gltf" || ending == ".glb") && !options.is_up_stated &&
+      options.transform.rotation_deg.isZero())
+    remarks.say(fmt::format(
+        "{}: glTF files are y-up, and this one is taken as z-up: state up: y to stand it upright, "
+        "or up: z",
+        options.file.string()));
 }
 
 /// Shadow rays start this fraction of the largest body's extent above their surface: ten times what
@@ -75,12 +96,12 @@ CornerKey place_of(const Triangle& triangle, const Mesh& mesh) {
   return key;
 }
 
-Background read_background(const SceneOptions& options) {
+Background read_background(const SceneOptions& options, SceneRemarks& remarks) {
   if (options.background_picture.empty()) return Background(options.background);
   const FileLocation location = FileLocation::parse(options.background_picture);
   const std::optional<Bytes> bytes = FileSource(location.archive).read(location.file);
   if (!bytes) throw InputError(location.text(), "this background picture does not exist");
-  return Background(decode_picture(*bytes, location.text()).grey);
+  return Background(decode_picture(*bytes, location.text(), remarks).grey);
 }
 
 }  // namespace
@@ -89,7 +110,9 @@ Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
   const Eigen::Vector3d scale =
       options.size_m ? scale_to_size(*options.size_m, mesh) : options.transform.scale;
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  transform.linear() = rotation_of(options.transform.rotation_deg) * scale.asDiagonal();
+  Eigen::Matrix3d rotation = rotation_of(options.transform.rotation_deg);
+  if (options.up == UpAxis::kY) rotation *= z_from_y();
+  transform.linear() = rotation * scale.asDiagonal();
   transform.translation() = options.transform.translation -
                             anchor_point(options.anchor, bounding_box(mesh, transform.linear()));
   return transform;
@@ -219,13 +242,14 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
 
 Scene build_scene(const SceneOptions& options) {
   SceneBuilder builder;
-  MeshImporter importer;
+  MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian});
   std::map<std::filesystem::path, Mesh> meshes;
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
     const MeshOptions& item = options.meshes[i];
     auto known = meshes.find(item.file);
     if (known == meshes.end()) known = meshes.emplace(item.file, importer.read(item.file)).first;
     const Mesh& mesh = known->second;
+    remark_up_axis(item, importer.remarks());
     const Eigen::Affine3d transform = world_from_mesh(item, mesh);
     const std::string motion = fmt::format("scene.meshes[{}].trajectory", i);
     const std::size_t kept =
@@ -236,7 +260,9 @@ Scene build_scene(const SceneOptions& options) {
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian) builder.light(options.ambient, options.lights);
-  return std::move(builder).build(read_background(options));
+  const Background background = read_background(options, importer.remarks());
+  for (const std::string& line : importer.remarks().lines()) show_warning(line);
+  return std::move(builder).build(background);
 }
 
 }  // namespace saccade

@@ -15,12 +15,12 @@
 
 namespace saccade {
 
-/// Where `options` puts the mesh: scale (or size), then R = Rz Ry Rx, then the anchor to the
-/// translation. A side of the bounding box without extent keeps its size.
+/// Where `options` puts the mesh: scale (or size) along the axes of the file, then its up axis to
+/// +z, then R = Rz Ry Rx, then the anchor to the translation. A side of the bounding box without extent keeps its size.
 [[nodiscard]] Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh);
 
-/// Reads all files of `options` and assembles them. Throws InputError naming the file that is
-/// missing or wrong.
+/// Reads all files of `options` and assembles them. Warns of what they state that is not shown, in
+/// few lines. Throws InputError naming the file that is missing or wrong.
 [[nodiscard]] Scene build_scene(const SceneOptions& options);
 
 struct PreparedTriangles;

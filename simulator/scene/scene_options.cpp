@@ -1,7 +1,5 @@
 #include "simulator/scene/scene_options.h"
 
-#include "simulator/scene/scene.h"
-
 #include "core/config/fields.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene.h"
@@ -17,6 +15,10 @@ void describe(config::Fields& fields, MeshOptions& options) {
     const std::string problem = missing_file_problem(options.file);
     fields.expect(problem.empty(), "file", problem);
   }
+  fields.choice("up", options.up, {{"y", UpAxis::kY}, {"z", UpAxis::kZ}},
+                "Axis of the file that points upwards. y turns the mesh by 90 degrees about x, "
+                "before the rotation of its transform; z leaves it as it is.");
+  if (fields.reading()) options.is_up_stated = fields.has("up");
   fields.section("transform", options.transform,
                  "Scale, then rotation R = Rz Ry Rx, then translation.");
   fields
@@ -70,6 +72,10 @@ void describe(config::Fields& fields, SceneOptions& options) {
     fields.value("background", options.background, help).at_least(0);
     if (fields.has("background")) options.background_picture.clear();
   }
+  fields.choice("missing_texture", options.missing_texture,
+                {{"error", MissingTexture::kError}, {"grey", MissingTexture::kGrey}},
+                "What becomes of a texture that is missing or cannot be decoded: an error, or grey "
+                "0.5 with a warning.");
   fields.choice("lighting", options.lighting,
                 {{"none", Lighting::kNone}, {"lambertian", Lighting::kLambertian}},
                 "Lighting model: none, where the albedo is the radiance, or lambertian.");

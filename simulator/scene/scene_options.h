@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/motion_options.h"
+#include "simulator/scene/texture/texture_library.h"
 
 namespace saccade {
 
@@ -14,8 +15,13 @@ namespace saccade {
 /// bounding box as it stands turned in the world, the centre or the centre of the lowest face.
 enum class Anchor { kOrigin, kCenter, kBottom };
 
+/// The axis of a file that points upwards in the world.
+enum class UpAxis { kY, kZ };
+
 struct MeshOptions {
   std::filesystem::path file;
+  UpAxis up = UpAxis::kZ;
+  bool is_up_stated = false;
   TransformOptions transform;
   std::optional<Eigen::Vector3d> size_m;  ///< bounding box in the file's own axes, instead of scale
   Anchor anchor = Anchor::kOrigin;
@@ -40,6 +46,7 @@ struct SceneOptions {
   std::vector<MeshOptions> meshes;
   double background = 0.5;
   std::filesystem::path background_picture;
+  MissingTexture missing_texture = MissingTexture::kError;
   Lighting lighting = Lighting::kNone;
   double ambient = 0;
   std::vector<LightOptions> lights;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -31,6 +32,12 @@ struct alignas(64) TriangleSurface {
   double factor;           ///< multiplies the texture
   std::uint32_t object;
   std::uint32_t body = kStaticBody;
+  double self_light = 0;  ///< of its material
+
+  /// What stands for the irradiance where that is `light`.
+  [[nodiscard]] double with_self_light(double light) const {
+    return std::isinf(self_light) ? 1 : light + self_light;
+  }
 };
 
 /// Where a point lies within its triangle: weights of the second and the third corner.

@@ -104,6 +104,7 @@ TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineFor
                                        const TriangleInterior& interior) const {
   const Material& material = mesh_.materials[triangle.material];
   TriangleSurface surface{plane, {}, {}, material.texture.get(), material.factor, object_};
+  surface.self_light = material.self_light;
   if (material.texture != nullptr) {
     SACCADE_CHECK(!mesh_.uvs.empty());
     const TexelForms forms = texel_forms(*material.texture, mesh_, triangle, interior);

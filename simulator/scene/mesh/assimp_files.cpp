@@ -43,6 +43,8 @@ class MemoryStream : public Assimp::IOStream {
 }  // namespace
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char*) {
+  const auto other = replaced_.find(file);
+  if (other != replaced_.end()) return new MemoryStream(other->second);
   std::optional<Bytes> bytes = source_.read(file);
   (bytes ? opened_ : missing_).emplace_back(file);
   return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;

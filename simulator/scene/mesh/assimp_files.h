@@ -2,6 +2,7 @@
 
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,14 @@
 
 namespace saccade {
 
-/// Lets assimp read from a FileSource, which must outlive it, and remembers what was not there.
+/// Files that an importer shall see with other bytes than they have.
+using ReplacedFiles = std::map<std::string, Bytes>;
+
+/// Lets assimp read from a FileSource and remembers what was not there. Both must outlive it.
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  explicit AssimpFiles(const FileSource& source) : source_(source) {}
+  AssimpFiles(const FileSource& source, const ReplacedFiles& replaced)
+      : source_(source), replaced_(replaced) {}
 
   bool Exists(const char* file) const override { return source_.contains(file); }
   char getOsSeparator() const override { return '/'; }
@@ -24,6 +29,7 @@ class AssimpFiles : public Assimp::IOSystem {
 
  private:
   const FileSource& source_;
+  const ReplacedFiles& replaced_;
   std::vector<std::string> opened_;
   std::vector<std::string> missing_;
 };

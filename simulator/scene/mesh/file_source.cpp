@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <span>
+#include <string_view>
+#include <system_error>
 
 #include "core/error.h"
 #include "core/io/files/input_log.h"
@@ -26,13 +30,17 @@ std::string member_name(const fs::path& file) {
   return file.lexically_normal().relative_path().generic_string();
 }
 
+bool is_equal_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::ranges::equal(a, b, [&](char x, char y) { return lower(x) == lower(y); });
+}
+
 std::optional<Bytes> read_from_disk(const fs::path& file) {
   if (!fs::is_regular_file(file)) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string(), "cannot be opened for reading");
   Bytes bytes(std::istreambuf_iterator<char>(stream), {});
   if (stream.bad()) throw InputError(file.string(), "cannot be read to its end");
-  InputLog::note(file.string(), std::as_bytes(std::span(bytes)));
   return bytes;
 }
 
@@ -68,7 +76,8 @@ struct FileSource::Zip {
   zip_t* archive = nullptr;
 };
 
-FileSource::FileSource(const fs::path& archive) : archive_(archive) {
+FileSource::FileSource(const fs::path& archive, Reporting reporting)
+    : reporting_(reporting), archive_(archive) {
   if (archive.empty()) return;
   const std::string problem = missing_file_problem(archive);
   if (!problem.empty()) throw InputError(archive.string(), problem);
@@ -84,7 +93,36 @@ bool FileSource::contains(const fs::path& file) const {
   return zip_name_locate(zip_->archive, member_name(file).c_str(), 0) >= 0;
 }
 
+std::optional<fs::path> FileSource::find(const fs::path& file) const {
+  if (contains(file)) return file;
+  if (zip_) {
+    const zip_int64_t index =
+        zip_name_locate(zip_->archive, member_name(file).c_str(), ZIP_FL_NOCASE);
+    if (index < 0) return std::nullopt;
+    return fs::path(zip_get_name(zip_->archive, static_cast<zip_uint64_t>(index), 0));
+  }
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code none;
+  std::optional<fs::path> found;  // the first in the order of names, whatever the disk's
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (is_equal_but_for_case(name, file.filename().string()) && entry.is_regular_file() &&
+        (!found || name < found->filename().string()))
+      found = file.parent_path() / name;
+  }
+  return found;
+}
+
 std::optional<Bytes> FileSource::read(const fs::path& file) const {
+  std::optional<Bytes> bytes = read_unreported(file);
+  if (bytes && reporting_ == Reporting::kInputLog) {
+    const fs::path name = zip_ ? fs::path(member_name(file)) : file;
+    InputLog::note(FileLocation{archive_, name}.text(), std::as_bytes(std::span(*bytes)));
+  }
+  return bytes;
+}
+
+std::optional<Bytes> FileSource::read_unreported(const fs::path& file) const {
   if (!zip_) return read_from_disk(file);
   const std::string name = member_name(file);
   zip_stat_t stat;
@@ -95,7 +133,6 @@ std::optional<Bytes> FileSource::read(const fs::path& file) const {
   if (!member ||
       zip_fread(member.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()))
     throw InputError(FileLocation{archive_, name}.text(), "is damaged in its archive");
-  InputLog::note(FileLocation{archive_, name}.text(), std::as_bytes(std::span(bytes)));
   return bytes;
 }
 

@@ -22,19 +22,28 @@ using Bytes = std::vector<unsigned char>;
 /// Reads whole files from one place: the disk or one archive. Not thread-safe.
 class FileSource {
  public:
+  /// Whether what is read is noted in the InputLog.
+  enum class Reporting { kInputLog, kNone };
+
   /// Of the disk when `archive` is empty. Throws InputError when the archive cannot be opened.
-  explicit FileSource(const std::filesystem::path& archive = {});
+  explicit FileSource(const std::filesystem::path& archive = {},
+                      Reporting reporting = Reporting::kInputLog);
   ~FileSource();
   FileSource(FileSource&&) noexcept;
   FileSource& operator=(FileSource&&) noexcept;
 
   [[nodiscard]] bool contains(const std::filesystem::path& file) const;
+  /// The file as it is called here: names from Windows may differ in case. nullopt when there is none.
+  [[nodiscard]] std::optional<std::filesystem::path> find(const std::filesystem::path& file) const;
   /// nullopt when the file is missing. Throws InputError when it cannot be read to its end.
   [[nodiscard]] std::optional<Bytes> read(const std::filesystem::path& file) const;
   [[nodiscard]] const std::filesystem::path& archive() const { return archive_; }
 
  private:
   struct Zip;
+  [[nodiscard]] std::optional<Bytes> read_unreported(const std::filesystem::path& file) const;
+
+  Reporting reporting_;
   std::filesystem::path archive_;
   std::unique_ptr<Zip> zip_;
 };

@@ -17,6 +17,8 @@ struct Material {
   std::shared_ptr<const Texture> texture;  ///< replaces the albedo; multiplied by `factor`
   double factor = 1;
   std::shared_ptr<const Texture> opacity;  ///< cut out where below 0.5
+  /// Under lights the radiance is albedo x (irradiance + self_light). Infinite: it is the albedo.
+  double self_light = 0;
 };
 
 struct Triangle {

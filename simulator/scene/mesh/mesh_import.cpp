@@ -1,20 +1,20 @@
 #include "simulator/scene/mesh/mesh_import.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cmath>
+#include <functional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/srgb.h"
-#include "simulator/scene/mesh/assimp_files.h"
-#include "simulator/scene/mesh/material_import.h"
+#include "simulator/scene/mesh/gltf_file.h"
+#include "simulator/scene/mesh/gltf_material.h"
+#include "simulator/scene/mesh/model_import.h"
 #include "simulator/scene/mesh/relief.h"
 
 namespace saccade {
@@ -22,70 +22,68 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kSmoothingAngleDeg = 40;
-
-Eigen::Vector3d vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-Eigen::Affine3d transform_of(const aiMatrix4x4& m) {
-  Eigen::Affine3d transform;
-  transform.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
-      m.d1, m.d2, m.d3, m.d4;
-  return transform;
-}
-
-const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::path& file,
-                    const std::string& source_name) {
-  importer.SetIOHandler(files);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngleDeg);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const std::string extension = file.extension().string();
-  if (!importer.IsExtensionSupported(extension))
-    throw InputError(source_name,
-                     fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
-                                 "COLLADA, FBX, STL and others can",
-                                 extension));
-  const aiScene* scene =
-      importer.ReadFile(file.generic_string(),
-                        aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType);
-  for (const std::string& missing : files->missing())
-    if (missing.ends_with(".mtl") &&
-        std::ranges::none_of(files->opened(), [](const auto& f) { return f.ends_with(".mtl"); }))
-      throw InputError(source_name, fmt::format("its material library {} does not exist",
-                                                fs::path(missing).lexically_normal().string()));
-  if (scene == nullptr)
-    throw InputError(source_name,
-                     fmt::format("cannot be read as a mesh: {}", importer.GetErrorString()));
-  return *scene;
-}
+/// Reads material k of a model, or where there is none, a default.
+using ReadMaterial = std::function<ImportedMaterial(std::size_t)>;
 
 /// Libraries hold materials, with textures, that no face uses; those stay empty.
-std::vector<ImportedMaterial> used_materials(const MaterialContext& context) {
-  std::vector<ImportedMaterial> materials(context.scene.mNumMaterials);
+std::vector<ImportedMaterial> used_materials(const Model& model, const ReadMaterial& read) {
+  std::vector<ImportedMaterial> materials(model.materials.size());
   std::vector<bool> done(materials.size());
-  for (unsigned i = 0; i < context.scene.mNumMeshes; ++i) {
-    const unsigned index = context.scene.mMeshes[i]->mMaterialIndex;
-    if (!done[index]) materials[index] = import_material(*context.scene.mMaterials[index], context);
-    done[index] = true;
+  for (const ModelPart& part : model.parts) {
+    if (!done[part.material]) materials[part.material] = read(part.material);
+    done[part.material] = true;
   }
   return materials;
 }
 
-/// Copies assimp's meshes into one.
+/// The materials of a glTF file are named by their index (GltfFile::for_assimp()).
+std::size_t gltf_index(const ModelMaterial& material, const GltfFile& file) {
+  constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
+  for (std::size_t i = 0; file.item("materials", i).is_object(); ++i)
+    if (material.name == std::to_string(i)) return i;
+  return kNoIndex;
+}
+
+Eigen::Vector3d vector_of(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+/// Copies the parts of a model into one mesh.
 class Flattener {
  public:
-  Flattener(const aiScene& scene, std::vector<ImportedMaterial> materials, std::string source_name)
-      : scene_(scene), materials_(std::move(materials)), source_name_(std::move(source_name)) {
+  Flattener(const Model& model, std::vector<ImportedMaterial> materials, std::string source_name,
+            SceneRemarks& remarks)
+      : model_(model),
+        materials_(std::move(materials)),
+        source_name_(std::move(source_name)),
+        remarks_(remarks) {
     for (const ImportedMaterial& imported : materials_)
       mesh_.materials.push_back(imported.material);
   }
 
-  void add(const aiNode& node, const Eigen::Affine3d& file_from_parent) {
-    const Eigen::Affine3d file_from_node = file_from_parent * transform_of(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i)
-      add(*scene_.mMeshes[node.mMeshes[i]], file_from_node);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], file_from_node);
+  void add(const ModelInstance& instance) {
+    const ModelPart& part = model_.parts[instance.part];
+    const Eigen::Affine3d file_from_part(
+        Eigen::Map<const Eigen::Matrix4d>(instance.file_from_part.data()));
+    const ImportedMaterial& imported = materials_[part.material];
+    const Material& material = imported.material;
+    const bool textured = material.texture != nullptr || material.opacity != nullptr;
+    if (!imported.invisible && textured && !has_uvs(part, imported.uv_channel))
+      throw InputError(source_name_,
+                       fmt::format("material '{}' has a texture, but its faces have no "
+                                   "texture coordinates",
+                                   model_.materials[part.material].name));
+    const std::size_t first = mesh_.vertices.size();
+    const Eigen::Matrix3d normal_matrix = file_from_part.linear().inverse().transpose();
+    for (std::size_t i = 0; i < part.vertices.size(); ++i) {
+      mesh_.vertices.push_back(file_from_part * vector_of(part.vertices[i]));
+      check_finite(mesh_.vertices.back(), first + i);
+      mesh_.normals.push_back(normal_of(part, i, normal_matrix));
+      mesh_.uvs.push_back(uv_of(part, i, imported));
+      mesh_.colours.push_back(colour_of(part, i, imported));
+    }
+    // Vertices stay in any case: a model's size is that of all its parts.
+    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
   }
 
   [[nodiscard]] Mesh take() {
@@ -94,36 +92,38 @@ class Flattener {
   }
 
  private:
-  void add(const aiMesh& part, const Eigen::Affine3d& file_from_node) {
-    const ImportedMaterial& imported = materials_[part.mMaterialIndex];
-    const Material& material = imported.material;
-    const bool textured = material.texture != nullptr || material.opacity != nullptr;
-    if (!imported.invisible && textured && !part.HasTextureCoords(imported.uv_channel))
-      throw InputError(source_name_,
-                       fmt::format("material '{}' has a texture, but its faces have no "
-                                   "texture coordinates",
-                                   material_name(part)));
-    const std::size_t first = mesh_.vertices.size();
-    const Eigen::Matrix3d normal_matrix = file_from_node.linear().inverse().transpose();
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      mesh_.vertices.push_back(file_from_node * vector_of(part.mVertices[i]));
-      check_finite(mesh_.vertices.back(), first + i);
-      mesh_.normals.push_back(normal_of(part, i, normal_matrix));
-      mesh_.uvs.push_back(uv_of(part, i, imported.uv_channel));
-      mesh_.colours.push_back(colour_of(part, i, material));
-    }
-    // Vertices stay in any case: a model's size is that of all its parts.
-    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
+  static bool has_uvs(const ModelPart& part, std::size_t channel) {
+    return channel < part.uvs.size() && !part.uvs[channel].empty();
   }
 
-  void add_faces(const aiMesh& part, std::uint32_t first) {
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-      const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;
-      mesh_.triangles.push_back(
-          {{first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]},
-           part.mMaterialIndex});
+  void add_faces(const ModelPart& part, std::uint32_t first) {
+    const std::uint32_t material = coloured_material(part);
+    for (const auto& [a, b, c] : part.triangles)
+      mesh_.triangles.push_back({{first + a, first + b, first + c}, material});
+  }
+
+  /// Linear vertex colours multiply a texture as well. The factor of a material does that where
+  /// they are all the same.
+  std::uint32_t coloured_material(const ModelPart& part) {
+    const ImportedMaterial& imported = materials_[part.material];
+    if (!imported.colour || part.colours.empty()) return part.material;
+    if (imported.material.texture == nullptr) {
+      if (imported.material.self_light > 0)
+        remarks_.ignore("vertex colours that leave emission as it is, under lights", source_name_);
+      return part.material;
     }
+    const auto& [r, g, b, a] = part.colours.front();
+    const bool is_uniform = std::ranges::all_of(part.colours, [&](const auto& colour) {
+      return colour[0] == r && colour[1] == g && colour[2] == b;
+    });
+    if (is_uniform && r == 1 && g == 1 && b == 1) return part.material;
+    if (!is_uniform || imported.emission > 0 || imported.material.self_light > 0) {
+      remarks_.ignore("vertex colours over textures", source_name_);
+      return part.material;
+    }
+    mesh_.materials.push_back(imported.material);
+    mesh_.materials.back().factor *= grey_of({r, g, b});
+    return static_cast<std::uint32_t>(mesh_.materials.size() - 1);
   }
 
   void check_finite(const Eigen::Vector3d& vertex, std::size_t index) const {
@@ -131,45 +131,50 @@ class Flattener {
       throw InputError(source_name_, fmt::format("vertex {} is not finite", index));
   }
 
-  static Eigen::Vector3d normal_of(const aiMesh& part, unsigned i, const Eigen::Matrix3d& matrix) {
-    if (!part.HasNormals()) return Eigen::Vector3d::Zero();
-    const Eigen::Vector3d normal = matrix * vector_of(part.mNormals[i]);
+  static Eigen::Vector3d normal_of(const ModelPart& part, std::size_t i,
+                                   const Eigen::Matrix3d& matrix) {
+    if (part.normals.empty()) return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d normal = matrix * vector_of(part.normals[i]);
     const double length = normal.norm();
     if (!(length > 0) || !std::isfinite(length)) return Eigen::Vector3d::Zero();
     return normal / length;
   }
 
-  Eigen::Vector2d uv_of(const aiMesh& part, unsigned i, unsigned channel) const {
-    if (!part.HasTextureCoords(channel)) return Eigen::Vector2d::Zero();
-    const Eigen::Vector2d uv = vector_of(part.mTextureCoords[channel][i]).head<2>();
+  Eigen::Vector2d uv_of(const ModelPart& part, std::size_t i,
+                        const ImportedMaterial& imported) const {
+    if (!has_uvs(part, imported.uv_channel)) return Eigen::Vector2d::Zero();
+    const auto& [u, v] = part.uvs[imported.uv_channel][i];
+    Eigen::Vector2d uv(static_cast<double>(u), static_cast<double>(v));
+    if (imported.uv_transform) uv = *imported.uv_transform * uv;
     if (!uv.allFinite())
       throw InputError(source_name_,
                        fmt::format("texture coordinate of vertex {} is not finite", i));
     return uv;
   }
 
-  /// Vertex colours are 8-bit sRGB in every format that has them but glTF, where factor and colour
-  /// are linear; there they are rare and read the same.
-  static double colour_of(const aiMesh& part, unsigned i, const Material& material) {
-    if (!part.HasVertexColors(0)) return material.albedo;
-    const aiColor4D& c = part.mColors[0][i];
+  /// Vertex colours are 8-bit sRGB in every format that has them but glTF.
+  static double colour_of(const ModelPart& part, std::size_t i, const ImportedMaterial& imported) {
+    if (part.colours.empty()) return imported.material.albedo;
+    const auto& [r, g, b, a] = part.colours[i];
+    if (const auto& factor = imported.colour)
+      return grey_of({(*factor)[0] * r, (*factor)[1] * g, (*factor)[2] * b}) + imported.emission;
     const auto linear = [](float x) {
       return static_cast<float>(linear_from_srgb(std::clamp(x, 0.0F, 1.0F)));
     };
-    return luminance(linear(c.r), linear(c.g), linear(c.b));
+    return luminance(linear(r), linear(g), linear(b));
   }
 
-  [[nodiscard]] std::string material_name(const aiMesh& part) const {
-    return scene_.mMaterials[part.mMaterialIndex]->GetName().C_Str();
-  }
-
-  const aiScene& scene_;
+  const Model& model_;
   std::vector<ImportedMaterial> materials_;
   std::string source_name_;
+  SceneRemarks& remarks_;
   Mesh mesh_;
 };
 
 }  // namespace
+
+MeshImporter::MeshImporter(const MeshImportOptions& options)
+    : options_(options), textures_(options.missing_texture, remarks_) {}
 
 Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& source) {
   const std::string source_name = location.text();
@@ -191,11 +196,25 @@ Mesh MeshImporter::read(const fs::path& file) {
   if (!source.contains(location.file)) throw InputError(source_name, "is not in this archive");
   if (source_name.ends_with(".relief.yaml")) return read_relief(location, source);
 
-  Assimp::Importer importer;  // owns the AssimpFiles
-  const aiScene& scene = load(importer, new AssimpFiles(source), location.file, source_name);
-  const MaterialContext context{scene, source, location.file, source_name, textures_};
-  Flattener flattener(scene, used_materials(context), source_name);
-  flattener.add(*scene.mRootNode, Eigen::Affine3d::Identity());
+  const std::optional<GltfFile> gltf = GltfFile::open(source, location.file, source_name);
+  const Model model =
+      import_model(source, location.file, source_name, gltf ? gltf->for_assimp() : ReplacedFiles());
+  // What the importer read in its own process is noted in the InputLog of this one.
+  for (const std::string& opened : model.opened) static_cast<void>(source.read(opened));
+  const MaterialContext context{source, location.file, source_name, options_, textures_, remarks_};
+  ReadMaterial read_material = [&](std::size_t index) {
+    return import_material(model, model.materials[index], context);
+  };
+  std::optional<GltfMaterials> gltf_materials;
+  if (gltf) {
+    gltf_materials.emplace(*gltf, context);
+    gltf_materials->remark_ignored();
+    read_material = [&](std::size_t index) {
+      return gltf_materials->read(gltf_index(model.materials[index], *gltf));
+    };
+  }
+  Flattener flattener(model, used_materials(model, read_material), source_name, remarks_);
+  for (const ModelInstance& instance : model.instances) flattener.add(instance);
   return flattener.take();
 }
 

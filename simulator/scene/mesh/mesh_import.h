@@ -4,7 +4,9 @@
 #include <map>
 
 #include "simulator/scene/mesh/file_source.h"
+#include "simulator/scene/mesh/material_import.h"
 #include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/scene_remarks.h"
 #include "simulator/scene/texture/texture_library.h"
 
 namespace saccade {
@@ -14,18 +16,28 @@ namespace saccade {
 /// triangulated, points, lines and wholly transparent surfaces left out. Files without normals are
 /// shaded smoothly where faces meet at less than 40 degrees. A texture replaces the material's
 /// colour (whose value beside one means nothing in most files), except in glTF, which defines their
-/// product. A *.relief.yaml on disk is a surface of generate_relief(). Archives stay open and
-/// textures loaded as long as the importer lives. Not thread-safe.
+/// product (gltf_material.h). A *.relief.yaml on disk is a surface of generate_relief(). Archives
+/// stay open and textures loaded as long as the importer lives. Not thread-safe.
 class MeshImporter {
  public:
+  explicit MeshImporter(const MeshImportOptions& options = {});
+  MeshImporter(const MeshImporter&) = delete;
+  MeshImporter& operator=(const MeshImporter&) = delete;
+
   /// Throws InputError naming the file, its material library or its texture: missing or unreadable,
   /// of a format that assimp does not know, without triangles, with a vertex that is not finite, or
-  /// with a texture but no texture coordinates.
+  /// with a texture but no texture coordinates; and where assimp's importer crashes, hangs or takes
+  /// too much memory (import_model()).
   [[nodiscard]] Mesh read(const std::filesystem::path& file);
+
+  /// What the meshes show otherwise than their files say.
+  [[nodiscard]] SceneRemarks& remarks() { return remarks_; }
 
  private:
   [[nodiscard]] Mesh read_relief(const FileLocation& location, const FileSource& source);
 
+  MeshImportOptions options_;
+  SceneRemarks remarks_;
   std::map<std::filesystem::path, FileSource> sources_;
   TextureLibrary textures_;
 };

@@ -32,16 +32,20 @@ ImageF converted(const Image<Pixel>& image, const Convert& convert) {
   return result;
 }
 
-ImageF grey_of(const ImageRgbF& image) {
-  return converted(image, [](const RgbF& p) { return luminance(p[0], p[1], p[2]); });
+ImageF grey_of(const ImageRgbF& image, const RgbF& factors) {
+  return converted(image, [&](const RgbF& p) {
+    return luminance(factors[0] * p[0], factors[1] * p[1], factors[2] * p[2]);
+  });
 }
 
-ImageF grey_of(const ImageRgba8& image) {
+ImageF grey_of(const ImageRgba8& image, const RgbF& factors) {
   std::array<float, 256> linear;
   for (int code = 0; code < 256; ++code)
     linear[static_cast<std::size_t>(code)] = linear_from_srgb8(static_cast<std::uint8_t>(code));
-  return converted(
-      image, [&](const Rgba8& p) { return luminance(linear[p[0]], linear[p[1]], linear[p[2]]); });
+  return converted(image, [&](const Rgba8& p) {
+    return luminance(factors[0] * linear[p[0]], factors[1] * linear[p[1]],
+                     factors[2] * linear[p[2]]);
+  });
 }
 
 ImageF alpha_of(const ImageRgba8& image) {
@@ -65,38 +69,56 @@ ImageRgbF decode_hdr(const Bytes& bytes, const std::string& source_name) {
   return image;
 }
 
-void check_light(const ImageF& image, const std::string& source_name) {
+/// Light this fraction of the brightest below 0 is what filters leave.
+constexpr float kDarkest = -1e-2F;
+
+void check_light(ImageF& image, const std::string& source_name, SceneRemarks& remarks) {
+  float brightest = 0;
+  for (const float value : image.pixels())
+    if (std::isfinite(value)) brightest = std::max(brightest, value);
+  std::size_t below = 0;
+  float lowest = 0;
   for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      if (!(image(x, y) >= 0 && std::isfinite(image(x, y))))
-        throw InputError(source_name,
-                         fmt::format("texel ({}, {}) is {}, but light is finite and not negative",
-                                     x, y, image(x, y)));
+    for (int x = 0; x < image.width(); ++x) {
+      float& value = image(x, y);
+      if (value >= 0 && std::isfinite(value)) continue;
+      if (!std::isfinite(value) || value < kDarkest * brightest)
+        throw InputError(
+            source_name,
+            fmt::format("texel ({}, {}) is {}, but light is finite and not negative", x, y, value));
+      ++below;
+      lowest = std::min(lowest, value);
+      value = 0;
+    }
+  if (below > 0)
+    remarks.say(
+        fmt::format("{}: {} texels below 0, down to {}, count as 0", source_name, below, lowest));
 }
 
 }  // namespace
 
-Picture decode_picture(const Bytes& bytes, const std::string& source_name) {
+Picture decode_picture(const Bytes& bytes, const std::string& source_name, SceneRemarks& remarks,
+                       const RgbF& factors) {
   const std::string extension = lower_extension(source_name);
   Picture picture;
   if (extension == ".exr") {
-    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name));
+    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name), factors);
   } else if (extension == ".hdr") {
-    picture.grey = grey_of(decode_hdr(bytes, source_name));
+    picture.grey = grey_of(decode_hdr(bytes, source_name), factors);
   } else {
     const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
-    picture.grey = grey_of(image);
-    picture.opacity = alpha_of(image);
-    if (std::ranges::all_of(picture.opacity.pixels(), [](float a) { return a >= 0.5F; }))
-      picture.opacity = {};
+    picture.grey = grey_of(image, factors);
+    if (std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p[3] != 255; }))
+      picture.opacity = alpha_of(image);
   }
-  check_light(picture.grey, source_name);
+  check_light(picture.grey, source_name, remarks);
   return picture;
 }
 
-ImageF decode_opacity(const Bytes& bytes, const std::string& source_name) {
+ImageF decode_opacity(const Bytes& bytes, const std::string& source_name, SceneRemarks& remarks) {
   const std::string extension = lower_extension(source_name);
-  if (extension == ".exr" || extension == ".hdr") return decode_picture(bytes, source_name).grey;
+  if (extension == ".exr" || extension == ".hdr")
+    return decode_picture(bytes, source_name, remarks).grey;
   const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
   if (std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p[3] != 255; }))
     return alpha_of(image);

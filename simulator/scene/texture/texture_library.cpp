@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.h"
@@ -22,10 +23,11 @@ Bytes read_texture(const FileSource& source, const fs::path& file, const std::st
   return std::move(*bytes);
 }
 
-Picture load_colour(const FileSource& source, const fs::path& file, const std::string& user) {
+Picture load_colour(const FileSource& source, const fs::path& file, const std::string& user,
+                    SceneRemarks& remarks) {
   const std::string place = FileLocation{source.archive(), file}.text();
   const Bytes bytes = read_texture(source, file, user);
-  if (!place.ends_with(".texture.yaml")) return decode_picture(bytes, place);
+  if (!place.ends_with(".texture.yaml")) return decode_picture(bytes, place, remarks);
   if (!source.archive().empty())
     throw InputError(place, "texture parameters cannot be read from within an archive");
   return {generate_texture(read_texture_options(file)), {}};
@@ -33,9 +35,10 @@ Picture load_colour(const FileSource& source, const fs::path& file, const std::s
 
 }  // namespace
 
-TexturePair make_textures(Picture picture, const WrapModes& wrap) {
+TexturePair make_textures(Picture picture, const WrapModes& wrap, float alpha_scale) {
   TexturePair pair{std::make_shared<Texture>(std::move(picture.grey), wrap.u, wrap.v), nullptr};
-  if (!picture.opacity.empty())
+  for (float& alpha : picture.opacity.pixels()) alpha *= alpha_scale;
+  if (!std::ranges::all_of(picture.opacity.pixels(), [](float a) { return a >= 0.5F; }))
     pair.opacity = std::make_shared<Texture>(std::move(picture.opacity), wrap.u, wrap.v);
   return pair;
 }
@@ -45,7 +48,9 @@ TexturePair TextureLibrary::colour(const FileSource& source, const fs::path& fil
   const Key key{FileLocation{source.archive(), file}.text(), wrap};
   const auto known = colours_.find(key);
   if (known != colours_.end()) return known->second;
-  return colours_[key] = make_textures(load_colour(source, file, user), wrap);
+  return colours_[key] = load_or_grey(missing_, remarks_, [&] {
+           return make_textures(load_colour(source, file, user, remarks_), wrap);
+         });
 }
 
 std::shared_ptr<const Texture> TextureLibrary::opacity(const FileSource& source,
@@ -54,8 +59,11 @@ std::shared_ptr<const Texture> TextureLibrary::opacity(const FileSource& source,
   const std::string place = FileLocation{source.archive(), file}.text();
   const auto known = opacities_.find({place, wrap});
   if (known != opacities_.end()) return known->second;
-  ImageF image = decode_opacity(read_texture(source, file, user), place);
-  return opacities_[{place, wrap}] = std::make_shared<Texture>(std::move(image), wrap.u, wrap.v);
+  return opacities_[{place, wrap}] =
+             load_or_grey(missing_, remarks_, [&]() -> std::shared_ptr<const Texture> {
+               ImageF image = decode_opacity(read_texture(source, file, user), place, remarks_);
+               return std::make_shared<Texture>(std::move(image), wrap.u, wrap.v);
+             });
 }
 
 }  // namespace saccade

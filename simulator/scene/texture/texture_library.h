@@ -5,12 +5,32 @@
 #include <memory>
 #include <string>
 
+#include "core/error.h"
 #include "simulator/scene/mesh/file_source.h"
+#include "simulator/scene/scene_remarks.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
 
-/// The two textures of a picture; `opacity` is null where everything is opaque.
+/// What becomes of a texture that is missing or cannot be decoded: an error, or grey 0.5 and a
+/// remark.
+enum class MissingTexture { kError, kGrey };
+
+/// load(), or where it throws InputError and textures may be missing, an empty result.
+template <class Load>
+auto load_or_grey(MissingTexture missing, SceneRemarks& remarks, const Load& load)
+    -> decltype(load()) {
+  if (missing == MissingTexture::kError) return load();
+  try {
+    return load();
+  } catch (const InputError& error) {
+    remarks.say(std::string(error.what()) + "; grey 0.5 is shown instead");
+    return {};
+  }
+}
+
+/// The two textures of a picture; `opacity` is null where everything is opaque, `grey` where the
+/// picture is missing and shall be grey.
 struct TexturePair {
   std::shared_ptr<const Texture> grey;
   std::shared_ptr<const Texture> opacity;
@@ -26,6 +46,10 @@ struct WrapModes {
 /// The textures of a scene, each loaded or generated once. Not thread-safe.
 class TextureLibrary {
  public:
+  /// `remarks` outlives it.
+  TextureLibrary(MissingTexture missing, SceneRemarks& remarks)
+      : missing_(missing), remarks_(remarks) {}
+
   /// `file` of `source`: a picture, or parameters for generate_texture() (*.texture.yaml, on disk).
   /// Throws InputError naming the picture and `user`, which asks for it.
   [[nodiscard]] TexturePair colour(const FileSource& source, const std::filesystem::path& file,
@@ -39,12 +63,15 @@ class TextureLibrary {
 
  private:
   using Key = std::pair<std::string, WrapModes>;
+  MissingTexture missing_;
+  SceneRemarks& remarks_;
   std::map<Key, TexturePair> colours_;
   std::map<Key, std::shared_ptr<const Texture>> opacities_;
 };
 
-/// A picture as a pair of textures.
+/// A picture as a pair of textures. `alpha_scale` multiplies the opacity.
 struct Picture;
-[[nodiscard]] TexturePair make_textures(Picture picture, const WrapModes& wrap);
+[[nodiscard]] TexturePair make_textures(Picture picture, const WrapModes& wrap,
+                                        float alpha_scale = 1);
 
 }  // namespace saccade

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/images/exr_file.h"
+#include "simulator/scene/mesh/mesh_import.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 
 namespace saccade {
@@ -48,6 +51,50 @@ TEST_F(SceneFile, PlacesMeshesAndShowsTheBackground) {
   EXPECT_NEAR(see(scene, {{5.5, 0.5, 0}, forward}).radiance, 0.125, 1e-12);
 }
 
+TEST_F(SceneFile, FilesCanBeYUp) {
+  write("square.obj", testing::square_obj("square.mtl"));
+  write("square.mtl", "newmtl surface\nKd 1 1 1\n");
+  // The square of x and y stands upright, twice as wide as it is high.
+  const Scene scene =
+      build_scene(options("meshes: [{file: square.obj, up: y, size_m: [2, 1, 1], "
+                          "transform: {translation: [0, 3, 0]}}]\nbackground: 0.125\n"));
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitY();
+  EXPECT_NEAR(see(scene, {{1.9, 0, 0.9}, forward}).distance, 3, 1e-12);
+  EXPECT_NEAR(see(scene, {{1.9, 0, 1.1}, forward}).radiance, 0.125, 1e-12);
+  EXPECT_NEAR(see(scene, {{2.1, 0, 0.9}, forward}).radiance, 0.125, 1e-12);
+}
+
+TEST_F(SceneFile, GltfWithoutItsUpAxisIsRemarked) {
+  write("square.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36,
+                 "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  const auto warnings_of = [this](const std::string& mesh_keys) {
+    ::testing::internal::CaptureStderr();
+    static_cast<void>(build_scene(options("meshes: [{file: square.gltf" + mesh_keys + "}]")));
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(warnings_of(", up: y"), "");
+  EXPECT_EQ(warnings_of(", up: z"), "");
+  EXPECT_EQ(warnings_of(", transform: {rotation_deg: [90, 0, 0]}"), "");
+  EXPECT_THAT(warnings_of(""),
+              AllOf(HasSubstr("warning: "), HasSubstr("square.gltf"), HasSubstr("up: y")));
+  EXPECT_EQ(warnings_of(""), "") << "a line is shown once";
+}
+
+TEST_F(SceneFile, MissingTexturesAreErrorsUnlessTheyMayBeGrey) {
+  write("square.obj", testing::square_obj("square.mtl"));
+  write("square.mtl", "newmtl surface\nmap_Kd nowhere.png\n");
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]"), HasSubstr("nowhere.png"));
+  ::testing::internal::CaptureStderr();
+  const Scene scene = build_scene(options("meshes: [{file: square.obj}]\nmissing_texture: grey\n"));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("nowhere.png"));
+  EXPECT_NEAR(see(scene, {{0.5, 0.5, 1}, -Eigen::Vector3d::UnitZ()}).radiance, 0.5, 1e-12);
+}
+
 TEST_F(SceneFile, LambertianLightIsRead) {
   write("square.obj", testing::square_obj("square.mtl"));
   write("square.mtl", "newmtl surface\nKd 1 1 1\n");
@@ -57,6 +104,24 @@ TEST_F(SceneFile, LambertianLightIsRead) {
               "  - {type: point, position: [0.5, 0.5, 2], intensity: 4, shadows: false}\n"));
   EXPECT_NEAR(see(scene, {{0.5, 0.5, 1}, -Eigen::Vector3d::UnitZ()}).radiance, 0.25 + 0.5 + 1,
               1e-6);
+}
+
+TEST_F(SceneFile, SurfacesCanGlowUnderLights) {
+  write("square.obj", testing::square_obj());
+  Mesh mesh = MeshImporter().read(folder_ / "square.obj");
+  const Ray down{{0.5, 0.5, 1}, -Eigen::Vector3d::UnitZ()};
+  const auto radiance = [&](double self_light) {
+    for (Material& material : mesh.materials) material.self_light = self_light;
+    SceneBuilder builder;
+    builder.add(mesh, Eigen::Affine3d::Identity());
+    LightOptions light{.type = LightType::kDirectional, .intensity = 0.5};
+    builder.light(0.25, {light});
+    const Scene scene = std::move(builder).build(Background(0));
+    return see(scene, down).radiance / mesh.colours.front();
+  };
+  EXPECT_NEAR(radiance(0), 0.75, 1e-6);
+  EXPECT_NEAR(radiance(2), 2.75, 1e-6);
+  EXPECT_NEAR(radiance(std::numeric_limits<double>::infinity()), 1, 1e-6);
 }
 
 TEST_F(SceneFile, EnvironmentMapIsRead) {

@@ -5,9 +5,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
+#include "core/io/files/input_log.h"
 #include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"
 #include "core/srgb.h"
@@ -17,6 +19,7 @@ namespace saccade {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr const char* kFurnitureFile = "/usr/share/sweethome3d/furniture/Scopia.sh3f";
@@ -101,6 +104,13 @@ TEST_F(MeshImport, NamesFromWindowsAreFound) {
   std::filesystem::create_directories(folder_ / "maps");
   write_png(folder_ / "maps" / "grey.png", ImageU8(2, 2, 128));
   EXPECT_NE(square_material("map_Kd maps\\grey.png\n").texture, nullptr);
+}
+
+TEST_F(MeshImport, TexturesAreFoundBesideTheMeshAndInOtherCase) {
+  write_png(folder_ / "grey.png", ImageU8(2, 2, 128));
+  EXPECT_NE(square_material("map_Kd C:\\work\\maps\\grey.png\n").texture, nullptr);
+  EXPECT_NE(square_material("map_Kd /home/me/grey.png\n").texture, nullptr);
+  EXPECT_NE(square_material("map_Kd GREY.PNG\n").texture, nullptr);
 }
 
 TEST_F(MeshImport, ParametersOfATextureAreGenerated) {
@@ -217,6 +227,81 @@ TEST_F(MeshImport, MalformedMaterialsAreNamed) {
   write_square("map_Kd odd.texture.yaml\n");
   write("odd.texture.yaml", "seed: 1\nshapse: {}\n");
   EXPECT_THAT(error_of("square.obj"), AllOf(HasSubstr("odd.texture.yaml:2"), HasSubstr("shapes")));
+}
+
+TEST_F(MeshImport, MissingTexturesCanBeGrey) {
+  MeshImportOptions options;
+  options.missing_texture = MissingTexture::kGrey;
+  MeshImporter importer(options);
+  write_square("map_Kd nowhere.png\nmap_d nomask.png\n");
+  const Mesh mesh = importer.read(folder_ / "square.obj");
+  const Material& material = mesh.materials.at(mesh.triangles.at(0).material);
+  EXPECT_EQ(material.texture, nullptr);
+  EXPECT_EQ(material.opacity, nullptr);
+  EXPECT_DOUBLE_EQ(material.albedo, 0.5);
+  for (const double colour : mesh.colours) EXPECT_DOUBLE_EQ(colour, 0.5);
+  EXPECT_THAT(
+      importer.remarks().lines(),
+      ElementsAre(AllOf(HasSubstr("nowhere.png"), HasSubstr("grey 0.5")), HasSubstr("nomask.png")));
+}
+
+TEST_F(MeshImport, LightSlightlyBelowZeroIsZero) {
+  ImageF image(3, 2, 10.0F);
+  image(1, 1) = -0.09F;
+  write_exr(folder_ / "ringing.exr", image, "Y");
+  write_square("map_Kd ringing.exr\n");
+  MeshImporter importer;
+  const Mesh mesh = importer.read(folder_ / "square.obj");
+  EXPECT_DOUBLE_EQ(mesh.materials.at(mesh.triangles.at(0).material).texture->at_texel(1, 1), 0);
+  EXPECT_THAT(importer.remarks().lines(),
+              ElementsAre(AllOf(HasSubstr("ringing.exr"), HasSubstr("1 texels"))));
+  image(1, 1) = -0.11F;
+  write_exr(folder_ / "ringing.exr", image, "Y");
+  EXPECT_THAT(error_of("square.obj"), AllOf(HasSubstr("ringing.exr"), HasSubstr("(1, 1)")));
+  image(1, 1) = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder_ / "ringing.exr", image, "Y");
+  EXPECT_THAT(error_of("square.obj"), AllOf(HasSubstr("ringing.exr"), HasSubstr("nan")));
+}
+
+TEST_F(MeshImport, TgaAndDdsTexturesAreDecoded) {
+  write("grey.tga", std::string("\0\0\x03\0\0\0\0\0\0\0\0\0\x01\0\x01\0\x08\0", 18) + "\x80");
+  EXPECT_NEAR(square_material("map_Kd grey.tga\n").texture->at(0.5, 0.5),
+              linear_from_srgb(128 / 255.0), 1e-6);
+  std::string dds(128, '\0');
+  dds.replace(0, 4, "DDS ");
+  dds[12] = dds[16] = 4;
+  dds[80] = 4;
+  dds.replace(84, 4, "DXT1");
+  write("white.dds", dds + std::string("\xFF\xFF\0\0\0\0\0\0", 8));
+  EXPECT_NEAR(square_material("map_Kd white.dds\n").texture->at(0.5, 0.5), 1, 1e-6);
+}
+
+TEST_F(MeshImport, AnImporterThatCrashesIsAnError) {
+  // assimp's FBX parser calls itself for every brace, until the stack is full.
+  constexpr int kDepth = 200'000;
+  std::string nested = "; FBX 7.4.0 project file\n";
+  for (int i = 0; i < kDepth; ++i) nested += "A: {\n";
+  for (int i = 0; i < kDepth; ++i) nested += "}\n";
+  write("nested.fbx", nested);
+  EXPECT_THAT(error_of("nested.fbx"),
+              AllOf(HasSubstr("nested.fbx"), HasSubstr("importer"), HasSubstr("crashed")));
+}
+
+TEST_F(MeshImport, AnImporterThatAbortsIsAnError) {
+  // assimp reads the number of vertices, 353535235358, as another one and fails an assertion.
+  write("many.off",
+        "OFF\n353535235358 6 0\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n-1 1 -1\n1 1 -1\n-1 -1 -1\n"
+        "1 -1 -1\n4 0 1 3 2\n4 2 3 5 4\n4 4 5 7 6\n4 6 7 1 0\n4 1 7 5 3\n4 6 0 2 4\n");
+  EXPECT_THAT(error_of("many.off"), AllOf(HasSubstr("many.off"), HasSubstr("cannot be read")));
+}
+
+TEST_F(MeshImport, FilesOfTheImporterAreNoted) {
+  write_square("Kd 1 1 1\n");
+  const InputLog log;
+  static_cast<void>(read("square.obj"));
+  const auto files = log.files();
+  EXPECT_TRUE(files.contains((folder_ / "square.obj").string()));
+  EXPECT_TRUE(files.contains((folder_ / "square.mtl").string()));
 }
 
 TEST_F(MeshImport, ATextureNeedsCoordinates) {

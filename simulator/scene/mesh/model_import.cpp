@@ -1,0 +1,236 @@
+#include "simulator/scene/mesh/model_import.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "core/error.h"
+#include "simulator/scene/mesh/assimp_files.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kSmoothingAngleDeg = 40;
+
+bool has_uv_transforms(const aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i)
+    for (unsigned k = 0; k < scene.mMaterials[i]->mNumProperties; ++k)
+      if (std::strcmp(scene.mMaterials[i]->mProperties[k]->mKey.C_Str(),
+                      _AI_MATKEY_UVTRANSFORM_BASE) == 0)
+        return true;
+  return false;
+}
+
+/// In the child, where errors are words.
+const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::path& file) {
+  importer.SetIOHandler(files);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngleDeg);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene =
+      importer.ReadFile(file.generic_string(),
+                        aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType);
+  for (const std::string& missing : files->missing())
+    if (missing.ends_with(".mtl") &&
+        std::ranges::none_of(files->opened(), [](const auto& f) { return f.ends_with(".mtl"); }))
+      throw std::runtime_error(fmt::format("its material library {} does not exist",
+                                           fs::path(missing).lexically_normal().string()));
+  if (scene == nullptr) {
+    const std::string text = importer.GetErrorString();
+    if (text.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    throw std::runtime_error("cannot be read as a mesh: " + text);
+  }
+  if (has_uv_transforms(*scene)) scene = importer.ApplyPostProcessing(aiProcess_TransformUVCoords);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw std::runtime_error("holds no visible triangle");
+  return *scene;
+}
+
+Wrap wrap_of(int mode) {
+  if (mode == aiTextureMapMode_Mirror) return Wrap::kMirror;
+  return mode == aiTextureMapMode_Wrap ? Wrap::kRepeat : Wrap::kClamp;
+}
+
+std::int32_t embedded_index(const aiScene& scene, const char* name) {
+  const aiTexture* embedded = scene.GetEmbeddedTexture(name);
+  for (unsigned i = 0; embedded != nullptr && i < scene.mNumTextures; ++i)
+    if (scene.mTextures[i] == embedded) return static_cast<std::int32_t>(i);
+  return -1;
+}
+
+std::optional<ModelTexture> find_texture(const aiScene& scene, const aiMaterial& material,
+                                         aiTextureType type) {
+  aiString name;
+  if (material.GetTexture(type, 0, &name) != aiReturn_SUCCESS || name.length == 0)
+    return std::nullopt;
+  ModelTexture reference{name.C_Str(), {}, 0, embedded_index(scene, name.C_Str())};
+  int mode = aiTextureMapMode_Wrap;
+  if (material.Get(AI_MATKEY_MAPPINGMODE_U(type, 0), mode) == aiReturn_SUCCESS)
+    reference.wrap.u = wrap_of(mode);
+  if (material.Get(AI_MATKEY_MAPPINGMODE_V(type, 0), mode) == aiReturn_SUCCESS)
+    reference.wrap.v = wrap_of(mode);
+  int channel = 0;
+  if (material.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS && channel >= 0)
+    reference.uv_channel = static_cast<std::uint32_t>(channel);
+  return reference;
+}
+
+ModelMaterial material_of(const aiScene& scene, const aiMaterial& material) {
+  ModelMaterial result;
+  result.name = material.GetName().C_Str();
+  // Only glTF states an alpha mode, and defines its colours in linear light.
+  aiString mode;
+  result.is_linear = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS;
+  result.ignores_alpha = result.is_linear && std::strcmp(mode.C_Str(), "OPAQUE") == 0;
+  aiColor3D colour(0.5F, 0.5F, 0.5F);
+  material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
+  result.colour = {colour.r, colour.g, colour.b};
+  material.Get(AI_MATKEY_OPACITY, result.opacity);
+  result.colour_texture = find_texture(scene, material, aiTextureType_DIFFUSE);
+  if (!result.colour_texture)
+    result.colour_texture = find_texture(scene, material, aiTextureType_BASE_COLOR);
+  result.opacity_texture = find_texture(scene, material, aiTextureType_OPACITY);
+  return result;
+}
+
+ModelPicture picture_of(const aiTexture& texture) {
+  ModelPicture picture;
+  picture.hint = texture.achFormatHint;
+  std::size_t size = texture.mWidth;
+  if (texture.mHeight != 0) {
+    picture.width = texture.mWidth;
+    picture.height = texture.mHeight;
+    size = std::size_t{texture.mWidth} * texture.mHeight * sizeof(aiTexel);
+  }
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.pcData);
+  if (bytes != nullptr) picture.bytes.assign(bytes, bytes + size);
+  return picture;
+}
+
+std::array<float, 3> floats_of(const aiVector3D& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+ModelPart part_of(const aiMesh& mesh) {
+  ModelPart part;
+  part.material = mesh.mMaterialIndex;
+  const unsigned n = mesh.mVertices != nullptr ? mesh.mNumVertices : 0;
+  part.vertices.reserve(n);
+  part.normals.reserve(n);
+  part.triangles.reserve(mesh.mNumFaces);
+  for (unsigned i = 0; i < n; ++i) part.vertices.push_back(floats_of(mesh.mVertices[i]));
+  for (unsigned i = 0; mesh.HasNormals() && i < n; ++i)
+    part.normals.push_back(floats_of(mesh.mNormals[i]));
+  for (unsigned channel = 0; channel < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++channel) {
+    part.uvs.emplace_back();
+    for (unsigned i = 0; mesh.HasTextureCoords(channel) && i < n; ++i) {
+      const std::array<float, 3> uvw = floats_of(mesh.mTextureCoords[channel][i]);
+      part.uvs.back().push_back({uvw[0], uvw[1]});
+    }
+  }
+  for (unsigned i = 0; mesh.HasVertexColors(0) && i < n; ++i) {
+    const aiColor4D& colour = mesh.mColors[0][i];
+    part.colours.push_back({colour.r, colour.g, colour.b, colour.a});
+  }
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices == 3)
+      part.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
+  }
+  return part;
+}
+
+Eigen::Affine3d transform_of(const aiMatrix4x4& m) {
+  Eigen::Affine3d transform;
+  transform.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
+      m.d1, m.d2, m.d3, m.d4;
+  return transform;
+}
+
+void add_instances(const aiNode& node, const Eigen::Affine3d& file_from_parent, Model& model) {
+  const Eigen::Affine3d file_from_node = file_from_parent * transform_of(node.mTransformation);
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    ModelInstance& instance = model.instances.emplace_back();
+    instance.part = node.mMeshes[i];
+    std::copy_n(file_from_node.matrix().data(), instance.file_from_part.size(),
+                instance.file_from_part.begin());
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    add_instances(*node.mChildren[i], file_from_node, model);
+}
+
+Model model_of(const aiScene& scene) {
+  Model model;
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i)
+    model.materials.push_back(material_of(scene, *scene.mMaterials[i]));
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) model.parts.push_back(part_of(*scene.mMeshes[i]));
+  for (unsigned i = 0; i < scene.mNumTextures; ++i)
+    model.pictures.push_back(picture_of(*scene.mTextures[i]));
+  add_instances(*scene.mRootNode, Eigen::Affine3d::Identity(), model);
+  return model;
+}
+
+/// The indices of a file that nobody checked.
+bool is_consistent(const Model& model) {
+  const auto is_part_fine = [&model](const ModelPart& part) {
+    return part.material < model.materials.size() &&
+           std::ranges::all_of(part.triangles, [&part](const auto& corners) {
+             return std::ranges::all_of(
+                 corners, [&part](std::uint32_t corner) { return corner < part.vertices.size(); });
+           });
+  };
+  return std::ranges::all_of(model.parts, is_part_fine) &&
+         std::ranges::all_of(model.instances, [&model](const ModelInstance& instance) {
+           return instance.part < model.parts.size();
+         });
+}
+
+}  // namespace
+
+Model import_model(const FileSource& source, const fs::path& file, const std::string& source_name,
+                   const ReplacedFiles& replaced, const ForkLimits& limits) {
+  const std::string extension = file.extension().string();
+  if (!Assimp::Importer().IsExtensionSupported(extension))
+    throw InputError(source_name,
+                     fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
+                                 "COLLADA, FBX, STL and others can",
+                                 extension));
+  const auto work = [&] {
+    // An archive that two processes share would be read by both at one position.
+    const FileSource own(source.archive(), FileSource::Reporting::kNone);
+    Assimp::Importer importer;  // owns the AssimpFiles
+    auto* const files = new AssimpFiles(own, replaced);
+    Model model = model_of(load(importer, files, file));
+    model.opened = files->opened();
+    return to_bytes(model);
+  };
+  const ForkedResult result = call_in_child(work, limits);
+  if (!result.problem.empty())
+    throw InputError(source_name, result.died ? fmt::format("cannot be read as a mesh: the "
+                                                            "importer of '{}' files {}",
+                                                            extension, result.problem)
+                                              : result.problem);
+  try {
+    Model model = model_from_bytes(result.bytes);
+    if (!is_consistent(model)) throw std::runtime_error("its parts do not fit together");
+    return model;
+  } catch (const std::runtime_error& error) {
+    throw InputError(source_name, fmt::format("cannot be read as a mesh: {}", error.what()));
+  }
+}
+
+}  // namespace saccade
