@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -98,13 +99,18 @@ class Gltf : public testing::MeshFiles {
     /// The radiance of the surface at (x, y), unlit.
     [[nodiscard]] double at(double x, double y) const {
       const Material& shown = material();
-      const auto value = [&](const auto& of) {  // bilinear from the corners, found by their place
-        double sum = 0;
+      const auto value = [&](const auto& of) {  // bilinear from the corners, which may be repeated
+        std::array<double, 4> sums{}, counts{};
         for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
           const Eigen::Vector3d& p = mesh.vertices[i];
-          sum += (p.x() > 0.5 ? x : 1 - x) * (p.y() > 0.5 ? y : 1 - y) * of(i);
+          const std::size_t corner = (p.x() > 0.5 ? 1U : 0U) + (p.y() > 0.5 ? 2U : 0U);
+          sums[corner] += of(i);
+          counts[corner] += 1;
         }
-        return sum;
+        double mean = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+          mean += ((k & 1U) != 0 ? x : 1 - x) * ((k & 2U) != 0 ? y : 1 - y) * sums[k] / counts[k];
+        return mean;
       };
       if (shown.texture == nullptr) return value([&](std::size_t i) { return mesh.colours[i]; });
       return shown.factor *
