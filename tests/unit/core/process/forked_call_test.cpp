@@ -1,9 +1,9 @@
 #include "core/process/forked_call.h"
 
 #include <gmock/gmock.h>
-
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <stdexcept>
 #include <vector>
@@ -51,7 +51,7 @@ TEST(ForkedCall, HangsEnd) {
   limits.cpu_s = 1;
   const ForkedResult busy = call_in_child(
       []() -> std::string {
-        for (volatile int i = 0;; i = i + 1) {
+        for (std::atomic<int> turns = 0;; ++turns) {
         }
       },
       limits);
