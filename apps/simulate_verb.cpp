@@ -20,6 +20,20 @@ struct SimulateVerbOptions {
   CommonOptions common;
 };
 
+/// What is known about the events' times.
+std::string accuracy(const DatasetRecord& record) {
+  if (record.time_bound_us)
+    return fmt::format("timestamps within {:.2g} us", *record.time_bound_us);
+  if (!record.audit) return "adaptive sampling without an audit";
+  const auto percent = [](const DatasetRecord::Figure& figure) {
+    return fmt::format("{:.2f} % ({:.2f} to {:.2f})", 100 * figure.value, 100 * figure.low,
+                       100 * figure.high);
+  };
+  return fmt::format("adaptive: precision {}, recall {} at 10 us on {} audited pixels",
+                     percent(record.audit->precision_10us), percent(record.audit->recall_10us),
+                     record.audit->pixels);
+}
+
 void show(const CameraReport& camera, const std::filesystem::path& folder) {
   const DatasetRecord& record = camera.record;
   const double events = static_cast<double>(camera.event_count());
@@ -28,11 +42,10 @@ void show(const CameraReport& camera, const std::filesystem::path& folder) {
              static_cast<double>(record.counts ? record.counts->events_on : 0) * 1e-6,
              record.mean_scene_depth_m.value_or(0), record.path_length_m.value_or(0));
   fmt::print(
-      "  {:.1f} M rays ({:.2f} per event), timestamps within {:.2g} us\n"
+      "  {:.1f} M rays ({:.2f} per event), {}\n"
       "  images {:.1f} s, events {:.1f} s ({:.2f} M events/s)\n",
       static_cast<double>(record.rays.value_or(0)) * 1e-6, record.rays_per_event.value_or(0),
-      1e6 * camera.events.time_bound_s, camera.images_s, camera.events_s,
-      1e-6 * events / camera.events_s);
+      accuracy(record), camera.images_s, camera.events_s, 1e-6 * events / camera.events_s);
 }
 
 void show(const SimulationReport& report, const std::filesystem::path& output) {
