@@ -292,13 +292,20 @@ void GltfFile::make_attributes_float(json& document) const {
          {"uri", "data:application/octet-stream;base64," + base64_of(floats)}});
 }
 
-Bytes GltfFile::encoded(const json& document) const {
+Bytes GltfFile::encoded(json document) const {
+  // assimp takes the first buffer of a binary file for its binary chunk, whether it has one or not.
+  Bytes chunk = binary_chunk_;
+  if (is_binary_ && chunk.empty() && document.contains("buffers") && !document["buffers"].empty()) {
+    chunk = buffer(0);
+    document["buffers"][0].erase("uri");
+  }
+
   const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
   const Bytes content(text.begin(), text.end());
   if (!is_binary_) return content;
   Bytes chunks;
   append_chunk(chunks, kGltfJsonChunk, content, ' ');
-  if (!binary_chunk_.empty()) append_chunk(chunks, kGltfBinaryChunk, binary_chunk_, 0);
+  if (!chunk.empty()) append_chunk(chunks, kGltfBinaryChunk, chunk, 0);
   Bytes file;
   append_little_endian(file, kGltfMagic);
   append_little_endian(file, 2);
@@ -332,7 +339,7 @@ ReplacedFiles GltfFile::for_assimp() const {
         }
       make_attributes_float(document);
     }
-    return {{file_.generic_string(), encoded(document)}};
+    return {{file_.generic_string(), encoded(std::move(document))}};
   } catch (const json::exception& error) {
     fail(error.what());
   }

@@ -55,7 +55,7 @@ class GltfFile {
   /// All numbers of an accessor, as floats.
   [[nodiscard]] std::vector<float> accessor(std::size_t index) const;
   void make_attributes_float(nlohmann::json& document) const;
-  [[nodiscard]] Bytes encoded(const nlohmann::json& document) const;
+  [[nodiscard]] Bytes encoded(nlohmann::json document) const;
 
   const FileSource* source_;
   std::filesystem::path file_;

@@ -30,8 +30,7 @@ AdaptiveCamera::AdaptiveCamera(const Scene& scene, const Spline& world_from_came
       audit_(scene, world_from_camera, camera, options, seed) {
   tiles_.reserve(rays_.tile_count());
   for (std::size_t i = 0; i < rays_.tile_count(); ++i)
-    tiles_.push_back(
-        std::make_unique<AdaptiveTile>(scene_, rays_, options_, noise_, seed, i));
+    tiles_.push_back(std::make_unique<AdaptiveTile>(scene_, rays_, options_, noise_, seed, i));
 }
 
 void AdaptiveCamera::record(double duration_s, const Sink& sink) {
@@ -69,10 +68,9 @@ double AdaptiveCamera::slice_end_s(double duration_s) const {
       if (kink_s > t_s_ && kink_s < until_s) until_s = kink_s;
   double fastest = 0;
   for (const auto& tile : tiles_) fastest = std::max(fastest, tile->speed_px_s());
-  const double slice_s =
-      started_ ? std::clamp(kSliceMotion_px / std::max(fastest, 1e-9), kShortestSlice_s,
-                            kLongestSlice_s)
-               : kShortestSlice_s;
+  const double slice_s = started_ ? std::clamp(kSliceMotion_px / std::max(fastest, 1e-9),
+                                               kShortestSlice_s, kLongestSlice_s)
+                                  : kShortestSlice_s;
   const double slices_left = std::ceil((until_s - t_s_) / slice_s);
   return slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;
 }

@@ -34,8 +34,12 @@ constexpr double kErrorMargin = 8;
 /// The slope before a line may equal its own by chance: its error is at least this part of its
 /// change.
 constexpr double kLeastError = 0.2;
-/// The error of a line that the photoreceptor's low pass is given [log units].
-constexpr double kFilteredError = 5e-3;
+/// The photoreceptor's low pass needs all of the signal. A line that it is given may be wrong by
+/// what the signal changes within a bracket, or by this part of a threshold, which delays no common
+/// event by more [log units].
+constexpr double kFilteredError = 2e-5;
+/// Of the change, at least this part is taken for the error of such a line.
+constexpr double kLeastFilteredError = 0.01;
 /// Nearer to an end, relative to its length, an interval is not divided.
 constexpr double kLeastFraction = 0.05;
 /// Below this rate a signal does not move [1/s].
@@ -51,6 +55,7 @@ AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const Even
       index_(index),
       bracket_s_(kBracketTolerances * 1e-6 * options.time_tolerance_us),
       is_filtered_(noise.filter.on()),
+      refractory_s_(noise.refractory_s),
       pixels_(options, noise, seed, rays.tile(index)),
       sampler_(scene, rays, options, index, statistics_) {}
 
@@ -69,8 +74,8 @@ void AdaptiveTile::start(const AdaptiveSlice& slice) {
 
 void AdaptiveTile::advance(const AdaptiveSlice& slice, double around_px_s) {
   sampler_.set_poses(slice.poses);
-  const double steps = std::max(
-      1.0, std::ceil(around_px_s * (slice.to_s - slice.from_s) / options_.max_step_px));
+  const double steps =
+      std::max(1.0, std::ceil(around_px_s * (slice.to_s - slice.from_s) / options_.max_step_px));
   for (double k = 1; k <= steps; ++k)
     sense_step(k == steps ? slice.to_s : std::lerp(slice.from_s, slice.to_s, k / steps));
   update_speed(slice);
@@ -128,8 +133,7 @@ void AdaptiveTile::sense_step(double to_s) {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = requests[k].pixel;
       ahead_[i].push_back(samples[k]);
-      if (const std::optional<double> t_s = sense_lines(i))
-        requests[open++] = {i, *t_s};
+      if (const std::optional<double> t_s = sense_lines(i)) requests[open++] = {i, *t_s};
     }
     count = open;
   }
@@ -175,12 +179,18 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   if (length_s <= bracket_s_) return {};
   const bool is_same = now.triangles == next.triangles && now.lights == next.lights;
   const bool needs_ray = !is_same || sampler_.rays_per_pixel() > 1;
+  // At its end the reference is set to the signal of that time, which is therefore sampled.
+  const double reset_s = pixels_.refractory_until_s(i);
+  if (reset_s >= next.t_s && !is_filtered_) return {};
+  if (reset_s > now.t_s + bracket_s_ && reset_s < next.t_s - bracket_s_)
+    return {false, reset_s, needs_ray};
   const double middle_s = 0.5 * (now.t_s + next.t_s);
   const bool is_continuous_there = is_continuous(now, next);
   const double change = next.log_intensity - now.log_intensity;
   if (is_near_edge_[i] && length_s > 1.001 * kNearEdgeFraction * step_s_)
     return {false, now.t_s + kNearEdgeFraction * step_s_, true};
-  if (is_continuous_there && std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) > kMaxTexels)
+  if (is_continuous_there &&
+      std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) > kMaxTexels)
     return {false, middle_s, needs_ray};
 
   // How far the signal may be from the line in its middle: a parabola with the slope before it, or
@@ -190,14 +200,23 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   if (is_continuous_there && pixel.has_slope)
     error = std::max(kErrorMargin * 0.25 * std::abs(slope - pixel.before_s) * length_s,
                      kLeastError * std::abs(change));
-  if (is_filtered_ && error > kFilteredError) return {false, middle_s, needs_ray};
+  if (is_filtered_) {
+    const bool is_smooth = is_continuous_there && pixel.has_slope;
+    const double filtered_error = is_smooth
+                                      ? std::max(0.25 * std::abs(slope - pixel.before_s) * length_s,
+                                                 kLeastFilteredError * std::abs(change))
+                                      : error;
+    const double tolerated = bracket_s_ * std::abs(slope);
+    if (filtered_error > std::max(tolerated, kFilteredError)) return {false, middle_s, needs_ray};
+  }
 
   const Thresholds& thresholds = pixels_.thresholds(i);
   const Band& band = thresholds.band();
   const double from = thresholds.signal(LinearSample{now.t_s, now.log_intensity});
   const double to = thresholds.signal(LinearSample{next.t_s, next.log_intensity});
   if (band.contains(to)) {
-    const double margin = std::min(band.upper - std::max(from, to), std::min(from, to) - band.lower);
+    const double margin =
+        std::min(band.upper - std::max(from, to), std::min(from, to) - band.lower);
     if (!is_continuous_there) {
       // The signal may come nearer to the band's ends just before and just after the change.
       const bool is_clear = kChangeMargin * std::abs(pixel.before_s) * length_s <= margin &&
@@ -217,6 +236,9 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   if (!is_exact(fraction))
     return {false, now.t_s + std::clamp(fraction, kLeastFraction, 1 - kLeastFraction) * length_s,
             needs_ray};
+  const double reset = fraction + refractory_s_ / length_s;
+  if (refractory_s_ > 0 && reset < 1 && !is_exact(reset))
+    return {false, now.t_s + reset * length_s, needs_ray};
   // A line across several thresholds.
   const double contrast = 0.5 * (band.upper - band.lower);
   if (std::abs(to - level) >= contrast && !is_exact(0.5)) return {false, middle_s, needs_ray};

@@ -56,7 +56,7 @@ class AdaptiveTile {
  private:
   /// A pixel between two samples of the whole tile.
   struct Pixel {
-    ViewSample now;     ///< up to which it has sensed
+    ViewSample now;       ///< up to which it has sensed
     double before_s = 0;  ///< slope of the signal before that [1/s]
     bool has_slope = false;
   };
@@ -86,13 +86,14 @@ class AdaptiveTile {
   std::size_t index_;
   double bracket_s_;
   bool is_filtered_;
+  double refractory_s_;
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;
   std::array<Pixel, kTilePixels> views_;
   double speed_px_s_ = 0;
-  double step_s_ = 0;                        ///< length of the step at work
-  std::bitset<kTilePixels> is_near_edge_;    ///< in it
+  double step_s_ = 0;                                       ///< length of the step at work
+  std::bitset<kTilePixels> is_near_edge_;                   ///< in it
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
 

@@ -108,8 +108,8 @@ void Audit::advance(double t_s, double duration_s) {
     });
   // Rounding can put an event on the tick before t_s.
   constexpr TimeNs kTick_ns = 2'000;
-  const TimeNs until_ns = t_s < duration_s ? ns_from_seconds(t_s) - kTick_ns
-                                           : std::numeric_limits<TimeNs>::max() / 2;
+  const TimeNs until_ns =
+      t_s < duration_s ? ns_from_seconds(t_s) - kTick_ns : std::numeric_limits<TimeNs>::max() / 2;
   for (AuditedTile& tile : tiles_)
     for (EventMatcher& matcher : tile.matchers) matcher.advance(until_ns, tile.counts);
 }
@@ -136,8 +136,7 @@ AuditResult Audit::result() const {
     for (std::size_t r = 0; r < kResamples; ++r) {
       MatchCounts resampled;
       for (std::size_t k = 0; k < tiles_.size(); ++k)
-        resampled.add(
-            tiles_[random.below(tiles_.size(), kBootstrapStream + r, k)].counts);
+        resampled.add(tiles_[random.below(tiles_.size(), kBootstrapStream + r, k)].counts);
       samples[r] = figure(resampled);
     }
     std::sort(samples.begin(), samples.end());
@@ -154,9 +153,8 @@ AuditResult Audit::result() const {
     return measured;
   };
   const auto precision = [&](std::size_t tolerance) {
-    return share(
-        [=](const MatchCounts& c) { return fraction_of(c.matched[tolerance], c.sampled); },
-        all.sampled);
+    return share([=](const MatchCounts& c) { return fraction_of(c.matched[tolerance], c.sampled); },
+                 all.sampled);
   };
   const auto recall = [&](std::size_t tolerance) {
     return share([=](const MatchCounts& c) { return fraction_of(c.matched[tolerance], c.exact); },

@@ -13,10 +13,10 @@ struct ViewSample {
   double log_intensity = 0;  ///< ln(eps + mean radiance)
   double distance = 0;       ///< z depth along the pixel's first ray; 0 = background
   double x = 0, y = 0;       ///< of the first ray on the texture, in texels of its pyramid level
-  TriangleId triangle = kNothing;    ///< that the first ray sees
-  std::uint64_t triangles = 0;       ///< a hash of those of all rays
-  std::uint64_t lights = 0;          ///< a hash of the lights that light all of them
-  LightSet lights_of_ray = 0;        ///< that light the first
+  TriangleId triangle = kNothing;  ///< that the first ray sees
+  std::uint64_t triangles = 0;     ///< a hash of those of all rays
+  std::uint64_t lights = 0;        ///< a hash of the lights that light all of them
+  LightSet lights_of_ray = 0;      ///< that light the first
 };
 
 }  // namespace saccade

@@ -77,8 +77,8 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
   }
   for (std::size_t i = 0; i < requests.size(); ++i) {
     samples[i].t_s = requests[i].t_s;
-    samples[i].log_intensity = log_intensity(
-        samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
+    samples[i].log_intensity =
+        log_intensity(samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
   }
   statistics_.rays += count;
   if (scene_.is_lit()) statistics_.lit_points += count;
@@ -103,8 +103,7 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
 }
 
 std::optional<ViewSample> ViewSampler::resample(const SampleRequest& request,
-                                                const ViewSample& before,
-                                                const ViewSample& after) {
+                                                const ViewSample& before, const ViewSample& after) {
   const CameraFrame camera = poses_->at(request.t_s);
   const Ray ray{camera.position, camera.rotation * directions(request.pixel)[0], request.t_s};
   const std::array<TriangleId, 2> triangles{before.triangle, after.triangle};

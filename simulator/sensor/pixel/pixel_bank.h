@@ -40,6 +40,10 @@ class PixelBank {
   [[nodiscard]] bool is_idle(std::size_t i, double from_s, double to_s) const {
     return noisy_.empty() || (!noise_.filter.on() && noisy_[i].is_idle(from_s, to_s));
   }
+  /// When the refractory period of pixel `i` ends; before all times where none is under way.
+  [[nodiscard]] double refractory_until_s(std::size_t i) const {
+    return noisy_.empty() ? NoisyState::kNotRefractory : noisy_[i].refractory_until_s;
+  }
   /// What pixel `i` fires at.
   [[nodiscard]] const Thresholds& thresholds(std::size_t i) const { return pixels_[i].thresholds; }
 

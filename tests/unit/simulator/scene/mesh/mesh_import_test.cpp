@@ -19,6 +19,7 @@ namespace saccade {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -287,12 +288,14 @@ TEST_F(MeshImport, AnImporterThatCrashesIsAnError) {
               AllOf(HasSubstr("nested.fbx"), HasSubstr("importer"), HasSubstr("crashed")));
 }
 
-TEST_F(MeshImport, AnImporterThatAbortsIsAnError) {
-  // assimp reads the number of vertices, 353535235358, as another one and fails an assertion.
+TEST_F(MeshImport, AnImporterThatDiesIsAnError) {
+  // assimp reads the number of vertices, 353535235358, as another one. Depending on how it was built it fails an
+  // assertion or runs out of memory.
   write("many.off",
         "OFF\n353535235358 6 0\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n-1 1 -1\n1 1 -1\n-1 -1 -1\n"
         "1 -1 -1\n4 0 1 3 2\n4 2 3 5 4\n4 4 5 7 6\n4 6 7 1 0\n4 1 7 5 3\n4 6 0 2 4\n");
-  EXPECT_THAT(error_of("many.off"), AllOf(HasSubstr("many.off"), HasSubstr("cannot be read")));
+  EXPECT_THAT(error_of("many.off"), AllOf(HasSubstr("many.off"),
+                                          AnyOf(HasSubstr("cannot be read"), HasSubstr("memory"))));
 }
 
 TEST_F(MeshImport, FilesOfTheImporterAreNoted) {
