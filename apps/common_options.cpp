@@ -27,13 +27,17 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("-q,--quiet", options.quiet, "Print errors only: no progress, no tables.");
 }
 
-void add_config_options(CLI::App& command, CommonOptions& options) {
+void add_override_option(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--set", options.overrides,
                   "Override one key, e.g. --set events.contrast_on=0.2 (repeatable).")
       ->type_name("KEY.PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
+}
+
+void add_config_options(CLI::App& command, CommonOptions& options) {
+  add_override_option(command, options);
   command
       .add_option("--seed", options.seed, "Seed of all random numbers; the same as --set seed=N.")
       ->type_name("N")

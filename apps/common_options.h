@@ -27,6 +27,8 @@ struct CommonOptions {
 
 /// --threads and -q, for every verb.
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// --set, for verbs that read a configuration if they are given one.
+void add_override_option(CLI::App& command, CommonOptions& options);
 /// --set, --seed and --print-config, for verbs that read a configuration.
 void add_config_options(CLI::App& command, CommonOptions& options);
 /// --reference, for verbs whose page has this name: prints it in place of everything else.

@@ -4,8 +4,11 @@
 #include <memory>
 
 #include "apps/verbs.h"
+#include "core/config/config.h"
 #include "core/error.h"
 #include "eval/describe.h"
+#include "simulator/scene/describe_mesh.h"
+#include "simulator/simulation_config.h"
 
 namespace saccade {
 namespace {
@@ -15,7 +18,24 @@ struct InfoOptions {
   bool verify = false;
 };
 
+void refuse_verify(const InfoOptions& options) {
+  if (options.verify)
+    throw InputError("--verify", "compares datasets with their hashes, no scenes");
+}
+
 void info(const InfoOptions& options) {
+  const bool is_folder = std::filesystem::is_directory(options.path);
+  if (!is_folder && is_mesh_name(options.path)) {
+    refuse_verify(options);
+    fmt::print("{}", describe_mesh(options.path));
+    return;
+  }
+  if (!is_folder && options.path.extension() == ".yaml") {
+    refuse_verify(options);
+    const auto config = config::read<SimulationConfig>(config::load(options.path.string(), {}));
+    fmt::print("{}: simulation, {}", options.path.string(), describe_scene(config.scene));
+    return;
+  }
   const PathDescription description = describe_path(options.path, options.verify);
   fmt::print("{}", description.text);
   if (description.problems.empty()) return;
@@ -28,10 +48,18 @@ void info(const InfoOptions& options) {
 
 void add_info_verb(CLI::App& command) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* verb = command.add_subcommand("info", "Say what a dataset, event file or run holds.");
-  verb->add_option("PATH", options->path, "Dataset folder, run folder, or event file.")->required();
+  CLI::App* verb = command.add_subcommand(
+      "info", "Say what a dataset, event file, run, mesh file or simulation configuration holds.");
+  verb->add_option("PATH", options->path,
+                   "Dataset folder, run folder, event file, mesh file (also archive.zip!/mesh.obj) "
+                   "or simulation configuration (YAML).")
+      ->required();
   verb->add_flag("--verify", options->verify, "Compare every file with its hash in dataset.yaml.");
-  verb->footer("Example:\n  saccade info data/walls --verify");
+  verb->footer(
+      "Examples:\n"
+      "  saccade info data/walls --verify\n"
+      "  saccade info chair.glb\n"
+      "  saccade info configs/simulation/office.yaml");
   verb->callback([options] { info(*options); });
 }
 

@@ -8,6 +8,7 @@
 #include "apps/common_options.h"
 #include "apps/option_checks.h"
 #include "apps/pose_option.h"
+#include "apps/scene_preview.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "eval/picture/render.h"
@@ -26,8 +27,14 @@ struct RenderVerbOptions {
   CommonOptions common;
 };
 
+bool is_configuration(const std::filesystem::path& path) {
+  return path.extension() == ".yaml" && !std::filesystem::is_directory(path);
+}
+
 void render_path(RenderVerbOptions options) {
   options.common.apply();
+  if (is_configuration(options.path))
+    return render_preview(options.path.string(), options.output, options.light, options.common);
   options.render.dark = !options.light;
   if (options.overlay_pose)
     options.overlay.world_from_picture = parse_pose(*options.overlay_pose, "--overlay-pose");
@@ -73,9 +80,12 @@ void add_render_verb(CLI::App& command) {
   RenderOptions& render = options->render;
   CLI::App* verb =
       command.add_subcommand("render",
-                             "Draw a dataset (events, frames, depth) or a run (the map over its "
-                             "events, keyframes, views, or what it stabilized).");
-  verb->add_option("PATH", options->path, "Dataset or run folder.")->required();
+                             "Draw a dataset (events, frames, depth), a run (the map over its "
+                             "events, keyframes, views, or what it stabilized), or what a "
+                             "simulation would see: views along its path and a plan.");
+  verb->add_option("PATH", options->path,
+                   "Dataset folder, run folder, or simulation configuration (YAML).")
+      ->required();
   verb->add_option("-o,--output", options->output,
                    "Picture (.png) or video (.mp4, by ffmpeg) to write.")
       ->required()
@@ -106,9 +116,11 @@ void add_render_verb(CLI::App& command) {
       ->capture_default_str();
   verb->add_flag("--light", options->light, "Draw on a light background.");
   add_overlay_options(*verb, *options);
+  add_override_option(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"
+      "  saccade render configs/simulation/walls.yaml -o preview.png\n"
       "  saccade render data/walls -o walls.png\n"
       "  saccade render runs/walls -o walls.mp4 --slow-motion 5\n"
       "  saccade render runs/dunes -o odometry.mp4 --slow-motion 5\n"

@@ -67,7 +67,11 @@ void describe(config::Fields& fields, SceneOptions& options) {
       "Radiance where a ray hits nothing: a number, or an equirectangular picture (its middle "
       "towards +x, its top towards +z).";
   if (picture) {
-    fields.path("background", options.background_picture, help).must_exist();
+    fields.path("background", options.background_picture, help);
+    if (fields.reading()) {
+      const std::string problem = missing_file_problem(options.background_picture);
+      fields.expect(problem.empty(), "background", problem);
+    }
   } else {
     fields.value("background", options.background, help).at_least(0);
     if (fields.has("background")) options.background_picture.clear();

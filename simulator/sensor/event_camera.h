@@ -77,9 +77,9 @@ class EventCamera {
   PixelRays rays_;
   TileContext world_;
   std::vector<std::unique_ptr<EventTile>> tiles_;  ///< nullptr: not in reach of one that senses
-  std::vector<bool> senses_;                        ///< the others only tell what they see
-  std::vector<TileMotion> motions_;  ///< per tile, in px per second
-  double t_s_ = 0;                   ///< up to which all tiles have sensed
+  std::vector<bool> senses_;                       ///< the others only tell what they see
+  std::vector<TileMotion> motions_;                ///< per tile, in px per second
+  double t_s_ = 0;                                 ///< up to which all tiles have sensed
   bool started_ = false;
   EventDelivery delivery_;
 };

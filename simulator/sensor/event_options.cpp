@@ -112,21 +112,23 @@ void describe(config::Fields& fields, EventOptions& options) {
              "one triangle fills the surroundings, half as much where surfaces occlude each other "
              "unpredictably. Smaller values miss fewer thin objects and trace more rays.")
       .range(0.01, 2);
-  fields.choice("sampling", options.sampling,
-                {{"exact", Sampling::kExact},
-                 {"asynchronous", Sampling::kExact},
-                 {"adaptive", Sampling::kAdaptive},
-                 {"auto", Sampling::kAuto},
-                 {"frames", Sampling::kFrames}},
-                "How the signal is sampled: exact finds every crossing (asynchronous is another "
-                "name for it); adaptive samples with rays, faster in lit and dense scenes, and "
-                "measures its own error; auto takes adaptive for lit scenes of many triangles and "
-                "exact for all others; frames renders whole frames with straight lines in between.");
+  fields.choice(
+      "sampling", options.sampling,
+      {{"exact", Sampling::kExact},
+       {"asynchronous", Sampling::kExact},
+       {"adaptive", Sampling::kAdaptive},
+       {"auto", Sampling::kAuto},
+       {"frames", Sampling::kFrames}},
+      "How the signal is sampled: exact finds every crossing (asynchronous is another "
+      "name for it); adaptive samples with rays, faster in lit and dense scenes, and "
+      "measures its own error; auto takes adaptive for lit scenes of many triangles and "
+      "exact for all others; frames renders whole frames with straight lines in between.");
   fields
-      .value("audit_fraction", options.audit_fraction,
-             "Fraction of the pixels that are recorded exactly, too, where sampling is adaptive, to "
-             "measure precision, recall and time error. 0 disables the audit; larger values cost "
-             "more and narrow the intervals.")
+      .value(
+          "audit_fraction", options.audit_fraction,
+          "Fraction of the pixels that are recorded exactly, too, where sampling is adaptive, to "
+          "measure precision, recall and time error. 0 disables the audit; larger values cost "
+          "more and narrow the intervals.")
       .range(0, 1);
   fields
       .value("frames_lambda_px", options.frames_lambda_px,

@@ -105,6 +105,8 @@ TEST(Command, ReadsEveryShippedConfigurationAndPrintsItsFixedPoint) {
     SCOPED_TRACE(config);
     if (config.filename() == "walls_handheld.yaml" || config.filename() == "handheld_imu.yaml")
       continue;  // below
+    if (config.parent_path().filename() == "catalogue")
+      continue;  // its tests skip without packages
     const std::string printed = saccade_ok(print_call(config));
     const fs::path copy =
         folder.write(config.parent_path().filename() / config.filename(), printed);

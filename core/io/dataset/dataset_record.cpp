@@ -78,7 +78,8 @@ void describe(config::Fields& fields, DatasetRecord& record) {
              "of every event's time, before rounding to the unit [us]")
       .at_least(0);
   fields.value("path_length_m", record.path_length_m, "of the camera [m]").at_least(0);
-  fields.value("sampling", record.sampling, "of the events").one_of({"exact", "adaptive", "frames"});
+  fields.value("sampling", record.sampling, "of the events")
+      .one_of({"exact", "adaptive", "frames"});
   fields.section("audit", record.audit, "of sampled events against exact ones");
   fields.embed("config", record.config_yaml, "the resolved configuration");
   fields.value("sha256", record.sha256, "of every other file");

@@ -21,6 +21,21 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kInside = "!/";
 
+/// Where Debian packages put the scenes of the catalogue (docs/scenes.md).
+struct PackageFolder {
+  std::string_view folder, package;
+};
+constexpr PackageFolder kPackages[] = {
+    {"/usr/share/sweethome3d/", "sweethome3d-furniture"},
+    {"/usr/share/assimp/", "assimp-testmodels"},
+    {"/usr/share/blender/datafiles/", "blender-data"},
+    {"/usr/share/doc/castle-game-engine-doc/", "castle-game-engine-doc"},
+    {"/usr/share/games/cube2/", "cube2-data"},
+    {"/usr/share/games/flightgear/Models/", "flightgear-data-models"},
+    {"/usr/share/games/openarena/baseoa/pak1-maps", "openarena-081-maps"},
+    {"/usr/share/games/torcs/", "torcs-data"},
+};
+
 struct CloseFile {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
@@ -140,10 +155,10 @@ std::string missing_file_problem(const fs::path& path) {
   const FileLocation location = FileLocation::parse(path);
   const fs::path& file = location.archive.empty() ? location.file : location.archive;
   if (fs::is_regular_file(file)) return {};
-  if (file.string().starts_with("/usr/share/sweethome3d"))
-    return fmt::format(
-        "{} is missing: install the furniture with apt-get install sweethome3d-furniture",
-        file.string());
+  for (const auto& [folder, package] : kPackages)
+    if (file.string().starts_with(folder))
+      return fmt::format("{} is missing: it is in the Debian package {}; apt-get install {}",
+                         file.string(), package, package);
   return fmt::format("{} {}", file.string(), fs::exists(file) ? "is not a file" : "does not exist");
 }
 

@@ -70,6 +70,8 @@ double grey_of(const std::array<float, 3>& colour) {
 ImportedMaterial import_material(const Model& model, const ModelMaterial& material,
                                  const MaterialContext& context) {
   ImportedMaterial result;
+  for (const std::string& feature : material.ignored)
+    context.remarks.ignore(feature, context.source_name);
   result.material.albedo = grey_of(linear_colour(material));
   if (!material.ignores_alpha) result.invisible = material.opacity < 0.5F;
   if (const auto& reference = material.colour_texture) {

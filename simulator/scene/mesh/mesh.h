@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +28,21 @@ struct Triangle {
   std::uint32_t material;                ///< index into the mesh's materials
 };
 
+/// A camera that a mesh file holds, in its coordinates: shown by `saccade info`, not used.
+struct MeshCamera {
+  std::string name;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();  ///< of any length
+  double horizontal_fov_rad = 0;
+};
+
+/// What a mesh file holds beside surfaces.
+struct MeshExtras {
+  std::vector<MeshCamera> cameras;
+  std::size_t lights = 0, animations = 0;
+  std::size_t parts = 1, instances = 1;
+};
+
 /// Triangles in the coordinates of their file. The attributes have one entry per vertex, or none.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
@@ -34,6 +51,7 @@ struct Mesh {
   std::vector<double> colours;           ///< linear grey; replaces the albedo without a texture
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  MeshExtras extras{};
 };
 
 }  // namespace saccade

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/srgb.h"
+#include "simulator/scene/mesh/ac3d_file.h"
 #include "simulator/scene/mesh/gltf_file.h"
 #include "simulator/scene/mesh/gltf_material.h"
 #include "simulator/scene/mesh/model_import.h"
@@ -42,6 +43,15 @@ std::size_t gltf_index(const ModelMaterial& material, const GltfFile& file) {
   for (std::size_t i = 0; file.item("materials", i).is_object(); ++i)
     if (material.name == std::to_string(i)) return i;
   return kNoIndex;
+}
+
+/// Whether a part's colours state opacities. assimp leaves those of colours without one at zero.
+bool has_opacities(const ModelPart& part) {
+  const auto opacity = [](const auto& colour) { return colour[3]; };
+  return std::ranges::any_of(
+             part.colours, [](float a) { return a < 1; }, opacity) &&
+         std::ranges::any_of(
+             part.colours, [](float a) { return a > 0; }, opacity);
 }
 
 Eigen::Vector3d vector_of(const std::array<float, 3>& v) {
@@ -82,6 +92,7 @@ class Flattener {
       mesh_.uvs.push_back(uv_of(part, i, imported));
       mesh_.colours.push_back(colour_of(part, i, imported));
     }
+    if (has_opacities(part)) remarks_.ignore("opacity of vertices", source_name_);
     // Vertices stay in any case: a model's size is that of all its parts.
     if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
   }
@@ -171,6 +182,27 @@ class Flattener {
   Mesh mesh_;
 };
 
+std::size_t gltf_length(const nlohmann::json& list) { return list.is_array() ? list.size() : 0; }
+
+/// assimp sees a glTF file without animations and lights (GltfFile::for_assimp()).
+MeshExtras extras_of(const Model& model, const std::optional<GltfFile>& gltf) {
+  MeshExtras extras;
+  for (const ModelCamera& camera : model.cameras)
+    extras.cameras.push_back({camera.name, Eigen::Vector3d(camera.position.data()),
+                              Eigen::Vector3d(camera.forward.data()), camera.horizontal_fov_rad});
+  extras.parts = model.parts.size();
+  extras.instances = model.instances.size();
+  extras.lights = model.lights;
+  extras.animations = model.animations;
+  if (gltf) {
+    const nlohmann::json& document = gltf->document();
+    extras.animations = gltf_length(document.value("animations", nlohmann::json()));
+    const nlohmann::json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+    extras.lights = document.contains(lights) ? gltf_length(document.at(lights)) : 0;
+  }
+  return extras;
+}
+
 }  // namespace
 
 MeshImporter::MeshImporter(const MeshImportOptions& options)
@@ -198,7 +230,8 @@ Mesh MeshImporter::read(const fs::path& file) {
 
   const std::optional<GltfFile> gltf = GltfFile::open(source, location.file, source_name);
   const Model model =
-      import_model(source, location.file, source_name, gltf ? gltf->for_assimp() : ReplacedFiles());
+      import_model(source, location.file, source_name,
+                   gltf ? gltf->for_assimp() : ac3d_for_assimp(source, location.file));
   // What the importer read in its own process is noted in the InputLog of this one.
   for (const std::string& opened : model.opened) static_cast<void>(source.read(opened));
   const MaterialContext context{source, location.file, source_name, options_, textures_, remarks_};
@@ -213,9 +246,15 @@ Mesh MeshImporter::read(const fs::path& file) {
       return gltf_materials->read(gltf_index(model.materials[index], *gltf));
     };
   }
+  if (!gltf) {
+    if (model.animations > 0) remarks_.ignore("animations", source_name);
+    if (model.lights > 0) remarks_.ignore("lights", source_name);
+  }
   Flattener flattener(model, used_materials(model, read_material), source_name, remarks_);
   for (const ModelInstance& instance : model.instances) flattener.add(instance);
-  return flattener.take();
+  Mesh mesh = flattener.take();
+  mesh.extras = extras_of(model, gltf);
+  return mesh;
 }
 
 }  // namespace saccade

@@ -120,6 +120,7 @@ void visit(Archive& archive, T& value) {
   } else if constexpr (kIsA<T, ModelMaterial>) {
     archive(value.name), archive(value.colour), archive(value.opacity), archive(value.is_linear);
     archive(value.ignores_alpha), archive(value.colour_texture), archive(value.opacity_texture);
+    archive(value.ignored);
   } else if constexpr (kIsA<T, ModelPart>) {
     archive(value.material), archive(value.vertices), archive(value.normals), archive(value.uvs);
     archive(value.colours), archive(value.triangles);
@@ -127,10 +128,14 @@ void visit(Archive& archive, T& value) {
     archive(value.part), archive(value.file_from_part);
   } else if constexpr (kIsA<T, ModelPicture>) {
     archive(value.hint), archive(value.width), archive(value.height), archive(value.bytes);
+  } else if constexpr (kIsA<T, ModelCamera>) {
+    archive(value.name), archive(value.position), archive(value.forward);
+    archive(value.horizontal_fov_rad);
   } else {
     static_assert(kIsA<T, Model>);
     archive(value.materials), archive(value.parts), archive(value.instances);
-    archive(value.pictures), archive(value.opened);
+    archive(value.pictures), archive(value.cameras), archive(value.lights);
+    archive(value.animations), archive(value.opened);
   }
 }
 

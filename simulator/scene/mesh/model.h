@@ -27,6 +27,7 @@ struct ModelMaterial {
   bool ignores_alpha = false;  ///< is opaque whatever its texture says
   std::optional<ModelTexture> colour_texture;
   std::optional<ModelTexture> opacity_texture;
+  std::vector<std::string> ignored;  ///< what else it states, in words
 };
 
 /// Triangles of one material. The attributes have one entry per vertex, or none.
@@ -52,12 +53,22 @@ struct ModelPicture {
   std::vector<std::uint8_t> bytes;
 };
 
+/// A camera that the file holds, in the file's coordinates.
+struct ModelCamera {
+  std::string name;
+  std::array<double, 3> position{};
+  std::array<double, 3> forward{};  ///< of any length
+  double horizontal_fov_rad = 0;    ///< from edge to edge
+};
+
 /// What an importer finds in a file, before any texture is read.
 struct Model {
   std::vector<ModelMaterial> materials;
   std::vector<ModelPart> parts;
   std::vector<ModelInstance> instances;
   std::vector<ModelPicture> pictures;
+  std::vector<ModelCamera> cameras;
+  std::uint32_t lights = 0, animations = 0;
   std::vector<std::string> opened;  ///< files that were read
 };
 

@@ -34,6 +34,14 @@ bool has_uv_transforms(const aiScene& scene) {
   return false;
 }
 
+/// Groups and lights of some files are meshes without faces, which assimp takes for an error when it
+/// sorts by primitives. As points they are left out.
+void leave_out_empty_meshes(aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+    if (scene.mMeshes[i]->mPrimitiveTypes == 0)
+      scene.mMeshes[i]->mPrimitiveTypes = aiPrimitiveType_POINT;
+}
+
 /// In the child, where errors are words.
 const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::path& file) {
   importer.SetIOHandler(files);
@@ -41,9 +49,12 @@ const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::pa
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngleDeg);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene =
-      importer.ReadFile(file.generic_string(),
-                        aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType);
+  const aiScene* scene = importer.ReadFile(file.generic_string(), 0);
+  if (scene != nullptr) {
+    leave_out_empty_meshes(*const_cast<aiScene*>(scene));  // the importer's, that nobody else sees
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+                                         aiProcess_SortByPType);
+  }
   for (const std::string& missing : files->missing())
     if (missing.ends_with(".mtl") &&
         std::ranges::none_of(files->opened(), [](const auto& f) { return f.ends_with(".mtl"); }))
@@ -89,6 +100,27 @@ std::optional<ModelTexture> find_texture(const aiScene& scene, const aiMaterial&
   return reference;
 }
 
+/// Bump maps of OBJ are heights to assimp.
+constexpr struct {
+  aiTextureType type;
+  const char* feature;
+} kIgnoredTextures[] = {
+    {aiTextureType_NORMALS, "normal maps"}, {aiTextureType_HEIGHT, "bump maps"},
+    {aiTextureType_EMISSIVE, "emission"},   {aiTextureType_SPECULAR, "specular reflection"},
+    {aiTextureType_LIGHTMAP, "light maps"}, {aiTextureType_REFLECTION, "mirror reflection"},
+};
+
+std::vector<std::string> ignored_features(const aiMaterial& material) {
+  std::vector<std::string> features;
+  for (const auto& [type, feature] : kIgnoredTextures)
+    if (material.GetTextureCount(type) > 0) features.emplace_back(feature);
+  aiColor3D emission(0, 0, 0);
+  material.Get(AI_MATKEY_COLOR_EMISSIVE, emission);
+  if (!emission.IsBlack() && material.GetTextureCount(aiTextureType_EMISSIVE) == 0)
+    features.emplace_back("emission");
+  return features;
+}
+
 ModelMaterial material_of(const aiScene& scene, const aiMaterial& material) {
   ModelMaterial result;
   result.name = material.GetName().C_Str();
@@ -104,6 +136,7 @@ ModelMaterial material_of(const aiScene& scene, const aiMaterial& material) {
   if (!result.colour_texture)
     result.colour_texture = find_texture(scene, material, aiTextureType_BASE_COLOR);
   result.opacity_texture = find_texture(scene, material, aiTextureType_OPACITY);
+  result.ignored = ignored_features(material);
   return result;
 }
 
@@ -173,6 +206,29 @@ void add_instances(const aiNode& node, const Eigen::Affine3d& file_from_parent, 
     add_instances(*node.mChildren[i], file_from_node, model);
 }
 
+/// Of the node that bears the name of the camera and its parents.
+Eigen::Affine3d file_from_named(const aiScene& scene, const aiString& name) {
+  Eigen::Affine3d file_from_node = Eigen::Affine3d::Identity();
+  for (const aiNode* node = scene.mRootNode->FindNode(name); node != nullptr; node = node->mParent)
+    file_from_node = transform_of(node->mTransformation) * file_from_node;
+  return file_from_node;
+}
+
+ModelCamera camera_of(const aiScene& scene, const aiCamera& camera) {
+  const Eigen::Affine3d file_from_camera = file_from_named(scene, camera.mName);
+  const auto vector = [](const aiVector3D& v) {
+    const std::array<float, 3> f = floats_of(v);
+    return Eigen::Vector3d(static_cast<double>(f[0]), static_cast<double>(f[1]),
+                           static_cast<double>(f[2]));
+  };
+  const Eigen::Vector3d position = file_from_camera * vector(camera.mPosition);
+  const Eigen::Vector3d forward = file_from_camera.linear() * vector(camera.mLookAt);
+  return {camera.mName.C_Str(),
+          {position.x(), position.y(), position.z()},
+          {forward.x(), forward.y(), forward.z()},
+          static_cast<double>(camera.mHorizontalFOV)};
+}
+
 Model model_of(const aiScene& scene) {
   Model model;
   for (unsigned i = 0; i < scene.mNumMaterials; ++i)
@@ -181,6 +237,10 @@ Model model_of(const aiScene& scene) {
   for (unsigned i = 0; i < scene.mNumTextures; ++i)
     model.pictures.push_back(picture_of(*scene.mTextures[i]));
   add_instances(*scene.mRootNode, Eigen::Affine3d::Identity(), model);
+  for (unsigned i = 0; i < scene.mNumCameras; ++i)
+    model.cameras.push_back(camera_of(scene, *scene.mCameras[i]));
+  model.lights = scene.mNumLights;
+  model.animations = scene.mNumAnimations;
   return model;
 }
 

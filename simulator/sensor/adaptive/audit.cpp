@@ -142,7 +142,7 @@ AuditResult Audit::result() const {
     std::sort(samples.begin(), samples.end());
     const double low = samples[kResamples * 25 / 1000];
     const double high = samples[kResamples * 975 / 1000 - 1];
-    return AuditFigure{value, value - widen * (value - std::min(low, value)),
+    return AuditFigure{value, std::max(0.0, value - widen * (value - std::min(low, value))),
                        value + widen * (std::max(high, value) - value)};
   };
   const auto share = [&](const Figure& figure, std::uint64_t whole) {

@@ -246,6 +246,19 @@ TEST_F(MeshImport, MissingTexturesCanBeGrey) {
       ElementsAre(AllOf(HasSubstr("nowhere.png"), HasSubstr("grey 0.5")), HasSubstr("nomask.png")));
 }
 
+TEST_F(MeshImport, SaysInOneLineWhatAMaterialStatesThatIsNotShown) {
+  MeshImporter importer;
+  write_square("Kd 0.5 0.5 0.5\nKe 0.2 0 0\nmap_bump bump.png\n");
+  static_cast<void>(importer.read(folder_ / "square.obj"));
+  EXPECT_THAT(
+      importer.remarks().lines(),
+      ElementsAre(AllOf(HasSubstr("square.obj"), HasSubstr("bump maps"), HasSubstr("emission"))));
+  MeshImporter silent;
+  write_square("Kd 0.5 0.5 0.5\nKe 0 0 0\n");
+  static_cast<void>(silent.read(folder_ / "square.obj"));
+  EXPECT_TRUE(silent.remarks().lines().empty());
+}
+
 TEST_F(MeshImport, LightSlightlyBelowZeroIsZero) {
   ImageF image(3, 2, 10.0F);
   image(1, 1) = -0.09F;

@@ -1,0 +1,157 @@
+#include "simulator/scene/describe_mesh.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <assimp/Importer.hpp>
+
+#include "core/io/events/event_file.h"
+#include "simulator/scene/mesh/mesh_import.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string mesh_line(const std::string& label, const std::string& text) {
+  return fmt::format("  {:<13}{}\n", label, text);
+}
+
+std::string lower_ending(const fs::path& path) {
+  std::string ending = FileLocation::parse(path).file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+Eigen::AlignedBox3d mesh_box(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return box;
+}
+
+/// Textures by their sizes, the largest first: "1024 x 1024 (3), 64 x 64".
+std::string texture_sizes(const Mesh& mesh) {
+  std::set<const Texture*> textures;
+  for (const Material& material : mesh.materials)
+    for (const Texture* texture : {material.texture.get(), material.opacity.get()})
+      if (texture != nullptr) textures.insert(texture);
+  std::map<std::pair<int, int>, int> counts;
+  for (const Texture* texture : textures) ++counts[{-texture->width(), -texture->height()}];
+  std::vector<std::string> sizes;
+  for (const auto& [size, count] : counts)
+    sizes.push_back(fmt::format("{} x {}{}", -size.first, -size.second,
+                                count > 1 ? fmt::format(" ({})", count) : ""));
+  return sizes.empty() ? "none" : fmt::format("{}", fmt::join(sizes, ", "));
+}
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z());
+}
+
+/// Which axis is up by the format's definition or habit.
+bool is_y_up(const fs::path& path) {
+  static const std::set<std::string> kYUp{".gltf", ".glb", ".fbx", ".dae", ".zae", ".ac",
+                                          ".acc",  ".x3d", ".obj", ".b3d", ".x"};
+  return kYUp.contains(lower_ending(path));
+}
+
+/// As `up: y` turns it.
+Eigen::Vector3d upright(const Eigen::Vector3d& v, bool is_turned) {
+  return is_turned ? Eigen::Vector3d(v.x(), -v.z(), v.y()) : v;
+}
+
+std::string camera_line(const MeshCamera& camera, bool is_turned) {
+  const Eigen::Vector3d position = upright(camera.position, is_turned);
+  const Eigen::Vector3d target = position + upright(camera.forward, is_turned).normalized();
+  return mesh_line("camera",
+                   fmt::format("'{}' {:.0f} deg wide; as a view in the entry below: "
+                               "{{t_s: 0, position: {}, look_at: {}}}",
+                               camera.name, camera.horizontal_fov_rad * 180 / std::numbers::pi,
+                               vector_text(position), vector_text(target)));
+}
+
+/// A model of less than a millimetre or more than ten kilometres is in other units than metres.
+constexpr double kSmallest_m = 1e-3, kLargest_m = 1e4;
+
+std::string suggestion(const fs::path& file, const Eigen::Vector3d& size, bool is_turned) {
+  std::string text =
+      fmt::format("  - {{file: '{}', up: {}}}\n", file.string(), is_turned ? "y" : "z");
+  const double largest = size.maxCoeff();
+  if (largest < kSmallest_m || largest > kLargest_m)
+    text += fmt::format("  (its units are hardly metres: state size_m, which is {} now)\n",
+                        vector_text(size));
+  return "suggested entry of scene.meshes:\n" + text;
+}
+
+std::string problem_lines(const SceneRemarks& remarks) {
+  std::string text;
+  for (const std::string& line : remarks.lines()) text += mesh_line("note", line);
+  return text;
+}
+
+std::string counts_of(const Mesh& mesh) {
+  const auto textured = std::ranges::count_if(
+      mesh.materials, [](const Material& material) { return material.texture != nullptr; });
+  return fmt::format("{} triangles, {} materials ({} with textures)", mesh.triangles.size(),
+                     mesh.materials.size(), textured);
+}
+
+}  // namespace
+
+bool is_mesh_name(const fs::path& path) {
+  if (path.string().ends_with(".relief.yaml")) return true;
+  const std::string ending = lower_ending(path);
+  // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
+  // are meant.
+  return !ending.empty() && ending != ".raw" && find_event_format(path) == nullptr &&
+         Assimp::Importer().IsExtensionSupported(ending);
+}
+
+std::string describe_mesh(const fs::path& file) {
+  MeshImporter importer({MissingTexture::kGrey, true});
+  const Mesh mesh = importer.read(file);
+  const Eigen::AlignedBox3d box = mesh_box(mesh);
+  const bool is_turned = is_y_up(file);
+  const MeshExtras& extras = mesh.extras;
+  std::string text = fmt::format("{}: mesh file\n", file.string());
+  text +=
+      mesh_line("size", fmt::format("{} from {} to {} (axes of the file)", vector_text(box.sizes()),
+                                    vector_text(box.min()), vector_text(box.max())));
+  text += mesh_line("geometry", fmt::format("{}, {} parts in {} places", counts_of(mesh),
+                                            extras.parts, extras.instances));
+  text += mesh_line("textures", texture_sizes(mesh));
+  if (extras.lights > 0)
+    text += mesh_line("lights", fmt::format("{} (not used: state scene.lights)", extras.lights));
+  if (extras.animations > 0)
+    text += mesh_line("animations", fmt::format("{} (not shown)", extras.animations));
+  for (const MeshCamera& camera : extras.cameras) text += camera_line(camera, is_turned);
+  return text + problem_lines(importer.remarks()) + suggestion(file, box.sizes(), is_turned);
+}
+
+std::string describe_scene(const SceneOptions& options) {
+  MeshImporter importer({MissingTexture::kGrey, options.lighting == Lighting::kLambertian});
+  std::string text;
+  std::map<fs::path, int> uses;
+  for (const MeshOptions& item : options.meshes) ++uses[item.file];
+  std::size_t triangles = 0;
+  for (const auto& [file, count] : uses) {
+    const Mesh mesh = importer.read(file);
+    triangles += mesh.triangles.size() * static_cast<std::size_t>(count);
+    text += fmt::format("  {} x {}: {}; textures {}\n", count, file.string(), counts_of(mesh),
+                        texture_sizes(mesh));
+  }
+  return fmt::format("scene of {} meshes from {} files, {} triangles\n", options.meshes.size(),
+                     uses.size(), triangles) +
+         text + problem_lines(importer.remarks());
+}
+
+}  // namespace saccade

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "simulator/preview.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLeastScenes = 12;
+constexpr const char* kFast = "_fast";
+
+std::vector<std::string> catalogue_names() {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::path(SACCADE_SOURCE_DIR) / "configs/simulation/catalogue"))
+    names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(Catalogue, EverySceneHasTwoTrajectories) {
+  const std::vector<std::string> names = catalogue_names();
+  std::size_t scenes = 0;
+  for (const std::string& name : names) {
+    if (name.ends_with(kFast)) continue;
+    EXPECT_TRUE(std::ranges::find(names, name + kFast) != names.end()) << name;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, kLeastScenes);
+  EXPECT_EQ(2 * scenes, names.size());
+}
+
+class CatalogueScene : public ::testing::TestWithParam<std::string> {};
+
+/// The sensor's pictures are small enough to look at in a unit test, and large enough to estimate a
+/// rate within the factor that the bounds leave.
+TEST_P(CatalogueScene, SeesTextureAndNoWallFromWithin) {
+  const fs::path file =
+      fs::path(SACCADE_SOURCE_DIR) / "configs/simulation/catalogue" / (GetParam() + ".yaml");
+  SimulationConfig config;
+  try {
+    config = config::read<SimulationConfig>(config::load(file.string(), {}));
+  } catch (const InputError& error) {
+    const std::string problem = error.what();
+    ASSERT_NE(problem.find("apt-get install"), std::string::npos) << problem;
+    GTEST_SKIP() << problem;
+  }
+  EXPECT_EQ(config.events.texture_filter, TextureFilter::kMipmap);
+  const ScenePreview seen = preview(config, 3, 16);
+  for (const PreviewView& view : seen.views) {
+    EXPECT_GT(view.nearest_m, 0.1) << view.pose.t_s;
+    EXPECT_GT(view.events_per_s, 1e4) << view.pose.t_s;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CatalogueScene, ::testing::ValuesIn(catalogue_names()),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace saccade
