@@ -76,9 +76,12 @@ void EventLog::append(std::span<const SensedEvent> events) {
 
 bool EventLog::wants_checkpoint() const { return Clock::now() >= next_; }
 
-void EventLog::checkpoint(double reached_s, std::string_view state) {
+void EventLog::checkpoint(double reached_s, const std::function<std::string()>& state) {
+  const Clock::time_point start = Clock::now();
   head_.reached_s = reached_s;
-  write_checkpoint(state);
+  write_checkpoint(state());
+  const Clock::time_point end = Clock::now();
+  next_ = end + std::max<Clock::duration>(shortest_interval_, time_divisor_ * (end - start));
 }
 
 void EventLog::complete(const EventStatistics& statistics, const AuditResult& audit) {
@@ -91,7 +94,6 @@ void EventLog::complete(const EventStatistics& statistics, const AuditResult& au
 }
 
 void EventLog::write_checkpoint(std::string_view payload) {
-  const Clock::time_point start = Clock::now();
   journal_->flush();
   head_.magic = kMagic;
   head_.journal_length = journal_->length();
@@ -101,8 +103,6 @@ void EventLog::write_checkpoint(std::string_view payload) {
   head_.checksum = checksum_of(std::string_view(text).substr(16));
   std::memcpy(text.data(), &head_, sizeof head_);
   write_atomically(folder_ / "checkpoint", text);
-  const Clock::time_point end = Clock::now();
-  next_ = end + std::max<Clock::duration>(shortest_interval_, time_divisor_ * (end - start));
 }
 
 void EventLog::replay(const std::function<void(std::span<const SensedEvent>)>& use) const {

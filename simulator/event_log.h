@@ -44,8 +44,9 @@ class EventLog {
   void append(std::span<const SensedEvent> events);
   /// True when so much time has passed since the last checkpoint that one costs little of it.
   [[nodiscard]] bool wants_checkpoint() const;
-  /// Everything up to `reached_s` is appended and `state` goes on from there.
-  void checkpoint(double reached_s, std::string_view state);
+  /// Everything up to `reached_s` is appended, and what `state` returns goes on from there. It is
+  /// called here, so that the time it takes counts.
+  void checkpoint(double reached_s, const std::function<std::string()>& state);
   /// The recording is complete.
   void complete(const EventStatistics& statistics, const AuditResult& audit = {});
 

@@ -17,7 +17,8 @@ void record_into(EventLog& log, Camera& camera, double duration_s,
   camera.record(duration_s, [&](std::span<const SensedEvent> events, double t_s) {
     log.append(events);
     // The last delivery is followed by complete().
-    if (t_s < duration_s && log.wants_checkpoint()) log.checkpoint(t_s, camera.state());
+    if (t_s < duration_s && log.wants_checkpoint())
+      log.checkpoint(t_s, [&] { return camera.state(); });
     progress(t_s);
   });
   if constexpr (requires { camera.audit(); })

@@ -16,6 +16,19 @@ constexpr double kFarthestTexel = 1e5;
 /// As of sample_surface().
 constexpr float kFarthest = 1e12F;
 
+/// Where both other corners have no weight.
+Eigen::Vector3d first_corner(const AffineForm& plane, const TriangleInterior& interior) {
+  Eigen::Matrix3d forms;
+  forms << plane.gradient.transpose(), interior.second.gradient.transpose(),
+      interior.third.gradient.transpose();
+  return forms.inverse() *
+         -Eigen::Vector3d(plane.offset, interior.second.offset, interior.third.offset);
+}
+
+LaneVectors minus(const LaneVectors& a, const LaneVectors& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
 LaneVectors point_on(const RayLanes& rays, const FloatLanes& distance) {
   return {rays.origin.x + distance * rays.direction.x, rays.origin.y + distance * rays.direction.y,
           rays.origin.z + distance * rays.direction.z};
@@ -27,41 +40,49 @@ ShadingTable::ShadingTable(const std::vector<TriangleSurface>& surfaces,
                            const std::vector<TriangleInterior>& interiors,
                            const std::vector<ShadingNormals>& normals) {
   std::unordered_map<const Texture*, std::uint32_t> known;
-  const auto form = [](const AffineForm& f) {
-    return Form{static_cast<float>(f.gradient.x()), static_cast<float>(f.gradient.y()),
-                static_cast<float>(f.gradient.z()), static_cast<float>(f.offset)};
+  const auto gradient = [](const Eigen::Vector3d& v) {
+    return Gradient{static_cast<float>(v.x()), static_cast<float>(v.y()),
+                    static_cast<float>(v.z())};
   };
   rows_.reserve(surfaces.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const TriangleSurface& surface = surfaces[i];
-    Row row{form(surface.plane), form(surface.x), form(surface.y),
-            static_cast<float>(surface.factor), static_cast<float>(surface.self_light),
-            kUntextured, surface.object, {}};
+    const TriangleInterior& interior = interiors[i];
+    const Eigen::Vector3d corner = first_corner(surface.plane, interior);
+    const double column = surface.x.at(corner);
+    const double row = surface.y.at(corner);
+    Row own{};
+    own.corner = gradient(corner);
+    own.plane = gradient(surface.plane.gradient);
+    own.column = gradient(surface.x.gradient);
+    own.row = gradient(surface.y.gradient);
+    own.column_at_corner = static_cast<float>(column);
+    own.row_at_corner = static_cast<float>(row);
+    own.texture = kUntextured;
+    own.object = surface.object;
+    own.factor = static_cast<float>(surface.factor);
+    own.self_light = static_cast<float>(surface.self_light);
     if (surface.texture != nullptr) {
       const auto [found, is_new] =
           known.emplace(surface.texture, static_cast<std::uint32_t>(textures_.size()));
       if (is_new) textures_.push_back(surface.texture);
-      row.texture = found->second;
-      is_precise_ = is_precise_ && std::abs(surface.x.offset) < kFarthestTexel &&
-                    std::abs(surface.y.offset) < kFarthestTexel;
+      own.texture = found->second;
     }
-    is_precise_ = is_precise_ && std::abs(surface.plane.offset) < kFarthestPosition_m;
     if (!normals.empty()) {
-      // n(p) = n_0 + second(p) (n_1 - n_0) + third(p) (n_2 - n_0)
-      const TriangleInterior& interior = interiors[i];
+      // n(p) = n_0 + second(p) (n_1 - n_0) + third(p) (n_2 - n_0), component by component.
+      own.normal_at_corner = gradient(normals[i][0].cast<double>());
       for (int axis = 0; axis < 3; ++axis) {
-        const auto corner = [&](std::size_t k) {
-          return static_cast<double>(normals[i][k][axis]);
+        const auto from_first = [&](std::size_t k) {
+          return static_cast<double>(normals[i][k][axis] - normals[i][0][axis]);
         };
-        const double to_second = corner(1) - corner(0);
-        const double to_third = corner(2) - corner(0);
-        row.normal[static_cast<std::size_t>(axis)] =
-            form({to_second * interior.second.gradient + to_third * interior.third.gradient,
-                  corner(0) + to_second * interior.second.offset +
-                      to_third * interior.third.offset});
+        own.normal[static_cast<std::size_t>(axis)] = gradient(
+            from_first(1) * interior.second.gradient + from_first(2) * interior.third.gradient);
       }
     }
-    rows_.push_back(row);
+    is_precise_ = is_precise_ && std::abs(column) < kFarthestTexel &&
+                  std::abs(row) < kFarthestTexel &&
+                  corner.cwiseAbs().maxCoeff() < kFarthestPosition_m;
+    rows_.push_back(own);
   }
 }
 
@@ -75,39 +96,37 @@ void ShadingTable::prefetch(const std::array<TriangleId, kRayPacket>& triangles,
   }
 }
 
-FloatLanes ShadingTable::at(const Forms& form, const LaneVectors& point) {
-  return form[0] * point.x + form[1] * point.y + form[2] * point.z + form[3];
-}
-
 template <class Select>
-auto ShadingTable::gather(const std::array<TriangleId, kRayPacket>& triangles, std::size_t count,
-                          const Select& select) const -> Forms {
-  Forms forms;
-  for (FloatLanes& lanes : forms) lanes.setZero();
+LaneVectors ShadingTable::gather(const std::array<TriangleId, kRayPacket>& triangles,
+                                 std::size_t count, const Select& select) const {
+  LaneVectors vectors;
+  for (FloatLanes* lanes : {&vectors.x, &vectors.y, &vectors.z}) lanes->setZero();
   for (std::size_t i = 0; i < count; ++i) {
     if (triangles[i] == kNothing) continue;
-    const Form& form = select(rows_[triangles[i]]);
+    const Gradient& vector = select(rows_[triangles[i]]);
     const auto lane = static_cast<Eigen::Index>(i);
-    forms[0][lane] = form.x;
-    forms[1][lane] = form.y;
-    forms[2][lane] = form.z;
-    forms[3][lane] = form.offset;
+    vectors.x[lane] = vector.x;
+    vectors.y[lane] = vector.y;
+    vectors.z[lane] = vector.z;
   }
-  return forms;
+  return vectors;
 }
 
 void ShadingTable::sample(const RayLanes& rays, std::size_t count, bool filtered,
                           ViewLanes& view) const {
-  const Forms plane = gather(view.triangles, count, [](const Row& row) { return row.plane; });
-  const LaneVectors normal{plane[0], plane[1], plane[2]};
+  const LaneVectors corner =
+      gather(view.triangles, count, [](const Row& row) { return row.corner; });
+  const LaneVectors normal =
+      gather(view.triangles, count, [](const Row& row) { return row.plane; });
   const FloatLanes along = normal.dot(rays.direction);
-  const FloatLanes distance = -at(plane, rays.origin) / along;
+  const FloatLanes distance = normal.dot(minus(corner, rays.origin)) / along;
   view.distance = (distance > 0 && distance < kFarthest).select(distance, 0.0F);
-  const LaneVectors point = point_on(rays, view.distance);
-  const Forms column = gather(view.triangles, count, [](const Row& row) { return row.column; });
-  const Forms row = gather(view.triangles, count, [](const Row& r) { return r.row; });
-  view.x = at(column, point);
-  view.y = at(row, point);
+  const LaneVectors from_corner = minus(point_on(rays, view.distance), corner);
+  const LaneVectors column =
+      gather(view.triangles, count, [](const Row& row) { return row.column; });
+  const LaneVectors row = gather(view.triangles, count, [](const Row& r) { return r.row; });
+  view.x = column.dot(from_corner);
+  view.y = row.dot(from_corner);
   FloatLanes level = FloatLanes::Zero();
   if (filtered) {
     // The level of sample_surface(ray, triangle, differential).
@@ -116,13 +135,12 @@ void ShadingTable::sample(const RayLanes& rays, std::size_t count, bool filtered
       const LaneVectors shift{view.distance * (change.x - back * rays.direction.x),
                               view.distance * (change.y - back * rays.direction.y),
                               view.distance * (change.z - back * rays.direction.z)};
-      const FloatLanes across = LaneVectors{column[0], column[1], column[2]}.dot(shift);
-      const FloatLanes down = LaneVectors{row[0], row[1], row[2]}.dot(shift);
+      const FloatLanes across = column.dot(shift);
+      const FloatLanes down = row.dot(shift);
       return across * across + down * down;
     };
     level = squared_texels(rays.right).max(squared_texels(rays.down));
   }
-  view.radiance = view.x;
   view.objects.fill(kNothing);
   for (std::size_t i = 0; i < count; ++i) {
     if (view.triangles[i] == kNothing) continue;
@@ -130,7 +148,10 @@ void ShadingTable::sample(const RayLanes& rays, std::size_t count, bool filtered
     const Row& own = rows_[view.triangles[i]];
     view.objects[i] = own.object;
     if (!(view.distance[lane] > 0)) continue;
+    view.x[lane] += own.column_at_corner;
+    view.y[lane] += own.row_at_corner;
     if (own.texture == kUntextured) {
+      view.radiance[lane] = view.x[lane];
       view.x[lane] = view.y[lane] = 0;
       continue;
     }
@@ -152,15 +173,20 @@ void ShadingTable::sample(const RayLanes& rays, std::size_t count, bool filtered
 void ShadingTable::find_points(const RayLanes& rays, std::size_t count, const ViewLanes& view,
                                LitLanes& points) const {
   points.position = point_on(rays, view.distance);
-  const Forms plane = gather(view.triangles, count, [](const Row& row) { return row.plane; });
-  points.plane_normal = {plane[0], plane[1], plane[2]};
-  const FloatLanes side = (points.plane_normal.dot(rays.direction) > 0).select(FloatLanes::Constant(-1), 1.0F);
-  std::array<FloatLanes, 3> normal;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    normal[axis] = at(gather(view.triangles, count,
-                             [axis](const Row& row) { return row.normal[axis]; }),
-                      points.position);
-  points.shading_normal = {normal[0], normal[1], normal[2]};
+  points.plane_normal = gather(view.triangles, count, [](const Row& row) { return row.plane; });
+  const FloatLanes side =
+      (points.plane_normal.dot(rays.direction) > 0).select(FloatLanes::Constant(-1), 1.0F);
+  const LaneVectors from_corner = minus(
+      points.position, gather(view.triangles, count, [](const Row& row) { return row.corner; }));
+  points.shading_normal =
+      gather(view.triangles, count, [](const Row& row) { return row.normal_at_corner; });
+  const auto change = [&](std::size_t axis) -> FloatLanes {
+    return gather(view.triangles, count, [axis](const Row& row) { return row.normal[axis]; })
+        .dot(from_corner);
+  };
+  points.shading_normal.x += change(0);
+  points.shading_normal.y += change(1);
+  points.shading_normal.z += change(2);
   const FloatLanes scale = side / points.shading_normal.squared_norm().sqrt().max(1e-20F);
   for (FloatLanes LaneVectors::*axis : {&LaneVectors::x, &LaneVectors::y, &LaneVectors::z}) {
     points.plane_normal.*axis *= side;

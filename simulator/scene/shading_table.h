@@ -39,28 +39,30 @@ class ShadingTable {
                    LitLanes& points) const;
 
   /// As of the triangle's surface.
-  [[nodiscard]] float self_light(TriangleId triangle) const {
-    return rows_[triangle].self_light;
-  }
+  [[nodiscard]] float self_light(TriangleId triangle) const { return rows_[triangle].self_light; }
 
  private:
-  struct Form {
-    float x, y, z, offset;
+  struct Gradient {
+    float x, y, z;
   };
+  /// Everything is affine in the point's distance from the first corner, which keeps the numbers
+  /// small.
   struct alignas(64) Row {
-    Form plane, column, row;
-    float factor, self_light;
+    Gradient corner;
+    Gradient plane;  ///< the unit normal
+    Gradient column, row;
+    float column_at_corner, row_at_corner;
     std::uint32_t texture;  ///< index; kUntextured
     std::uint32_t object;
-    std::array<Form, 3> normal;  ///< the shading normal at a point, not normalized
+    std::array<Gradient, 3> normal;  ///< components of the shading normal, not normalized,
+    Gradient normal_at_corner;
+    float factor, self_light;
   };
-  using Forms = std::array<FloatLanes, 4>;
   static constexpr std::uint32_t kUntextured = 0xffffffff;
 
-  [[nodiscard]] static FloatLanes at(const Forms& form, const LaneVectors& point);
   template <class Select>
-  [[nodiscard]] Forms gather(const std::array<TriangleId, kRayPacket>& triangles,
-                             std::size_t count, const Select& select) const;
+  [[nodiscard]] LaneVectors gather(const std::array<TriangleId, kRayPacket>& triangles,
+                                   std::size_t count, const Select& select) const;
 
   std::vector<Row> rows_;
   std::vector<const Texture*> textures_;

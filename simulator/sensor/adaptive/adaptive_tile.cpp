@@ -136,8 +136,8 @@ void AdaptiveTile::sense_step(double to_s) {
       const std::size_t i = requests[k].pixel;
       if (is_first && is_quiet(i, samples[k])) {
         Pixel& pixel = views_[i];
-        pixel.before_s = (samples[k].log_intensity - pixel.now.log_intensity) /
-                         (samples[k].t_s - pixel.now.t_s);
+        pixel.before_s =
+            (samples[k].log_intensity - pixel.now.log_intensity) / (samples[k].t_s - pixel.now.t_s);
         pixel.has_slope = true;
         pixel.now = samples[k];
         continue;
@@ -153,7 +153,8 @@ double AdaptiveTile::error_of(const Pixel& pixel, const ViewSample& next) {
   const double change = next.log_intensity - pixel.now.log_intensity;
   if (!pixel.has_slope) return 0.25 * std::abs(change);
   const double expected = pixel.before_s * (next.t_s - pixel.now.t_s);
-  return std::max(kErrorMargin * 0.25 * std::abs(change - expected), kLeastError * std::abs(change));
+  return std::max(kErrorMargin * 0.25 * std::abs(change - expected),
+                  kLeastError * std::abs(change));
 }
 
 bool AdaptiveTile::is_quiet(std::size_t i, const ViewSample& next) const {
@@ -209,8 +210,7 @@ bool AdaptiveTile::are_neighbours(const ViewSample& a, const ViewSample& b) cons
 
 bool AdaptiveTile::crosses(std::size_t i, const ViewSample& next) const {
   const Thresholds& thresholds = pixels_.thresholds(i);
-  return !thresholds.band().contains(
-      thresholds.signal(LinearSample{next.t_s, next.log_intensity}));
+  return !thresholds.band().contains(thresholds.signal(LinearSample{next.t_s, next.log_intensity}));
 }
 
 bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) {

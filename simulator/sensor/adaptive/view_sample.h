@@ -15,9 +15,9 @@ struct ViewSample {
   float x = 0, y = 0;        ///< of the first ray on the texture, in texels of its pyramid level
   TriangleId triangle = kNothing;   ///< that the first ray sees
   std::uint32_t object = kNothing;  ///< that this belongs to
-  bool is_exact = true;         ///< computed in double precision, or as good as it gets
-  std::uint64_t triangles = 0;  ///< the triangle, or of several rays a hash of theirs
-  std::uint64_t lights = 0;     ///< the LightSet of the ray, or of several a hash of theirs
+  bool is_exact = true;             ///< computed in double precision, or as good as it gets
+  std::uint64_t triangles = 0;      ///< the triangle, or of several rays a hash of theirs
+  std::uint64_t lights = 0;         ///< the LightSet of the ray, or of several a hash of theirs
 };
 
 }  // namespace saccade

@@ -95,7 +95,8 @@ void ViewSampler::trace_in_lanes(std::span<const SampleRequest> requests,
       set_lane(differential.down, lane, rays.down);
     }
     scene_.view(rays, n, is_filtered, seen);
-    if (per_pixel == 1) seen.radiance = (seen.radiance + static_cast<float>(options_.log_eps)).log();
+    if (per_pixel == 1)
+      seen.radiance = (seen.radiance + static_cast<float>(options_.log_eps)).log();
     for (std::size_t k = 0; k < n; ++k) {
       const auto lane = static_cast<Eigen::Index>(k);
       ViewSample& sample = samples[(first + k) / per_pixel];

@@ -63,7 +63,7 @@ TEST_F(Log, GoesOnFromTheLastCheckpoint) {
   {
     EventLog log(folder_);
     log.append(events_between(0, 30'000));
-    log.checkpoint(0.25, "state at 30000");
+    log.checkpoint(0.25, [] { return std::string("state at 30000"); });
     log.append(events_between(30'000, 70'000));  // found again by the next program
   }
   EventLog log(folder_);
@@ -95,7 +95,7 @@ TEST_F(Log, RefusesWhatIsDamaged) {
   const auto write = [&] {
     EventLog log(folder_);
     log.append(events_between(0, 1000));
-    log.checkpoint(0.5, "a state of the camera");
+    log.checkpoint(0.5, [] { return std::string("a state of the camera"); });
   };
   const auto open = [&] { return EventLog(folder_).reached_s(); };
   write();
