@@ -56,6 +56,9 @@ void add_facts(const fs::path& folder, Json& row) {
   row["frames"] = counts.frames;
   row["depth_maps"] = counts.depth_maps;
   row["flow_maps"] = counts.flow_maps;
+  row["masks"] = counts.masks;
+  row["normal_maps"] = counts.normal_maps;
+  row["optical_flows"] = counts.optical_flows;
   row["imu_samples"] = counts.imu_samples;
   row["path_length_m"] = record.path_length_m ? Json(*record.path_length_m) : Json();
   row["mean_scene_depth_m"] = record.mean_scene_depth_m ? Json(*record.mean_scene_depth_m) : Json();

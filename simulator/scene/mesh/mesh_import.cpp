@@ -94,7 +94,7 @@ class Flattener {
     }
     if (has_opacities(part)) remarks_.ignore("opacity of vertices", source_name_);
     // Vertices stay in any case: a model's size is that of all its parts.
-    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
+    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first), instance.node);
   }
 
   [[nodiscard]] Mesh take() {
@@ -107,10 +107,10 @@ class Flattener {
     return channel < part.uvs.size() && !part.uvs[channel].empty();
   }
 
-  void add_faces(const ModelPart& part, std::uint32_t first) {
+  void add_faces(const ModelPart& part, std::uint32_t first, std::uint32_t node) {
     const std::uint32_t material = coloured_material(part);
     for (const auto& [a, b, c] : part.triangles)
-      mesh_.triangles.push_back({{first + a, first + b, first + c}, material});
+      mesh_.triangles.push_back({{first + a, first + b, first + c}, material, node});
   }
 
   /// Linear vertex colours multiply a texture as well. The factor of a material does that where
@@ -253,6 +253,7 @@ Mesh MeshImporter::read(const fs::path& file) {
   Flattener flattener(model, used_materials(model, read_material), source_name, remarks_);
   for (const ModelInstance& instance : model.instances) flattener.add(instance);
   Mesh mesh = flattener.take();
+  mesh.nodes = model.nodes;
   mesh.extras = extras_of(model, gltf);
   return mesh;
 }

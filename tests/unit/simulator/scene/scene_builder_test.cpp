@@ -141,6 +141,54 @@ TEST_F(SceneFile, PrintsWhatItReads) {
   EXPECT_EQ(config::print(options(printed)), printed);
 }
 
+/// Two squares, each an object of its own.
+std::string two_squares_obj() {
+  return "o left\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+         "o right\nv 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 5 6 7 8\n";
+}
+
+TEST_F(SceneFile, InstancesAndClassesFollowTheMeshes) {
+  write("two.obj", two_squares_obj());
+  const Scene scene = build_scene(options(
+      "meshes:\n"
+      "  - {file: two.obj, class: table, transform: {translation: [0, 0, 3]}}\n"
+      "  - {file: two.obj, instances: nodes, class: chair, transform: {translation: [0, 2, 3]}}\n"
+      "  - {file: two.obj, transform: {translation: [0, 4, 3]}}\n"
+      "  - {file: two.obj, class: table, transform: {translation: [0, 6, 3]}}\n"));
+  const auto instance_at = [&](double x, double y) {
+    const Ray ray{{x, y, 0}, Eigen::Vector3d::UnitZ()};
+    TriangleId triangle = kNothing;
+    scene.visible({&ray, 1}, {&triangle, 1});
+    return scene.instance(triangle);
+  };
+  EXPECT_EQ(instance_at(0.5, 0.5), 1);
+  EXPECT_EQ(instance_at(2.5, 0.5), 1);
+  EXPECT_EQ(instance_at(0.5, 2.5), 2);
+  EXPECT_EQ(instance_at(2.5, 2.5), 3);
+  EXPECT_EQ(instance_at(2.5, 4.5), 4);
+  EXPECT_EQ(instance_at(0.5, 6.5), 5);
+  EXPECT_EQ(instance_at(1.5, 0.5), 0);
+  ASSERT_EQ(scene.instances().size(), 5U);
+  EXPECT_EQ(scene.instances()[1].name, "two/left");
+  EXPECT_EQ(scene.instances()[2].name, "two/right");
+  EXPECT_EQ(scene.instances()[2].object, 1U);
+  EXPECT_EQ(scene.instances()[3].name, "two");
+  const std::vector<int> classes{0, 1, 2, 2, 0, 1};
+  for (std::uint16_t k = 0; k < 6; ++k) EXPECT_EQ(scene.class_of(k), classes[k]) << k;
+}
+
+TEST_F(SceneFile, ClassesHaveTheNumbersThatAListGivesThem) {
+  write("two.obj", two_squares_obj());
+  const std::string mesh = "meshes: [{file: two.obj, class: chair}]\n";
+  const Scene scene = build_scene(options(mesh + "classes: [table, lamp, chair]\n"));
+  EXPECT_EQ(scene.class_of(1), 3);
+  EXPECT_THAT(error_of(mesh + "classes: [table, chairs]\n"),
+              AllOf(HasSubstr("scene.yaml:2"), HasSubstr("did you mean 'chairs'?")));
+  EXPECT_THAT(error_of(mesh + "classes: [chair, chair]\n"), HasSubstr("hold a name twice"));
+  EXPECT_THAT(error_of("meshes: [{file: two.obj, instances: node}]\n"),
+              HasSubstr("did you mean 'nodes'?"));
+}
+
 TEST_F(SceneFile, MalformedScenesAreErrorsWithTheirPlace) {
   write("square.obj", testing::square_obj());
   write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
