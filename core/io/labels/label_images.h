@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "core/image.h"

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "core/image.h"
