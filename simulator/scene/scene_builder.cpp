@@ -127,6 +127,10 @@ class InstanceNumbers {
   std::map<std::uint32_t, std::uint16_t> numbers_;  ///< of nodes, or of the whole mesh
 };
 
+MeshSurface surface_of(const MeshOptions& options) {
+  return {options.texture, options.texture_seed, options.reflectance};
+}
+
 InstanceLabel label_of(const MeshOptions& options, const std::vector<std::string>& classes) {
   const auto found = std::find(classes.begin(), classes.end(), options.class_name);
   const auto class_id = found == classes.end() ? 0 : found - classes.begin() + 1;
@@ -295,7 +299,10 @@ Scene build_scene(const SceneOptions& options) {
     const MeshOptions& item = options.meshes[i];
     auto known = meshes.find(item.file);
     if (known == meshes.end()) known = meshes.emplace(item.file, importer.read(item.file)).first;
-    const Mesh& mesh = known->second;
+    std::optional<Mesh> changed;
+    if (const MeshSurface surface = surface_of(item); surface.is_changed())
+      changed = importer.with_surface(known->second, surface, item.file.string());
+    const Mesh& mesh = changed ? *changed : known->second;
     remark_up_axis(item, importer.remarks());
     const Eigen::Affine3d transform = world_from_mesh(item, mesh);
     const std::string motion = fmt::format("scene.meshes[{}].trajectory", i);

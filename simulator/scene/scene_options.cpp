@@ -12,6 +12,12 @@
 namespace saccade {
 namespace {
 
+void append_more_meshes(SceneOptions& options) {
+  options.meshes.insert(options.meshes.end(), options.more_meshes.begin(),
+                        options.more_meshes.end());
+  options.more_meshes.clear();
+}
+
 void check_classes(config::Fields& fields, const SceneOptions& options) {
   const std::set<std::string> different(options.classes.begin(), options.classes.end());
   fields.expect(different.size() == options.classes.size(), "classes", "hold a name twice");
@@ -62,6 +68,24 @@ void describe(config::Fields& fields, MeshOptions& options) {
       "centre of the bounding box, or the middle of its lowest face.");
   fields.value("class", options.class_name,
                "Class of the mesh in masks and labels, a name. An empty one is no class.");
+  fields.value(
+      "texture", options.texture,
+      "Picture or *.texture.yaml that replaces the colours of all materials; the mesh needs "
+      "texture coordinates.");
+  if (fields.reading() && options.texture) {
+    const std::string problem = missing_file_problem(*options.texture);
+    fields.expect(problem.empty(), "texture", problem);
+  }
+  fields.value("texture_seed", options.texture_seed,
+               "Seed of a *.texture.yaml in place of the one that the file states: another texture "
+               "of the same kind.");
+  fields.expect(!options.texture_seed ||
+                    (options.texture && options.texture->string().ends_with(".texture.yaml")),
+                "texture_seed", "needs a 'texture' that is a *.texture.yaml");
+  fields
+      .value("reflectance", options.reflectance,
+             "Factor of the albedo of all its materials and textures.")
+      .range(1e-6, 1e6);
   fields.choice("instances", options.instances,
                 {{"whole", Instances::kWhole}, {"nodes", Instances::kNodes}},
                 "What masks and labels tell apart: the whole mesh from other meshes, or also the "
@@ -97,6 +121,10 @@ void describe(config::Fields& fields, LightOptions& options) {
 
 void describe(config::Fields& fields, SceneOptions& options) {
   fields.list("meshes", options.meshes, "Meshes of the scene.").length(1, 1'000'000);
+  fields.list("more_meshes", options.more_meshes,
+              "Meshes that follow those of 'meshes': for overrides that add to a scene. Printed "
+              "configurations list them there.");
+  if (fields.reading()) append_more_meshes(options);
   fields
       .value("classes", options.classes,
              "Names of the classes 1, 2 and so on in masks and labels; 0 is what has none. By "

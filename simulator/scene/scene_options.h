@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,7 +30,10 @@ struct MeshOptions {
   TransformOptions transform;
   std::optional<Eigen::Vector3d> size_m;  ///< bounding box in the file's own axes, instead of scale
   Anchor anchor = Anchor::kOrigin;
-  std::string class_name;  ///< in labels; empty: none
+  std::string class_name;                        ///< in labels; empty: none
+  std::optional<std::filesystem::path> texture;  ///< in place of those of its materials
+  std::optional<std::uint64_t> texture_seed;     ///< of a generated texture, in place of the file's
+  double reflectance = 1;                        ///< multiplies every albedo
   Instances instances = Instances::kWhole;
   /// Moves the mesh: its poses come after everything above. Its time 0 is the recording's.
   std::optional<MotionOptions> trajectory;
@@ -50,7 +54,8 @@ enum class Lighting { kNone, kLambertian };
 /// The `scene` section of a simulation.
 struct SceneOptions {
   std::vector<MeshOptions> meshes;
-  std::vector<std::string> classes;  ///< class k is item k - 1; empty: as the meshes name them
+  std::vector<MeshOptions> more_meshes;  ///< empty once read: then `meshes` has them, too
+  std::vector<std::string> classes;      ///< class k is item k - 1; empty: as the meshes name them
   double background = 0.5;
   std::filesystem::path background_picture;
   MissingTexture missing_texture = MissingTexture::kError;

@@ -219,6 +219,30 @@ Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& s
                          textures_.colour(source, *options.texture, wrap, source_name).grey);
 }
 
+Mesh MeshImporter::with_surface(Mesh mesh, const MeshSurface& surface, const std::string& user) {
+  if (surface.texture) {
+    if (std::ranges::all_of(mesh.uvs, [](const Eigen::Vector2d& uv) { return uv.isZero(); }))
+      throw InputError(user, "has no texture coordinates for the 'texture' that the scene states");
+    const FileLocation location = FileLocation::parse(*surface.texture);
+    const FileSource& source =
+        sources_.try_emplace(location.archive, location.archive).first->second;
+    const TexturePair pair =
+        textures_.colour(source, location.file, {}, user, surface.texture_seed);
+    for (Material& material : mesh.materials) {
+      material.texture = pair.grey;
+      material.factor = 1;
+      if (pair.grey == nullptr) material.albedo = 0.5;
+    }
+    if (pair.grey == nullptr) mesh.colours.clear();
+  }
+  for (Material& material : mesh.materials) {
+    material.albedo *= surface.reflectance;
+    material.factor *= surface.reflectance;
+  }
+  for (double& colour : mesh.colours) colour *= surface.reflectance;
+  return mesh;
+}
+
 Mesh MeshImporter::read(const fs::path& file) {
   const std::string problem = missing_file_problem(file);
   if (!problem.empty()) throw InputError(file.string(), problem);
