@@ -55,11 +55,11 @@ void LabelImageWriter::finish() {
 }
 
 InstanceMask read_mask(const fs::path& instances) {
-  InstanceMask mask{read_image_u16(instances), read_image_grey(classes_beside(instances))};
+  const fs::path classes = classes_beside(instances);
+  InstanceMask mask{read_image_u16(instances), read_image_grey(classes)};
   if (mask.instances.width() != mask.classes.width() ||
       mask.instances.height() != mask.classes.height())
-    throw InputError(classes_beside(instances).string(),
-                     "has another size than the mask of instances");
+    throw InputError(classes.string(), "has another size than the mask of instances");
   return mask;
 }
 
