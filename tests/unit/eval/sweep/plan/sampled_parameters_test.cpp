@@ -93,7 +93,9 @@ TEST(SampledParameters, RepeatMakesAListOfItsOwnSamples) {
     for (std::size_t k = 0; k < list.items.size(); ++k) {
       EXPECT_EQ(list.items[k].find("kind")->value.text, "box");
       const std::string x = list.items[k].find("x")->value.text;
-      if (k > 0) EXPECT_NE(x, list.items[0].find("x")->value.text);
+      if (k > 0) {
+        EXPECT_NE(x, list.items[0].find("x")->value.text);
+      }
     }
   }
   EXPECT_EQ(lengths.size(), 4U);
