@@ -111,7 +111,7 @@ TEST(Generate, AScenesOwnSplitWinsAndShardsTakeTurns) {
     EXPECT_EQ(plan.simulations[i].output,
               "/out/data/shard-0" + std::to_string(i % 4) + "/" + plan.simulations[i].name);
     EXPECT_THAT(plan.simulations[i].commands[0],
-                ::testing::Contains("scene.classes=[box, a chair]"));
+                ::testing::Contains("scene.classes=[box, \"a chair\"]"));
   }
 }
 
@@ -123,7 +123,7 @@ TEST(Generate, SaysWhatIsWrongAndWhere) {
   const std::string scenes = "scenes: [{simulate: walls.yaml}]";
   EXPECT_THAT(error("generate: {count: 1, split: {train: 0}, " + scenes + "}\n"),
               HasSubstr("must not be 0 like all others"));
-  EXPECT_THAT(error("generate: {count: 1, split: {training: 1}, " + scenes + "}\n"),
+  EXPECT_THAT(error("generate: {count: 1, split: {trian: 1}, " + scenes + "}\n"),
               HasSubstr("did you mean 'train'?"));
   EXPECT_THAT(error("generate: {count: 1, scenes: [{simulate: walls.yaml, split: tset}]}\n"),
               HasSubstr("test"));
