@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/common_options.h"
+#include "apps/convert_grids.h"
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
@@ -21,6 +22,7 @@ struct ConvertOptions {
   std::filesystem::path output;
   std::string unit;  ///< empty: the coarsest that keeps every time
   ImportWindow window;
+  GridRequest grids;
   CommonOptions common;
 };
 
@@ -60,6 +62,11 @@ std::string event_file_endings() {
 
 void convert(const ConvertOptions& options) {
   options.common.apply();
+  if (options.grids.is_stated()) {
+    const std::string text = convert_to_grids(options.input, options.output, options.grids);
+    if (!options.common.quiet) fmt::print("{}", text);
+    return;
+  }
   if (find_event_format(options.output) == nullptr) {
     if (std::filesystem::is_directory(options.input))
       if (const auto sequence = open_public_sequence(options.input))
@@ -80,19 +87,35 @@ void convert(const ConvertOptions& options) {
   if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), events.size());
 }
 
+void add_grid_options(CLI::App& verb, GridRequest& request) {
+  CLI::Option* voxels =
+      verb.add_option("--voxel-grid", request.voxel_grid,
+                      "Voxel grids as of E2VID, by key=value,... or default. Keys: bins, polarity "
+                      "(signed, separate), normalize (none, nonzero), span (events, window), and "
+                      "the window: duration_s, events or by_frames=true.")
+          ->type_name("KEY=VALUE,...");
+  verb.add_option("--event-frame", request.event_frame,
+                  "Event frames, by key=value,... or default. Keys: kind (count, polarity, "
+                  "time_surface), decay_s, and the window as above.")
+      ->type_name("KEY=VALUE,...")
+      ->excludes(voxels);
+}
+
 }  // namespace
 
 void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* verb = command.add_subcommand(
-      "convert", "Convert events between text and HDF5, or a public sequence into a dataset.");
+      "convert",
+      "Convert events between text and HDF5 or into grids, or a public sequence into a dataset.");
   verb->add_option(
           "IN", options->input,
           "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or TUM-VIE.")
       ->required();
   verb->add_option(
           "OUT", options->output,
-          "Event file, whose extension selects the format, or the dataset folder for a sequence.")
+          "Event file, whose extension selects the format; file of grids (.h5, .npy) or, for event "
+          "frames, a folder of pictures; or the dataset folder for a sequence.")
       ->required();
   verb->add_option(
           "--unit", options->unit,
@@ -103,10 +126,13 @@ void add_convert_verb(CLI::App& command) {
       ->check(number_between(0, 1e9));
   verb->add_option("--duration-s", options->window.duration_s, "Length of that part in seconds.")
       ->check(positive_number());
+  add_grid_options(*verb, options->grids);
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"
       "  saccade convert recording/events.txt events.h5\n"
+      "  saccade convert data/walls grids.h5 --voxel-grid bins=5,duration_s=0.05\n"
+      "  saccade convert data/walls frames --event-frame kind=polarity,events=20000\n"
       "  saccade convert dsec/interlaken_00_c data/interlaken_00_c\n"
       "  saccade convert tum_vie/mocap-desk2 data/mocap-desk2 --duration-s 10");
   verb->callback([options] { convert(*options); });

@@ -10,6 +10,7 @@
 #include "simulator/record_events.h"
 #include "simulator/record_groundtruth.h"
 #include "simulator/record_images.h"
+#include "simulator/record_labels.h"
 #include "simulator/resume.h"
 #include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
@@ -74,12 +75,15 @@ CameraReport record_camera(const CameraRecording& recording, bool is_first,
   if (is_first) record_imu(recording);
   if (is_first) record_panorama(recording);
   record_images(recording);
+  DatasetRecord::Counts labels;
+  record_labels(recording, labels);
   report.images_s = images.seconds();
   const Stopwatch events;
   report.events = record_events(recording);
   report.events_s = events.seconds();
   DatasetRecord record = facts(recording, report.events, path_length_m);
   record.name = name;
+  record.counts = labels;
   report.record = recording.writer.finish(std::move(record));
   return report;
 }

@@ -78,8 +78,26 @@ void describe(config::Fields& fields, GroundtruthOptions& options) {
       .value("flow_rate_hz", options.flow_rate_hz,
              "Number of motion fields per second. 0 disables them.")
       .range(0, kHighestRate_hz);
+  fields
+      .value("masks_rate_hz", options.masks_rate_hz,
+             "Number of masks per second of instances and classes, with the boxes of what is "
+             "visible, in addition to one at every frame. 0 disables them.")
+      .range(0, kHighestRate_hz);
+  fields
+      .value("normals_rate_hz", options.normals_rate_hz,
+             "Number of maps per second of the surface normals, in addition to one at every frame. "
+             "0 disables them.")
+      .range(0, kHighestRate_hz);
+  fields
+      .value(
+          "optical_flow_rate_hz", options.optical_flow_rate_hz,
+          "Number of optical flows per second: displacements in pixels from k / rate to "
+          "(k + 1) / rate and back, with masks of what is occluded. The rate of the frames gives "
+          "the flow between consecutive frames; 0 disables it.")
+      .range(0, kHighestRate_hz);
   fields.value("event_labels", options.event_labels,
-               "Whether labels.h5 is written: depth, motion, object and origin of every event.");
+               "Whether labels.h5 is written: depth, motion, object, instance, class and origin of "
+               "every event.");
   fields
       .value("panorama_px_per_rad", options.panorama_px_per_rad,
              "Resolution of panorama.exr, the whole sphere as seen from the first position, in "

@@ -41,6 +41,9 @@ struct GroundtruthOptions {
   double pose_rate_hz = 1000;
   double depth_rate_hz = 10;
   double flow_rate_hz = 0;
+  double masks_rate_hz = 0;
+  double normals_rate_hz = 0;
+  double optical_flow_rate_hz = 0;
   bool event_labels = false;
   /// Pixels per radian of panorama.exr, what is seen all around at time 0; 0: none.
   double panorama_px_per_rad = 0;

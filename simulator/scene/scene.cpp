@@ -384,6 +384,24 @@ std::uint32_t Scene::object(TriangleId triangle) const {
   return state_->surfaces[triangle].object;
 }
 
+std::uint16_t Scene::instance(TriangleId triangle) const {
+  return triangle == kNothing ? std::uint16_t{0} : state_->triangle_instances[triangle];
+}
+
+std::span<const SceneInstance> Scene::instances() const { return state_->instances; }
+
+std::uint8_t Scene::class_of(std::uint16_t instance) const {
+  return instance == 0 ? std::uint8_t{0} : state_->instances[instance - 1U].class_id;
+}
+
+Eigen::Vector3d Scene::normal(const Ray& ray, TriangleId triangle) const {
+  const TriangleSurface& surface = state_->surfaces[triangle];
+  Eigen::Vector3d normal = surface.plane.gradient;
+  if (surface.body != kStaticBody)
+    normal = moving_objects()[surface.body].frame(ray.time_s).rotation * normal;
+  return normal.dot(ray.direction) > 0 ? Eigen::Vector3d(-normal) : normal;
+}
+
 std::size_t Scene::triangle_count() const { return state_->surfaces.size(); }
 
 }  // namespace saccade

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/instance.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
@@ -171,6 +172,16 @@ class Scene {
 
   /// Object (index into the scene's mesh list) of a triangle.
   [[nodiscard]] std::uint32_t object(TriangleId triangle) const;
+  /// Instance of a triangle, from 1 on; 0 for kNothing.
+  [[nodiscard]] std::uint16_t instance(TriangleId triangle) const;
+  /// All instances: number k is item k - 1.
+  [[nodiscard]] std::span<const SceneInstance> instances() const;
+  /// Class of an instance; 0, no class, for 0.
+  [[nodiscard]] std::uint8_t class_of(std::uint16_t instance) const;
+  /// Unit normal of the plane of a triangle in the world at the ray's time, on the side that the
+  /// ray comes from.
+  [[nodiscard]] Eigen::Vector3d normal(const Ray& ray, TriangleId triangle) const;
+
   /// The objects with a motion of their own, in the order of the mesh list.
   [[nodiscard]] std::span<const MovingObject> moving_objects() const;
   /// The one that a triangle belongs to; nullptr where it is static, and for kNothing.

@@ -96,6 +96,48 @@ CornerKey place_of(const Triangle& triangle, const Mesh& mesh) {
   return key;
 }
 
+/// Numbers the instances of a mesh in the order in which their first triangles come.
+class InstanceNumbers {
+ public:
+  InstanceNumbers(const InstanceLabel& label, const Mesh& mesh, std::uint32_t object,
+                  std::vector<SceneInstance>& instances)
+      : label_(label), mesh_(mesh), object_(object), instances_(instances) {}
+
+  [[nodiscard]] std::uint16_t of(const Triangle& triangle) {
+    const auto [known, is_new] =
+        numbers_.try_emplace(label_.splits_nodes ? triangle.node : 0, std::uint16_t{0});
+    if (is_new) known->second = append(triangle.node);
+    return known->second;
+  }
+
+ private:
+  std::uint16_t append(std::uint32_t node) {
+    if (instances_.size() == kMaxInstances)
+      throw InputError("scene.meshes", fmt::format("make more than {} instances", kMaxInstances));
+    std::string name = label_.name;
+    if (label_.splits_nodes && node < mesh_.nodes.size()) name += "/" + mesh_.nodes[node];
+    instances_.push_back({name, label_.file, object_, label_.class_id});
+    return static_cast<std::uint16_t>(instances_.size());
+  }
+
+  const InstanceLabel& label_;
+  const Mesh& mesh_;
+  std::uint32_t object_;
+  std::vector<SceneInstance>& instances_;
+  std::map<std::uint32_t, std::uint16_t> numbers_;  ///< of nodes, or of the whole mesh
+};
+
+MeshSurface surface_of(const MeshOptions& options) {
+  return {options.texture, options.texture_seed, options.reflectance};
+}
+
+InstanceLabel label_of(const MeshOptions& options, const std::vector<std::string>& classes) {
+  const auto found = std::find(classes.begin(), classes.end(), options.class_name);
+  const auto class_id = found == classes.end() ? 0 : found - classes.begin() + 1;
+  return {options.file.stem().string(), options.file.generic_string(),
+          static_cast<std::uint8_t>(class_id), options.instances == Instances::kNodes};
+}
+
 Background read_background(const SceneOptions& options, SceneRemarks& remarks) {
   if (options.background_picture.empty()) return Background(options.background);
   const FileLocation location = FileLocation::parse(options.background_picture);
@@ -140,22 +182,25 @@ struct SceneBuilder::Body {
 SceneBuilder::SceneBuilder() : bodies_(1) {}
 SceneBuilder::~SceneBuilder() = default;
 
-std::size_t SceneBuilder::add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh) {
-  return add_to(bodies_.front(), mesh, world_from_mesh);
+std::size_t SceneBuilder::add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh,
+                              const InstanceLabel& label) {
+  return add_to(bodies_.front(), mesh, world_from_mesh, label);
 }
 
 std::size_t SceneBuilder::add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
-                                     Spline world_from_object) {
+                                     Spline world_from_object, const InstanceLabel& label) {
   Body body;
   body.world_from_body = std::move(world_from_object);
   body.object = objects_;
-  const std::size_t kept = add_to(body, mesh, object_from_mesh);
+  const std::size_t kept = add_to(body, mesh, object_from_mesh, label);
   if (kept > 0) bodies_.push_back(std::move(body));
   return kept;
 }
 
 std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
-                                 const Eigen::Affine3d& body_from_mesh) {
+                                 const Eigen::Affine3d& body_from_mesh,
+                                 const InstanceLabel& label) {
+  InstanceNumbers numbers(label, mesh, objects_, instances_);
   const TriangleSetup setup(mesh, body_from_mesh, objects_++);
   for (const Material& material : mesh.materials) {
     textures_.push_back(material.texture);
@@ -166,7 +211,10 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
   for (const Triangle& triangle : mesh.triangles) {
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
     if (!is_cut_out && !taken.insert(place_of(triangle, mesh)).second) continue;
-    kept += setup.add(triangle, is_cut_out ? body.cut_out : body.opaque) ? 1 : 0;
+    PreparedTriangles& target = is_cut_out ? body.cut_out : body.opaque;
+    if (!setup.add(triangle, target)) continue;
+    target.instances.push_back(numbers.of(triangle));
+    ++kept;
   }
   return kept;
 }
@@ -193,6 +241,8 @@ Scene SceneBuilder::build(const Background& background) && {
   state->surfaces = std::move(all.surfaces);
   state->interiors = std::move(all.interiors);
   state->cutouts = std::move(all.cutouts);
+  state->triangle_instances = std::move(all.instances);
+  state->instances = std::move(instances_);
   state->visibility.emplace(make_visibility(*state));
   const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());
@@ -244,18 +294,23 @@ Scene build_scene(const SceneOptions& options) {
   SceneBuilder builder;
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian});
   std::map<std::filesystem::path, Mesh> meshes;
+  const std::vector<std::string> classes = class_names(options);
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
     const MeshOptions& item = options.meshes[i];
     auto known = meshes.find(item.file);
     if (known == meshes.end()) known = meshes.emplace(item.file, importer.read(item.file)).first;
-    const Mesh& mesh = known->second;
+    std::optional<Mesh> changed;
+    if (const MeshSurface surface = surface_of(item); surface.is_changed())
+      changed = importer.with_surface(known->second, surface, item.file.string());
+    const Mesh& mesh = changed ? *changed : known->second;
     remark_up_axis(item, importer.remarks());
     const Eigen::Affine3d transform = world_from_mesh(item, mesh);
     const std::string motion = fmt::format("scene.meshes[{}].trajectory", i);
+    const InstanceLabel label = label_of(item, classes);
     const std::size_t kept =
         item.trajectory
-            ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion))
-            : builder.add(mesh, transform);
+            ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion), label)
+            : builder.add(mesh, transform, label);
     if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");

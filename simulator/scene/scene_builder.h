@@ -36,11 +36,12 @@ class SceneBuilder {
   /// are left out, and opaque ones in the place of an earlier one of the mesh, as of surfaces that
   /// are modelled from both sides: which of both is seen would be chance. Returns how many are
   /// kept.
-  std::size_t add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh);
+  std::size_t add(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh,
+                  const InstanceLabel& label = {});
 
   /// The same for an object that moves rigidly, `object_from_mesh` first.
   std::size_t add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
-                         Spline world_from_object);
+                         Spline world_from_object, const InstanceLabel& label = {});
 
   /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
   void light(double ambient, std::vector<LightOptions> lights);
@@ -51,13 +52,15 @@ class SceneBuilder {
  private:
   struct Body;
 
-  std::size_t add_to(Body& body, const Mesh& mesh, const Eigen::Affine3d& body_from_mesh);
+  std::size_t add_to(Body& body, const Mesh& mesh, const Eigen::Affine3d& body_from_mesh,
+                     const InstanceLabel& label);
   /// Moves all triangles together and numbers them; the corners stay.
   [[nodiscard]] PreparedTriangles number_triangles();
   [[nodiscard]] Visibility make_visibility(const Scene::State& state) const;
 
   std::vector<Body> bodies_;  ///< what is static, then the moving objects
   std::vector<std::shared_ptr<const Texture>> textures_;
+  std::vector<SceneInstance> instances_;
   std::uint32_t objects_ = 0;
   bool is_lit_ = false;
   double ambient_ = 0;

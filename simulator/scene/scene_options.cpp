@@ -1,10 +1,46 @@
 #include "simulator/scene/scene_options.h"
 
+#include <algorithm>
+#include <set>
+
 #include "core/config/fields.h"
+#include "core/config/suggest.h"
+#include "simulator/scene/instance.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {
+namespace {
+
+void append_more_meshes(SceneOptions& options) {
+  options.meshes.insert(options.meshes.end(), options.more_meshes.begin(),
+                        options.more_meshes.end());
+  options.more_meshes.clear();
+}
+
+void check_classes(config::Fields& fields, const SceneOptions& options) {
+  const std::set<std::string> different(options.classes.begin(), options.classes.end());
+  fields.expect(different.size() == options.classes.size(), "classes", "hold a name twice");
+  fields.expect(!different.contains(""), "classes", "must not hold an empty name");
+  for (const MeshOptions& mesh : options.meshes)
+    fields.expect(
+        options.classes.empty() || mesh.class_name.empty() || different.contains(mesh.class_name),
+        "classes",
+        "do not hold the class '" + mesh.class_name + "' of a mesh; " +
+            config::suggestion(mesh.class_name, options.classes, "classes"));
+  fields.expect(class_names(options).size() <= kMaxClasses, "meshes", "name more than 255 classes");
+}
+
+}  // namespace
+
+std::vector<std::string> class_names(const SceneOptions& options) {
+  if (!options.classes.empty()) return options.classes;
+  std::vector<std::string> names;
+  for (const MeshOptions& mesh : options.meshes)
+    if (!mesh.class_name.empty() && std::ranges::find(names, mesh.class_name) == names.end())
+      names.push_back(mesh.class_name);
+  return names;
+}
 
 void describe(config::Fields& fields, MeshOptions& options) {
   fields
@@ -30,6 +66,30 @@ void describe(config::Fields& fields, MeshOptions& options) {
       {{"origin", Anchor::kOrigin}, {"center", Anchor::kCenter}, {"bottom", Anchor::kBottom}},
       "Point of the mesh that the translation moves to its value: the origin of the file, the "
       "centre of the bounding box, or the middle of its lowest face.");
+  fields.value("class", options.class_name,
+               "Class of the mesh in masks and labels, a name. An empty one is no class.");
+  fields.value(
+      "texture", options.texture,
+      "Picture or *.texture.yaml that replaces the colours of all materials; the mesh needs "
+      "texture coordinates.");
+  if (fields.reading() && options.texture) {
+    const std::string problem = missing_file_problem(*options.texture);
+    fields.expect(problem.empty(), "texture", problem);
+  }
+  fields.value("texture_seed", options.texture_seed,
+               "Seed of a *.texture.yaml in place of the one that the file states: another texture "
+               "of the same kind.");
+  fields.expect(!options.texture_seed ||
+                    (options.texture && options.texture->string().ends_with(".texture.yaml")),
+                "texture_seed", "needs a 'texture' that is a *.texture.yaml");
+  fields
+      .value("reflectance", options.reflectance,
+             "Factor of the albedo of all its materials and textures.")
+      .range(1e-6, 1e6);
+  fields.choice("instances", options.instances,
+                {{"whole", Instances::kWhole}, {"nodes", Instances::kNodes}},
+                "What masks and labels tell apart: the whole mesh from other meshes, or also the "
+                "nodes of its file (the groups or objects of OBJ) from one another.");
   fields.section(
       "trajectory", options.trajectory,
       "Motion of the object, applied after its transform; its time 0 is that of the recording.");
@@ -61,6 +121,16 @@ void describe(config::Fields& fields, LightOptions& options) {
 
 void describe(config::Fields& fields, SceneOptions& options) {
   fields.list("meshes", options.meshes, "Meshes of the scene.").length(1, 1'000'000);
+  fields.list("more_meshes", options.more_meshes,
+              "Meshes that follow those of 'meshes': for overrides that add to a scene. Printed "
+              "configurations list them there.");
+  if (fields.reading()) append_more_meshes(options);
+  fields
+      .value("classes", options.classes,
+             "Names of the classes 1, 2 and so on in masks and labels; 0 is what has none. By "
+             "default the classes that the meshes name, in the order of the meshes.")
+      .length(0, kMaxClasses);
+  check_classes(fields, options);
   const bool picture = fields.reading() ? fields.form("background") == config::Form::kText
                                         : !options.background_picture.empty();
   const char* const help =

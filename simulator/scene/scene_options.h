@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,6 +20,9 @@ enum class Anchor { kOrigin, kCenter, kBottom };
 /// The axis of a file that points upwards in the world.
 enum class UpAxis { kY, kZ };
 
+/// What of a mesh file masks and labels tell apart: nothing, or its nodes.
+enum class Instances { kWhole, kNodes };
+
 struct MeshOptions {
   std::filesystem::path file;
   UpAxis up = UpAxis::kZ;
@@ -25,6 +30,11 @@ struct MeshOptions {
   TransformOptions transform;
   std::optional<Eigen::Vector3d> size_m;  ///< bounding box in the file's own axes, instead of scale
   Anchor anchor = Anchor::kOrigin;
+  std::string class_name;                        ///< in labels; empty: none
+  std::optional<std::filesystem::path> texture;  ///< in place of those of its materials
+  std::optional<std::uint64_t> texture_seed;     ///< of a generated texture, in place of the file's
+  double reflectance = 1;                        ///< multiplies every albedo
+  Instances instances = Instances::kWhole;
   /// Moves the mesh: its poses come after everything above. Its time 0 is the recording's.
   std::optional<MotionOptions> trajectory;
 };
@@ -44,6 +54,8 @@ enum class Lighting { kNone, kLambertian };
 /// The `scene` section of a simulation.
 struct SceneOptions {
   std::vector<MeshOptions> meshes;
+  std::vector<MeshOptions> more_meshes;  ///< empty once read: then `meshes` has them, too
+  std::vector<std::string> classes;      ///< class k is item k - 1; empty: as the meshes name them
   double background = 0.5;
   std::filesystem::path background_picture;
   MissingTexture missing_texture = MissingTexture::kError;
@@ -51,6 +63,10 @@ struct SceneOptions {
   double ambient = 0;
   std::vector<LightOptions> lights;
 };
+
+/// The names of the classes 1, 2 ...: those that `options` lists, else those of its meshes in the
+/// order in which they are named first.
+[[nodiscard]] std::vector<std::string> class_names(const SceneOptions& options);
 
 void describe(config::Fields& fields, MeshOptions& options);
 void describe(config::Fields& fields, LightOptions& options);

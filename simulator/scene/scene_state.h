@@ -90,6 +90,8 @@ struct Scene::State {
   std::vector<TriangleInterior> interiors;
   std::vector<ShadingNormals> normals;                   ///< empty without lighting
   std::vector<Cutout> cutouts;                           ///< of the last triangles
+  std::vector<std::uint16_t> triangle_instances;         ///< from 1 on
+  std::vector<SceneInstance> instances;                  ///< instance k is item k - 1
   std::vector<std::shared_ptr<const Texture>> textures;  ///< keeps them alive
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance

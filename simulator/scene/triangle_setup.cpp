@@ -60,6 +60,7 @@ void PreparedTriangles::append(PreparedTriangles&& other) {
   saccade::append(interiors, std::move(other.interiors));
   saccade::append(normals, std::move(other.normals));
   saccade::append(cutouts, std::move(other.cutouts));
+  saccade::append(instances, std::move(other.instances));
 }
 
 TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh,

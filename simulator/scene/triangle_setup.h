@@ -15,7 +15,8 @@ struct PreparedTriangles {
   std::vector<TriangleSurface> surfaces;
   std::vector<TriangleInterior> interiors;
   std::vector<ShadingNormals> normals;
-  std::vector<Cutout> cutouts;  ///< one per triangle, or none at all
+  std::vector<Cutout> cutouts;           ///< one per triangle, or none at all
+  std::vector<std::uint16_t> instances;  ///< what each of them is labelled with
 
   void append(PreparedTriangles&& other);
 };
@@ -26,7 +27,7 @@ class TriangleSetup {
   TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh, std::uint32_t object);
 
   /// False, and nothing is added, for a triangle without area. `target` gets its cutout when the
-  /// material has one.
+  /// material has one, and no instance, which is the caller's to add.
   bool add(const Triangle& triangle, PreparedTriangles& target) const;
 
  private:

@@ -65,6 +65,8 @@ void EventLabeller::label_packet(std::span<const SensedEvent> events, std::size_
     labels.flow_y[i] = static_cast<float>(flow.y());
     labels.object[i] =
         triangles[k] == kNothing ? -1 : static_cast<std::int32_t>(scene_.object(triangles[k]));
+    labels.instance[i] = scene_.instance(triangles[k]);
+    labels.class_id[i] = scene_.class_of(labels.instance[i]);
     labels.origin[i] = static_cast<std::uint8_t>(event.origin);
   }
 }

@@ -11,7 +11,7 @@
 namespace saccade {
 
 /// What the ray through the pixel's centre sees at the recorded time of an event: its depth, its
-/// motion in the image, its object; and the event's origin. An event that latency or readout delays
+/// motion in the image, its object, instance and class; and the event's origin. An event that latency or readout delays
 /// is labelled at the delayed time, as whoever reads the dataset looks it up.
 class EventLabeller {
  public:

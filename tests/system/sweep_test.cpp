@@ -5,10 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -199,6 +202,30 @@ TEST(Sweep, GeneratesDatasetsAndListsThem) {
       saccade({"sweep", sweep, "-o", one, "--set", "generate.draw={events.noise.hot.rate: 3}"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_THAT(bad.output, HasSubstr("did you mean 'rate_hz'?"));
+}
+
+TEST(Sweep, DividesGeneratedDatasetsAmongSplitsAndShards) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out";
+  const std::string sweep = write_generation(folder);
+  saccade_ok({"sweep", sweep, "-o", out, "--set", "generate.split={train: 2, test: 1}", "--set",
+              "generate.shards=2", "--set", "generate.classes=[wall, box]", "--set",
+              "generate.set={camera: {width: 60, height: 45, fx: 50, fy: 50}, "
+              "groundtruth: {masks_rate_hz: 100, event_labels: true}}"});
+  const auto manifest = nlohmann::json::parse(read_file(out + "/manifest.json"));
+  EXPECT_EQ(manifest["classes"], nlohmann::json({"wall", "box"}));
+  EXPECT_EQ(manifest["scenes"][0]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_FALSE(manifest["commit"].get<std::string>().empty());
+  std::map<std::string, std::string> paths;
+  for (const auto& dataset : manifest["datasets"])
+    paths[dataset["split"]] += dataset["path"].get<std::string>() + "\n";
+  EXPECT_EQ(paths["train"], read_file(out + "/train.txt"));
+  EXPECT_EQ(paths["test"], read_file(out + "/test.txt"));
+  EXPECT_EQ(read_file(out + "/val.txt"), "");
+  EXPECT_EQ(std::count(paths["train"].begin(), paths["train"].end(), '\n'), 2);
+  EXPECT_EQ(manifest["datasets"][1]["path"], "data/shard-01/dataset-000001");
+  EXPECT_EQ(manifest["datasets"][2]["path"], "data/shard-00/dataset-000002");
+  EXPECT_THAT(read_file(out + "/data/shard-01/dataset-000001/labels.yaml"), HasSubstr("box"));
 }
 
 TEST(Sweep, RefusesWhatItCannotDo) {

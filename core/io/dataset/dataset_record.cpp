@@ -34,6 +34,9 @@ void describe(config::Fields& fields, DatasetRecord::Counts& counts) {
   fields.value("depth_maps", counts.depth_maps, "depth maps").at_least(0);
   fields.value("flow_maps", counts.flow_maps, "motion fields").at_least(0);
   fields.value("imu_samples", counts.imu_samples, "inertial readings").at_least(0);
+  fields.value("masks", counts.masks, "masks of instances").at_least(0);
+  fields.value("normal_maps", counts.normal_maps, "maps of normals").at_least(0);
+  fields.value("optical_flows", counts.optical_flows, "intervals with optical flow").at_least(0);
 }
 
 void describe(config::Fields& fields, DatasetRecord::Figure& figure) {

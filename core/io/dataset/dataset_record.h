@@ -21,6 +21,9 @@ struct DatasetRecord {
     std::int64_t depth_maps = 0;
     std::int64_t flow_maps = 0;
     std::int64_t imu_samples = 0;
+    std::int64_t masks = 0;
+    std::int64_t normal_maps = 0;
+    std::int64_t optical_flows = 0;  ///< pairs of fields, forward and backward
   };
 
   /// A measured figure with its 95 % confidence interval.

@@ -167,6 +167,11 @@ DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   counts_.frames = static_cast<std::int64_t>(frames_.size());
   counts_.depth_maps = static_cast<std::int64_t>(depth_maps_.size());
   counts_.flow_maps = static_cast<std::int64_t>(flow_maps_.size());
+  if (record.counts) {
+    counts_.masks = record.counts->masks;
+    counts_.normal_maps = record.counts->normal_maps;
+    counts_.optical_flows = record.counts->optical_flows;
+  }
   record.format_version = 1;
   if (record.name.empty()) record.name = folder_.filename().string();
   record.tool_version = fmt::format("saccade {} ({})", version(), git_commit());

@@ -64,7 +64,8 @@ class DatasetWriter {
   void write_imu(std::span<const ImuSample> samples);
 
   /// Writes the lists, calib.txt, camera.yaml and, last, dataset.yaml. Fills in the record's size,
-  /// its name where none is stated (the folder's), unit, counts, mean depth (unless no depth map
+  /// its name where none is stated (the folder's), unit, counts (those of labels, which others write,
+  /// stay as they are), mean depth (unless no depth map
   /// was written), rays per event, hashes and tool version; the rest is the caller's.
   DatasetRecord finish(DatasetRecord record);
 

@@ -36,6 +36,12 @@ cv::Mat read(const std::filesystem::path& file, int flags) {
   return decode(read_file_bytes(file), file.string(), flags);
 }
 
+cv::Mat read_as(const std::filesystem::path& file, int type, const char* kind) {
+  cv::Mat mat = read(file, cv::IMREAD_UNCHANGED);
+  if (mat.type() != type) throw InputError(file.string(), std::string("is no picture of ") + kind);
+  return mat;
+}
+
 template <class T>
 Image<T> copied(const cv::Mat& mat) {
   SACCADE_CHECK(mat.elemSize() == sizeof(T));
@@ -88,6 +94,16 @@ ImageRgb8 read_image_rgb(const std::filesystem::path& file) {
   return copied<Rgb8>(rgb);
 }
 
+ImageU16 read_image_u16(const std::filesystem::path& file) {
+  return copied<std::uint16_t>(read_as(file, CV_16UC1, "one channel of 16 bits"));
+}
+
+ImageRgb16 read_image_rgb16(const std::filesystem::path& file) {
+  cv::Mat rgb;
+  cv::cvtColor(read_as(file, CV_16UC3, "three channels of 16 bits"), rgb, cv::COLOR_BGR2RGB);
+  return copied<Rgb16>(rgb);
+}
+
 ImageRgba8 read_image_rgba(const std::filesystem::path& file) {
   return decode_image_rgba(read_file_bytes(file), file.string());
 }
@@ -112,6 +128,20 @@ std::string encode_png(const ImageRgb8& image) {
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   return encode(bgr);
+}
+
+void write_png(const std::filesystem::path& file, const ImageU16& image) {
+  SACCADE_CHECK(!image.empty());
+  write_atomically(file, encode(cv::Mat(image.height(), image.width(), CV_16UC1,
+                                        const_cast<std::uint16_t*>(image.data()))));
+}
+
+void write_png(const std::filesystem::path& file, const ImageRgb16& image) {
+  SACCADE_CHECK(!image.empty());
+  const cv::Mat rgb(image.height(), image.width(), CV_16UC3, const_cast<Rgb16*>(image.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  write_atomically(file, encode(bgr));
 }
 
 void write_png(const std::filesystem::path& file, const ImageU8& image) {

@@ -52,13 +52,22 @@ hid_t type_in_memory(H5Type type) {
   return -1;
 }
 
+H5Handle open_to_read(const std::filesystem::path& file) {
+  const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
+  H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
+  return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+}
+
+bool has_column(hid_t file, const std::string& group, const std::string& name) {
+  return H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0 &&
+         H5Lexists(file, (group + "/" + name).c_str(), H5P_DEFAULT) > 0;
+}
+
 /// The column `name` of a group; it must hold `count` values.
 H5Handle open_column(hid_t file, const std::string& group, const char* name,
                      const std::string& location, std::uint64_t count) {
   const std::string path = group + "/" + name;
-  const bool is_there = H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0 &&
-                        H5Lexists(file, path.c_str(), H5P_DEFAULT) > 0;
-  if (!is_there) throw InputError(location, "the dataset is missing");
+  if (!has_column(file, group, name)) throw InputError(location, "the dataset is missing");
   H5Handle dataset = {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose};
   const H5Handle space = {H5Dget_space(dataset), H5Sclose};
   const auto length = H5Sget_simple_extent_npoints(space);
@@ -167,9 +176,7 @@ void read_h5_table(const std::filesystem::path& name, const std::string& group, 
                    std::uint64_t begin, std::span<const H5Target> columns) {
   const H5Lock lock;
   if (!std::filesystem::exists(name)) throw InputError(name.string(), "no such file");
-  const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
-  H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
-  const H5Handle file = {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+  const H5Handle file = open_to_read(name);
   if (!file.valid())
     throw InputError(name.string(), "is no HDF5 file, or is damaged (HDF5: " + h5_reason() + ")");
   for (const H5Target& column : columns) {
@@ -177,6 +184,13 @@ void read_h5_table(const std::filesystem::path& name, const std::string& group, 
     const H5Handle dataset = open_column(file, group, column.name, location, count);
     if (!column.bytes.empty()) read_column(dataset, location, begin, column);
   }
+}
+
+bool has_h5_column(const std::filesystem::path& name, const std::string& group,
+                   const std::string& column) {
+  const H5Lock lock;
+  const H5Handle file = open_to_read(name);
+  return file.valid() && has_column(file, group, column);
 }
 
 }  // namespace saccade

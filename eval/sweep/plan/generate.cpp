@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
+#include <utility>
 
+#include "core/config/convert.h"
 #include "core/config/yaml_emit.h"
 
 namespace saccade {
@@ -26,6 +29,26 @@ const GenerateScene& sample_scene(const GenerateConfig& generate, std::uint64_t 
     left -= weight;
   }
   return generate.scenes.back();
+}
+
+/// Datasets come in blocks of train + val + test; in each block the parts are shuffled (Fisher and
+/// Yates), so that a dataset's part does not depend on how many there are.
+std::string split_of(const GenerateConfig& generate, std::uint64_t index) {
+  const auto [train, val, test] = generate.split;
+  const int unit = std::gcd(train, std::gcd(val, test));
+  std::vector<const char*> parts;
+  const auto add = [&](const char* name, int size) {
+    parts.insert(parts.end(), static_cast<std::size_t>(size / unit), name);
+  };
+  add("train", train);
+  add("val", val);
+  add("test", test);
+  const std::uint64_t block = index / parts.size();
+  for (std::size_t left = parts.size(); left > 1; --left)
+    std::swap(
+        parts[left - 1],
+        parts[sample_below(left, fmt::format("generate.split.{}", left), generate.seed, block)]);
+  return parts[index % parts.size()];
 }
 
 /// The parameters of all scenes, replaced by the scene's own where the key is the same.
@@ -75,6 +98,14 @@ void describe_overrides(config::Fields& fields, Described& described, const char
 
 }  // namespace
 
+void describe(config::Fields& fields, GenerateSplit& split) {
+  constexpr double kLargest = 1000;
+  fields.value("train", split.train, "Relative size of the part for training.").range(0, kLargest);
+  fields.value("val", split.val, "Relative size of the part for validation.").range(0, kLargest);
+  fields.value("test", split.test, "Relative size of the part for tests.").range(0, kLargest);
+  fields.expect(split.train + split.val + split.test > 0, "train", "must not be 0 like all others");
+}
+
 void describe(config::Fields& fields, GenerateScene& scene) {
   fields.value("name", scene.name, "Name of the scene in the manifest. Default: that of the file.");
   fields.path("simulate", scene.simulate, "Simulation configuration that datasets are made from.")
@@ -84,6 +115,11 @@ void describe(config::Fields& fields, GenerateScene& scene) {
       .value("weight", scene.weight,
              "Relative probability of this scene; 2 is chosen twice as often as 1.")
       .range(1, 1e6);
+  fields
+      .value("split", scene.split,
+             "Part that all datasets of this scene belong to: train, val or test, for scenes that "
+             "the others never show; any: that of the dataset.")
+      .one_of({"any", "train", "val", "test"});
   describe_overrides(fields, scene, "of this scene");
   if (fields.reading() && scene.name.empty()) scene.name = scene.simulate.stem();
 }
@@ -93,9 +129,22 @@ void describe(config::Fields& fields, GenerateConfig& generate) {
   fields.value("first", generate.first, "Index of the first dataset.").range(0, 999999);
   fields.value("count", generate.count, "Number of datasets.").required().range(1, 1000000);
   fields.value("seed", generate.seed, "Seed of all sampled parameters.");
+  fields.section(
+      "split", generate.split,
+      "Relative sizes of the parts, as whole numbers. Of as many consecutive datasets as "
+      "their sum, after division by their greatest common divisor, each part gets exactly "
+      "its number, in an order that the seed shuffles.");
+  fields
+      .value("shards", generate.shards,
+             "Number of folders that the datasets are divided among, in turn: data/shard-00 and so "
+             "on. 1: all are in data.")
+      .range(1, 10000);
+  fields.value("classes", generate.classes,
+               "Names of the classes 1, 2 and so on in the labels of all scenes (scene.classes).");
   fields
       .list("scenes", generate.scenes,
-            "Scenes, each {simulate, name, weight, set, draw}. Every dataset samples one of them.")
+            "Scenes, each {simulate, name, weight, split, set, draw}. Every dataset samples one of "
+            "them.")
       .required()
       .length(1, config::Rule::kAnyLength);
   describe_overrides(fields, generate, "of all scenes");
@@ -111,6 +160,11 @@ GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t
   dataset.name = fmt::format("{}-{:06}", generate.name, index);
   dataset.scene = &sample_scene(generate, index);
   dataset.seed = sample_below(kSeeds, "seed", generate.seed, index);
+  dataset.split = dataset.scene->split == "any" ? split_of(generate, index) : dataset.scene->split;
+  dataset.shard = static_cast<int>(index % static_cast<std::uint64_t>(generate.shards));
+  if (!generate.classes.empty())
+    dataset.settings.push_back(
+        {"scene.classes", config::to_flow_yaml(config::to_node(generate.classes))});
   for (const Settings* settings : {&generate.set, &dataset.scene->set})
     dataset.settings.insert(dataset.settings.end(), settings->begin(), settings->end());
   const Node sampled = sample_values(parameters_of(generate, *dataset.scene), generate.seed, index);

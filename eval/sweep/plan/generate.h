@@ -12,11 +12,19 @@
 
 namespace saccade {
 
+/// The parts of generated datasets, by their relative sizes.
+struct GenerateSplit {
+  int train = 1;
+  int val = 0;
+  int test = 0;
+};
+
 /// One of the simulation configurations that datasets are made from.
 struct GenerateScene {
   std::string name;                ///< default: the file without its ending
   std::filesystem::path simulate;  ///< a simulation configuration
   int weight = 1;                  ///< relative probability
+  std::string split = "any";       ///< train, val or test: all of its datasets belong to it
   Settings set;                    ///< overrides, applied after those of all scenes
   SampledParameters draw;          ///< replace those of all scenes that have the same key
 };
@@ -27,11 +35,15 @@ struct GenerateConfig {
   std::uint64_t first = 0;       ///< index of the first dataset
   int count = 0;
   std::uint64_t seed = 1;
+  GenerateSplit split;
+  int shards = 1;                    ///< folders that the datasets are divided among
+  std::vector<std::string> classes;  ///< of all scenes; empty: as they state them
   std::vector<GenerateScene> scenes;
   Settings set;  ///< overrides of every scene
   SampledParameters draw;
 };
 
+void describe(config::Fields& fields, GenerateSplit& split);
 void describe(config::Fields& fields, GenerateScene& scene);
 void describe(config::Fields& fields, GenerateConfig& generate);
 
@@ -41,7 +53,9 @@ struct GeneratedDataset {
   std::string name;
   const GenerateScene* scene = nullptr;
   std::uint64_t seed = 0;  ///< of its simulation
-  Settings settings;       ///< in the order in which they are applied
+  std::string split;       ///< train, val or test
+  int shard = 0;
+  Settings settings;  ///< in the order in which they are applied
   /// The sampled values by path: "trajectory.position.0" -> "0.12".
   std::vector<std::pair<std::string, std::string>> sampled;
 };

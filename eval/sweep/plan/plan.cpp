@@ -157,7 +157,9 @@ class Planner {
       job.point.dataset_seed = dataset.seed;
       job.name = file_name_part(dataset.name);
       job.config = fixed_path(dataset.scene->simulate);
-      job.output = folder_ / "data" / job.name;
+      job.output = folder_ / "data";
+      if (generate.shards > 1) job.output /= fmt::format("shard-{:02}", dataset.shard);
+      job.output /= job.name;
       Words settings;
       append(settings, dataset.settings);
       append(settings, "--seed", std::to_string(dataset.seed));

@@ -16,8 +16,8 @@ namespace {
 
 using config::Node;
 
-const std::vector<std::string> kDistributions{"uniform", "log_uniform", "integer",
-                                              "normal",  "choose",      "same_as"};
+const std::vector<std::string> kDistributions{"uniform", "log_uniform", "integer", "normal",
+                                              "choose",  "same_as",     "repeat"};
 /// A normal distribution whose bounds lie far from its mean is taken for an error in the file.
 constexpr std::uint64_t kNormalAttempts = 1000;
 constexpr double kMaxBoundDistance = 3;  // [sigma]
@@ -86,6 +86,16 @@ void check_same_as(const Node& root, const Node& node, const std::string& name) 
     reject(node, name, "names '" + node.text + "', which is the same as another key itself");
 }
 
+/// `count` and `item`, and nothing else.
+void check_repeat(const Node& root, const Node& node, const std::string& name) {
+  const config::Entry* count = node.find("count");
+  const config::Entry* item = node.find("item");
+  if (count == nullptr || item == nullptr || node.entries.size() != 2)
+    reject(node, name, "must be {count: n, item: value}");
+  check_value(root, count->value, name + ".count");
+  check_value(root, item->value, name + ".item");
+}
+
 void check_distribution(const Node& root, const config::Entry& distribution,
                         const std::string& name) {
   const Node& node = distribution.value;
@@ -93,6 +103,8 @@ void check_distribution(const Node& root, const config::Entry& distribution,
     if (config::items_of(node, name).empty()) reject(node, name, "holds nothing to choose from");
     for (std::size_t i = 0; i < node.items.size(); ++i)
       check_value(root, node.items[i], config::item_name(name, i));
+  } else if (distribution.key == "repeat") {
+    check_repeat(root, node, name);
   } else if (distribution.key == "same_as") {
     check_same_as(root, node, name);
   } else if (distribution.key == "normal") {
@@ -147,6 +159,7 @@ class ParameterSampler {
       const std::uint64_t chosen = random_.below(node.items.size(), stream_of(path), index_);
       return value(node.items[chosen], path + ".choice");
     }
+    if (kind == "repeat") return repeat(node, path);
     if (kind == "same_as") return value(root_.find(node.text)->value, node.text);
     const std::vector<double> numbers = numbers_of(node, path);
     if (kind == "normal") return number_node(normal(numbers, path));
@@ -159,6 +172,19 @@ class ParameterSampler {
     const double u = random_.uniform(stream_of(path), index_);
     if (kind == "uniform") return number_node(low + (high - low) * u);
     return number_node(low * std::pow(high / low, u));
+  }
+
+  [[nodiscard]] Node repeat(const Node& node, const std::string& path) const {
+    constexpr double kMost = 10000;
+    const Node& stated = node.find("count")->value;
+    const Node sampled = value(stated, path + ".count");
+    const std::optional<double> count = config::number_of(sampled);
+    if (!count || !(*count >= 0 && *count <= kMost))
+      reject(stated, path, "must repeat from 0 to 10000 times");
+    Node list = Node::list();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(*count); ++k)
+      list.items.push_back(value(node.find("item")->value, fmt::format("{}.{}", path, k)));
+    return list;
   }
 
   [[nodiscard]] double normal(const std::vector<double>& numbers, const std::string& path) const {

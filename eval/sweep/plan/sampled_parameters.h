@@ -14,6 +14,8 @@ namespace saccade {
 ///   {integer: [low, high]}          whole numbers, both ends included
 ///   {normal: [mean, sigma]}         or [mean, sigma, low, high]: truncated by rejection
 ///   {choose: [value, ...]}          one of them, equally likely; they may hold distributions
+///   {repeat: {count: n, item: value}}   a list of n values, each sampled by itself; n may be a
+///                                   distribution
 ///   {same_as: key.path}             the sample of another key
 struct SampledParameters {
   config::Node keys = config::Node::map();

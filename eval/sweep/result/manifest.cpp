@@ -56,6 +56,9 @@ void add_facts(const fs::path& folder, Json& row) {
   row["frames"] = counts.frames;
   row["depth_maps"] = counts.depth_maps;
   row["flow_maps"] = counts.flow_maps;
+  row["masks"] = counts.masks;
+  row["normal_maps"] = counts.normal_maps;
+  row["optical_flows"] = counts.optical_flows;
   row["imu_samples"] = counts.imu_samples;
   row["path_length_m"] = record.path_length_m ? Json(*record.path_length_m) : Json();
   row["mean_scene_depth_m"] = record.mean_scene_depth_m ? Json(*record.mean_scene_depth_m) : Json();
@@ -71,11 +74,36 @@ Json manifest_row(const GeneratedDataset& dataset, const SweepJob& job, const fs
   row["path"] = job.output.lexically_relative(fs::absolute(folder).lexically_normal()).string();
   row["status"] = status_text(job.state);
   row["scene"] = dataset.scene->name;
+  row["split"] = dataset.split;
   row["seed"] = dataset.seed;
   row[kSampledKey] = Json::object();
   for (const auto& [key, value] : dataset.sampled) row[kSampledKey][key] = json_value(value);
   if (job.state == JobState::kDone || job.state == JobState::kSkipped) add_facts(job.output, row);
   return row;
+}
+
+/// The configurations that datasets are made from, as they are now.
+Json scene_rows(const GenerateConfig& generate) {
+  Json rows = Json::array();
+  for (const GenerateScene& scene : generate.scenes) {
+    Json row;
+    row["name"] = scene.name;
+    row["file"] = scene.simulate.filename().string();
+    row["sha256"] = sha256_of_file(scene.simulate);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// train.txt, val.txt and test.txt: the paths of the datasets that exist.
+void write_splits(const Json& datasets, const fs::path& folder) {
+  for (const char* split : {"train", "val", "test"}) {
+    std::string paths;
+    for (const Json& row : datasets)
+      if (row["split"] == split && row["status"] == "ok")
+        paths += row["path"].get<std::string>() + "\n";
+    write_atomically(folder / (std::string(split) + ".txt"), paths);
+  }
 }
 
 CsvTable::Cell cell_of(const Json& row, const std::string& key) {
@@ -124,12 +152,17 @@ void write_manifest(const SweepConfig& sweep, const SweepPlan& plan, const fs::p
   manifest["format_version"] = 1;
   manifest["title"] = sweep.title;
   manifest["tool_version"] = version();
+  manifest["commit"] = git_commit();
+  manifest["sweep_sha256"] = sha256_of_file(folder / "sweep.yaml");
   manifest["seed"] = sweep.generate->seed;
+  manifest["classes"] = sweep.generate->classes;
+  manifest["scenes"] = scene_rows(*sweep.generate);
   manifest["datasets"] = Json::array();
   for (std::size_t i = 0; i < plan.simulations.size(); ++i)
     manifest["datasets"].push_back(
         manifest_row(generated_dataset(*sweep.generate, sweep.generate->first + i),
                      plan.simulations[i], folder));
+  write_splits(manifest["datasets"], folder);
   write_atomically(folder / "manifest.json", manifest.dump(1) + "\n");
   manifest_csv(manifest["datasets"]).save(folder / "manifest.csv");
 }

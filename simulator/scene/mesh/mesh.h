@@ -26,6 +26,7 @@ struct Material {
 struct Triangle {
   std::array<std::uint32_t, 3> corners;  ///< indices into the mesh's vertices
   std::uint32_t material;                ///< index into the mesh's materials
+  std::uint32_t node = 0;  ///< index into the mesh's nodes, where it has names for them
 };
 
 /// A camera that a mesh file holds, in its coordinates: shown by `saccade info`, not used.
@@ -51,6 +52,7 @@ struct Mesh {
   std::vector<double> colours;           ///< linear grey; replaces the albedo without a texture
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  std::vector<std::string> nodes{};  ///< names of the file's nodes that have triangles
   MeshExtras extras{};
 };
 

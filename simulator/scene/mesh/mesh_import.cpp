@@ -94,7 +94,7 @@ class Flattener {
     }
     if (has_opacities(part)) remarks_.ignore("opacity of vertices", source_name_);
     // Vertices stay in any case: a model's size is that of all its parts.
-    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first));
+    if (!imported.invisible) add_faces(part, static_cast<std::uint32_t>(first), instance.node);
   }
 
   [[nodiscard]] Mesh take() {
@@ -107,10 +107,10 @@ class Flattener {
     return channel < part.uvs.size() && !part.uvs[channel].empty();
   }
 
-  void add_faces(const ModelPart& part, std::uint32_t first) {
+  void add_faces(const ModelPart& part, std::uint32_t first, std::uint32_t node) {
     const std::uint32_t material = coloured_material(part);
     for (const auto& [a, b, c] : part.triangles)
-      mesh_.triangles.push_back({{first + a, first + b, first + c}, material});
+      mesh_.triangles.push_back({{first + a, first + b, first + c}, material, node});
   }
 
   /// Linear vertex colours multiply a texture as well. The factor of a material does that where
@@ -219,6 +219,30 @@ Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& s
                          textures_.colour(source, *options.texture, wrap, source_name).grey);
 }
 
+Mesh MeshImporter::with_surface(Mesh mesh, const MeshSurface& surface, const std::string& user) {
+  if (surface.texture) {
+    if (std::ranges::all_of(mesh.uvs, [](const Eigen::Vector2d& uv) { return uv.isZero(); }))
+      throw InputError(user, "has no texture coordinates for the 'texture' that the scene states");
+    const FileLocation location = FileLocation::parse(*surface.texture);
+    const FileSource& source =
+        sources_.try_emplace(location.archive, location.archive).first->second;
+    const TexturePair pair =
+        textures_.colour(source, location.file, {}, user, surface.texture_seed);
+    for (Material& material : mesh.materials) {
+      material.texture = pair.grey;
+      material.factor = 1;
+      if (pair.grey == nullptr) material.albedo = 0.5;
+    }
+    if (pair.grey == nullptr) mesh.colours.clear();
+  }
+  for (Material& material : mesh.materials) {
+    material.albedo *= surface.reflectance;
+    material.factor *= surface.reflectance;
+  }
+  for (double& colour : mesh.colours) colour *= surface.reflectance;
+  return mesh;
+}
+
 Mesh MeshImporter::read(const fs::path& file) {
   const std::string problem = missing_file_problem(file);
   if (!problem.empty()) throw InputError(file.string(), problem);
@@ -253,6 +277,7 @@ Mesh MeshImporter::read(const fs::path& file) {
   Flattener flattener(model, used_materials(model, read_material), source_name, remarks_);
   for (const ModelInstance& instance : model.instances) flattener.add(instance);
   Mesh mesh = flattener.take();
+  mesh.nodes = model.nodes;
   mesh.extras = extras_of(model, gltf);
   return mesh;
 }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
 
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/mesh/material_import.h"
@@ -10,6 +13,16 @@
 #include "simulator/scene/texture/texture_library.h"
 
 namespace saccade {
+
+/// What a scene states about the surface of a mesh, other than its file.
+struct MeshSurface {
+  std::optional<std::filesystem::path> texture;  ///< in place of all colours
+  std::optional<std::uint64_t> texture_seed;     ///< of a generated one
+  double reflectance = 1;                        ///< multiplies every albedo
+
+  /// False: as the file states it.
+  [[nodiscard]] bool is_changed() const { return texture || reflectance != 1; }
+};
 
 /// Reads meshes through assimp, from disk or from within zip archives, with their materials and
 /// textures. Vertices keep the axes and units of their file; nodes are flattened, polygons
@@ -29,6 +42,10 @@ class MeshImporter {
   /// with a texture but no texture coordinates; and where assimp's importer crashes, hangs or takes
   /// too much memory (import_model()).
   [[nodiscard]] Mesh read(const std::filesystem::path& file);
+
+  /// The mesh with another surface. Throws InputError naming the texture where it is missing or
+  /// wrong, and `user` where the mesh has no texture coordinates for it.
+  [[nodiscard]] Mesh with_surface(Mesh mesh, const MeshSurface& surface, const std::string& user);
 
   /// What the meshes show otherwise than their files say.
   [[nodiscard]] SceneRemarks& remarks() { return remarks_; }

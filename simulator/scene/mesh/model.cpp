@@ -125,7 +125,7 @@ void visit(Archive& archive, T& value) {
     archive(value.material), archive(value.vertices), archive(value.normals), archive(value.uvs);
     archive(value.colours), archive(value.triangles);
   } else if constexpr (kIsA<T, ModelInstance>) {
-    archive(value.part), archive(value.file_from_part);
+    archive(value.part), archive(value.node), archive(value.file_from_part);
   } else if constexpr (kIsA<T, ModelPicture>) {
     archive(value.hint), archive(value.width), archive(value.height), archive(value.bytes);
   } else if constexpr (kIsA<T, ModelCamera>) {
@@ -135,7 +135,7 @@ void visit(Archive& archive, T& value) {
     static_assert(kIsA<T, Model>);
     archive(value.materials), archive(value.parts), archive(value.instances);
     archive(value.pictures), archive(value.cameras), archive(value.lights);
-    archive(value.animations), archive(value.opened);
+    archive(value.animations), archive(value.opened), archive(value.nodes);
   }
 }
 

@@ -43,6 +43,7 @@ struct ModelPart {
 /// A part in its place.
 struct ModelInstance {
   std::uint32_t part = 0;
+  std::uint32_t node = 0;                   ///< index into the model's names of nodes
   std::array<double, 16> file_from_part{};  ///< affine, by column
 };
 
@@ -66,6 +67,7 @@ struct Model {
   std::vector<ModelMaterial> materials;
   std::vector<ModelPart> parts;
   std::vector<ModelInstance> instances;
+  std::vector<std::string> nodes;  ///< names of those that have instances
   std::vector<ModelPicture> pictures;
   std::vector<ModelCamera> cameras;
   std::uint32_t lights = 0, animations = 0;

@@ -196,8 +196,10 @@ Eigen::Affine3d transform_of(const aiMatrix4x4& m) {
 
 void add_instances(const aiNode& node, const Eigen::Affine3d& file_from_parent, Model& model) {
   const Eigen::Affine3d file_from_node = file_from_parent * transform_of(node.mTransformation);
+  if (node.mNumMeshes > 0) model.nodes.emplace_back(node.mName.C_Str());
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     ModelInstance& instance = model.instances.emplace_back();
+    instance.node = static_cast<std::uint32_t>(model.nodes.size() - 1);
     instance.part = node.mMeshes[i];
     std::copy_n(file_from_node.matrix().data(), instance.file_from_part.size(),
                 instance.file_from_part.begin());
@@ -255,7 +257,7 @@ bool is_consistent(const Model& model) {
   };
   return std::ranges::all_of(model.parts, is_part_fine) &&
          std::ranges::all_of(model.instances, [&model](const ModelInstance& instance) {
-           return instance.part < model.parts.size();
+           return instance.part < model.parts.size() && instance.node < model.nodes.size();
          });
 }
 

@@ -24,13 +24,15 @@ Bytes read_texture(const FileSource& source, const fs::path& file, const std::st
 }
 
 Picture load_colour(const FileSource& source, const fs::path& file, const std::string& user,
-                    SceneRemarks& remarks) {
+                    std::optional<std::uint64_t> seed, SceneRemarks& remarks) {
   const std::string place = FileLocation{source.archive(), file}.text();
   const Bytes bytes = read_texture(source, file, user);
   if (!place.ends_with(".texture.yaml")) return decode_picture(bytes, place, remarks);
   if (!source.archive().empty())
     throw InputError(place, "texture parameters cannot be read from within an archive");
-  return {generate_texture(read_texture_options(file)), {}};
+  TextureOptions options = read_texture_options(file);
+  options.seed = seed.value_or(options.seed);
+  return {generate_texture(options), {}};
 }
 
 }  // namespace
@@ -44,12 +46,13 @@ TexturePair make_textures(Picture picture, const WrapModes& wrap, float alpha_sc
 }
 
 TexturePair TextureLibrary::colour(const FileSource& source, const fs::path& file,
-                                   const WrapModes& wrap, const std::string& user) {
-  const Key key{FileLocation{source.archive(), file}.text(), wrap};
+                                   const WrapModes& wrap, const std::string& user,
+                                   std::optional<std::uint64_t> seed) {
+  const SeededKey key{{FileLocation{source.archive(), file}.text(), wrap}, seed};
   const auto known = colours_.find(key);
   if (known != colours_.end()) return known->second;
   return colours_[key] = load_or_grey(missing_, remarks_, [&] {
-           return make_textures(load_colour(source, file, user, remarks_), wrap);
+           return make_textures(load_colour(source, file, user, seed, remarks_), wrap);
          });
 }
 

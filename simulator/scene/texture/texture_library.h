@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/error.h"
@@ -51,9 +53,11 @@ class TextureLibrary {
       : missing_(missing), remarks_(remarks) {}
 
   /// `file` of `source`: a picture, or parameters for generate_texture() (*.texture.yaml, on disk).
-  /// Throws InputError naming the picture and `user`, which asks for it.
+  /// `seed`: of generated ones, in place of the file's. Throws InputError naming the picture and
+  /// `user`, which asks for it.
   [[nodiscard]] TexturePair colour(const FileSource& source, const std::filesystem::path& file,
-                                   const WrapModes& wrap, const std::string& user);
+                                   const WrapModes& wrap, const std::string& user,
+                                   std::optional<std::uint64_t> seed = std::nullopt);
 
   /// The same picture read as an alpha map.
   [[nodiscard]] std::shared_ptr<const Texture> opacity(const FileSource& source,
@@ -63,9 +67,10 @@ class TextureLibrary {
 
  private:
   using Key = std::pair<std::string, WrapModes>;
+  using SeededKey = std::pair<Key, std::optional<std::uint64_t>>;
   MissingTexture missing_;
   SceneRemarks& remarks_;
-  std::map<Key, TexturePair> colours_;
+  std::map<SeededKey, TexturePair> colours_;
   std::map<Key, std::shared_ptr<const Texture>> opacities_;
 };
 

@@ -15,6 +15,10 @@
 #include "core/io/events/events_h5.h"
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
+#include "core/io/labels/box_file.h"
+#include "core/io/labels/label_images.h"
+#include "core/io/labels/label_record.h"
+#include "core/io/labels/optical_flow_file.h"
 #include "core/panorama.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
@@ -190,9 +194,51 @@ TEST_F(SimulatePlane, LabelsEveryEvent) {
     EXPECT_NEAR(labels.flow_x[i], flow.x(), 1e-4);
     EXPECT_NEAR(labels.flow_y[i], flow.y(), 1e-4);
     EXPECT_EQ(labels.object[i], 0);
+    EXPECT_EQ(labels.instance[i], 1);
+    EXPECT_EQ(labels.class_id[i], 0);
     EXPECT_EQ(labels.origin[i], 0);
   }
   EXPECT_TRUE(verify_hashes(output()).empty());
+}
+
+TEST_F(SimulatePlane, WritesMasksBoxesNormalsAndOpticalFlow) {
+  SimulationConfig labelled = config(
+      "frames: {rate_hz: 20}\ngroundtruth: {masks_rate_hz: 8, normals_rate_hz: 4, "
+      "optical_flow_rate_hz: 20}\n");
+  labelled.scene.meshes[0].class_name = "wall";
+  const SimulationReport report = simulate(labelled, output());
+  // Frames at 0, 0.05 ... 0.25 s; at 8 Hz also 0.125 s.
+  EXPECT_EQ(report.cameras[0].record.counts->masks, 7);
+  EXPECT_EQ(report.cameras[0].record.counts->normal_maps, 6);
+  EXPECT_EQ(report.cameras[0].record.counts->optical_flows, 5);
+  const LabelRecord record = read_label_record(output() / "labels.yaml");
+  ASSERT_EQ(record.classes.size(), 1U);
+  EXPECT_EQ(record.classes[0].name, "wall");
+  ASSERT_EQ(record.instances.size(), 1U);
+  EXPECT_EQ(record.instances[0].class_id, 1);
+  const std::vector<StampedFile> masks = read_file_list(output() / "masks.txt");
+  ASSERT_EQ(masks.size(), 7U);
+  EXPECT_EQ(masks[3].t_s, 0.125);
+  EXPECT_EQ(read_mask(masks[3].file).instances, ImageU16(61, 46, 1));
+  EXPECT_EQ(read_mask(masks[3].file).classes, ImageU8(61, 46, 1));
+  const std::vector<InstanceBox> boxes = read_boxes(output() / "boxes.txt");
+  ASSERT_EQ(boxes.size(), 7U);
+  EXPECT_EQ(boxes[3], (InstanceBox{0.125, 1, 1, 0, 0, 60, 45, 1}));
+  EXPECT_EQ(read_normals(output() / "normals" / "normals_00000000.exr").z, ImageF(61, 46, -1));
+  const auto flows = read_optical_flow_list(output() / "optical_flow.txt");
+  ASSERT_EQ(flows.size(), 5U);
+  const Eigen::Vector2d motion = -100 / plane_.distance_m * plane_.velocity * 0.05;
+  const OpticalFlowPair flow = read_optical_flow(flows[2].forward);
+  EXPECT_NEAR(flow.forward.u(30, 20), motion.x(), 1.0 / 256 + 1e-6);
+  EXPECT_NEAR(flow.backward.v(30, 20), -motion.y(), 1.0 / 256 + 1e-6);
+  EXPECT_TRUE(verify_hashes(output()).empty());
+}
+
+TEST_F(SimulatePlane, ThereAreNoLabelsUnlessTheyAreAskedFor) {
+  simulate(config(), output());
+  for (const char* name :
+       {"labels.yaml", "masks.txt", "boxes.txt", "normals.txt", "optical_flow.txt"})
+    EXPECT_FALSE(fs::exists(output() / name)) << name;
 }
 
 TEST_F(SimulatePlane, ExposureAveragesLinearRadiance) {
@@ -226,7 +272,9 @@ TEST_F(SimulatePlane, BytesDoNotDependOnTheThreads) {
   std::map<std::string, std::string> first;
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);
-    simulate(config("imu: {rate_hz: 200}\n"), output());
+    simulate(config("imu: {rate_hz: 200}\ngroundtruth: {masks_rate_hz: 10, normals_rate_hz: 10, "
+                    "optical_flow_rate_hz: 10, event_labels: true}\n"),
+             output());
     const auto files = contents(output());
     if (first.empty()) first = files;
     ASSERT_EQ(files.size(), first.size());

@@ -141,6 +141,95 @@ TEST_F(SceneFile, PrintsWhatItReads) {
   EXPECT_EQ(config::print(options(printed)), printed);
 }
 
+/// Two squares, each an object of its own.
+std::string two_squares_obj() {
+  return "o left\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+         "o right\nv 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 5 6 7 8\n";
+}
+
+TEST_F(SceneFile, InstancesAndClassesFollowTheMeshes) {
+  write("two.obj", two_squares_obj());
+  const Scene scene = build_scene(options(
+      "meshes:\n"
+      "  - {file: two.obj, class: table, transform: {translation: [0, 0, 3]}}\n"
+      "  - {file: two.obj, instances: nodes, class: chair, transform: {translation: [0, 2, 3]}}\n"
+      "  - {file: two.obj, transform: {translation: [0, 4, 3]}}\n"
+      "  - {file: two.obj, class: table, transform: {translation: [0, 6, 3]}}\n"));
+  const auto instance_at = [&](double x, double y) {
+    const Ray ray{{x, y, 0}, Eigen::Vector3d::UnitZ()};
+    TriangleId triangle = kNothing;
+    scene.visible({&ray, 1}, {&triangle, 1});
+    return scene.instance(triangle);
+  };
+  EXPECT_EQ(instance_at(0.5, 0.5), 1);
+  EXPECT_EQ(instance_at(2.5, 0.5), 1);
+  EXPECT_EQ(instance_at(0.5, 2.5), 2);
+  EXPECT_EQ(instance_at(2.5, 2.5), 3);
+  EXPECT_EQ(instance_at(2.5, 4.5), 4);
+  EXPECT_EQ(instance_at(0.5, 6.5), 5);
+  EXPECT_EQ(instance_at(1.5, 0.5), 0);
+  ASSERT_EQ(scene.instances().size(), 5U);
+  EXPECT_EQ(scene.instances()[1].name, "two/left");
+  EXPECT_EQ(scene.instances()[2].name, "two/right");
+  EXPECT_EQ(scene.instances()[2].object, 1U);
+  EXPECT_EQ(scene.instances()[3].name, "two");
+  const std::vector<int> classes{0, 1, 2, 2, 0, 1};
+  for (std::uint16_t k = 0; k < 6; ++k) EXPECT_EQ(scene.class_of(k), classes[k]) << k;
+}
+
+TEST_F(SceneFile, ClassesHaveTheNumbersThatAListGivesThem) {
+  write("two.obj", two_squares_obj());
+  const std::string mesh = "meshes: [{file: two.obj, class: chair}]\n";
+  const Scene scene = build_scene(options(mesh + "classes: [table, lamp, chair]\n"));
+  EXPECT_EQ(scene.class_of(1), 3);
+  EXPECT_THAT(error_of(mesh + "classes: [table, chairs]\n"),
+              AllOf(HasSubstr("scene.yaml:2"), HasSubstr("did you mean 'chairs'?")));
+  EXPECT_THAT(error_of(mesh + "classes: [chair, chair]\n"), HasSubstr("hold a name twice"));
+  EXPECT_THAT(error_of("meshes: [{file: two.obj, instances: node}]\n"),
+              HasSubstr("did you mean 'nodes'?"));
+}
+
+TEST_F(SceneFile, MoreMeshesFollowTheOthers) {
+  write("two.obj", two_squares_obj());
+  const SceneOptions both =
+      options("meshes: [{file: two.obj, class: a}]\nmore_meshes: [{file: two.obj, class: b}]\n");
+  ASSERT_EQ(both.meshes.size(), 2U);
+  EXPECT_EQ(both.meshes[1].class_name, "b");
+  EXPECT_EQ(class_names(both), (std::vector<std::string>{"a", "b"}));
+  const SceneOptions again = options(config::print(both));
+  EXPECT_EQ(again.meshes.size(), 2U);
+}
+
+TEST_F(SceneFile, TheSurfaceOfAMeshCanBeReplaced) {
+  write("square.obj", testing::square_obj("square.mtl"));
+  write("square.mtl", "newmtl surface\nKd 1 1 1\n");
+  write("plain.obj", two_squares_obj());
+  write("a.texture.yaml", "size_m: [1, 1]\ntexels_per_m: 16\nseed: 5\n");
+  write("b.texture.yaml", "size_m: [1, 1]\ntexels_per_m: 16\nseed: 6\n");
+  const auto radiances = [&](const std::string& keys) {
+    const Scene scene = build_scene(
+        options("meshes: [{file: square.obj" + keys + ", transform: {translation: [0, 0, 3]}}]\n"));
+    std::vector<double> all;
+    for (const double x : {0.1, 0.4, 0.7})
+      for (const double y : {0.2, 0.5, 0.8})
+        all.push_back(see(scene, {{x, y, 0}, Eigen::Vector3d::UnitZ()}).radiance);
+    return all;
+  };
+  EXPECT_NEAR(radiances("").at(4), 1, 1e-6);
+  EXPECT_NEAR(radiances(", reflectance: 0.25").at(4), 0.25, 1e-6);
+  const std::vector<double> a = radiances(", texture: a.texture.yaml");
+  EXPECT_NE(a, radiances(", texture: b.texture.yaml"));
+  EXPECT_EQ(a, radiances(", texture: b.texture.yaml, texture_seed: 5"));
+  const std::vector<double> half = radiances(", texture: a.texture.yaml, reflectance: 0.5");
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(half[i], 0.5 * a[i], 1e-12);
+  EXPECT_THAT(error_of("meshes: [{file: plain.obj, texture: a.texture.yaml}]\n"),
+              HasSubstr("plain.obj: has no texture coordinates"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj, texture: none.png}]\n"),
+              HasSubstr("scene.yaml:1"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj, texture_seed: 1}]\n"),
+              HasSubstr("needs a 'texture' that is a *.texture.yaml"));
+}
+
 TEST_F(SceneFile, MalformedScenesAreErrorsWithTheirPlace) {
   write("square.obj", testing::square_obj());
   write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");

@@ -131,6 +131,8 @@ EventLabels numbered_labels(std::size_t count) {
     labels.flow_x[i] = -static_cast<float>(i);
     labels.flow_y[i] = 3;
     labels.object[i] = static_cast<std::int32_t>(i % 7) - 1;
+    labels.instance[i] = static_cast<std::uint16_t>(i % 65536);
+    labels.class_id[i] = static_cast<std::uint8_t>(i % 5);
     labels.origin[i] = static_cast<std::uint8_t>(i % 4);
   }
   return labels;
@@ -155,11 +157,32 @@ TEST_F(DatasetFolder, LabelsBelongToTheEvents) {
   EXPECT_EQ(all.flow_y, expected.flow_y);
   EXPECT_EQ(all.object, expected.object);
   EXPECT_EQ(all.origin, expected.origin);
+  EXPECT_EQ(all.instance, expected.instance);
+  EXPECT_EQ(all.class_id, expected.class_id);
   const double middle_s = seconds_from_ns(dataset.load_events()[count / 2].t_ns);
   const std::size_t before = dataset.load_events(0, middle_s).size();
   const EventLabels late = dataset.load_labels(middle_s);
   ASSERT_EQ(late.size(), count - before);
   EXPECT_EQ(late.depth.front(), expected.depth[before]);
+}
+
+TEST_F(DatasetFolder, LabelsOfEarlierVersionsHaveObjectsForInstances) {
+  {
+    DatasetWriter writer(written_, kCamera);
+    writer.write_events(random_events(10));
+    const EventLabels labels = numbered_labels(10);
+    const std::vector<H5Source> columns{
+        h5_source("depth", labels.depth), h5_source("flow_x", labels.flow_x),
+        h5_source("flow_y", labels.flow_y), h5_source("object", labels.object),
+        h5_source("origin", labels.origin)};
+    H5TableWriter table(written_ / "labels.h5", "labels", columns);
+    table.append(columns);
+    table.close();
+    (void)writer.finish({});
+  }
+  const EventLabels labels = Dataset::open(written_).load_labels();
+  EXPECT_EQ(labels.instance, (std::vector<std::uint16_t>{0, 1, 2, 3, 4, 5, 6, 0, 1, 2}));
+  EXPECT_EQ(labels.class_id, std::vector<std::uint8_t>(10));
 }
 
 TEST_F(DatasetFolder, LabelsOfOtherEventsAreAnError) {

@@ -71,12 +71,62 @@ TEST(Generate, DrawsScenesByTheirWeights) {
   EXPECT_NEAR(counts["walls"], 0.75 * kCount, 5 * std::sqrt(kCount * 0.75 * 0.25));
 }
 
+TEST(Generate, EveryBlockHasItsPartsAndADatasetKeepsItsOwn) {
+  const TemporaryFolder folder;
+  const std::string yaml =
+      "generate: {count: 1, seed: 7, split: {train: 80, val: 10, test: 10}, "
+      "scenes: [{simulate: walls.yaml}]}\n";
+  const SweepConfig sweep = read_sweep(folder, yaml);
+  std::string orders;
+  for (std::uint64_t block = 0; block < 20; ++block) {
+    std::map<std::string, int> counts;
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      const std::string split = generated_dataset(*sweep.generate, 10 * block + i).split;
+      ++counts[split];
+      orders += split[1];
+    }
+    EXPECT_EQ(counts["train"], 8);
+    EXPECT_EQ(counts["val"], 1);
+    EXPECT_EQ(counts["test"], 1);
+  }
+  EXPECT_NE(orders.substr(0, 10), orders.substr(10, 10));
+  SweepConfig other = sweep;
+  other.generate->seed = 8;
+  std::string other_orders;
+  for (std::uint64_t i = 0; i < 200; ++i)
+    other_orders += generated_dataset(*other.generate, i).split[1];
+  EXPECT_NE(orders, other_orders) << "the seed shuffles";
+}
+
+TEST(Generate, AScenesOwnSplitWinsAndShardsTakeTurns) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep =
+      read_sweep(folder,
+                 "generate: {count: 6, shards: 4, classes: [box, a chair], split: {train: 1}, "
+                 "scenes: [{simulate: walls.yaml, split: test}, {simulate: fast.yaml}]}\n");
+  const SweepPlan plan = plan_sweep(sweep, "/out");
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    const GeneratedDataset dataset = generated_dataset(*sweep.generate, i);
+    EXPECT_EQ(dataset.split, dataset.scene->name == "walls" ? "test" : "train");
+    EXPECT_EQ(plan.simulations[i].output,
+              "/out/data/shard-0" + std::to_string(i % 4) + "/" + plan.simulations[i].name);
+    EXPECT_THAT(plan.simulations[i].commands[0],
+                ::testing::Contains("scene.classes=[box, \"a chair\"]"));
+  }
+}
+
 TEST(Generate, SaysWhatIsWrongAndWhere) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& yaml) {
     return error_of([&] { return read_sweep(folder, yaml).title.empty(); });
   };
   const std::string scenes = "scenes: [{simulate: walls.yaml}]";
+  EXPECT_THAT(error("generate: {count: 1, split: {train: 0}, " + scenes + "}\n"),
+              HasSubstr("must not be 0 like all others"));
+  EXPECT_THAT(error("generate: {count: 1, split: {trian: 1}, " + scenes + "}\n"),
+              HasSubstr("did you mean 'train'?"));
+  EXPECT_THAT(error("generate: {count: 1, scenes: [{simulate: walls.yaml, split: tset}]}\n"),
+              HasSubstr("test"));
   EXPECT_THAT(error("generate: {count: 0, " + scenes + "}\n"),
               HasSubstr("sweep.yaml:1: generate.count"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + ", draw: {seed: 3}}\n"),

@@ -83,6 +83,29 @@ TEST(SampledParameters, StandAnywhereInAValue) {
   EXPECT_EQ(number(parameters, "on", 3), number(parameters, "off", 3));
 }
 
+TEST(SampledParameters, RepeatMakesAListOfItsOwnSamples) {
+  const SampledParameters parameters = parse_parameters(
+      "a: {repeat: {count: {integer: [0, 3]}, item: {x: {uniform: [0, 1]}, kind: box}}}\n");
+  std::map<std::size_t, int> lengths;
+  for (std::uint64_t index = 0; index < 100; ++index) {
+    const config::Node list = sample_values(parameters, 1, index).find("a")->value;
+    ++lengths[list.items.size()];
+    for (std::size_t k = 0; k < list.items.size(); ++k) {
+      EXPECT_EQ(list.items[k].find("kind")->value.text, "box");
+      const std::string x = list.items[k].find("x")->value.text;
+      if (k > 0) {
+        EXPECT_NE(x, list.items[0].find("x")->value.text);
+      }
+    }
+  }
+  EXPECT_EQ(lengths.size(), 4U);
+  const auto error = [](const std::string& yaml) {
+    return error_of([&] { return sample_values(parse_parameters(yaml), 1, 0).entries.size(); });
+  };
+  EXPECT_THAT(error("a: {repeat: {count: 2}}\n"), HasSubstr("must be {count: n, item: value}"));
+  EXPECT_THAT(error("a: {repeat: {count: -1, item: 2}}\n"), HasSubstr("from 0 to 10000 times"));
+}
+
 TEST(SampledParameters, SayWhatIsWrongAndWhere) {
   const auto error = [](const std::string& yaml) {
     return error_of([&] { return parse_parameters("first: 1\n" + yaml).keys.entries.empty(); });
