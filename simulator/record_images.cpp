@@ -22,18 +22,18 @@ double image_speed(const ImageRenderer& renderer, const Spline& motion, double t
   return static_cast<double>(speed);
 }
 
-std::vector<StampedPose> exposure_poses(const CameraRecording& recording,
-                                        const ImageRenderer& renderer, double t_s) {
+ImageF exposed_image(const CameraRecording& recording, const ImageRenderer& renderer, double t_s) {
+  const double exposure_s = recording.config.frames.exposure_s;
   std::vector<StampedPose> poses;
-  for (const double t : exposure_times(renderer, recording.world_from_camera, t_s,
-                                       recording.config.frames.exposure_s))
+  for (const double t : exposure_times(renderer, recording.world_from_camera, t_s, exposure_s))
     poses.push_back(recording.pose(t));
-  return poses;
+  const Exposure exposure(recording.world_from_camera, t_s, exposure_s);
+  return renderer.radiance(poses, exposure.length_s() / static_cast<double>(poses.size()));
 }
 
 void record_frame(const CameraRecording& recording, const ImageRenderer& renderer,
                   std::size_t index, double t_s) {
-  const ImageF exposed = renderer.radiance(exposure_poses(recording, renderer, t_s));
+  const ImageF exposed = exposed_image(recording, renderer, t_s);
   if (recording.config.frames.radiance == FrameOptions::Radiance::kExposed) {
     recording.writer.write_frame(index, t_s, exposed);
   } else {
@@ -49,8 +49,8 @@ std::vector<double> exposure_times(const ImageRenderer& renderer, const Spline& 
   constexpr double kMotion_px = 0.25;
   constexpr double kMaxTimes = 256;
   if (exposure_s <= 0) return {t_s};
-  const double from_s = std::max(world_from_camera.start_s(), t_s - 0.5 * exposure_s);
-  const double to_s = std::min(world_from_camera.end_s(), t_s + 0.5 * exposure_s);
+  const Exposure exposure(world_from_camera, t_s, exposure_s);
+  const auto [from_s, to_s] = exposure;
   // At several instants, since the camera may turn round within the exposure.
   double speed = 0;
   for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})

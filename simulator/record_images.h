@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/spline/spline.h"
@@ -7,6 +8,16 @@
 #include "simulator/sensor/image_renderer.h"
 
 namespace saccade {
+
+/// An exposure of `exposure_s` centred on `t_s` and cut to the motion's span.
+struct Exposure {
+  double from_s, to_s;
+
+  Exposure(const Spline& world_from_camera, double t_s, double exposure_s)
+      : from_s(std::max(world_from_camera.start_s(), t_s - 0.5 * exposure_s)),
+        to_s(std::min(world_from_camera.end_s(), t_s + 0.5 * exposure_s)) {}
+  [[nodiscard]] double length_s() const { return to_s - from_s; }
+};
 
 /// The instants whose views average to the frame at `t_s`: the midpoints of equal parts of the
 /// exposure, which is centred on `t_s` and cut to the motion's span; as many as keep the image

@@ -9,7 +9,6 @@
 #include "simulator/sensor/rays/tile_trace.h"
 
 namespace saccade {
-namespace {}  // namespace
 
 ImageRenderer::ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
                              TextureFilter filter)
@@ -18,7 +17,7 @@ ImageRenderer::ImageRenderer(const Scene& scene, const PinholeCamera& camera, in
       radiance_rays_(camera, rays_per_pixel),
       centre_rays_(camera, 1) {}
 
-ImageF ImageRenderer::radiance(std::span<const StampedPose> poses) const {
+ImageF ImageRenderer::radiance(std::span<const StampedPose> poses, double span_s) const {
   ImageF image(camera().width, camera().height);
   const std::size_t per_pixel = radiance_rays_.rays_per_pixel();
   const double count = static_cast<double>(per_pixel * poses.size());
@@ -28,7 +27,7 @@ ImageF ImageRenderer::radiance(std::span<const StampedPose> poses) const {
     std::array<double, kTilePixels> sums{};
     for (const StampedPose& pose : poses) {
       const Eigen::Matrix3d rotation = pose.world_from_camera.rotation_matrix();
-      trace_tile(scene_, rays, pose, [&](std::size_t k, const Ray& ray, TriangleId triangle) {
+      const auto add = [&](std::size_t k, const Ray& ray, TriangleId triangle) {
         sums[k / per_pixel] +=
             filter_ == TextureFilter::kBilinear
                 ? scene_.shade(ray, triangle).radiance
@@ -36,7 +35,8 @@ ImageF ImageRenderer::radiance(std::span<const StampedPose> poses) const {
                       .shade(ray, triangle,
                              differential_in_world(radiance_rays_, rotation, rays[k]))
                       .radiance;
-      });
+      };
+      trace_tile(scene_, rays, pose, add, span_s);
     }
     for (std::size_t i = 0; i < tile.pixels(); ++i)
       image(tile.x(i), tile.y(i)) = static_cast<float>(sums[i] / count);

@@ -21,8 +21,9 @@ class ImageRenderer {
   ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
                 TextureFilter filter = TextureFilter::kBilinear);
 
-  /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur).
-  [[nodiscard]] ImageF radiance(std::span<const StampedPose> poses) const;
+  /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur), each
+  /// of which stands for `span_s` around its time: over that flickering light is averaged.
+  [[nodiscard]] ImageF radiance(std::span<const StampedPose> poses, double span_s = 0) const;
 
   /// z depth [m]; 0 = background.
   [[nodiscard]] ImageF depth(const StampedPose& pose) const;
