@@ -38,7 +38,7 @@ struct LightOptions {
   Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();
   double intensity = 1;
   bool shadows = true;
-  std::optional<FlickerOptions> flicker;  ///< of its intensity
+  std::optional<FlickerOptions> flicker = std::nullopt;  ///< of its intensity
 };
 
 enum class Lighting { kNone, kLambertian };
