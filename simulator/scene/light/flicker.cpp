@@ -19,7 +19,7 @@ bool meets(double from, double to, double offset) {
 
 /// Of sin(2 pi x) over [from, to].
 LightRange sine_range(double from, double to) {
-  const auto [low, high] = std::minmax(std::sin(2 * pi * from), std::sin(2 * pi * to));
+  const auto [low, high] = std::minmax({std::sin(2 * pi * from), std::sin(2 * pi * to)});
   LightRange range{low, high, 0, 0};
   if (meets(from, to, 0.25)) range.high = 1;
   if (meets(from, to, 0.75)) range.low = -1;
@@ -32,7 +32,7 @@ LightRange rectified_range(double from, double to) {
   const auto value = [](double x) { return std::sin(pi * fraction(x)); };
   const auto slope = [](double x) { return std::cos(pi * fraction(x)); };
   const double rounding = 1e-12 * (1 + std::abs(to));
-  const auto [low, high] = std::minmax(value(from), value(to));
+  const auto [low, high] = std::minmax({value(from), value(to)});
   LightRange range{low, high, slope(to - rounding), slope(from + rounding)};
   if (meets(from, to, 0.5)) range.high = 1;
   if (meets(from, to, 0)) range.low = 0;

