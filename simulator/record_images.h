@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "core/spline/spline.h"
@@ -9,16 +8,6 @@
 
 namespace saccade {
 
-/// An exposure of `exposure_s` centred on `t_s` and cut to the motion's span.
-struct Exposure {
-  double from_s, to_s;
-
-  Exposure(const Spline& world_from_camera, double t_s, double exposure_s)
-      : from_s(std::max(world_from_camera.start_s(), t_s - 0.5 * exposure_s)),
-        to_s(std::min(world_from_camera.end_s(), t_s + 0.5 * exposure_s)) {}
-  [[nodiscard]] double length_s() const { return to_s - from_s; }
-};
-
 /// The instants whose views average to the frame at `t_s`: the midpoints of equal parts of the
 /// exposure, which is centred on `t_s` and cut to the motion's span; as many as keep the image
 /// motion between two of them below a quarter of a pixel, but at most 256 (so a blur beyond 64 px
@@ -26,6 +15,15 @@ struct Exposure {
 [[nodiscard]] std::vector<double> exposure_times(const ImageRenderer& renderer,
                                                  const Spline& world_from_camera, double t_s,
                                                  double exposure_s);
+
+/// The exposures of the rows of the frame at `t_s`. With a rolling shutter row y of H is exposed
+/// around
+///   t_s + (y / (H - 1) - 1/2) readout_s
+/// each as exposure_times() has it, all with the same number of views; what would be outside of the
+/// motion's span is exposed at its end.
+[[nodiscard]] std::vector<RowExposure> row_exposures(const ImageRenderer& renderer,
+                                                     const Spline& world_from_camera, double t_s,
+                                                     double exposure_s, double readout_s);
 
 /// Writes frames, depth maps and motion fields, in parallel; those that an interrupted program left
 /// behind complete are kept.
