@@ -37,14 +37,14 @@ double row_s(int y, double t_s) { return t_s + (y / 20.0 - 0.5) * kReadout_s; }
 TEST(RollingShutter, ShearsAMovingEdge) {
   const Scene scene = edge();
   const ImageRenderer renderer(scene, kCamera, 1);
-  const ImageF image = renderer.radiance(row_exposures(renderer, transit(), 0.51, 0, kReadout_s));
+  const ImageF image = renderer.radiance(row_exposures(renderer, transit(), 0.5103, 0, kReadout_s));
   for (int y = 0; y < kCamera.height; ++y) {
-    const double at_px = edge_px(row_s(y, 0.51));
+    const double at_px = edge_px(row_s(y, 0.5103));
     for (int x = 0; x < kCamera.width; ++x)
       EXPECT_EQ(image(x, y), x < at_px ? 0.5F : 1.0F) << x << " " << y;
   }
   // 200 px/s x 30 ms.
-  EXPECT_NEAR(edge_px(row_s(0, 0.51)) - edge_px(row_s(20, 0.51)), 6, 1e-9);
+  EXPECT_NEAR(edge_px(row_s(0, 0.5103)) - edge_px(row_s(20, 0.5103)), 6, 1e-9);
 }
 
 TEST(RollingShutter, BlursEveryRowOverItsOwnExposure) {
