@@ -22,18 +22,58 @@ double image_speed(const ImageRenderer& renderer, const Spline& motion, double t
   return static_cast<double>(speed);
 }
 
-std::vector<StampedPose> exposure_poses(const CameraRecording& recording,
-                                        const ImageRenderer& renderer, double t_s) {
+/// An exposure, cut to the motion's span.
+struct Exposure {
+  double from_s, to_s;
+
+  Exposure(const Spline& world_from_camera, double t_s, double exposure_s) {
+    const auto cut = [&](double t) {
+      return std::clamp(t, world_from_camera.start_s(), world_from_camera.end_s());
+    };
+    from_s = cut(t_s - 0.5 * exposure_s);
+    to_s = cut(t_s + 0.5 * exposure_s);
+  }
+
+  /// The midpoints of equal parts.
+  [[nodiscard]] std::vector<double> midpoints(std::size_t count) const {
+    std::vector<double> times;
+    for (double k = 0.5; k < static_cast<double>(count); ++k)
+      times.push_back(from_s + (to_s - from_s) * k / static_cast<double>(count));
+    return times;
+  }
+};
+
+/// How many views an exposure of `exposure_s` between two times needs.
+std::size_t view_count(const ImageRenderer& renderer, const Spline& world_from_camera,
+                       const Exposure& between, double exposure_s) {
+  constexpr double kMotion_px = 0.25;
+  constexpr double kMaxTimes = 256;
+  // At several instants, since the camera may turn round within the exposure.
+  double speed = 0;
+  for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})
+    speed = std::max(speed, image_speed(renderer, world_from_camera,
+                                        between.from_s + part * (between.to_s - between.from_s)));
+  return static_cast<std::size_t>(
+      std::clamp(std::ceil(speed * exposure_s / kMotion_px), 1.0, kMaxTimes));
+}
+
+ImageF exposed_image(const CameraRecording& recording, const ImageRenderer& renderer, double t_s) {
+  const FrameOptions& frames = recording.config.frames;
+  const Spline& motion = recording.world_from_camera;
+  if (frames.readout_s > 0)
+    return renderer.radiance(
+        row_exposures(renderer, motion, t_s, frames.exposure_s, frames.readout_s));
   std::vector<StampedPose> poses;
-  for (const double t : exposure_times(renderer, recording.world_from_camera, t_s,
-                                       recording.config.frames.exposure_s))
+  for (const double t : exposure_times(renderer, motion, t_s, frames.exposure_s))
     poses.push_back(recording.pose(t));
-  return poses;
+  const Exposure exposure(motion, t_s, frames.exposure_s);
+  return renderer.radiance(poses,
+                           (exposure.to_s - exposure.from_s) / static_cast<double>(poses.size()));
 }
 
 void record_frame(const CameraRecording& recording, const ImageRenderer& renderer,
                   std::size_t index, double t_s) {
-  const ImageF exposed = renderer.radiance(exposure_poses(recording, renderer, t_s));
+  const ImageF exposed = exposed_image(recording, renderer, t_s);
   if (recording.config.frames.radiance == FrameOptions::Radiance::kExposed) {
     recording.writer.write_frame(index, t_s, exposed);
   } else {
@@ -46,20 +86,29 @@ void record_frame(const CameraRecording& recording, const ImageRenderer& rendere
 
 std::vector<double> exposure_times(const ImageRenderer& renderer, const Spline& world_from_camera,
                                    double t_s, double exposure_s) {
-  constexpr double kMotion_px = 0.25;
-  constexpr double kMaxTimes = 256;
   if (exposure_s <= 0) return {t_s};
-  const double from_s = std::max(world_from_camera.start_s(), t_s - 0.5 * exposure_s);
-  const double to_s = std::min(world_from_camera.end_s(), t_s + 0.5 * exposure_s);
-  // At several instants, since the camera may turn round within the exposure.
-  double speed = 0;
-  for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})
-    speed =
-        std::max(speed, image_speed(renderer, world_from_camera, from_s + part * (to_s - from_s)));
-  const double count = std::clamp(std::ceil(speed * (to_s - from_s) / kMotion_px), 1.0, kMaxTimes);
-  std::vector<double> times;
-  for (double k = 0.5; k < count; ++k) times.push_back(from_s + (to_s - from_s) * k / count);
-  return times;
+  const Exposure exposure(world_from_camera, t_s, exposure_s);
+  const double length_s = exposure.to_s - exposure.from_s;
+  return exposure.midpoints(view_count(renderer, world_from_camera, exposure, length_s));
+}
+
+std::vector<RowExposure> row_exposures(const ImageRenderer& renderer,
+                                       const Spline& world_from_camera, double t_s,
+                                       double exposure_s, double readout_s) {
+  const int height = renderer.camera().height;
+  const Exposure whole(world_from_camera, t_s, exposure_s + readout_s);
+  const std::size_t views =
+      exposure_s > 0 ? view_count(renderer, world_from_camera, whole, exposure_s) : 1;
+  std::vector<RowExposure> rows(static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    const double middle_s = t_s + (static_cast<double>(y) / (height - 1) - 0.5) * readout_s;
+    const Exposure exposure(world_from_camera, middle_s, exposure_s);
+    RowExposure& row = rows[static_cast<std::size_t>(y)];
+    for (const double t : exposure.midpoints(views))
+      row.poses.push_back({t, world_from_camera.pose(t)});
+    row.span_s = (exposure.to_s - exposure.from_s) / static_cast<double>(views);
+  }
+  return rows;
 }
 
 void record_images(const CameraRecording& recording) {

@@ -16,6 +16,15 @@ namespace saccade {
                                                  const Spline& world_from_camera, double t_s,
                                                  double exposure_s);
 
+/// The exposures of the rows of the frame at `t_s`. With a rolling shutter row y of H is exposed
+/// around
+///   t_s + (y / (H - 1) - 1/2) readout_s
+/// each as exposure_times() has it, all with the same number of views; what would be outside of the
+/// motion's span is exposed at its end.
+[[nodiscard]] std::vector<RowExposure> row_exposures(const ImageRenderer& renderer,
+                                                     const Spline& world_from_camera, double t_s,
+                                                     double exposure_s, double readout_s);
+
 /// Writes frames, depth maps and motion fields, in parallel; those that an interrupted program left
 /// behind complete are kept.
 void record_images(const CameraRecording& recording);

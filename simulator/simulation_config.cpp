@@ -39,11 +39,17 @@ void describe(config::Fields& fields, FrameOptions& options) {
              "Exposure of a frame, centred on its time, in seconds; longer exposures blur motion. "
              "0 gives sharp frames.")
       .range(0, 1);
+  fields
+      .value("readout_s", options.readout_s,
+             "Time from the exposure of the first row to that of the last one, in seconds, as a "
+             "rolling shutter reads out an image. The time of the frame is in the middle. 0 "
+             "exposes all rows at once.")
+      .range(0, 1);
   fields.choice("radiance", options.radiance,
                 {{"exposed", FrameOptions::Radiance::kExposed},
                  {"instant", FrameOptions::Radiance::kInstant}},
                 "Whether the EXR file shows the exposure, as the PNG file does, or the scene at "
-                "the time of the frame, without blur.");
+                "the time of the frame, without blur and with all rows at once.");
   fields
       .value("gain", options.tone.gain,
              "Gain of the 8-bit frames: radiance 1 / gain becomes white; the tone curve is sRGB.")

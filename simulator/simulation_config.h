@@ -23,6 +23,8 @@ struct FrameOptions {
   /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
   /// recording.
   double exposure_s = 0;
+  /// Rolling shutter: from the first row's exposure to the last row's. 0: global shutter.
+  double readout_s = 0;
   /// What the EXR holds: the exposure that the PNG shows, or the frame's instant, without blur.
   enum class Radiance { kExposed, kInstant };
   Radiance radiance = Radiance::kExposed;

@@ -57,7 +57,7 @@ LitPoint Scene::State::surface_point(const Ray& ray, double distance, TriangleId
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
   const LitPoint local = local_point(in_frame(frame, ray), distance, triangle);
   return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
-          frame.rotation * local.shading_normal, ray.time_s};
+          frame.rotation * local.shading_normal, ray.time_s, ray.span_s};
 }
 
 LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
@@ -70,7 +70,7 @@ LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId t
   const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
                                  second * corners[1].cast<double>() +
                                  third * corners[2].cast<double>();
-  return {point, side * plane.gradient, side * normal.normalized(), ray.time_s};
+  return {point, side * plane.gradient, side * normal.normalized(), ray.time_s, ray.span_s};
 }
 
 SurfaceSample Scene::State::sample_surface(const Ray& ray, const TriangleSurface& surface) const {
@@ -224,7 +224,8 @@ const ShadingTable& Scene::State::shading_table() {
 }
 
 bool Scene::has_view() const {
-  return state_->visibility->objects().empty() && state_->shading_table().is_precise();
+  return state_->visibility->objects().empty() && flickers().empty() &&
+         state_->shading_table().is_precise();
 }
 
 void Scene::view(const RayLanes& rays, std::size_t count, bool filtered, ViewLanes& seen) const {
@@ -269,6 +270,25 @@ double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSampl
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
+
+std::span<const Flicker> Scene::flickers() const {
+  return state_->illumination ? state_->illumination->flickers() : std::span<const Flicker>();
+}
+
+std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const SurfaceSample& from,
+                                                  const Ray& to_ray, const SurfaceSample& to,
+                                                  TriangleId triangle, LightSet lights) const {
+  if (!state_->illumination || triangle == kNothing) return LightRange{};
+  if (!(from.distance > 0 && to.distance > 0)) return std::nullopt;
+  LightRange range = state_->illumination->irradiance_range(
+      state_->surface_point(from_ray, from.distance, triangle),
+      state_->surface_point(to_ray, to.distance, triangle), lights);
+  const TriangleSurface& surface = state_->surfaces[triangle];
+  if (std::isinf(surface.self_light)) return LightRange{};
+  range.low = surface.with_self_light(range.low);
+  range.high = surface.with_self_light(range.high);
+  return range;
+}
 
 bool Scene::intersects(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return false;

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "simulator/scene/instance.h"
+#include "simulator/scene/light/flicker.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
@@ -24,6 +26,7 @@ struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
   double time_s = 0;  ///< at which it sees the moving objects
+  double span_s = 0;  ///< around it, over which flickering light is averaged
 };
 
 /// How much the direction of a ray differs from those of the next rays to the right and below, in
@@ -152,7 +155,7 @@ class Scene {
   /// the irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
-  /// Whether view() serves: nothing moves, and single precision resolves every position and texel.
+  /// Whether view() serves: nothing moves, no light flickers, and single precision resolves every position and texel.
   [[nodiscard]] bool has_view() const;
   /// What the first `count` rays of a packet see and its radiance under the lights, in single
   /// precision, at a fraction of the cost of the above. `filtered`: textures over the rays'
@@ -162,6 +165,14 @@ class Scene {
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceSample& surface) const;
   [[nodiscard]] bool is_lit() const;
+  /// The flickers of its lights, each once; empty in steady light.
+  [[nodiscard]] std::span<const Flicker> flickers() const;
+  /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, if just
+  /// `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
+  /// rays. nullopt where one misses the triangle's plane.
+  [[nodiscard]] std::optional<LightRange> irradiance_range(
+      const Ray& from_ray, const SurfaceSample& from, const Ray& to_ray, const SurfaceSample& to,
+      TriangleId triangle, LightSet lights) const;
   /// Which lights reach the part of `triangle` that a frustum sees on its way through `frusta` (at
   /// most 4): known for the whole triangle, or else put into `lighting`. nullptr where that is not
   /// known: for moving triangles and among moving objects, where light goes through cutouts, and

@@ -219,9 +219,11 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
   return kept;
 }
 
-void SceneBuilder::light(double ambient, std::vector<LightOptions> lights) {
+void SceneBuilder::light(double ambient, std::vector<LightOptions> lights,
+                         const std::optional<FlickerOptions>& ambient_flicker) {
   is_lit_ = true;
   ambient_ = ambient;
+  ambient_flicker_ = ambient_flicker;
   lights_ = std::move(lights);
 }
 
@@ -235,7 +237,7 @@ Scene SceneBuilder::build(const Background& background) && {
     double extent = 0;
     for (const Body& body : bodies_)
       if (!body.is_empty()) extent = std::max(extent, extent_of(body.box()));
-    state->illumination.emplace(ambient_, lights_, kShadowOffset * extent);
+    state->illumination.emplace(ambient_, ambient_flicker_, lights_, kShadowOffset * extent);
     state->normals = std::move(all.normals);
   }
   state->surfaces = std::move(all.surfaces);
@@ -314,7 +316,8 @@ Scene build_scene(const SceneOptions& options) {
     if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
-  if (options.lighting == Lighting::kLambertian) builder.light(options.ambient, options.lights);
+  if (options.lighting == Lighting::kLambertian)
+    builder.light(options.ambient, options.lights, options.ambient_flicker);
   const Background background = read_background(options, importer.remarks());
   for (const std::string& line : importer.remarks().lines()) show_warning(line);
   return std::move(builder).build(background);

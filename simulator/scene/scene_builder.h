@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -44,7 +45,8 @@ class SceneBuilder {
                          Spline world_from_object, const InstanceLabel& label = {});
 
   /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
-  void light(double ambient, std::vector<LightOptions> lights);
+  void light(double ambient, std::vector<LightOptions> lights,
+             const std::optional<FlickerOptions>& ambient_flicker = std::nullopt);
 
   /// At least one triangle was added.
   [[nodiscard]] Scene build(const Background& background) &&;
@@ -64,6 +66,7 @@ class SceneBuilder {
   std::uint32_t objects_ = 0;
   bool is_lit_ = false;
   double ambient_ = 0;
+  std::optional<FlickerOptions> ambient_flicker_;
   std::vector<LightOptions> lights_;
 };
 

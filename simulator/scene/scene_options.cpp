@@ -117,6 +117,8 @@ void describe(config::Fields& fields, LightOptions& options) {
              "light.")
       .at_least(0);
   fields.value("shadows", options.shadows, "Whether meshes cast shadows in this light.");
+  fields.section("flicker", options.flicker,
+                 "Flicker of the light, whose mean over a period is its intensity.");
 }
 
 void describe(config::Fields& fields, SceneOptions& options) {
@@ -158,6 +160,10 @@ void describe(config::Fields& fields, SceneOptions& options) {
         .value("ambient", options.ambient,
                "Radiance of a white surface in the ambient light alone.")
         .at_least(0);
+    fields.section(
+        "ambient_flicker", options.ambient_flicker,
+        "Flicker of the ambient light: in a room, that of the lamps whose light the walls "
+        "scatter.");
     fields.list("lights", options.lights, "Point lights and directional lights, at most 64.");
     fields.expect(options.lights.size() <= kMaxLights, "lights", "must be at most 64");
   }

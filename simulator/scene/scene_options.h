@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/motion_options.h"
+#include "simulator/scene/light/flicker.h"
 #include "simulator/scene/texture/texture_library.h"
 
 namespace saccade {
@@ -47,6 +48,7 @@ struct LightOptions {
   Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();
   double intensity = 1;
   bool shadows = true;
+  std::optional<FlickerOptions> flicker = std::nullopt;  ///< of its intensity
 };
 
 enum class Lighting { kNone, kLambertian };
@@ -61,6 +63,7 @@ struct SceneOptions {
   MissingTexture missing_texture = MissingTexture::kError;
   Lighting lighting = Lighting::kNone;
   double ambient = 0;
+  std::optional<FlickerOptions> ambient_flicker;
   std::vector<LightOptions> lights;
 };
 

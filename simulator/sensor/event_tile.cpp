@@ -24,7 +24,8 @@ constexpr double kLongSteps = 2;
 /// Nearer than this to an edge a pixel's view may change [px].
 constexpr double kEdgeMargin_px = 0.05;
 
-/// So far from the change of what a pixel sees it is seen on both sides [tolerances].
+/// So far from the change of what a pixel sees, or of a light, it is seen on both sides
+/// [tolerances].
 constexpr double kAroundChange = 0.45;
 
 template <std::size_t kRays>
@@ -278,9 +279,11 @@ class LockstepTile final : public EventTile {
     sense_lit(i, pixel_signal, lo, hi);
   }
 
-  /// sense() with samples around the times at which shadows come or go.
+  /// sense() with samples around the times at which shadows come or go, and at those at which
+  /// flickering lights jump or turn.
   void sense_lit(std::size_t i, const Signal& pixel_signal, Sample lo, const Sample& hi) {
-    if (any_shadow_transit(i, lo, hi)) {
+    const bool is_divided = any_shadow_transit(i, lo, hi);
+    if (any_flicker_break(lo.t_s, hi.t_s) || is_divided) {
       for (const double t_s : shadow_times_s_) {
         if (!(t_s > lo.t_s && t_s < hi.t_s)) continue;
         const Sample middle = pixel_signal.resample(t_s, lo, hi);
@@ -302,6 +305,17 @@ class LockstepTile final : public EventTile {
     return !shadow_times_s_.empty();
   }
 
+  /// Adds the times at which a flickering light jumps or turns to shadow_times_s_, in order;
+  /// whether there are any.
+  [[nodiscard]] bool any_flicker_break(double from_s, double to_s) {
+    const std::span<const Flicker> flickers = context_.scene.flickers();
+    if (flickers.empty()) return false;
+    for (const Flicker& flicker : flickers)
+      flicker.find_breaks(from_s, to_s, kAroundChange * tolerance_s_, shadow_times_s_);
+    std::sort(shadow_times_s_.begin(), shadow_times_s_.end());
+    return !shadow_times_s_.empty();
+  }
+
   /// Whether the bounds of the radiance prove that nothing crosses.
   [[nodiscard]] bool is_certified(std::size_t i, const TileSamples& now,
                                   const TileSamples& next) const {
@@ -310,7 +324,7 @@ class LockstepTile final : public EventTile {
       const RaySample& from = now.samples[k];
       const RaySample& to = next.samples[k];
       if (from.triangle != to.triangle) return false;
-      sum.add(radiance_range(from, to, next.t_s - now.t_s));
+      sum.add(tracer_.radiance_range(directions_[k], from, now.t_s, to, next.t_s));
     }
     sum.scale(1.0 / kRays);
     return pixels_.thresholds(i).certify(sum, next.t_s);
@@ -369,7 +383,7 @@ class LockstepTile final : public EventTile {
   Triangles triangles_{};  ///< seen at t_s_
   VisibilityPredictor predictor_;
   std::vector<double> transit_times_s_;  ///< of the pixel that is at work
-  std::vector<double> shadow_times_s_;   ///< of an interval of it
+  std::vector<double> shadow_times_s_;   ///< of an interval of it, and where the light breaks
 };
 
 }  // namespace

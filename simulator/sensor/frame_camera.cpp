@@ -6,6 +6,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/process/parallel.h"
+#include "simulator/scene/light/flicker.h"
 #include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/motion/object_motion.h"
 #include "simulator/sensor/rays/tile_trace.h"
@@ -16,6 +17,8 @@ namespace {
 
 /// Of two frames before a scene that hardly moves.
 constexpr double kLongestInterval_s = 0.010;
+/// Of two frames under a flickering light [periods].
+constexpr double kPeriodFraction = 1.0 / 16;
 
 }  // namespace
 
@@ -66,8 +69,10 @@ void FrameCamera::record(double duration_s, const Sink& sink) {
 double FrameCamera::next_frame_s(double duration_s) const {
   if (options_.frames_rate_hz > 0)
     return std::min(duration_s, static_cast<double>(frames_) / options_.frames_rate_hz);
-  const double interval_s = std::clamp(options_.frames_lambda_px / fastest_px_s_,
-                                       1e-6 * options_.time_tolerance_us, kLongestInterval_s);
+  const double longest_s =
+      std::min(kLongestInterval_s, kPeriodFraction * shortest_period_s(scene_.flickers()));
+  const double interval_s = std::min(longest_s, std::max(options_.frames_lambda_px / fastest_px_s_,
+                                                         1e-6 * options_.time_tolerance_us));
   return std::min(duration_s, t_s_ + interval_s);
 }
 

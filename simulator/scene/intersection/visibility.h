@@ -16,7 +16,7 @@ namespace saccade {
 /// A ray as a moving frame sees it; distances stay what they are.
 [[nodiscard]] inline Ray in_frame(const CameraFrame& frame, const Ray& ray) {
   return {frame.rotation.transpose() * (ray.origin - frame.position),
-          frame.rotation.transpose() * ray.direction, ray.time_s};
+          frame.rotation.transpose() * ray.direction, ray.time_s, ray.span_s};
 }
 
 /// What a ray intersects first among the triangles that are static, in the world, and those of

@@ -29,11 +29,31 @@ LightPath path_to(const LightOptions& light, const LitPoint& point) {
 
 }  // namespace
 
-Illumination::Illumination(double ambient, const std::vector<LightOptions>& lights,
-                           double shadow_offset)
-    : ambient_(ambient), lights_(lights), shadow_offset_(shadow_offset) {
+Illumination::Illumination(double ambient, const std::optional<FlickerOptions>& ambient_flicker,
+                           const std::vector<LightOptions>& lights, double shadow_offset)
+    : ambient_(ambient),
+      lights_(lights),
+      ambient_flicker_(index_of(ambient_flicker)),
+      shadow_offset_(shadow_offset) {
   SACCADE_CHECK(lights.size() <= kMaxLights);
   for (LightOptions& light : lights_) light.direction.normalize();
+  for (const LightOptions& light : lights_) light_flickers_.push_back(index_of(light.flicker));
+}
+
+std::size_t Illumination::index_of(const std::optional<FlickerOptions>& options) {
+  if (!options || options->depth == 0) return kSteady;
+  const auto known = std::ranges::find(flickers_, *options, &Flicker::options);
+  const auto index = static_cast<std::size_t>(known - flickers_.begin());
+  if (known == flickers_.end()) flickers_.emplace_back(*options);
+  return index;
+}
+
+double Illumination::factor(std::size_t flicker, const LitPoint& point) const {
+  return flicker == kSteady ? 1 : flickers_[flicker].mean(point.time_s, point.span_s);
+}
+
+LightRange Illumination::factor_range(std::size_t flicker, double from_s, double to_s) const {
+  return flicker == kSteady ? LightRange{} : flickers_[flicker].range(from_s, to_s);
 }
 
 void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
@@ -104,9 +124,28 @@ void Illumination::illuminate(const LitLanes& points, const std::array<bool, kRa
 }
 
 double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
-  double sum = ambient_;
+  double sum = ambient_ * factor(ambient_flicker_, point);
   for (std::size_t index = 0; index < lights_.size(); ++index)
-    if ((lights >> index & 1) != 0) sum += std::max(0.0, path_to(lights_[index], point).irradiance);
+    if ((lights >> index & 1) != 0)
+      sum += factor(light_flickers_[index], point) *
+             std::max(0.0, path_to(lights_[index], point).irradiance);
+  return sum;
+}
+
+LightRange Illumination::irradiance_range(const LitPoint& from, const LitPoint& to,
+                                          LightSet lights) const {
+  const double length_s = to.time_s - from.time_s;
+  const LightRange ambient{ambient_, ambient_, 0, 0};
+  LightRange sum = ambient.times(factor_range(ambient_flicker_, from.time_s, to.time_s));
+  for (std::size_t index = 0; index < lights_.size(); ++index) {
+    if ((lights >> index & 1) == 0) continue;
+    const double a = std::max(0.0, path_to(lights_[index], from).irradiance);
+    const double b = std::max(0.0, path_to(lights_[index], to).irradiance);
+    const double slack = 0.25 * std::abs(b - a);
+    const LightRange steady{std::max(0.0, std::min(a, b) - slack), std::max(a, b) + slack,
+                            (b - a - 2 * slack) / length_s, (b - a + 2 * slack) / length_s};
+    sum.add(steady.times(factor_range(light_flickers_[index], from.time_s, to.time_s)));
+  }
   return sum;
 }
 

@@ -44,8 +44,21 @@ constexpr double kFilteredError = 2e-5;
 constexpr double kLeastFilteredError = 0.01;
 /// Nearer to an end, relative to its length, an interval is not divided.
 constexpr double kLeastFraction = 0.05;
+/// Where a light flickers smoothly lines are at most this part of its period.
+constexpr double kPeriodFraction = 1.0 / 16;
+/// A light that jumps is sampled so far before and after [brackets].
+constexpr double kAroundJump = 1e-3;
 /// Below this rate a signal does not move [1/s].
 constexpr double kLeastSlope = 1e-12;
+
+/// Between its jumps a square wave is steady.
+double longest_line_s(std::span<const Flicker> flickers) {
+  double longest_s = std::numeric_limits<double>::infinity();
+  for (const Flicker& flicker : flickers)
+    if (flicker.options().waveform != Waveform::kSquare)
+      longest_s = std::min(longest_s, kPeriodFraction * flicker.period_s());
+  return longest_s;
+}
 
 }  // namespace
 
@@ -58,6 +71,7 @@ AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const Even
       bracket_s_(kBracketTolerances * 1e-6 * options.time_tolerance_us),
       is_filtered_(noise.filter.on()),
       refractory_s_(noise.refractory_s),
+      longest_line_s_(longest_line_s(scene.flickers())),
       pixels_(options, noise, seed, rays.tile(index)),
       sampler_(scene, rays, options, index, statistics_) {}
 
@@ -160,9 +174,9 @@ double AdaptiveTile::error_of(const Pixel& pixel, const ViewSample& next) {
 bool AdaptiveTile::is_quiet(std::size_t i, const ViewSample& next) const {
   const Pixel& pixel = views_[i];
   const ViewSample& now = pixel.now;
-  if (is_filtered_ || is_near_edge_[i] || now.triangles != next.triangles ||
-      now.lights != next.lights || std::abs(next.x - now.x) > kMaxTexels ||
-      std::abs(next.y - now.y) > kMaxTexels)
+  if (is_filtered_ || !scene_.flickers().empty() || is_near_edge_[i] ||
+      now.triangles != next.triangles || now.lights != next.lights ||
+      std::abs(next.x - now.x) > kMaxTexels || std::abs(next.y - now.y) > kMaxTexels)
     return false;
   if (pixels_.is_noisy() &&
       (pixels_.refractory_until_s(i) > now.t_s || !pixels_.is_idle(i, now.t_s, next.t_s)))
@@ -232,7 +246,13 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   if (reset_s >= next.t_s && !is_filtered_) return {};
   if (reset_s > now.t_s + bracket_s_ && reset_s < next.t_s - bracket_s_)
     return {false, reset_s, needs_ray};
+  if (const auto jump_s = first_jump(scene_.flickers(), now.t_s, next.t_s)) {
+    const double around_s = kAroundJump * bracket_s_;
+    if (*jump_s - around_s > now.t_s) return {false, *jump_s - around_s, needs_ray};
+    if (*jump_s + around_s < next.t_s) return {false, *jump_s + around_s, needs_ray};
+  }
   const double middle_s = 0.5 * (now.t_s + next.t_s);
+  if (length_s > longest_line_s_) return {false, middle_s, needs_ray};
   const bool is_continuous_there = is_continuous(now, next);
   const double change = next.log_intensity - now.log_intensity;
   if (is_near_edge_[i] && length_s > 1.001 * kNearEdgeFraction * step_s_)
@@ -294,7 +314,8 @@ void AdaptiveTile::sense_line(std::size_t i, Pixel& pixel, const ViewSample& nex
   const Thresholds& thresholds = pixels_.thresholds(i);
   if (pixels_.is_noisy() || !thresholds.band().contains(thresholds.signal(to)))
     pixels_.sense(i, LinearSignal(options_.log_eps, 1e-6 * options_.time_tolerance_us), from, to);
-  pixel.has_slope = is_continuous(pixel.now, next);
+  pixel.has_slope =
+      is_continuous(pixel.now, next) && !first_jump(scene_.flickers(), pixel.now.t_s, next.t_s);
   if (pixel.has_slope)
     pixel.before_s = (to.log_intensity - from.log_intensity) / (to.t_s - from.t_s);
   pixel.now = next;

@@ -95,6 +95,7 @@ class AdaptiveTile {
   double bracket_s_;
   bool is_filtered_;
   double refractory_s_;
+  double longest_line_s_;  ///< under flickering lights
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;

@@ -85,6 +85,21 @@ RaySample RayTracer::sample_unlit(const Eigen::Vector3d& direction, TriangleId t
                     soon_s, triangle);
 }
 
+RadianceRange RayTracer::flickering_range(const Eigen::Vector3d& direction, const RaySample& from,
+                                          double from_s, const RaySample& to, double to_s) const {
+  const Ray from_ray = ray_at(direction, from_s);
+  const Ray to_ray = ray_at(direction, to_s);
+  const auto light_of = [&](LightSet lights) {
+    return scene_.irradiance_range(from_ray, from.surface, to_ray, to.surface, from.triangle,
+                                   lights);
+  };
+  std::optional<LightRange> light = light_of(from.surface.lights);
+  if (!light) return {};
+  // At the edge of a shadow the light is that of one end or the other.
+  if (from.surface.lights != to.surface.lights) light->include(*light_of(to.surface.lights));
+  return saccade::radiance_range(from, to, to_s - from_s, &*light);
+}
+
 void RayTracer::set_region(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
                            double to_s) {
   finds_lighting_ = is_lit();

@@ -44,7 +44,10 @@ class RayTracer {
   /// All outlive the tracer. With `footprints` textures are filtered over the fraction of a pixel
   /// that each of its rays stands for; nullptr: they are seen at points.
   RayTracer(const Scene& scene, EventStatistics& statistics, const PixelRays* footprints = nullptr)
-      : scene_(scene), statistics_(statistics), footprints_(footprints) {}
+      : scene_(scene),
+        statistics_(statistics),
+        footprints_(footprints),
+        flickers_(!scene.flickers().empty()) {}
 
   /// The motion during what follows; outlives it.
   void set_poses(const SplineTable& poses) { poses_ = &poses; }
@@ -121,6 +124,15 @@ class RayTracer {
   [[nodiscard]] RaySample sample_unlit(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s);
 
+  /// radiance_range() of a ray that sees one triangle from `from_s` to `to_s`, in light that may
+  /// flicker.
+  [[nodiscard]] RadianceRange radiance_range(const Eigen::Vector3d& direction,
+                                             const RaySample& from, double from_s,
+                                             const RaySample& to, double to_s) const {
+    return flickers_ ? flickering_range(direction, from, from_s, to, to_s)
+                     : saccade::radiance_range(from, to, to_s - from_s);
+  }
+
   /// When a ray's visible triangle changes from `from` to `to`, within `tolerance_s`: where the ray
   /// leaves the first or else enters the second; NaN if neither.
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
@@ -148,6 +160,9 @@ class RayTracer {
     }
   };
 
+  [[nodiscard]] RadianceRange flickering_range(const Eigen::Vector3d& direction,
+                                               const RaySample& from, double from_s,
+                                               const RaySample& to, double to_s) const;
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double min_barycentric(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s) const;
@@ -169,6 +184,7 @@ class RayTracer {
   const Scene& scene_;
   EventStatistics& statistics_;
   const PixelRays* footprints_;
+  bool flickers_;
   const SplineTable* poses_ = nullptr;
   std::span<const TriangleId> candidates_;
   Frusta frusta_;  ///< of what follows

@@ -11,9 +11,10 @@
 namespace saccade {
 
 /// The rays of a tile in the world and what they meet: `use(index, ray, triangle)`, in order.
+/// `span_s`: as Ray has it.
 template <class Use>
 void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
-                const StampedPose& pose, const Use& use) {
+                const StampedPose& pose, const Use& use, double span_s = 0) {
   const Eigen::Matrix3d rotation = pose.world_from_camera.rotation_matrix();
   const Eigen::Vector3d& origin = pose.world_from_camera.translation();
   std::array<Ray, kTilePixels> rays;
@@ -21,7 +22,7 @@ void trace_tile(const Scene& scene, std::span<const Eigen::Vector3d> directions,
   for (std::size_t first = 0; first < directions.size(); first += kTilePixels) {
     const std::size_t n = std::min(kTilePixels, directions.size() - first);
     for (std::size_t k = 0; k < n; ++k)
-      rays[k] = {origin, rotation * directions[first + k], pose.t_s};
+      rays[k] = {origin, rotation * directions[first + k], pose.t_s, span_s};
     scene.visible({rays.data(), n}, {triangles.data(), n});
     for (std::size_t k = 0; k < n; ++k) use(first + k, rays[k], triangles[k]);
   }

@@ -32,11 +32,10 @@ std::size_t PixelSignal<kRays>::changing_ray(const Sample& lo, const Sample& hi)
 
 template <std::size_t kRays>
 RadianceRange PixelSignal<kRays>::range(const Sample& lo, const Sample& hi) const {
-  const double length_s = hi.t_s - lo.t_s;
   RadianceRange sum{0, 0, 0, 0};
   for (std::size_t k = 0; k < kRays; ++k)
     sum.add(lo.rays[k].triangle == hi.rays[k].triangle
-                ? radiance_range(lo.rays[k], hi.rays[k], length_s)
+                ? tracer_.radiance_range(directions_[k], lo.rays[k], lo.t_s, hi.rays[k], hi.t_s)
                 : range_across_change(k, lo, hi));
   sum.scale(1.0 / kRays);
   return sum;
@@ -53,12 +52,15 @@ RadianceRange PixelSignal<kRays>::range_across_change(std::size_t ray, const Sam
   if (!tracer_.is_covered(directions_[ray], {from.triangle, lo.t_s}, {to.triangle, hi.t_s},
                           0.1 * tolerance_s_))
     return {};
-  // Their light is that of the end at which they are seen.
+  // Their light is that of the end at which they are seen, but for its flicker.
   RaySample from_later = tracer_.sample_unlit(directions_[ray], from.triangle, hi.t_s);
   RaySample to_earlier = tracer_.sample_unlit(directions_[ray], to.triangle, lo.t_s);
   from_later.surface.irradiance = from.surface.irradiance;
   to_earlier.surface.irradiance = to.surface.irradiance;
-  return hull(radiance_range(from, from_later, length_s), radiance_range(to_earlier, to, length_s));
+  from_later.surface.lights = from.surface.lights;
+  to_earlier.surface.lights = to.surface.lights;
+  return hull(tracer_.radiance_range(directions_[ray], from, lo.t_s, from_later, hi.t_s),
+              tracer_.radiance_range(directions_[ray], to_earlier, lo.t_s, to, hi.t_s));
 }
 
 template <std::size_t kRays>

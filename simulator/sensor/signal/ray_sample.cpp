@@ -1,15 +1,32 @@
 #include "simulator/sensor/signal/ray_sample.h"
 
+#include <cmath>
+
 #include "simulator/sensor/signal/cell_bounds.h"
 #include "simulator/sensor/signal/mipmap_bounds.h"
 
 namespace saccade {
 namespace {
 
+/// Multiplies the albedo's range by a flickering light whose range is known.
+RadianceRange illuminated(const Interval& values, const Interval& rates, const RaySample& from,
+                          const RaySample& to, const LightRange& light) {
+  const double factor = from.surface.texture != nullptr ? from.surface.factor : 1;
+  const Interval radiance = product(values, {factor * light.low, factor * light.high});
+  const bool is_known = std::isfinite(light.rate_low) && std::isfinite(light.rate_high) &&
+                        from.surface.lights == to.surface.lights;
+  if (!is_known)
+    return {radiance.low, radiance.high, -RadianceRange::kUnknown, RadianceRange::kUnknown};
+  const Interval first = product(rates, {factor * light.low, factor * light.high});
+  const Interval second = product(values, {factor * light.rate_low, factor * light.rate_high});
+  return {radiance.low, radiance.high, first.low + second.low, first.high + second.high};
+}
+
 /// Multiplies the albedo's range by the light. Under the same lights the irradiance is taken to
 /// stay near the line between both ends; where they differ, it jumps at the edge of a shadow.
 RadianceRange illuminated(const Interval& values, const Interval& rates, const RaySample& from,
-                          const RaySample& to, double length_s) {
+                          const RaySample& to, double length_s, const LightRange* flickering) {
+  if (flickering != nullptr) return illuminated(values, rates, from, to, *flickering);
   const double factor = from.surface.texture != nullptr ? from.surface.factor : 1;
   const double a = factor * from.surface.irradiance;
   const double b = factor * to.surface.irradiance;
@@ -41,17 +58,18 @@ double RadianceRange::log_error(double log_eps, double length_s) const {
   return straying < spread ? straying : spread;  // also when one is not a number
 }
 
-RadianceRange radiance_range(const RaySample& from, const RaySample& to, double length_s) {
+RadianceRange radiance_range(const RaySample& from, const RaySample& to, double length_s,
+                             const LightRange* light) {
   if (from.surface.texture != to.surface.texture) return {};
   const HermiteCoordinate x = x_coordinate(from, to, length_s);
   if (from.surface.texture == nullptr)
-    return illuminated(x.values(), x.rates(), from, to, length_s);
+    return illuminated(x.values(), x.rates(), from, to, length_s, light);
   const Interval across = x.values();
   const Interval down = y_coordinate(from, to, length_s).values();
   if (!(across.high - across.low < 1e6 && down.high - down.low < 1e6)) return {};
   const TextureRange range =
       is_filtered(from, to) ? mipmap_range(from, to, length_s) : texture_range(from, to, length_s);
-  return illuminated(range.values, range.rates, from, to, length_s);
+  return illuminated(range.values, range.rates, from, to, length_s, light);
 }
 
 RaySample interpolate(const RaySample& from, const RaySample& to, double length_s,
