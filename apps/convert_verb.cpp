@@ -63,6 +63,9 @@ std::string event_file_endings() {
 void convert(const ConvertOptions& options) {
   options.common.apply();
   if (options.grids.is_stated()) {
+    if (!options.unit.empty() || options.window.start_s != 0 || options.window.duration_s)
+      throw InputError(options.unit.empty() ? "--start-s" : "--unit",
+                       "does not belong to grids, whose windows are keys: duration_s=0.05");
     const std::string text = convert_to_grids(options.input, options.output, options.grids);
     if (!options.common.quiet) fmt::print("{}", text);
     return;
