@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "simulator/scene/colour_channel.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene_remarks.h"
 #include "simulator/scene/texture/texture.h"
@@ -46,9 +47,10 @@ struct WrapModes {
 /// The textures of a scene, each loaded or generated once. Not thread-safe.
 class TextureLibrary {
  public:
-  /// `remarks` outlives it.
-  TextureLibrary(MissingTexture missing, SceneRemarks& remarks)
-      : missing_(missing), remarks_(remarks) {}
+  /// `remarks` outlives it. `channel`: what the textures show of pictures.
+  TextureLibrary(MissingTexture missing, SceneRemarks& remarks,
+                 ColourChannel channel = ColourChannel::kLuminance)
+      : missing_(missing), remarks_(remarks), channel_(channel) {}
 
   /// `file` of `source`: a picture, or parameters for generate_texture() (*.texture.yaml, on disk).
   /// Throws InputError naming the picture and `user`, which asks for it.
@@ -65,6 +67,7 @@ class TextureLibrary {
   using Key = std::pair<std::string, WrapModes>;
   MissingTexture missing_;
   SceneRemarks& remarks_;
+  ColourChannel channel_;
   std::map<Key, TexturePair> colours_;
   std::map<Key, std::shared_ptr<const Texture>> opacities_;
 };
