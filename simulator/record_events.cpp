@@ -6,6 +6,7 @@
 #include "core/process/progress.h"
 #include "simulator/recording_loop.h"
 #include "simulator/sensor/adaptive/adaptive_camera.h"
+#include "simulator/sensor/bayer/bayer_camera.h"
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/event_labels.h"
 #include "simulator/sensor/frame_camera.h"
@@ -15,11 +16,9 @@ namespace {
 
 std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 * t_s); }
 
-/// Records what the log does not hold yet.
+/// Records what the log does not hold yet with a camera of any kind.
 template <class Camera>
-void fill(const CameraRecording& recording) {
-  Camera camera(recording.scene, recording.world_from_camera, recording.camera, recording.events,
-                recording.seed);
+void fill(const CameraRecording& recording, Camera&& camera) {
   double shown_s = recording.log.reached_s();
   Progress progress("events", microseconds(recording.duration_s()), "simulated us",
                     microseconds(shown_s));
@@ -27,6 +26,19 @@ void fill(const CameraRecording& recording) {
     progress.add(microseconds(t_s) - microseconds(shown_s));
     shown_s = t_s;
   });
+}
+
+/// The same in the colours that the configuration asks for.
+template <class Camera>
+void fill(const CameraRecording& recording) {
+  const auto make = [&]<class AnyCamera>(const auto& scene) {
+    return AnyCamera(scene, recording.world_from_camera, recording.camera, recording.events,
+                     recording.seed);
+  };
+  if (recording.events.colour_filter == ColourFilter::kNone)
+    fill(recording, make.template operator()<Camera>(recording.scene));
+  else
+    fill(recording, make.template operator()<BayerCamera<Camera>>(*recording.colours));
 }
 
 /// Events that are labelled together: whole packets of rays.

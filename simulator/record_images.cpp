@@ -8,6 +8,7 @@
 #include "core/panorama.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
+#include "simulator/frame_renderer.h"
 #include "simulator/sensor/sample_times.h"
 
 namespace saccade {
@@ -57,25 +58,26 @@ std::size_t view_count(const ImageRenderer& renderer, const Spline& world_from_c
       std::clamp(std::ceil(speed * exposure_s / kMotion_px), 1.0, kMaxTimes));
 }
 
-ImageF exposed_image(const CameraRecording& recording, const ImageRenderer& renderer, double t_s) {
+std::vector<ImageF> exposed_image(const CameraRecording& recording, const FrameRenderer& renderer,
+                                  double t_s) {
   const FrameOptions& frames = recording.config.frames;
   const Spline& motion = recording.world_from_camera;
   if (frames.readout_s > 0)
     return renderer.radiance(
-        row_exposures(renderer, motion, t_s, frames.exposure_s, frames.readout_s));
+        row_exposures(renderer.grey(), motion, t_s, frames.exposure_s, frames.readout_s));
   std::vector<StampedPose> poses;
-  for (const double t : exposure_times(renderer, motion, t_s, frames.exposure_s))
+  for (const double t : exposure_times(renderer.grey(), motion, t_s, frames.exposure_s))
     poses.push_back(recording.pose(t));
   const Exposure exposure(motion, t_s, frames.exposure_s);
   return renderer.radiance(poses,
                            (exposure.to_s - exposure.from_s) / static_cast<double>(poses.size()));
 }
 
-void record_frame(const CameraRecording& recording, const ImageRenderer& renderer,
+void record_frame(const CameraRecording& recording, const FrameRenderer& renderer,
                   std::size_t index, double t_s) {
-  const ImageF exposed = exposed_image(recording, renderer, t_s);
+  const std::vector<ImageF> exposed = exposed_image(recording, renderer, t_s);
   if (recording.config.frames.radiance == FrameOptions::Radiance::kExposed) {
-    recording.writer.write_frame(index, t_s, exposed);
+    recording.writer.write_frame(index, t_s, exposed, exposed);
   } else {
     const std::vector<StampedPose> instant{recording.pose(t_s)};
     recording.writer.write_frame(index, t_s, exposed, renderer.radiance(instant));
@@ -112,8 +114,8 @@ std::vector<RowExposure> row_exposures(const ImageRenderer& renderer,
 }
 
 void record_images(const CameraRecording& recording) {
-  const ImageRenderer renderer(recording.scene, recording.camera,
-                               recording.events.samples_per_pixel, recording.events.texture_filter);
+  const FrameRenderer frame_renderer(recording);
+  const ImageRenderer& renderer = frame_renderer.grey();
   const GroundtruthOptions& rates = recording.config.groundtruth;
   const std::vector<TimeNs> frames =
       sample_times(recording.config.frames.rate_hz, recording.duration_s());
@@ -123,7 +125,7 @@ void record_images(const CameraRecording& recording) {
   Progress progress("images", frames.size() + depths.size() + flows.size(), "images");
   parallel_for(frames.size(), [&](std::size_t i) {
     const double t = seconds_from_ns(frames[i]);
-    if (!recording.writer.take_up_frame(i, t)) record_frame(recording, renderer, i, t);
+    if (!recording.writer.take_up_frame(i, t)) record_frame(recording, frame_renderer, i, t);
     progress.add(1);
   });
   parallel_for(depths.size(), [&](std::size_t i) {

@@ -1,5 +1,8 @@
 #include "simulator/simulate.h"
 
+#include <algorithm>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -66,6 +69,18 @@ DatasetRecord facts(const CameraRecording& recording, const EventStatistics& eve
   return record;
 }
 
+/// Where something asks for colours.
+std::optional<ColourScenes> colour_scenes(const SimulationConfig& config,
+                                          std::span<const RigCamera> cameras) {
+  const bool has_filter = std::ranges::any_of(cameras, [](const RigCamera& camera) {
+    return camera.events.colour_filter != ColourFilter::kNone;
+  });
+  if (!has_filter && config.frames.colour == FrameOptions::Colour::kGrey) return std::nullopt;
+  return ColourScenes{build_scene(config.scene, ColourChannel::kRed),
+                      build_scene(config.scene, ColourChannel::kGreen),
+                      build_scene(config.scene, ColourChannel::kBlue)};
+}
+
 /// Records what one camera sees; the first one carries the IMU.
 CameraReport record_camera(const CameraRecording& recording, bool is_first,
                            const std::string& name) {
@@ -103,6 +118,7 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   const Spline motion =
       cut_motion(build_motion(config.trajectory), config.start_s, config.duration_s);
   const Scene scene = build_scene(config.scene);
+  const std::optional<ColourScenes> colours = colour_scenes(config, cameras);
   report.load_s = watch.seconds();
 
   ResumableFolder folder(output, "dataset.yaml", fingerprint_of(config, inputs));
@@ -119,8 +135,9 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
       return is_first ? root : root / camera.folder;
     };
     DatasetWriter writer(within(folder.path()), camera.camera, options);
-    const CameraRecording recording{config, camera.camera, camera.events, camera.seed,
-                                    scene,  camera_motion, writer,        *logs[i]};
+    const CameraRecording recording{config,      camera.camera, camera.events,
+                                    camera.seed, scene,         camera_motion,
+                                    writer,      *logs[i],      colours ? &*colours : nullptr};
     report.cameras[i] =
         record_camera(recording, is_first, within(folder.target().filename()).generic_string());
   }

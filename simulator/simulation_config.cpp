@@ -32,7 +32,7 @@ void describe(config::Fields& fields, PinholeCamera& camera) {
 }
 
 void describe(config::Fields& fields, FrameOptions& options) {
-  fields.value("rate_hz", options.rate_hz, "Number of grey frames per second. 0 disables frames.")
+  fields.value("rate_hz", options.rate_hz, "Number of frames per second. 0 disables frames.")
       .range(0, kHighestRate_hz);
   fields
       .value("exposure_s", options.exposure_s,
@@ -45,6 +45,14 @@ void describe(config::Fields& fields, FrameOptions& options) {
              "rolling shutter reads out an image. The time of the frame is in the middle. 0 "
              "exposes all rows at once.")
       .range(0, 1);
+  fields.choice("colour", options.colour,
+                {{"grey", FrameOptions::Colour::kGrey},
+                 {"rgb", FrameOptions::Colour::kRgb},
+                 {"rggb", FrameOptions::Colour::kRggb}},
+                "Colours of the frames: grey shows the luminance; rgb the linear primaries of "
+                "sRGB in three planes; rggb one plane in which each pixel shows its own, as a "
+                "sensor behind Bayer's filter with red in the top left corner delivers it. Both "
+                "take three more copies of the scene in memory.");
   fields.choice("radiance", options.radiance,
                 {{"exposed", FrameOptions::Radiance::kExposed},
                  {"instant", FrameOptions::Radiance::kInstant}},
@@ -129,7 +137,7 @@ void describe(config::Fields& fields, SimulationConfig& config) {
             {config.camera, Rigid3(), config.events})
       .length(0, 63);
   fields.section("imu", config.imu, "Inertial sensor.");
-  fields.section("frames", config.frames, "Grey frames.");
+  fields.section("frames", config.frames, "Frames.");
   fields.section("groundtruth", config.groundtruth, "Rates of the ground truth.");
   fields.value("gravity_m_s2", config.gravity_m_s2, "Gravity in the world, in m/s^2.")
       .range(-1000, 1000);

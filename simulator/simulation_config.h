@@ -17,7 +17,7 @@
 
 namespace saccade {
 
-/// Grey frames (section `frames`): frame k shows time k / rate_hz.
+/// Frames (section `frames`): frame k shows time k / rate_hz.
 struct FrameOptions {
   double rate_hz = 24;
   /// > 0: mean radiance over an exposure of this length centred on the frame's time, cut to the
@@ -25,6 +25,10 @@ struct FrameOptions {
   double exposure_s = 0;
   /// Rolling shutter: from the first row's exposure to the last row's. 0: global shutter.
   double readout_s = 0;
+  /// What a frame holds: the luminance, linear R, G and B, or the mosaic of a sensor behind Bayer's
+  /// filter.
+  enum class Colour { kGrey, kRgb, kRggb };
+  Colour colour = Colour::kGrey;
   /// What the EXR holds: the exposure that the PNG shows, or the frame's instant, without blur.
   enum class Radiance { kExposed, kInstant };
   Radiance radiance = Radiance::kExposed;

@@ -138,12 +138,13 @@ InstanceLabel label_of(const MeshOptions& options, const std::vector<std::string
           static_cast<std::uint8_t>(class_id), options.instances == Instances::kNodes};
 }
 
-Background read_background(const SceneOptions& options, SceneRemarks& remarks) {
+Background read_background(const SceneOptions& options, ColourChannel channel,
+                           SceneRemarks& remarks) {
   if (options.background_picture.empty()) return Background(options.background);
   const FileLocation location = FileLocation::parse(options.background_picture);
   const std::optional<Bytes> bytes = FileSource(location.archive).read(location.file);
   if (!bytes) throw InputError(location.text(), "this background picture does not exist");
-  return Background(decode_picture(*bytes, location.text(), remarks).grey);
+  return Background(decode_picture(*bytes, location.text(), remarks, {1, 1, 1}, channel).grey);
 }
 
 }  // namespace
@@ -292,9 +293,10 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
   return {std::move(static_triangles), std::move(objects), std::move(embree_scenes)};
 }
 
-Scene build_scene(const SceneOptions& options) {
+Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
-  MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian});
+  MeshImporter importer(
+      {options.missing_texture, options.lighting == Lighting::kLambertian, channel});
   std::map<std::filesystem::path, Mesh> meshes;
   const std::vector<std::string> classes = class_names(options);
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
@@ -318,8 +320,9 @@ Scene build_scene(const SceneOptions& options) {
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian)
     builder.light(options.ambient, options.lights, options.ambient_flicker);
-  const Background background = read_background(options, importer.remarks());
-  for (const std::string& line : importer.remarks().lines()) show_warning(line);
+  const Background background = read_background(options, channel, importer.remarks());
+  if (channel == ColourChannel::kLuminance)
+    for (const std::string& line : importer.remarks().lines()) show_warning(line);
   return std::move(builder).build(background);
 }
 

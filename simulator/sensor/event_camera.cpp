@@ -35,7 +35,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
                          const PinholeCamera& camera, const EventOptions& options,
                          std::uint64_t seed, std::span<const std::size_t> only)
     : motion_(world_from_camera),
-      rays_(camera, options.samples_per_pixel),
+      rays_(camera, options.samples_per_pixel, options.pixel_side),
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       motions_(rays_.tile_count()),
       delivery_(options, camera, seed) {
@@ -56,12 +56,14 @@ void EventCamera::make_tiles(std::span<const std::size_t> only) {
 
 void EventCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
-  while (t_s_ < duration_s) {
-    sense_slice(duration_s);
-    for (const auto& tile : tiles_)
-      if (tile != nullptr) tile->take_events(delivery_.pending());
-    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
-  }
+  while (t_s_ < duration_s) step(duration_s, sink);
+}
+
+void EventCamera::step(double duration_s, const Sink& sink) {
+  sense_slice(duration_s);
+  for (const auto& tile : tiles_)
+    if (tile != nullptr) tile->take_events(delivery_.pending());
+  delivery_.deliver(t_s_, t_s_ == duration_s, sink);
 }
 
 void EventCamera::advance(double duration_s, const Take& take) {

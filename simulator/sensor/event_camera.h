@@ -41,6 +41,8 @@ class EventCamera {
 
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
+  /// The first slice of record() that is not recorded yet.
+  void step(double duration_s, const Sink& sink);
 
   /// The first slice of record() that is not sensed yet, without a delivery: the events of tile `i`
   /// go to take(i, events) in the order in which they were found.

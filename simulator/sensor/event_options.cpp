@@ -144,6 +144,11 @@ void describe(config::Fields& fields, EventOptions& options) {
                 {{"bilinear", TextureFilter::kBilinear}, {"mipmap", TextureFilter::kMipmap}},
                 "Whether a ray sees the point of a texture that it intersects, or the mean over "
                 "its footprint.");
+  fields.choice("colour_filter", options.colour_filter,
+                {{"none", ColourFilter::kNone}, {"rggb", ColourFilter::kRggb}},
+                "Colour filter before the pixels. rggb is Bayer's pattern with red in the top left "
+                "corner: each pixel sees the red, green or blue light of the scene alone. It takes "
+                "three more copies of the scene in memory.");
   fields.section("noise", options.noise, "Imperfections of the sensor, all off by default.");
 }
 

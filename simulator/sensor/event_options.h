@@ -33,6 +33,12 @@ enum class TextureFilter {
   kMipmap,    ///< the mean over the pixel's footprint
 };
 
+/// What is in front of the pixels.
+enum class ColourFilter {
+  kNone,  ///< every pixel sees the luminance
+  kRggb,  ///< Bayer's pattern: red and green in even rows, green and blue in odd ones
+};
+
 /// The event sensor (section `events`).
 struct EventOptions {
   SensorModel preset = SensorModel::kIdeal;
@@ -47,7 +53,11 @@ struct EventOptions {
   double frames_lambda_px = 0.5;
   double frames_rate_hz = 0;
   TextureFilter texture_filter = TextureFilter::kBilinear;
+  ColourFilter colour_filter = ColourFilter::kNone;
   NoiseOptions noise;
+  /// Side of the square that a pixel sees, in distances to the next pixel. No key: it is less than
+  /// 1 where every second pixel of a sensor is simulated.
+  double pixel_side = 1;
 
   [[nodiscard]] TimeNs timestamp_unit_ns() const {
     return timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1;

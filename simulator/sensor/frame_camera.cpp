@@ -39,7 +39,7 @@ FrameCamera::FrameCamera(const Scene& scene, const Spline& world_from_camera,
                          std::uint64_t seed)
     : scene_(scene),
       motion_(world_from_camera),
-      rays_(camera, options.samples_per_pixel),
+      rays_(camera, options.samples_per_pixel, options.pixel_side),
       options_(options),
       noise_(options, seed),
       delivery_(options, camera, seed) {
@@ -50,20 +50,22 @@ FrameCamera::FrameCamera(const Scene& scene, const Spline& world_from_camera,
 
 void FrameCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
+  while (t_s_ < duration_s) step(duration_s, sink);
+}
+
+void FrameCamera::step(double duration_s, const Sink& sink) {
   if (frames_ == 0)
     render(0, [](TileState& tile_state, const LogIntensities& log_intensities) {
       start(tile_state, log_intensities);
     });
-  while (t_s_ < duration_s) {
-    const double next_s = next_frame_s(duration_s);
-    render(next_s, [&](TileState& tile_state, const LogIntensities& log_intensities) {
-      sense(tile_state, next_s, log_intensities);
-    });
-    longest_s_ = std::max(longest_s_, next_s - t_s_);
-    t_s_ = next_s;
-    for (TileState& tile_state : tiles_) tile_state.pixels.take_events(delivery_.pending());
-    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
-  }
+  const double next_s = next_frame_s(duration_s);
+  render(next_s, [&](TileState& tile_state, const LogIntensities& log_intensities) {
+    sense(tile_state, next_s, log_intensities);
+  });
+  longest_s_ = std::max(longest_s_, next_s - t_s_);
+  t_s_ = next_s;
+  for (TileState& tile_state : tiles_) tile_state.pixels.take_events(delivery_.pending());
+  delivery_.deliver(t_s_, t_s_ == duration_s, sink);
 }
 
 double FrameCamera::next_frame_s(double duration_s) const {

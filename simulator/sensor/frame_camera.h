@@ -40,6 +40,9 @@ class FrameCamera {
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   /// One delivery per frame; state() may be called during it.
   void record(double duration_s, const Sink& sink);
+  /// The first frame of record() that is not recorded yet.
+  void step(double duration_s, const Sink& sink);
+  [[nodiscard]] double reached_s() const { return t_s_; }
 
   [[nodiscard]] std::string state() const;
   /// Before record(); throws InputError where the state does not fit.

@@ -49,10 +49,10 @@ class RowViews {
 }  // namespace
 
 ImageRenderer::ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
-                             TextureFilter filter)
+                             TextureFilter filter, double side_px)
     : scene_(scene),
       filter_(filter),
-      radiance_rays_(camera, rays_per_pixel),
+      radiance_rays_(camera, rays_per_pixel, side_px),
       centre_rays_(camera, 1) {}
 
 ImageF ImageRenderer::radiance(std::span<const StampedPose> poses, double span_s) const {

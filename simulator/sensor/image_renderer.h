@@ -26,9 +26,9 @@ struct RowExposure {
 /// pixel's centre.
 class ImageRenderer {
  public:
-  /// `scene` must outlive the renderer; `rays_per_pixel`: 1, 4 or 16.
+  /// `scene` must outlive the renderer; `rays_per_pixel`: 1, 4 or 16; `side_px` as PixelRays has it.
   ImageRenderer(const Scene& scene, const PinholeCamera& camera, int rays_per_pixel,
-                TextureFilter filter = TextureFilter::kBilinear);
+                TextureFilter filter = TextureFilter::kBilinear, double side_px = 1);
 
   /// Mean linear radiance over the poses (one: a sharp image; several: the exposure's blur), each
   /// of which stands for `span_s` around its time: over that flickering light is averaged.

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/check.h"
 #include "core/error.h"
+#include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
@@ -12,6 +15,15 @@
 namespace saccade {
 namespace fs = std::filesystem;
 namespace {
+
+/// Three planes as one picture.
+template <class Pixel, class Planes>
+Image<Pixel> interleaved(const Planes& planes) {
+  Image<Pixel> image(planes[0].width(), planes[0].height());
+  for (std::size_t i = 0; i < image.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) image.pixels()[i][c] = planes[c].pixels()[i];
+  return image;
+}
 
 /// "depth/depth_00000012.exr".
 fs::path numbered(const char* folder, const char* stem, std::size_t index, const char* ending) {
@@ -64,14 +76,25 @@ void DatasetWriter::store(std::vector<StampedFile>& list, std::size_t index, dou
 }
 
 void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& radiance) {
-  write_frame(index, t_s, radiance, radiance);
+  const std::span<const ImageF> plane(&radiance, 1);
+  write_frame(index, t_s, plane, plane);
 }
 
-void DatasetWriter::write_frame(std::size_t index, double t_s, const ImageF& exposed,
-                                const ImageF& radiance) {
+void DatasetWriter::write_frame(std::size_t index, double t_s, std::span<const ImageF> exposed,
+                                std::span<const ImageF> radiance) {
   const fs::path png = numbered("images", "frame", index, "png");
-  write_png(folder_ / png, codes_from_linear(exposed, options_.tone));
-  write_exr(folder_ / numbered("images", "frame", index, "exr"), radiance, "Y");
+  const fs::path exr = numbered("images", "frame", index, "exr");
+  SACCADE_CHECK(exposed.size() == radiance.size());
+  if (exposed.size() == 1) {
+    write_png(folder_ / png, codes_from_linear(exposed[0], options_.tone));
+    write_exr(folder_ / exr, radiance[0], "Y");
+  } else {
+    SACCADE_CHECK(exposed.size() == 3);
+    std::array<ImageU8, 3> codes;
+    for (std::size_t c = 0; c < 3; ++c) codes[c] = codes_from_linear(exposed[c], options_.tone);
+    write_png(folder_ / png, interleaved<Rgb8>(codes));
+    write_exr(folder_ / exr, interleaved<RgbF>(radiance));
+  }
   store(frames_, index, t_s, png);
 }
 

@@ -49,8 +49,10 @@ class DatasetWriter {
   /// thread-safe for different indices. `radiance` is linear: EXR as it is, and PNG through the
   /// tone curve. `depth` [m], 0 = nothing.
   void write_frame(std::size_t index, double t_s, const ImageF& radiance);
-  /// The same with a PNG of its own: what the camera delivered after an exposure.
-  void write_frame(std::size_t index, double t_s, const ImageF& exposed, const ImageF& radiance);
+  /// The same of one plane, or of R, G and B, with a PNG of its own: what the camera delivered after
+  /// an exposure.
+  void write_frame(std::size_t index, double t_s, std::span<const ImageF> exposed,
+                   std::span<const ImageF> radiance);
   void write_depth(std::size_t index, double t_s, const ImageF& depth);
   void write_flow(std::size_t index, double t_s, const FlowField& flow);
 

@@ -163,7 +163,8 @@ std::optional<GltfMaterials::TextureUse> GltfMaterials::texture_use(const json& 
 Picture GltfMaterials::picture(const TextureUse& use, const RgbF& factors) const {
   return load_or_grey(context_.options.missing_texture, context_.remarks, [&] {
     const GltfFile::NamedBytes image = file_.image(image_of(use.texture));
-    return decode_picture(image.bytes, image.name, context_.remarks, factors);
+    return decode_picture(image.bytes, image.name, context_.remarks, factors,
+                          context_.options.channel);
   });
 }
 
@@ -231,13 +232,14 @@ void GltfMaterials::add_emission(const json& material, const Base& base,
   Material& surface = result.material;
   if (use && base.use && surface.texture && !base.use->lies_like(*use))
     return ignore("emissive textures that lie otherwise than those of the base colour");
-  ImageF light = constant_image(static_cast<float>(grey_of(base.emission)));
+  ImageF light =
+      constant_image(static_cast<float>(grey_of(base.emission, context_.options.channel)));
   if (use) {
     light = picture(*use, base.emission).grey;
     if (light.empty()) return;  // missing, and remarked
   }
   if (!use && surface.texture == nullptr) {
-    result.emission = grey_of(base.emission);
+    result.emission = grey_of(base.emission, context_.options.channel);
     surface.albedo += result.emission;
     return;
   }
@@ -247,15 +249,16 @@ void GltfMaterials::add_emission(const json& material, const Base& base,
   const WrapModes wrap = use ? use->wrap : base.use->wrap;
   surface.texture = std::make_shared<Texture>(sum_of(below, light, wrap), wrap.u, wrap.v);
   surface.factor = 1;
-  result.emission = grey_of(base.emission);
+  result.emission = grey_of(base.emission, context_.options.channel);
   if (use) take_coordinates(*use, result);
 }
 
 void GltfMaterials::add_self_light(const Base& base, const std::optional<TextureUse>& use,
                                    ImportedMaterial& result) const {
   Material& surface = result.material;
-  if (is_black(base.colour)) {
-    surface.albedo = grey_of(base.emission);
+  // Or so in the channel that is shown.
+  if (grey_of(base.colour, context_.options.channel) == 0) {
+    surface.albedo = grey_of(base.emission, context_.options.channel);
     surface.texture = nullptr;
     result.colour = base.emission;
     if (use) {
@@ -272,7 +275,8 @@ void GltfMaterials::add_self_light(const Base& base, const std::optional<Texture
                                    ? use->texture == base.use->texture && use->lies_like(*base.use)
                                    : !use && !base.use;
   // Of both colours in one direction, or of grey through a picture alone.
-  const double ratio = grey_of(base.emission) / grey_of(base.colour);
+  const double ratio = grey_of(base.emission, context_.options.channel) /
+                       grey_of(base.colour, context_.options.channel);
   const bool is_multiple = [&] {
     for (std::size_t k = 0; k < 3; ++k)
       if (std::abs(static_cast<double>(base.emission[k]) -
@@ -290,7 +294,7 @@ ImportedMaterial GltfMaterials::read(const json& material) {
   const Base base = base_of(material);
   ImportedMaterial result;
   result.colour = base.colour;
-  result.material.albedo = grey_of(base.colour);
+  result.material.albedo = grey_of(base.colour, context_.options.channel);
   result.invisible = base.alpha_scale > 0 && base.opacity * base.alpha_scale < 0.5F;
   if (base.use) {
     const TexturePair pair = textures(base);

@@ -27,13 +27,14 @@ fs::path texture_file(const ModelTexture& reference, const MaterialContext& cont
 }
 
 Picture decode_embedded(const ModelPicture& texture, const std::string& source_name,
-                        SceneRemarks& remarks) {
-  if (texture.height == 0) return decode_picture(texture.bytes, source_name, remarks);
+                        SceneRemarks& remarks, ColourChannel channel) {
+  if (texture.height == 0)
+    return decode_picture(texture.bytes, source_name, remarks, {1, 1, 1}, channel);
   Picture picture{ImageF(static_cast<int>(texture.width), static_cast<int>(texture.height)), {}};
   const std::uint8_t* bgra = texture.bytes.data();
   for (float& grey : picture.grey.pixels()) {
-    grey = luminance(linear_from_srgb8(bgra[2]), linear_from_srgb8(bgra[1]),
-                     linear_from_srgb8(bgra[0]));
+    grey = in_channel(channel, linear_from_srgb8(bgra[2]), linear_from_srgb8(bgra[1]),
+                      linear_from_srgb8(bgra[0]));
     bgra += 4;
   }
   return picture;
@@ -48,7 +49,8 @@ TexturePair load_texture(const Model& model, const ModelTexture& reference,
   const std::string name =
       fmt::format("{}:{}.{}", context.source_name, reference.name, embedded.hint);
   return load_or_grey(context.options.missing_texture, context.remarks, [&] {
-    return make_textures(decode_embedded(embedded, name, context.remarks), reference.wrap);
+    return make_textures(decode_embedded(embedded, name, context.remarks, context.options.channel),
+                         reference.wrap);
   });
 }
 
@@ -63,8 +65,8 @@ std::array<float, 3> linear_colour(const ModelMaterial& material) {
 
 }  // namespace
 
-double grey_of(const std::array<float, 3>& colour) {
-  return luminance(colour[0], colour[1], colour[2]);
+double grey_of(const std::array<float, 3>& colour, ColourChannel channel) {
+  return in_channel(channel, colour[0], colour[1], colour[2]);
 }
 
 ImportedMaterial import_material(const Model& model, const ModelMaterial& material,
@@ -72,7 +74,7 @@ ImportedMaterial import_material(const Model& model, const ModelMaterial& materi
   ImportedMaterial result;
   for (const std::string& feature : material.ignored)
     context.remarks.ignore(feature, context.source_name);
-  result.material.albedo = grey_of(linear_colour(material));
+  result.material.albedo = grey_of(linear_colour(material), context.options.channel);
   if (!material.ignores_alpha) result.invisible = material.opacity < 0.5F;
   if (const auto& reference = material.colour_texture) {
     TexturePair pair = load_texture(model, *reference, context);

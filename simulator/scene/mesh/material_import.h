@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "simulator/scene/colour_channel.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/mesh/model.h"
@@ -17,6 +18,7 @@ namespace saccade {
 struct MeshImportOptions {
   MissingTexture missing_texture = MissingTexture::kError;
   bool is_lit = false;  ///< by lights; otherwise the albedo is the radiance
+  ColourChannel channel = ColourChannel::kLuminance;  ///< what becomes of colours
 };
 
 /// Where a file's materials and textures come from.
@@ -45,7 +47,7 @@ struct ImportedMaterial {
 [[nodiscard]] ImportedMaterial import_material(const Model& model, const ModelMaterial& material,
                                                const MaterialContext& context);
 
-/// Linear colour as grey.
-[[nodiscard]] double grey_of(const std::array<float, 3>& colour);
+/// Linear colour in one channel.
+[[nodiscard]] double grey_of(const std::array<float, 3>& colour, ColourChannel channel);
 
 }  // namespace saccade

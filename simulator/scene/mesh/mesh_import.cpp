@@ -61,10 +61,11 @@ Eigen::Vector3d vector_of(const std::array<float, 3>& v) {
 /// Copies the parts of a model into one mesh.
 class Flattener {
  public:
-  Flattener(const Model& model, std::vector<ImportedMaterial> materials, std::string source_name,
-            SceneRemarks& remarks)
+  Flattener(const Model& model, std::vector<ImportedMaterial> materials, ColourChannel channel,
+            std::string source_name, SceneRemarks& remarks)
       : model_(model),
         materials_(std::move(materials)),
+        channel_(channel),
         source_name_(std::move(source_name)),
         remarks_(remarks) {
     for (const ImportedMaterial& imported : materials_)
@@ -133,7 +134,7 @@ class Flattener {
       return part.material;
     }
     mesh_.materials.push_back(imported.material);
-    mesh_.materials.back().factor *= grey_of({r, g, b});
+    mesh_.materials.back().factor *= grey_of({r, g, b}, channel_);
     return static_cast<std::uint32_t>(mesh_.materials.size() - 1);
   }
 
@@ -164,19 +165,21 @@ class Flattener {
   }
 
   /// Vertex colours are 8-bit sRGB in every format that has them but glTF.
-  static double colour_of(const ModelPart& part, std::size_t i, const ImportedMaterial& imported) {
+  double colour_of(const ModelPart& part, std::size_t i, const ImportedMaterial& imported) const {
     if (part.colours.empty()) return imported.material.albedo;
     const auto& [r, g, b, a] = part.colours[i];
     if (const auto& factor = imported.colour)
-      return grey_of({(*factor)[0] * r, (*factor)[1] * g, (*factor)[2] * b}) + imported.emission;
+      return grey_of({(*factor)[0] * r, (*factor)[1] * g, (*factor)[2] * b}, channel_) +
+             imported.emission;
     const auto linear = [](float x) {
       return static_cast<float>(linear_from_srgb(std::clamp(x, 0.0F, 1.0F)));
     };
-    return luminance(linear(r), linear(g), linear(b));
+    return in_channel(channel_, linear(r), linear(g), linear(b));
   }
 
   const Model& model_;
   std::vector<ImportedMaterial> materials_;
+  ColourChannel channel_;
   std::string source_name_;
   SceneRemarks& remarks_;
   Mesh mesh_;
@@ -206,7 +209,7 @@ MeshExtras extras_of(const Model& model, const std::optional<GltfFile>& gltf) {
 }  // namespace
 
 MeshImporter::MeshImporter(const MeshImportOptions& options)
-    : options_(options), textures_(options.missing_texture, remarks_) {}
+    : options_(options), textures_(options.missing_texture, remarks_, options.channel) {}
 
 Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& source) {
   const std::string source_name = location.text();
@@ -274,7 +277,8 @@ Mesh MeshImporter::read(const fs::path& file) {
     if (model.animations > 0) remarks_.ignore("animations", source_name);
     if (model.lights > 0) remarks_.ignore("lights", source_name);
   }
-  Flattener flattener(model, used_materials(model, read_material), source_name, remarks_);
+  Flattener flattener(model, used_materials(model, read_material), options_.channel, source_name,
+                      remarks_);
   for (const ModelInstance& instance : model.instances) flattener.add(instance);
   Mesh mesh = flattener.take();
   mesh.nodes = model.nodes;

@@ -32,19 +32,19 @@ ImageF converted(const Image<Pixel>& image, const Convert& convert) {
   return result;
 }
 
-ImageF grey_of(const ImageRgbF& image, const RgbF& factors) {
+ImageF grey_of(const ImageRgbF& image, const RgbF& factors, ColourChannel channel) {
   return converted(image, [&](const RgbF& p) {
-    return luminance(factors[0] * p[0], factors[1] * p[1], factors[2] * p[2]);
+    return in_channel(channel, factors[0] * p[0], factors[1] * p[1], factors[2] * p[2]);
   });
 }
 
-ImageF grey_of(const ImageRgba8& image, const RgbF& factors) {
+ImageF grey_of(const ImageRgba8& image, const RgbF& factors, ColourChannel channel) {
   std::array<float, 256> linear;
   for (int code = 0; code < 256; ++code)
     linear[static_cast<std::size_t>(code)] = linear_from_srgb8(static_cast<std::uint8_t>(code));
   return converted(image, [&](const Rgba8& p) {
-    return luminance(factors[0] * linear[p[0]], factors[1] * linear[p[1]],
-                     factors[2] * linear[p[2]]);
+    return in_channel(channel, factors[0] * linear[p[0]], factors[1] * linear[p[1]],
+                      factors[2] * linear[p[2]]);
   });
 }
 
@@ -98,16 +98,16 @@ void check_light(ImageF& image, const std::string& source_name, SceneRemarks& re
 }  // namespace
 
 Picture decode_picture(const Bytes& bytes, const std::string& source_name, SceneRemarks& remarks,
-                       const RgbF& factors) {
+                       const RgbF& factors, ColourChannel channel) {
   const std::string extension = lower_extension(source_name);
   Picture picture;
   if (extension == ".exr") {
-    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name), factors);
+    picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name), factors, channel);
   } else if (extension == ".hdr") {
-    picture.grey = grey_of(decode_hdr(bytes, source_name), factors);
+    picture.grey = grey_of(decode_hdr(bytes, source_name), factors, channel);
   } else {
     const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
-    picture.grey = grey_of(image, factors);
+    picture.grey = grey_of(image, factors, channel);
     if (std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p[3] != 255; }))
       picture.opacity = alpha_of(image);
   }

@@ -4,6 +4,7 @@
 
 #include "core/image.h"
 #include "core/io/images/exr_file.h"
+#include "simulator/scene/colour_channel.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene_remarks.h"
 
@@ -11,7 +12,7 @@ namespace saccade {
 
 /// A picture as the renderer uses it.
 struct Picture {
-  ImageF grey;     ///< linear light, 0.2126 R + 0.7152 G + 0.0722 B
+  ImageF grey;     ///< linear light in one channel, by default 0.2126 R + 0.7152 G + 0.0722 B
   ImageF opacity;  ///< alpha in [0, 1]; empty where alpha is 1 all over
 };
 
@@ -20,7 +21,8 @@ struct Picture {
 /// as filters leave it at edges, counts as 0, with a remark. InputError naming `source_name` when
 /// the bytes are no such picture, or hold light that is NaN, infinite or further below 0.
 [[nodiscard]] Picture decode_picture(const Bytes& bytes, const std::string& source_name,
-                                     SceneRemarks& remarks, const RgbF& factors = {1, 1, 1});
+                                     SceneRemarks& remarks, const RgbF& factors = {1, 1, 1},
+                                     ColourChannel channel = ColourChannel::kLuminance);
 
 /// The plane that says how opaque a picture used as an alpha map is: its alpha channel, else its
 /// grey codes as they are stored.

@@ -24,10 +24,12 @@ Bytes read_texture(const FileSource& source, const fs::path& file, const std::st
 }
 
 Picture load_colour(const FileSource& source, const fs::path& file, const std::string& user,
-                    std::optional<std::uint64_t> seed, SceneRemarks& remarks) {
+                    std::optional<std::uint64_t> seed, SceneRemarks& remarks,
+                    ColourChannel channel) {
   const std::string place = FileLocation{source.archive(), file}.text();
   const Bytes bytes = read_texture(source, file, user);
-  if (!place.ends_with(".texture.yaml")) return decode_picture(bytes, place, remarks);
+  if (!place.ends_with(".texture.yaml"))
+    return decode_picture(bytes, place, remarks, {1, 1, 1}, channel);
   if (!source.archive().empty())
     throw InputError(place, "texture parameters cannot be read from within an archive");
   TextureOptions options = read_texture_options(file);
@@ -52,7 +54,7 @@ TexturePair TextureLibrary::colour(const FileSource& source, const fs::path& fil
   const auto known = colours_.find(key);
   if (known != colours_.end()) return known->second;
   return colours_[key] = load_or_grey(missing_, remarks_, [&] {
-           return make_textures(load_colour(source, file, user, seed, remarks_), wrap);
+           return make_textures(load_colour(source, file, user, seed, remarks_, channel_), wrap);
          });
 }
 

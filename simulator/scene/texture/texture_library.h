@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "simulator/scene/colour_channel.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene_remarks.h"
 #include "simulator/scene/texture/texture.h"
@@ -48,9 +49,10 @@ struct WrapModes {
 /// The textures of a scene, each loaded or generated once. Not thread-safe.
 class TextureLibrary {
  public:
-  /// `remarks` outlives it.
-  TextureLibrary(MissingTexture missing, SceneRemarks& remarks)
-      : missing_(missing), remarks_(remarks) {}
+  /// `remarks` outlives it. `channel`: what the textures show of pictures.
+  TextureLibrary(MissingTexture missing, SceneRemarks& remarks,
+                 ColourChannel channel = ColourChannel::kLuminance)
+      : missing_(missing), remarks_(remarks), channel_(channel) {}
 
   /// `file` of `source`: a picture, or parameters for generate_texture() (*.texture.yaml, on disk).
   /// `seed`: of generated ones, in place of the file's. Throws InputError naming the picture and
@@ -70,6 +72,7 @@ class TextureLibrary {
   using SeededKey = std::pair<Key, std::optional<std::uint64_t>>;
   MissingTexture missing_;
   SceneRemarks& remarks_;
+  ColourChannel channel_;
   std::map<SeededKey, TexturePair> colours_;
   std::map<Key, std::shared_ptr<const Texture>> opacities_;
 };

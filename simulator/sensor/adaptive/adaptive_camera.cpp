@@ -24,7 +24,7 @@ AdaptiveCamera::AdaptiveCamera(const Scene& scene, const Spline& world_from_came
     : scene_(scene),
       motion_(world_from_camera),
       options_(options),
-      rays_(camera, options.samples_per_pixel),
+      rays_(camera, options.samples_per_pixel, options.pixel_side),
       noise_(options, seed),
       delivery_(options, camera, seed),
       audit_(scene, world_from_camera, camera, options, seed) {
@@ -35,30 +35,32 @@ AdaptiveCamera::AdaptiveCamera(const Scene& scene, const Spline& world_from_came
 
 void AdaptiveCamera::record(double duration_s, const Sink& sink) {
   SACCADE_CHECK(duration_s > 0 && t_s_ < duration_s);
-  while (t_s_ < duration_s) {
-    const double end_s = slice_end_s(duration_s);
-    const SplineTable poses(motion_, t_s_, end_s);
-    const RelativeTwists first(scene_, motion_.state(t_s_), t_s_);
-    const RelativeTwists last(scene_, motion_.state(end_s), end_s);
-    const AdaptiveSlice slice{poses, t_s_, end_s, first, last};
-    if (!started_)
-      parallel_for(
-          tiles_.size(), [&](std::size_t i) { tiles_[i]->start(slice); }, kTilesPerTask);
-    started_ = true;
-    std::vector<double> speeds(tiles_.size());
-    for (std::size_t i = 0; i < tiles_.size(); ++i) speeds[i] = tiles_[i]->speed_px_s();
+  while (t_s_ < duration_s) step(duration_s, sink);
+}
+
+void AdaptiveCamera::step(double duration_s, const Sink& sink) {
+  const double end_s = slice_end_s(duration_s);
+  const SplineTable poses(motion_, t_s_, end_s);
+  const RelativeTwists first(scene_, motion_.state(t_s_), t_s_);
+  const RelativeTwists last(scene_, motion_.state(end_s), end_s);
+  const AdaptiveSlice slice{poses, t_s_, end_s, first, last};
+  if (!started_)
     parallel_for(
-        tiles_.size(), [&](std::size_t i) { tiles_[i]->advance(slice, around_px_s(i, speeds)); },
-        kTilesPerTask);
-    t_s_ = end_s;
-    for (std::size_t i = 0; i < tiles_.size(); ++i) {
-      const std::size_t before = delivery_.pending().size();
-      tiles_[i]->take_events(delivery_.pending());
-      audit_.add(i, std::span(delivery_.pending()).subspan(before));
-    }
-    audit_.advance(t_s_, duration_s);
-    delivery_.deliver(t_s_, t_s_ == duration_s, sink);
+        tiles_.size(), [&](std::size_t i) { tiles_[i]->start(slice); }, kTilesPerTask);
+  started_ = true;
+  std::vector<double> speeds(tiles_.size());
+  for (std::size_t i = 0; i < tiles_.size(); ++i) speeds[i] = tiles_[i]->speed_px_s();
+  parallel_for(
+      tiles_.size(), [&](std::size_t i) { tiles_[i]->advance(slice, around_px_s(i, speeds)); },
+      kTilesPerTask);
+  t_s_ = end_s;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const std::size_t before = delivery_.pending().size();
+    tiles_[i]->take_events(delivery_.pending());
+    audit_.add(i, std::span(delivery_.pending()).subspan(before));
   }
+  audit_.advance(t_s_, duration_s);
+  delivery_.deliver(t_s_, t_s_ == duration_s, sink);
 }
 
 double AdaptiveCamera::slice_end_s(double duration_s) const {

@@ -34,6 +34,9 @@ class AdaptiveCamera {
 
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink);
+  /// The first slice of record() that is not recorded yet.
+  void step(double duration_s, const Sink& sink);
+  [[nodiscard]] double reached_s() const { return t_s_; }
 
   [[nodiscard]] std::string state() const;
   /// Before record(); throws InputError where the state does not fit.
@@ -43,6 +46,7 @@ class AdaptiveCamera {
   [[nodiscard]] EventStatistics statistics() const;
   /// Of the whole recording.
   [[nodiscard]] AuditResult audit() const { return audit_.result(); }
+  [[nodiscard]] std::vector<AuditedCounts> audited_counts() const { return audit_.counts(); }
 
  private:
   [[nodiscard]] double slice_end_s(double duration_s) const;

@@ -75,7 +75,7 @@ EventMatcher& Audit::AuditedTile::matcher(const SensedEvent& event) {
 
 Audit::Audit(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
              const EventOptions& options, std::uint64_t seed)
-    : rays_(camera, options.samples_per_pixel), seed_(seed) {
+    : rays_(camera, options.samples_per_pixel, options.pixel_side), seed_(seed) {
   index_ = drawn_tiles(rays_.tile_count(), options.audit_fraction, seed);
   if (index_.empty()) return;
   for (const std::size_t i : index_) {
@@ -114,20 +114,26 @@ void Audit::advance(double t_s, double duration_s) {
     for (EventMatcher& matcher : tile.matchers) matcher.advance(until_ns, tile.counts);
 }
 
-AuditResult Audit::result() const {
+std::vector<AuditedCounts> Audit::counts() const {
+  std::vector<AuditedCounts> counts;
+  for (const AuditedTile& tile : tiles_) counts.push_back({tile.tile.pixels(), tile.counts});
+  return counts;
+}
+
+AuditResult audit_result(std::span<const AuditedCounts> tiles, std::uint64_t seed) {
   AuditResult result;
   MatchCounts all;
-  for (const AuditedTile& tile : tiles_) {
-    result.pixels += tile.tile.pixels();
+  for (const AuditedCounts& tile : tiles) {
+    result.pixels += tile.pixels;
     all.add(tile.counts);
   }
-  if (tiles_.empty()) return result;
+  if (tiles.empty()) return result;
   result.exact_events = all.exact;
   result.sampled_events = all.sampled;
 
   using Figure = std::function<double(const MatchCounts&)>;
-  const Random random(seed_);
-  const double n = static_cast<double>(tiles_.size());
+  const Random random(seed);
+  const double n = static_cast<double>(tiles.size());
   // The spread of a few clusters is underestimated by their own; that of n - 1 of them is not.
   const double widen = std::sqrt(n / std::max(n - 1, 1.0)) * (1 + 1.2 / n);
   const auto measure = [&](const Figure& figure) {
@@ -135,8 +141,8 @@ AuditResult Audit::result() const {
     std::vector<double> samples(kResamples);
     for (std::size_t r = 0; r < kResamples; ++r) {
       MatchCounts resampled;
-      for (std::size_t k = 0; k < tiles_.size(); ++k)
-        resampled.add(tiles_[random.below(tiles_.size(), kBootstrapStream + r, k)].counts);
+      for (std::size_t k = 0; k < tiles.size(); ++k)
+        resampled.add(tiles[random.below(tiles.size(), kBootstrapStream + r, k)].counts);
       samples[r] = figure(resampled);
     }
     std::sort(samples.begin(), samples.end());

@@ -17,6 +17,15 @@
 
 namespace saccade {
 
+/// An audited tile: its pixels, and how their events match.
+struct AuditedCounts {
+  std::size_t pixels = 0;
+  MatchCounts counts;
+};
+
+/// The figures of some audited tiles, with intervals from bootstrap samples of them.
+[[nodiscard]] AuditResult audit_result(std::span<const AuditedCounts> tiles, std::uint64_t seed);
+
 /// Records a random share of a camera's tiles exactly, beside another camera that records all of
 /// them, and compares the events of both as they leave the pixels, before latency and readout.
 /// The tiles are drawn by the seed, one from each of equal parts of the image.
@@ -31,8 +40,9 @@ class Audit {
   /// All events of the audited camera up to `t_s` have been added: records up to there, too.
   void advance(double t_s, double duration_s);
 
-  /// Of a whole recording, with intervals from bootstrap samples of the tiles.
-  [[nodiscard]] AuditResult result() const;
+  /// Of a whole recording.
+  [[nodiscard]] std::vector<AuditedCounts> counts() const;
+  [[nodiscard]] AuditResult result() const { return audit_result(counts(), seed_); }
 
   void save(StateWriter& state) const;
   void load(StateReader& state);

@@ -25,9 +25,10 @@ std::vector<Eigen::Vector2d> ray_pattern(int rays_per_pixel) {
 
 }  // namespace
 
-PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel)
+PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px)
     : camera_(camera),
       rays_per_pixel_(static_cast<std::size_t>(rays_per_pixel)),
+      side_px_(side_px),
       tiles_x_((camera.width + kTileSize - 1) / kTileSize),
       tiles_y_((camera.height + kTileSize - 1) / kTileSize) {
   const std::vector<Eigen::Vector2d> pattern = ray_pattern(rays_per_pixel);
@@ -39,7 +40,7 @@ PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel)
     for (std::size_t i = 0; i < block.pixels(); ++i) {
       const Eigen::Vector2d centre(block.x(i), block.y(i));
       for (const Eigen::Vector2d& offset : pattern)
-        *out++ = camera.ray(camera.undistort(centre + offset));
+        *out++ = camera.ray(camera.undistort(centre + side_px * offset));
     }
   }
 }
@@ -64,7 +65,7 @@ Tile PixelRays::tile(std::size_t index) const {
 }
 
 Eigen::Matrix2d PixelRays::differential(const Eigen::Vector3d& direction) const {
-  const double side_px = 1 / std::sqrt(static_cast<double>(rays_per_pixel_));
+  const double side_px = side_px_ / std::sqrt(static_cast<double>(rays_per_pixel_));
   const Eigen::Matrix2d ideal_from_distorted =
       distortion_jacobian(camera_, camera_.project(direction)).inverse();
   return Eigen::Vector2d(1 / camera_.fx, 1 / camera_.fy).asDiagonal() *

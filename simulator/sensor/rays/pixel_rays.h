@@ -33,8 +33,9 @@ struct Tile {
 /// function of the pose; one ray goes through the centre.
 class PixelRays {
  public:
-  /// `rays_per_pixel`: 1, 4 or 16.
-  PixelRays(const PinholeCamera& camera, int rays_per_pixel);
+  /// `rays_per_pixel`: 1, 4 or 16. `side_px`: side of the square that a pixel sees, in units of
+  /// the distance to the next pixel.
+  PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px = 1);
 
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
   [[nodiscard]] std::size_t rays_per_pixel() const { return rays_per_pixel_; }
@@ -64,6 +65,7 @@ class PixelRays {
  private:
   PinholeCamera camera_;
   std::size_t rays_per_pixel_;
+  double side_px_;
   int tiles_x_, tiles_y_;
   std::vector<Eigen::Vector3d> directions_;
 };
