@@ -10,8 +10,6 @@
 namespace saccade {
 namespace {
 
-/// Beyond this many lengths of its direction a ray has left the triangle by more than a hair.
-constexpr double kFarthest = 1e12;
 /// Rays through a shared edge must meet at least one of its triangles, whatever the rounding.
 constexpr double kEdgeTolerance = 1e-10;
 

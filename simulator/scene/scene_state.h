@@ -24,6 +24,9 @@ namespace saccade {
 /// The body of triangles that are static; others are indices into the moving objects.
 constexpr std::uint32_t kStaticBody = std::numeric_limits<std::uint32_t>::max();
 
+/// Beyond this many lengths of its direction a ray has left the triangle by more than a hair.
+inline constexpr double kFarthest = 1e12;
+
 /// What shading one triangle reads, in its body's frame: two cache lines.
 struct alignas(64) TriangleSurface {
   AffineForm plane;        ///< unit normal; zero on the plane

@@ -13,8 +13,6 @@ namespace {
 /// Positions [m] and texel coordinates beyond these are too coarse in single precision.
 constexpr double kFarthestPosition_m = 1e3;
 constexpr double kFarthestTexel = 1e5;
-/// As of sample_surface().
-constexpr float kFarthest = 1e12F;
 
 /// Where both other corners have no weight.
 Eigen::Vector3d first_corner(const AffineForm& plane, const TriangleInterior& interior) {
@@ -120,7 +118,7 @@ void ShadingTable::sample(const RayLanes& rays, std::size_t count, bool filtered
       gather(view.triangles, count, [](const Row& row) { return row.plane; });
   const FloatLanes along = normal.dot(rays.direction);
   const FloatLanes distance = normal.dot(minus(corner, rays.origin)) / along;
-  view.distance = (distance > 0 && distance < kFarthest).select(distance, 0.0F);
+  view.distance = (distance > 0 && distance < static_cast<float>(kFarthest)).select(distance, 0.0F);
   const LaneVectors from_corner = minus(point_on(rays, view.distance), corner);
   const LaneVectors column =
       gather(view.triangles, count, [](const Row& row) { return row.column; });

@@ -15,7 +15,7 @@ namespace saccade {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kColumns = "from to file";
+constexpr const char* kFlowColumns = "from to file";
 constexpr double kScale = 128;
 constexpr double kZero = 32768;
 constexpr double kHighest = 65535;
@@ -95,7 +95,7 @@ void OpticalFlowWriter::write(std::size_t index, double from_s, double to_s,
 
 void OpticalFlowWriter::finish() {
   if (entries_.empty()) return;
-  std::string text = fmt::format("# {}\n", kColumns);
+  std::string text = fmt::format("# {}\n", kFlowColumns);
   for (const OpticalFlowEntry& entry : entries_) {
     SACCADE_CHECK(!entry.forward.empty());
     append_decimal_seconds(ns_from_seconds(entry.from_s), text);
@@ -113,7 +113,7 @@ std::vector<OpticalFlowEntry> read_optical_flow_list(const fs::path& list) {
     entry.from_s = seconds_from_ns(row.seconds("from"));
     entry.to_s = seconds_from_ns(row.seconds("to"));
     entry.forward = list.parent_path() / row.word("file");
-    row.expect_end(kColumns);
+    row.expect_end(kFlowColumns);
     if (!(entry.from_s < entry.to_s)) row.fail("the interval is empty: 'from' must be below 'to'");
     if (!entries.empty() && !(entries.back().from_s < entry.from_s))
       row.fail("times must increase");

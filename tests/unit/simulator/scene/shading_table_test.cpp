@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-LightOptions lamp(const Eigen::Vector3d& position, double intensity) {
+LightOptions light_at(const Eigen::Vector3d& position, double intensity) {
   LightOptions light;
   light.position = position;
   light.intensity = intensity;
@@ -46,7 +46,7 @@ Scene furnished(bool is_lit) {
   Mesh plain = testing::rectangle({0.3, -0.9, 2}, {0.5, 0, 0}, {0, 0.5, 0.2}, ImageF(2, 2, 1.0F));
   plain.materials = {Material{0.3, nullptr, 1, nullptr}};
   builder.add(plain, still);
-  if (is_lit) builder.light(0.2, {lamp({1, -1.5, 0.5}, 4), sun()});
+  if (is_lit) builder.light(0.2, {light_at({1, -1.5, 0.5}, 4), sun()});
   return std::move(builder).build(Background(0.4));
 }
 
@@ -139,7 +139,7 @@ TEST(ShadingTable, IsNotUsedFarFromTheOrigin) {
 TEST(ShadingTable, IsNotUsedUnderFlickeringLight) {
   SceneBuilder builder;
   builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
-  LightOptions light = lamp({0, 0, 1}, 1);
+  LightOptions light = light_at({0, 0, 1}, 1);
   light.flicker.emplace();
   builder.light(0.1, {light});
   EXPECT_FALSE(std::move(builder).build(Background(0.5)).has_view());

@@ -21,7 +21,7 @@ namespace {
 constexpr double kAmbient = 0.1;
 constexpr double kIntensity = 0.8;
 constexpr double kAlbedo = 0.6;
-constexpr double kDuration_s = 0.0437;
+constexpr double kFlickerDuration_s = 0.0437;
 const PinholeCamera kCamera{10, 6, 200, 200, 4.5, 2.5, {}};
 
 Scene even_plane(const FlickerOptions& flicker) {
@@ -58,8 +58,8 @@ std::vector<Fired> closed_form(const FlickerOptions& options, const EventOptions
   const Flicker flicker(options);
   const auto value = [&](double t_s) { return signal(flicker, events.log_eps, t_s); };
   std::vector<double> ends;
-  flicker.find_breaks(0, kDuration_s, 1e-10, ends);
-  ends.push_back(kDuration_s);
+  flicker.find_breaks(0, kFlickerDuration_s, 1e-10, ends);
+  ends.push_back(kFlickerDuration_s);
   std::vector<Fired> fired;
   double reference = value(0), from_s = 0;
   for (const double end_s : ends) {
@@ -125,7 +125,8 @@ template <class Camera>
 void expect_closed_form(double tolerance_s, const EventOptions& events) {
   for (const FlickerOptions& flicker : waveforms()) {
     const std::vector<Fired> expected = closed_form(flicker, events);
-    const SensedEvents found = record<Camera>(even_plane(flicker), at_rest(kDuration_s), events);
+    const SensedEvents found =
+        record<Camera>(even_plane(flicker), at_rest(kFlickerDuration_s), events);
     const double worst = worst_error_s(expected, found);
     std::printf("%zu events per pixel, worst error %.3f us\n", expected.size(), 1e6 * worst);
     EXPECT_GT(expected.size(), 20U);
@@ -156,7 +157,7 @@ TEST(FlickeringLight, FramesFollowTheFlicker) {
     options.sampling = Sampling::kFrames;
     const auto expected = static_cast<double>(closed_form(flicker, options).size());
     const SensedEvents found =
-        record<FrameCamera>(even_plane(flicker), at_rest(kDuration_s), options);
+        record<FrameCamera>(even_plane(flicker), at_rest(kFlickerDuration_s), options);
     const double per_pixel =
         static_cast<double>(found.size()) / static_cast<double>(kCamera.width * kCamera.height);
     EXPECT_NEAR(per_pixel, expected, 0.15 * expected);
@@ -211,8 +212,8 @@ TEST(FlickeringLight, FramesAverageItOverTheExposureInClosedForm) {
 }
 
 /// A card and a bar in front of a textured wall under a lamp that flickers, with shadows of both.
-Scene lively_scene(const FlickerOptions& lamp_flicker, const FlickerOptions& ambient_flicker,
-                   bool moves) {
+Scene lively_flickering_scene(const FlickerOptions& lamp_flicker,
+                              const FlickerOptions& ambient_flicker, bool moves) {
   SceneBuilder builder;
   builder.add(testing::slanted_wall(), Eigen::Affine3d::Identity());
   builder.add(testing::ball({0.1, 0.1, 2.2}, 0.35, 16, testing::patches(128, 64, 4)),
@@ -236,7 +237,7 @@ TEST(FlickeringLight, AgreesWithBruteForceAmongMotion) {
   const FlickerOptions sine{100, Waveform::kSine, 0.6, 0.5, 30};
   for (const FlickerOptions& flicker : waveforms())
     for (const bool moves : {false, true}) {
-      const Scene scene = lively_scene(flicker, sine, moves);
+      const Scene scene = lively_flickering_scene(flicker, sine, moves);
       EventOptions options;
       options.samples_per_pixel = moves ? 1 : 4;
       const testing::Agreement result =
@@ -252,7 +253,8 @@ TEST(FlickeringLight, AdaptiveAgreesWithExactAmongMotion) {
   const PinholeCamera crop{20, 12, 200, 200, 0.5, 4.5, {}};
   const Spline motion = testing::lively_motion(0.05, 1.5, 1, 4);
   for (const FlickerOptions& flicker : waveforms()) {
-    const Scene scene = lively_scene(flicker, {100, Waveform::kSine, 0.6, 0.5, 30}, true);
+    const Scene scene =
+        lively_flickering_scene(flicker, {100, Waveform::kSine, 0.6, 0.5, 30}, true);
     const EventOptions options = testing::in_nanoseconds();
     Events exact, sampled;
     for (const SensedEvent& event : record<EventCamera>(scene, motion, options, crop))
@@ -274,9 +276,11 @@ TEST(FlickeringLight, TheLowPassFollowsIt) {
     options.noise.bandwidth.cutoff_hz = 300;
     const Scene scene = even_plane(flicker);
     Events exact, sampled;
-    for (const SensedEvent& event : record<EventCamera>(scene, at_rest(kDuration_s), options))
+    for (const SensedEvent& event :
+         record<EventCamera>(scene, at_rest(kFlickerDuration_s), options))
       exact.push_back(event.event());
-    for (const SensedEvent& event : record<AdaptiveCamera>(scene, at_rest(kDuration_s), options))
+    for (const SensedEvent& event :
+         record<AdaptiveCamera>(scene, at_rest(kFlickerDuration_s), options))
       sampled.push_back(event.event());
     EXPECT_GT(exact.size(), 300U);
     EXPECT_LT(exact.size(), closed_form(flicker, options).size() *
@@ -293,8 +297,8 @@ class FlickeringLightThreads : public ::testing::Test {
 
 TEST_F(FlickeringLightThreads, DoNotChangeTheStream) {
   const PinholeCamera crop{40, 24, 200, 200, 20, 12, {}};
-  const Scene scene =
-      lively_scene({410, Waveform::kSquare, 0.8, 0.3, 10}, {100, Waveform::kSine, 1, 0.5, 0}, true);
+  const Scene scene = lively_flickering_scene({410, Waveform::kSquare, 0.8, 0.3, 10},
+                                              {100, Waveform::kSine, 1, 0.5, 0}, true);
   const Spline motion = testing::lively_motion(0.02, 1.5, 1, 4);
   set_thread_count(1);
   const SensedEvents exact = record<EventCamera>(scene, motion, {}, crop);

@@ -9,12 +9,12 @@
 namespace saccade {
 namespace {
 
-const PinholeCamera kCamera{61, 46, 100, 100, 30, 22.5, {}};
+const PinholeCamera kFlowCamera{61, 46, 100, 100, 30, 22.5, {}};
 const PinholeCamera kLensCamera{41, 30, 60, 63, 21, 14, {-0.2, 0.05, 0.003, -0.002, 0}};
-const ImageF kGrey(2, 2, 0.5F);
+const ImageF kFlowGrey(2, 2, 0.5F);
 
 Mesh wall(double distance) {
-  return testing::rectangle({-30, -30, distance}, {60, 0, 0}, {0, 60, 0}, kGrey);
+  return testing::rectangle({-30, -30, distance}, {60, 0, 0}, {0, 60, 0}, kFlowGrey);
 }
 
 /// Of each kind how many pixels.
@@ -24,7 +24,7 @@ std::ptrdiff_t count(const OpticalFlow& flow, Covisibility kind) {
 
 TEST(OpticalFlow, TranslationBeforeAPlane) {
   const Scene scene = testing::scene_of({wall(2)});
-  const OpticalFlowRenderer renderer(scene, kCamera);
+  const OpticalFlowRenderer renderer(scene, kFlowCamera);
   const OpticalFlowPair pair = renderer.pair({0, {}}, {1, {so3_exp({0, 0, 0}), {0.04, -0.02, 0}}});
   for (int y = 0; y < 46; ++y)
     for (int x = 0; x < 61; ++x) {
@@ -41,7 +41,7 @@ TEST(OpticalFlow, TranslationBeforeAPlane) {
 TEST(OpticalFlow, ApproachIsRadial) {
   const Scene scene = testing::scene_of({wall(2)});
   const OpticalFlow flow =
-      OpticalFlowRenderer(scene, kCamera).flow({0, {}}, {1, {so3_exp({0, 0, 0}), {0, 0, 0.4}}});
+      OpticalFlowRenderer(scene, kFlowCamera).flow({0, {}}, {1, {so3_exp({0, 0, 0}), {0, 0, 0.4}}});
   for (int y = 0; y < 46; y += 3)
     for (int x = 0; x < 61; x += 3) {
       EXPECT_NEAR(flow.u(x, y), 0.25 * (x - 30), 1e-5);
@@ -51,12 +51,13 @@ TEST(OpticalFlow, ApproachIsRadial) {
 
 TEST(OpticalFlow, RotationIsTheInfiniteHomographyOnBackgroundAndSurfaces) {
   const Scene scene =
-      testing::scene_of({testing::rectangle({0, -9, 3}, {9, 0, 0}, {0, 18, 2}, kGrey)});
+      testing::scene_of({testing::rectangle({0, -9, 3}, {9, 0, 0}, {0, 18, 2}, kFlowGrey)});
   const Eigen::Quaterniond rotation = so3_exp({0.05, -0.08, 0.2});
   const OpticalFlow flow =
-      OpticalFlowRenderer(scene, kCamera).flow({0, {}}, {1, {rotation, {0, 0, 0}}});
-  const Eigen::Matrix3d homography =
-      kCamera.matrix() * rotation.toRotationMatrix().transpose() * kCamera.matrix().inverse();
+      OpticalFlowRenderer(scene, kFlowCamera).flow({0, {}}, {1, {rotation, {0, 0, 0}}});
+  const Eigen::Matrix3d homography = kFlowCamera.matrix() *
+                                     rotation.toRotationMatrix().transpose() *
+                                     kFlowCamera.matrix().inverse();
   for (int y = 0; y < 46; ++y)
     for (int x = 0; x < 61; ++x) {
       const Eigen::Vector2d to = (homography * Eigen::Vector3d(x, y, 1)).hnormalized();
@@ -72,7 +73,8 @@ TEST(OpticalFlow, APlaneThatMovesBeforeALensThatMoves) {
   const Eigen::Vector3d corner(-30, -30, 2), right(60, 0, 3), down(0, 60, 5);
   const Rigid3 object(so3_exp({-0.05, 0.05, 0.1}), {0.1, 0, 0.2});
   SceneBuilder builder;
-  builder.add_moving(testing::rectangle(corner, right, down, kGrey), Eigen::Affine3d::Identity(),
+  builder.add_moving(testing::rectangle(corner, right, down, kFlowGrey),
+                     Eigen::Affine3d::Identity(),
                      Spline::interpolate(std::vector<StampedPose>{{0, Rigid3()}, {1, object}}));
   const Scene scene = std::move(builder).build(Background(0.5));
   const Rigid3 camera(so3_exp({0.02, -0.03, 0.05}), {0.1, -0.05, 0.1});
@@ -93,9 +95,9 @@ TEST(OpticalFlow, APlaneThatMovesBeforeALensThatMoves) {
 TEST(OpticalFlow, WhatARectangleCoversNextIsOccluded) {
   // The rectangle is on columns 25 to 35 and rows 20 to 25; it moves by two pixels, the wall by one.
   const Scene scene = testing::scene_of(
-      {wall(4), testing::rectangle({-0.105, -0.055, 2}, {0.21, 0, 0}, {0, 0.11, 0}, kGrey)});
-  const OpticalFlow flow =
-      OpticalFlowRenderer(scene, kCamera).flow({0, {}}, {1, {so3_exp({0, 0, 0}), {0.04, 0, 0}}});
+      {wall(4), testing::rectangle({-0.105, -0.055, 2}, {0.21, 0, 0}, {0, 0.11, 0}, kFlowGrey)});
+  const OpticalFlow flow = OpticalFlowRenderer(scene, kFlowCamera)
+                               .flow({0, {}}, {1, {so3_exp({0, 0, 0}), {0.04, 0, 0}}});
   for (int y = 0; y < 46; ++y)
     for (int x = 0; x < 61; ++x) {
       const bool is_rectangle = x >= 25 && x <= 35 && y >= 20 && y <= 25;
@@ -109,8 +111,8 @@ TEST(OpticalFlow, WhatARectangleCoversNextIsOccluded) {
 
 TEST(OpticalFlow, BackgroundIsOccludedBySurfacesAndWhatIsBehindIsNotValid) {
   const Scene scene = testing::scene_of(
-      {testing::rectangle({-0.105, -0.055, 2}, {0.21, 0, 0}, {0, 0.11, 0}, kGrey)});
-  const OpticalFlowRenderer renderer(scene, kCamera);
+      {testing::rectangle({-0.105, -0.055, 2}, {0.21, 0, 0}, {0, 0.11, 0}, kFlowGrey)});
+  const OpticalFlowRenderer renderer(scene, kFlowCamera);
   const OpticalFlow flow = renderer.flow({0, {}}, {1, {so3_exp({0, 0, 0}), {0.04, 0, 0}}});
   EXPECT_EQ(count(flow, Covisibility::kOccluded), 2 * 6);
   EXPECT_EQ(flow.u(23, 22), 0);
@@ -121,8 +123,8 @@ TEST(OpticalFlow, BackgroundIsOccludedBySurfacesAndWhatIsBehindIsNotValid) {
 }
 
 TEST(OpticalFlow, BackAndForthEndsWhereItBeganOnACurvedSurface) {
-  const Scene scene = testing::scene_of({testing::ball({0, 0, 3}, 0.5, 40, kGrey), wall(6)});
-  const OpticalFlowRenderer renderer(scene, kCamera);
+  const Scene scene = testing::scene_of({testing::ball({0, 0, 3}, 0.5, 40, kFlowGrey), wall(6)});
+  const OpticalFlowRenderer renderer(scene, kFlowCamera);
   const OpticalFlowPair pair =
       renderer.pair({0, {}}, {1, {so3_exp({0.01, 0.02, 0.03}), {0.1, -0.05, 0.05}}});
   int compared = 0;
