@@ -39,23 +39,23 @@ std::size_t EventFrameMaker::index(const Event& event) const {
   return pixel + (is_second ? width * static_cast<std::size_t>(size_.height) : 0);
 }
 
-Grid EventFrameMaker::next(std::span<const Event> events, const EventWindow& window) {
+EventGrid EventFrameMaker::next(std::span<const Event> events, const EventWindow& window) {
   if (options_.kind == EventFrameOptions::Kind::kTimeSurface)
     return time_surface(events, window.to_ns);
   return counts(events);
 }
 
-Grid EventFrameMaker::counts(std::span<const Event> events) const {
+EventGrid EventFrameMaker::counts(std::span<const Event> events) const {
   const auto pixels =
       static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height);
-  Grid grid(static_cast<std::size_t>(options_.channels()) * pixels);
+  EventGrid grid(static_cast<std::size_t>(options_.channels()) * pixels);
   for (const Event& event : events) ++grid[index(event)];
   return grid;
 }
 
-Grid EventFrameMaker::time_surface(std::span<const Event> events, TimeNs end_ns) {
+EventGrid EventFrameMaker::time_surface(std::span<const Event> events, TimeNs end_ns) {
   for (const Event& event : events) last_ns_[index(event)] = event.t_ns;
-  Grid grid(last_ns_.size());
+  EventGrid grid(last_ns_.size());
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (last_ns_[i] != kNever)
       grid[i] =

@@ -33,11 +33,11 @@ class EventFrameMaker {
   EventFrameMaker(SensorSize size, const EventFrameOptions& options);
 
   /// `events`: those of the window.
-  [[nodiscard]] Grid next(std::span<const Event> events, const EventWindow& window);
+  [[nodiscard]] EventGrid next(std::span<const Event> events, const EventWindow& window);
 
  private:
-  [[nodiscard]] Grid counts(std::span<const Event> events) const;
-  [[nodiscard]] Grid time_surface(std::span<const Event> events, TimeNs end_ns);
+  [[nodiscard]] EventGrid counts(std::span<const Event> events) const;
+  [[nodiscard]] EventGrid time_surface(std::span<const Event> events, TimeNs end_ns);
   /// Of an event, in a grid of two channels or one.
   [[nodiscard]] std::size_t index(const Event& event) const;
 

@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 /// As E2VID has it: of the voxels that are not 0, and where they are all alike only their mean.
-void normalize_nonzero(Grid& grid) {
+void normalize_nonzero(EventGrid& grid) {
   double count = 0;
   double sum = 0;
   double squares = 0;
@@ -47,11 +47,11 @@ void describe(config::Fields& fields, VoxelGridOptions& options) {
   describe_windows(fields, options.window);
 }
 
-Grid voxel_grid(std::span<const Event> events, const EventWindow& window, SensorSize size,
+EventGrid voxel_grid(std::span<const Event> events, const EventWindow& window, SensorSize size,
                 const VoxelGridOptions& options) {
   const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   const auto bins = static_cast<std::size_t>(options.bins);
-  Grid grid(static_cast<std::size_t>(options.channels()) * pixels);
+  EventGrid grid(static_cast<std::size_t>(options.channels()) * pixels);
   if (events.empty()) return grid;
   const bool by_events = options.span == VoxelGridOptions::Span::kEvents;
   const TimeNs from = by_events ? events.front().t_ns : window.from_ns;

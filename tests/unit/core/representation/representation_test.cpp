@@ -27,7 +27,7 @@ Events random_events(std::size_t count) {
   return events;
 }
 
-double sum(const Grid& grid, std::size_t first = 0, std::size_t count = 1'000'000) {
+double sum(const EventGrid& grid, std::size_t first = 0, std::size_t count = 1'000'000) {
   const auto begin = grid.begin() + static_cast<std::ptrdiff_t>(first);
   return std::accumulate(
       begin, begin + static_cast<std::ptrdiff_t>(std::min(count, grid.size() - first)), 0.0);
@@ -67,7 +67,7 @@ TEST(VoxelGrid, AnEventIsDividedBetweenItsTwoBins) {
   const Events events{{0, 1, 2, 1}, {250, 3, 4, -1}, {1000, 6, 0, 1}};
   VoxelGridOptions options;
   options.bins = 3;
-  const Grid grid = voxel_grid(events, {0, 1000, 0, 3}, kSize, options);
+  const EventGrid grid = voxel_grid(events, {0, 1000, 0, 3}, kSize, options);
   const auto at = [&](int bin, int x, int y) {
     return grid[static_cast<std::size_t>((bin * 5 + y) * 7 + x)];
   };
@@ -90,7 +90,7 @@ TEST(VoxelGrid, SumsAreThoseOfThePolarities) {
       const EventWindow window{0, 2'000'000'000, 0, events.size()};
       EXPECT_NEAR(sum(voxel_grid(events, window, kSize, options)), on - (1000 - on), 1e-3);
       options.polarity = VoxelGridOptions::Polarity::kSeparate;
-      const Grid grid = voxel_grid(events, window, kSize, options);
+      const EventGrid grid = voxel_grid(events, window, kSize, options);
       ASSERT_EQ(grid.size(), static_cast<std::size_t>(2 * bins * 35));
       EXPECT_NEAR(sum(grid, 0, static_cast<std::size_t>(bins * 35)), on, 1e-3);
       EXPECT_NEAR(sum(grid, static_cast<std::size_t>(bins * 35)), 1000 - on, 1e-3);
@@ -101,9 +101,9 @@ TEST(VoxelGrid, NormalisationLeavesZerosAndGivesTheOthersMeanZeroAndSigmaOne) {
   const Events events = random_events(40);
   VoxelGridOptions options;
   const EventWindow window{0, 40'000'000, 0, events.size()};
-  const Grid raw = voxel_grid(events, window, kSize, options);
+  const EventGrid raw = voxel_grid(events, window, kSize, options);
   options.normalize = VoxelGridOptions::Normalize::kNonzero;
-  const Grid grid = voxel_grid(events, window, kSize, options);
+  const EventGrid grid = voxel_grid(events, window, kSize, options);
   double count = 0, mean = 0, squares = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (raw[i] == 0) {
@@ -120,7 +120,7 @@ TEST(VoxelGrid, NormalisationLeavesZerosAndGivesTheOthersMeanZeroAndSigmaOne) {
 
 TEST(VoxelGrid, EventsOfOneTimeAndNoEventsAreFine) {
   const Events events{{500, 1, 1, 1}, {500, 2, 1, 1}};
-  const Grid grid = voxel_grid(events, {500, 500, 0, 2}, kSize, {});
+  const EventGrid grid = voxel_grid(events, {500, 500, 0, 2}, kSize, {});
   EXPECT_EQ(sum(grid, 0, 35), 2);
   EXPECT_EQ(sum(voxel_grid({}, {0, 10, 0, 0}, kSize, {})), 0);
 }
@@ -130,13 +130,13 @@ TEST(EventFrame, CountsOfEventsAndOfPolarities) {
   const EventWindow window{0, 3, 0, 4};
   EventFrameOptions options;
   options.kind = EventFrameOptions::Kind::kCount;
-  const Grid count = EventFrameMaker(kSize, options).next(events, window);
+  const EventGrid count = EventFrameMaker(kSize, options).next(events, window);
   ASSERT_EQ(count.size(), 35U);
   EXPECT_EQ(count[1], 3);
   EXPECT_EQ(count[34], 1);
   EXPECT_EQ(sum(count), 4);
   options.kind = EventFrameOptions::Kind::kPolarity;
-  const Grid polarity = EventFrameMaker(kSize, options).next(events, window);
+  const EventGrid polarity = EventFrameMaker(kSize, options).next(events, window);
   ASSERT_EQ(polarity.size(), 70U);
   EXPECT_EQ(polarity[1], 2);
   EXPECT_EQ(polarity[35 + 1], 1);
@@ -150,11 +150,11 @@ TEST(EventFrame, ATimeSurfaceRemembersEarlierWindows) {
   EventFrameMaker maker(kSize, options);
   const Events first{{0, 0, 0, 1}, {5'000'000, 1, 0, 1}};
   const Events second{{12'000'000, 1, 0, -1}, {15'000'000, 0, 0, 1}};
-  const Grid a = maker.next(first, {0, 10'000'000, 0, 2});
+  const EventGrid a = maker.next(first, {0, 10'000'000, 0, 2});
   EXPECT_NEAR(a[0], std::exp(-1.0), 1e-6);
   EXPECT_NEAR(a[1], std::exp(-0.5), 1e-6);
   EXPECT_EQ(a[2], 0);
-  const Grid b = maker.next(second, {10'000'000, 20'000'000, 2, 4});
+  const EventGrid b = maker.next(second, {10'000'000, 20'000'000, 2, 4});
   EXPECT_NEAR(b[0], std::exp(-0.5), 1e-6);
   EXPECT_NEAR(b[1], std::exp(-1.5), 1e-6);
   EXPECT_NEAR(b[35 + 1], std::exp(-0.8), 1e-6);

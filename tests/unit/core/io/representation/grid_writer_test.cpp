@@ -21,8 +21,8 @@ using testing::TemporaryFolder;
 
 const GridShape kShape{"event_frame", 2, 2, 3, 4};
 
-Grid numbered(float first) {
-  Grid grid(kShape.size());
+EventGrid numbered(float first) {
+  EventGrid grid(kShape.size());
   for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = first + static_cast<float>(i);
   return grid;
 }
@@ -86,7 +86,7 @@ TEST(GridWriter, PicturesShowOneChannelInGreyAndTwoInRedAndBlue) {
   EXPECT_EQ(image(2, 1), (Rgb8{246, 0, 255}));  // 258 saturates
   const GridShape one{"event_frame", 1, 1, 3, 4};
   const auto writer = make_grid_writer(folder.path() / "grey", one, 10);
-  Grid grid(12);
+  EventGrid grid(12);
   grid[5] = 1.26F;
   writer->append(grid, {});
   writer->close();
