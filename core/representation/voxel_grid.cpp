@@ -48,7 +48,7 @@ void describe(config::Fields& fields, VoxelGridOptions& options) {
 }
 
 EventGrid voxel_grid(std::span<const Event> events, const EventWindow& window, SensorSize size,
-                const VoxelGridOptions& options) {
+                     const VoxelGridOptions& options) {
   const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   const auto bins = static_cast<std::size_t>(options.bins);
   EventGrid grid(static_cast<std::size_t>(options.channels()) * pixels);

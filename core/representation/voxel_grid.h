@@ -37,6 +37,6 @@ void describe(config::Fields& fields, VoxelGridOptions& options);
 /// Normalisation: (value - mean) / standard deviation, over the voxels that are not 0. `events` are
 /// those of the window and lie within `size`.
 [[nodiscard]] EventGrid voxel_grid(std::span<const Event> events, const EventWindow& window,
-                              SensorSize size, const VoxelGridOptions& options);
+                                   SensorSize size, const VoxelGridOptions& options);
 
 }  // namespace saccade
