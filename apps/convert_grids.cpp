@@ -60,14 +60,14 @@ Options parse(const std::string& text, const std::string& option) {
   return config::read<Options>(config::parse(yaml.empty() ? "{}" : yaml, option));
 }
 
-std::vector<EventWindow> windows_of(const Recording& recording, const WindowOptions& options,
-                                    const fs::path& input) {
+std::vector<GridWindow> windows_of(const Recording& recording, const WindowOptions& options,
+                                   const fs::path& input) {
   if (options.by_frames && recording.frames.size() < 2)
     throw InputError(input.string(), "has no two frames to cut windows at (by_frames)");
   return cut_windows(recording.events, options, recording.frames);
 }
 
-std::span<const Event> events_of(const Recording& recording, const EventWindow& window) {
+std::span<const Event> events_of(const Recording& recording, const GridWindow& window) {
   return std::span(recording.events).subspan(window.first, window.last - window.first);
 }
 
@@ -81,26 +81,26 @@ std::string text_of(const GridShape& shape, const fs::path& output) {
 std::string convert_to_grids(const fs::path& input, const fs::path& output,
                              const GridRequest& request) {
   std::optional<VoxelGridOptions> voxels;
-  EventFrameOptions frames;
+  FrameGridOptions frames;
   if (!request.voxel_grid.empty())
     voxels = parse<VoxelGridOptions>(request.voxel_grid, "--voxel-grid");
   else
-    frames = parse<EventFrameOptions>(request.event_frame, "--event-frame");
+    frames = parse<FrameGridOptions>(request.event_frame, "--event-frame");
   const Recording recording = load(input);
-  const std::vector<EventWindow> windows =
+  const std::vector<GridWindow> windows =
       windows_of(recording, voxels ? voxels->window : frames.window, input);
   const GridShape shape{voxels ? "voxel_grid" : "event_frame", windows.size(),
                         voxels ? voxels->channels() : frames.channels(), recording.size.height,
                         recording.size.width};
   // Counts are codes; a time surface is at most 1.
-  const bool is_surface = frames.kind == EventFrameOptions::Kind::kTimeSurface;
+  const bool is_surface = frames.kind == FrameGridOptions::Kind::kTimeSurface;
   const bool is_picture = output.extension().empty();
   if (voxels && is_picture)
     throw InputError(output.string(), "voxel grids are no pictures; write .h5 or .npy");
   const std::unique_ptr<GridWriter> writer =
       make_grid_writer(output, shape, is_surface ? 255.0F : 1.0F);
   EventFrameMaker maker(recording.size, frames);
-  for (const EventWindow& window : windows) {
+  for (const GridWindow& window : windows) {
     const std::span<const Event> events = events_of(recording, window);
     writer->append(
         voxels ? voxel_grid(events, window, recording.size, *voxels) : maker.next(events, window),

@@ -12,23 +12,23 @@ constexpr TimeNs kNever = std::numeric_limits<TimeNs>::min();
 
 }  // namespace
 
-void describe(config::Fields& fields, EventFrameOptions& options) {
+void describe(config::Fields& fields, FrameGridOptions& options) {
   fields.choice("kind", options.kind,
-                {{"count", EventFrameOptions::Kind::kCount},
-                 {"polarity", EventFrameOptions::Kind::kPolarity},
-                 {"time_surface", EventFrameOptions::Kind::kTimeSurface}},
+                {{"count", FrameGridOptions::Kind::kCount},
+                 {"polarity", FrameGridOptions::Kind::kPolarity},
+                 {"time_surface", FrameGridOptions::Kind::kTimeSurface}},
                 "Number of events, numbers of ON and of OFF events, or how long ago the last ON "
                 "and the last OFF event was.");
-  if (options.kind == EventFrameOptions::Kind::kTimeSurface)
+  if (options.kind == FrameGridOptions::Kind::kTimeSurface)
     fields.value("decay_s", options.decay_s, "Time constant of the time surface, in seconds.")
         .range(1e-6, 1e6);
   describe_windows(fields, options.window);
 }
 
-EventFrameMaker::EventFrameMaker(SensorSize size, const EventFrameOptions& options)
+EventFrameMaker::EventFrameMaker(SensorSize size, const FrameGridOptions& options)
     : size_(size), options_(options) {
   const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
-  if (options_.kind == EventFrameOptions::Kind::kTimeSurface) last_ns_.assign(2 * pixels, kNever);
+  if (options_.kind == FrameGridOptions::Kind::kTimeSurface) last_ns_.assign(2 * pixels, kNever);
 }
 
 std::size_t EventFrameMaker::index(const Event& event) const {
@@ -39,8 +39,8 @@ std::size_t EventFrameMaker::index(const Event& event) const {
   return pixel + (is_second ? width * static_cast<std::size_t>(size_.height) : 0);
 }
 
-EventGrid EventFrameMaker::next(std::span<const Event> events, const EventWindow& window) {
-  if (options_.kind == EventFrameOptions::Kind::kTimeSurface)
+EventGrid EventFrameMaker::next(std::span<const Event> events, const GridWindow& window) {
+  if (options_.kind == FrameGridOptions::Kind::kTimeSurface)
     return time_surface(events, window.to_ns);
   return counts(events);
 }

@@ -11,7 +11,7 @@
 
 namespace saccade {
 
-struct EventFrameOptions {
+struct FrameGridOptions {
   enum class Kind { kCount, kPolarity, kTimeSurface };
 
   Kind kind = Kind::kPolarity;
@@ -21,7 +21,7 @@ struct EventFrameOptions {
   [[nodiscard]] int channels() const { return kind == Kind::kCount ? 1 : 2; }
 };
 
-void describe(config::Fields& fields, EventFrameOptions& options);
+void describe(config::Fields& fields, FrameGridOptions& options);
 
 /// Frames of windows that follow one another:
 ///   count: number of events in the window;   polarity: of ON events, of OFF events
@@ -30,10 +30,10 @@ void describe(config::Fields& fields, EventFrameOptions& options);
 ///   TPAMI 2017)
 class EventFrameMaker {
  public:
-  EventFrameMaker(SensorSize size, const EventFrameOptions& options);
+  EventFrameMaker(SensorSize size, const FrameGridOptions& options);
 
   /// `events`: those of the window.
-  [[nodiscard]] EventGrid next(std::span<const Event> events, const EventWindow& window);
+  [[nodiscard]] EventGrid next(std::span<const Event> events, const GridWindow& window);
 
  private:
   [[nodiscard]] EventGrid counts(std::span<const Event> events) const;
@@ -42,7 +42,7 @@ class EventFrameMaker {
   [[nodiscard]] std::size_t index(const Event& event) const;
 
   SensorSize size_;
-  EventFrameOptions options_;
+  FrameGridOptions options_;
   std::vector<TimeNs> last_ns_;  ///< of the time surface, by channel and pixel
 };
 

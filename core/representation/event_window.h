@@ -20,15 +20,15 @@ void describe_windows(config::Fields& fields, WindowOptions& options);
 
 /// Events `first` <= i < `last`, all within [from_ns, to_ns]; the latter belongs to the next window
 /// where that starts at it.
-struct EventWindow {
+struct GridWindow {
   TimeNs from_ns = 0, to_ns = 0;
   std::size_t first = 0, last = 0;
 };
 
 /// Windows in order of time, also those without events between others. `frames`: the times of the
 /// frames, for by_frames. None without events.
-[[nodiscard]] std::vector<EventWindow> cut_windows(std::span<const Event> events,
-                                                   const WindowOptions& options,
-                                                   std::span<const TimeNs> frames = {});
+[[nodiscard]] std::vector<GridWindow> cut_windows(std::span<const Event> events,
+                                                  const WindowOptions& options,
+                                                  std::span<const TimeNs> frames = {});
 
 }  // namespace saccade

@@ -47,7 +47,7 @@ void describe(config::Fields& fields, VoxelGridOptions& options) {
   describe_windows(fields, options.window);
 }
 
-EventGrid voxel_grid(std::span<const Event> events, const EventWindow& window, SensorSize size,
+EventGrid voxel_grid(std::span<const Event> events, const GridWindow& window, SensorSize size,
                      const VoxelGridOptions& options) {
   const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   const auto bins = static_cast<std::size_t>(options.bins);

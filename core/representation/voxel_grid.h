@@ -36,7 +36,7 @@ void describe(config::Fields& fields, VoxelGridOptions& options);
 /// events have the first `bins` channels, the OFF events the others, both with weights above 0.
 /// Normalisation: (value - mean) / standard deviation, over the voxels that are not 0. `events` are
 /// those of the window and lie within `size`.
-[[nodiscard]] EventGrid voxel_grid(std::span<const Event> events, const EventWindow& window,
+[[nodiscard]] EventGrid voxel_grid(std::span<const Event> events, const GridWindow& window,
                                    SensorSize size, const VoxelGridOptions& options);
 
 }  // namespace saccade

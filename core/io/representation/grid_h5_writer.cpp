@@ -34,7 +34,7 @@ class H5GridWriter final : public GridWriter {
     check_h5_write(grids_.valid(), target_.target());
   }
 
-  void append(const EventGrid& grid, const EventWindow& window) override {
+  void append(const EventGrid& grid, const GridWindow& window) override {
     SACCADE_CHECK(grid.size() == shape_.size() && from_s_.size() < shape_.count);
     const H5Lock lock;
     const std::array<hsize_t, 4> first{from_s_.size(), 0, 0, 0};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kWindowsHeader = "# from to events\n";
 
-void append_line(const EventWindow& window, std::string& text) {
+void append_line(const GridWindow& window, std::string& text) {
   append_decimal_seconds(window.from_ns, text);
   text += ' ';
   append_decimal_seconds(window.to_ns, text);
@@ -50,7 +50,7 @@ class NpyGridWriter final : public GridWriter {
     stream_ << npy_header(shape);
   }
 
-  void append(const EventGrid& grid, const EventWindow& window) override {
+  void append(const EventGrid& grid, const GridWindow& window) override {
     SACCADE_CHECK(grid.size() == shape_.size());
     stream_.write(reinterpret_cast<const char*>(grid.data()),
                   static_cast<std::streamsize>(grid.size() * sizeof(float)));
@@ -79,7 +79,7 @@ class PngGridWriter final : public GridWriter {
   PngGridWriter(const fs::path& folder, const GridShape& shape, float scale)
       : shape_(shape), scale_(scale), folder_(folder, "windows.txt") {}
 
-  void append(const EventGrid& grid, const EventWindow& window) override {
+  void append(const EventGrid& grid, const GridWindow& window) override {
     SACCADE_CHECK(grid.size() == shape_.size());
     const fs::path file = folder_.path() / fmt::format("frame_{:08}.png", count_++);
     if (shape_.channels == 1) {

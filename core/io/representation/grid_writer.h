@@ -26,7 +26,7 @@ struct GridShape {
 class GridWriter {
  public:
   virtual ~GridWriter() = default;
-  virtual void append(const EventGrid& grid, const EventWindow& window) = 0;
+  virtual void append(const EventGrid& grid, const GridWindow& window) = 0;
   /// After `count` grids.
   virtual void close() = 0;
 };

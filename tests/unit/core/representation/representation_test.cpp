@@ -35,7 +35,7 @@ double sum(const EventGrid& grid, std::size_t first = 0, std::size_t count = 1'0
 
 TEST(EventWindows, OfTimeBeginAtMultiplesAndHoldEveryEventOnce) {
   const Events events = random_events(103);
-  const std::vector<EventWindow> windows = cut_windows(events, {0.01, 0, false});
+  const std::vector<GridWindow> windows = cut_windows(events, {0.01, 0, false});
   ASSERT_EQ(windows.size(), 11U);
   std::size_t next = 0;
   for (std::size_t k = 0; k < windows.size(); ++k) {
@@ -48,14 +48,14 @@ TEST(EventWindows, OfTimeBeginAtMultiplesAndHoldEveryEventOnce) {
 
 TEST(EventWindows, OfEventsOfFramesAndOfEverything) {
   const Events events = random_events(103);
-  const std::vector<EventWindow> by_count = cut_windows(events, {0, 50, false});
+  const std::vector<GridWindow> by_count = cut_windows(events, {0, 50, false});
   ASSERT_EQ(by_count.size(), 3U);
   EXPECT_EQ(by_count[2].last - by_count[2].first, 3U);
   EXPECT_EQ(by_count[1].from_ns, events[50].t_ns);
   EXPECT_EQ(by_count[1].to_ns, events[99].t_ns);
   // An event at a frame's time belongs to the window that begins with it.
   const std::vector<TimeNs> frames{0, 100'000, 50'100'000};
-  const std::vector<EventWindow> by_frames = cut_windows(events, {0, 0, true}, frames);
+  const std::vector<GridWindow> by_frames = cut_windows(events, {0, 0, true}, frames);
   ASSERT_EQ(by_frames.size(), 2U);
   EXPECT_EQ(by_frames[0].last, 0U);
   EXPECT_EQ(by_frames[1].last, 50U);
@@ -87,7 +87,7 @@ TEST(VoxelGrid, SumsAreThoseOfThePolarities) {
       VoxelGridOptions options;
       options.bins = bins;
       options.span = span;
-      const EventWindow window{0, 2'000'000'000, 0, events.size()};
+      const GridWindow window{0, 2'000'000'000, 0, events.size()};
       EXPECT_NEAR(sum(voxel_grid(events, window, kSize, options)), on - (1000 - on), 1e-3);
       options.polarity = VoxelGridOptions::Polarity::kSeparate;
       const EventGrid grid = voxel_grid(events, window, kSize, options);
@@ -100,7 +100,7 @@ TEST(VoxelGrid, SumsAreThoseOfThePolarities) {
 TEST(VoxelGrid, NormalisationLeavesZerosAndGivesTheOthersMeanZeroAndSigmaOne) {
   const Events events = random_events(40);
   VoxelGridOptions options;
-  const EventWindow window{0, 40'000'000, 0, events.size()};
+  const GridWindow window{0, 40'000'000, 0, events.size()};
   const EventGrid raw = voxel_grid(events, window, kSize, options);
   options.normalize = VoxelGridOptions::Normalize::kNonzero;
   const EventGrid grid = voxel_grid(events, window, kSize, options);
@@ -127,15 +127,15 @@ TEST(VoxelGrid, EventsOfOneTimeAndNoEventsAreFine) {
 
 TEST(EventFrame, CountsOfEventsAndOfPolarities) {
   const Events events{{0, 1, 0, 1}, {1, 1, 0, 1}, {2, 1, 0, -1}, {3, 6, 4, -1}};
-  const EventWindow window{0, 3, 0, 4};
-  EventFrameOptions options;
-  options.kind = EventFrameOptions::Kind::kCount;
+  const GridWindow window{0, 3, 0, 4};
+  FrameGridOptions options;
+  options.kind = FrameGridOptions::Kind::kCount;
   const EventGrid count = EventFrameMaker(kSize, options).next(events, window);
   ASSERT_EQ(count.size(), 35U);
   EXPECT_EQ(count[1], 3);
   EXPECT_EQ(count[34], 1);
   EXPECT_EQ(sum(count), 4);
-  options.kind = EventFrameOptions::Kind::kPolarity;
+  options.kind = FrameGridOptions::Kind::kPolarity;
   const EventGrid polarity = EventFrameMaker(kSize, options).next(events, window);
   ASSERT_EQ(polarity.size(), 70U);
   EXPECT_EQ(polarity[1], 2);
@@ -144,8 +144,8 @@ TEST(EventFrame, CountsOfEventsAndOfPolarities) {
 }
 
 TEST(EventFrame, ATimeSurfaceRemembersEarlierWindows) {
-  EventFrameOptions options;
-  options.kind = EventFrameOptions::Kind::kTimeSurface;
+  FrameGridOptions options;
+  options.kind = FrameGridOptions::Kind::kTimeSurface;
   options.decay_s = 0.01;
   EventFrameMaker maker(kSize, options);
   const Events first{{0, 0, 0, 1}, {5'000'000, 1, 0, 1}};
