@@ -214,53 +214,6 @@ void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> tr
   }
 }
 
-const ShadingTable& Scene::State::shading_table() {
-  std::call_once(shading_table_built, [this] {
-    shading_table_ = std::make_unique<ShadingTable>(surfaces, interiors, normals);
-  });
-  return *shading_table_;
-}
-
-bool Scene::has_view() const {
-  return state_->visibility->objects().empty() && flickers().empty() &&
-         state_->shading_table().is_precise();
-}
-
-void Scene::view(const RayLanes& rays, std::size_t count, bool filtered, ViewLanes& seen) const {
-  const ShadingTable& table = state_->shading_table();
-  state_->visibility->nearest(rays, count, seen.triangles);
-  table.prefetch(seen.triangles, count);
-  table.sample(rays, count, filtered, seen);
-  seen.lights.fill(0);
-  std::array<bool, kRayPacket> is_surface{};
-  bool any = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto lane = static_cast<Eigen::Index>(i);
-    is_surface[i] = seen.triangles[i] != kNothing && seen.distance[lane] > 0;
-    any = any || is_surface[i];
-    if (is_surface[i]) continue;
-    const Eigen::Vector3f direction(rays.direction.x[lane], rays.direction.y[lane],
-                                    rays.direction.z[lane]);
-    const SurfaceSample sample = state_->background.sample(direction.cast<double>());
-    seen.radiance[lane] = static_cast<float>(sample.radiance());
-    seen.distance[lane] = 0;
-    seen.x[lane] = sample.texture != nullptr ? static_cast<float>(sample.x) : 0;
-    seen.y[lane] = sample.texture != nullptr ? static_cast<float>(sample.y) : 0;
-  }
-  if (!state_->illumination || !any) return;
-  LitLanes points;
-  table.find_points(rays, count, seen, points);
-  FloatLanes irradiance;
-  state_->illumination->illuminate(points, is_surface, *state_->visibility, seen.lights,
-                                   irradiance);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_surface[i]) continue;
-    const auto lane = static_cast<Eigen::Index>(i);
-    const float self_light = table.self_light(seen.triangles[i]);
-    if (!std::isinf(self_light)) seen.radiance[lane] *= irradiance[lane] + self_light;
-  }
-}
-
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
   if (!state_->illumination || !(surface.distance > 0)) return 1;
   return state_->surfaces[triangle].with_self_light(state_->illumination->irradiance(

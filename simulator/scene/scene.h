@@ -104,8 +104,6 @@ struct CutoutSample {
 
 class MovingObject;
 struct PatchLighting;
-struct RayLanes;
-struct ViewLanes;
 
 /// Everything that reflects or emits light, immutable after loading; all members are thread-safe
 /// and deterministic. Visibility comes from Embree (float); the point that is seen and its radiance
@@ -155,12 +153,6 @@ class Scene {
   /// the irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
-  /// Whether view() serves: nothing moves, no light flickers, and single precision resolves every position and texel.
-  [[nodiscard]] bool has_view() const;
-  /// What the first `count` rays of a packet see and its radiance under the lights, in single
-  /// precision, at a fraction of the cost of the above. `filtered`: textures over the rays'
-  /// footprints.
-  void view(const RayLanes& rays, std::size_t count, bool filtered, ViewLanes& seen) const;
   /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceSample& surface) const;

@@ -17,7 +17,6 @@
 #include "simulator/scene/light/patch_lighting.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/shading_table.h"
 
 namespace saccade {
 
@@ -104,16 +103,11 @@ struct Scene::State {
   std::vector<BvhTriangles> bvh_triangles;
   std::once_flag bvhs_built;
   std::vector<TriangleBvh> bvhs;
-  std::once_flag shading_table_built;
-  std::unique_ptr<const ShadingTable> shading_table_;
   std::once_flag triangle_lightings_built;
   std::unique_ptr<TriangleLighting[]> triangle_lightings;  ///< two per triangle
 
   /// Of what is static (0), then of the moving objects, each in its own frame.
   [[nodiscard]] const TriangleBvh& bvh(std::size_t body);
-
-  /// Made when first asked for.
-  [[nodiscard]] const ShadingTable& shading_table();
 
   /// use(ray) with the ray in the frame of a body.
   template <class Use>

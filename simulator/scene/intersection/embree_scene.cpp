@@ -33,10 +33,10 @@ struct ReleaseScene {
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-/// Embree's context with the rays in double precision, where they are, for the cutout test.
+/// Embree's context with the rays in double precision, for the cutout test.
 struct Context {
   RTCIntersectContext embree;
-  const Ray* rays;  ///< nullptr: in single precision only
+  const Ray* rays;
 
   Context(const Ray* all_rays, RTCIntersectContextFlags flags) : rays(all_rays) {
     rtcInitIntersectContext(&embree);
@@ -86,25 +86,6 @@ const RTCRayHit16& empty_packet() {
   return kEmpty;
 }
 
-Ray ray_of(const RTCFilterFunctionNArguments* arguments, unsigned i) {
-  RTCRayN* const rays = arguments->ray;
-  const unsigned n = arguments->N;
-  const Eigen::Vector3f origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i),
-                               RTCRayN_org_z(rays, n, i));
-  const Eigen::Vector3f direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i),
-                                  RTCRayN_dir_z(rays, n, i));
-  return {origin.cast<double>(), direction.cast<double>()};
-}
-
-void set_rays(RTCRay16& packet, const RayLanes& rays) {
-  Eigen::Map<FloatLanes>(packet.org_x) = rays.origin.x;
-  Eigen::Map<FloatLanes>(packet.org_y) = rays.origin.y;
-  Eigen::Map<FloatLanes>(packet.org_z) = rays.origin.z;
-  Eigen::Map<FloatLanes>(packet.dir_x) = rays.direction.x;
-  Eigen::Map<FloatLanes>(packet.dir_y) = rays.direction.y;
-  Eigen::Map<FloatLanes>(packet.dir_z) = rays.direction.z;
-}
-
 void set_ray(RTCRay16& packet, std::size_t i, const Ray& ray) {
   packet.org_x[i] = static_cast<float>(ray.origin.x());
   packet.org_y[i] = static_cast<float>(ray.origin.y());
@@ -131,10 +112,7 @@ struct EmbreeScene::State {
       const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, i);
       const TriangleId triangle =
           state.first_of_geometry[1] + RTCHitN_primID(arguments->hit, arguments->N, i);
-      const bool is_opaque = context.rays != nullptr
-                                 ? state.is_opaque(context.rays[ray], triangle)
-                                 : state.is_opaque(ray_of(arguments, i), triangle);
-      if (!is_opaque) arguments->valid[i] = 0;
+      if (!state.is_opaque(context.rays[ray], triangle)) arguments->valid[i] = 0;
     }
   }
 
@@ -185,35 +163,6 @@ void EmbreeScene::nearest(std::span<const Ray> rays, std::span<TriangleId> trian
   alignas(64) RTCRayHit16 packet = empty_packet();
   state_->trace(rays, packet);
   for (std::size_t i = 0; i < rays.size(); ++i) triangles[i] = state_->hit(packet, i);
-}
-
-void EmbreeScene::nearest(const RayLanes& rays, std::size_t count,
-                          std::array<TriangleId, kRayPacket>& triangles) const {
-  alignas(64) RTCRayHit16 packet = empty_packet();
-  alignas(64) std::array<int, kRayPacket> valid;
-  for (std::size_t i = 0; i < kRayPacket; ++i) valid[i] = i < count ? -1 : 0;
-  set_rays(packet.ray, rays);
-  Context context(nullptr, state_->flags);
-  rtcIntersect16(valid.data(), state_->scene.get(), &context.embree, &packet);
-  for (std::size_t i = 0; i < kRayPacket; ++i)
-    triangles[i] = i < count ? state_->hit(packet, i) : kNothing;
-}
-
-void EmbreeScene::find_reached(const RayLanes& rays, float distance,
-                               std::array<bool, kRayPacket>& reached) const {
-  alignas(64) std::array<int, kRayPacket> valid;
-  bool any = false;
-  for (std::size_t i = 0; i < kRayPacket; ++i) {
-    valid[i] = reached[i] ? -1 : 0;
-    any = any || reached[i];
-  }
-  if (!any) return;
-  alignas(64) RTCRay16 packet = empty_packet().ray;
-  set_rays(packet, rays);
-  std::fill_n(packet.tfar, kRayPacket, distance);
-  Context context(nullptr, state_->flags);
-  rtcOccluded16(valid.data(), state_->scene.get(), &context.embree, &packet);
-  for (std::size_t i = 0; i < kRayPacket; ++i) reached[i] = reached[i] && packet.tfar[i] >= 0;
 }
 
 void EmbreeScene::nearer(std::span<const Ray> rays, std::span<TriangleId> triangles,

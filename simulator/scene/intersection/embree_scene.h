@@ -1,14 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
 
 #include <Eigen/Core>
 
-#include "simulator/scene/ray_lanes.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {
@@ -47,13 +45,6 @@ class EmbreeScene {
   /// direction] anything stands.
   void find_blocked(std::span<const Ray> rays, std::span<const float> distances,
                     std::span<bool> blocked) const;
-
-  /// The same for packets whose rays lie side by side: of the first `count` rays,
-  void nearest(const RayLanes& rays, std::size_t count,
-               std::array<TriangleId, kRayPacket>& triangles) const;
-  /// and of the rays that are still `reached`, which stay so where nothing is within `distance`.
-  void find_reached(const RayLanes& rays, float distance,
-                    std::array<bool, kRayPacket>& reached) const;
 
  private:
   struct State;

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "simulator/scene/intersection/embree_scene.h"
 #include "simulator/scene/moving_object.h"
-#include "simulator/scene/ray_lanes.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {
@@ -35,18 +32,6 @@ class Visibility {
   /// direction].
   void find_blocked(std::span<const Ray> rays, std::span<const float> distances,
                     std::span<bool> blocked) const;
-
-  /// Both for the packets of a static scene: the nearest triangles along the first `count` rays,
-  void nearest(const RayLanes& rays, std::size_t count,
-               std::array<TriangleId, kRayPacket>& triangles) const {
-    static_triangles_->nearest(rays, count, triangles);
-  }
-  /// and which of the rays still `reached` nothing stops within `distance` [length of the
-  /// direction].
-  void find_reached(const RayLanes& rays, float distance,
-                    std::array<bool, kRayPacket>& reached) const {
-    static_triangles_->find_reached(rays, distance, reached);
-  }
 
   [[nodiscard]] std::span<const MovingObject> objects() const { return objects_; }
 

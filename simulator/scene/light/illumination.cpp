@@ -83,46 +83,6 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
   }
 }
 
-void Illumination::illuminate(const LitLanes& points, const std::array<bool, kRayPacket>& is_lit,
-                              const Visibility& blockers, std::span<LightSet, kRayPacket> lights,
-                              FloatLanes& irradiance) const {
-  std::fill(lights.begin(), lights.end(), LightSet{0});
-  irradiance.setConstant(static_cast<float>(ambient_));
-  RayLanes rays;
-  const auto above = static_cast<float>(shadow_offset_);
-  rays.origin = {points.position.x + above * points.plane_normal.x,
-                 points.position.y + above * points.plane_normal.y,
-                 points.position.z + above * points.plane_normal.z};
-  for (std::size_t index = 0; index < lights_.size(); ++index) {
-    const LightOptions& light = lights_[index];
-    const bool is_point = light.type == LightType::kPoint;
-    const auto to_light = [&](int axis, const FloatLanes& from) -> FloatLanes {
-      if (!is_point) return FloatLanes::Constant(static_cast<float>(-light.direction[axis]));
-      return static_cast<float>(light.position[axis]) - from;
-    };
-    rays.direction = {to_light(0, points.position.x), to_light(1, points.position.y),
-                      to_light(2, points.position.z)};
-    const FloatLanes squared = rays.direction.squared_norm();
-    const FloatLanes along = points.shading_normal.dot(rays.direction) / squared.sqrt();
-    FloatLanes strength = static_cast<float>(light.intensity) * along;
-    if (is_point) strength /= squared;
-    const FloatLanes facing = points.plane_normal.dot(rays.direction);
-    std::array<bool, kRayPacket> reached;
-    for (std::size_t i = 0; i < kRayPacket; ++i) {
-      const auto lane = static_cast<Eigen::Index>(i);
-      reached[i] = is_lit[i] && strength[lane] > 0 && facing[lane] > 0;
-    }
-    if (light.shadows)
-      blockers.find_reached(rays, is_point ? 1.0F : std::numeric_limits<float>::infinity(),
-                            reached);
-    for (std::size_t i = 0; i < kRayPacket; ++i) {
-      if (!reached[i]) continue;
-      lights[i] |= LightSet{1} << index;
-      irradiance[static_cast<Eigen::Index>(i)] += strength[static_cast<Eigen::Index>(i)];
-    }
-  }
-}
-
 double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
   double sum = ambient_ * factor(ambient_flicker_, point);
   for (std::size_t index = 0; index < lights_.size(); ++index)

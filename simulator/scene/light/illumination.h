@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,7 +8,6 @@
 
 #include "simulator/scene/intersection/visibility.h"
 #include "simulator/scene/light/flicker.h"
-#include "simulator/scene/ray_lanes.h"
 #include "simulator/scene/scene_options.h"
 
 namespace saccade {
@@ -21,11 +19,6 @@ struct LitPoint {
   Eigen::Vector3d shading_normal;
   double time_s;  ///< at which it is seen
   double span_s;  ///< around it, over which flickering light is averaged
-};
-
-/// Such points for a packet of rays.
-struct alignas(64) LitLanes {
-  LaneVectors position, plane_normal, shading_normal;
 };
 
 /// What falls onto a Lambertian surface: ambient light and lights with shadows.
@@ -42,12 +35,6 @@ class Illumination {
   /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
   /// without the distance) over `lights`, each times its flicker.
   [[nodiscard]] double irradiance(const LitPoint& point, LightSet lights) const;
-
-  /// Both of the above in steady light for the points of a packet, in single precision, where
-  /// `is_lit`; `blockers` are static.
-  void illuminate(const LitLanes& points, const std::array<bool, kRayPacket>& is_lit,
-                  const Visibility& blockers, std::span<LightSet, kRayPacket> lights,
-                  FloatLanes& irradiance) const;
 
   /// The bounds of irradiance() from `from` to `to`, two points of a surface at the ends of an
   /// interval that `lights` light throughout. The cosine over the distance squared is taken to stay

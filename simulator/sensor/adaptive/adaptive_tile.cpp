@@ -34,8 +34,6 @@ constexpr double kErrorMargin = 8;
 /// The slope before a line may equal its own by chance: its error is at least this part of its
 /// change.
 constexpr double kLeastError = 0.2;
-/// What single precision may be off in a texture of strong contrast [log units].
-constexpr double kSingleError = 3e-4;
 /// The photoreceptor's low pass needs all of the signal. A line that it is given may be wrong by
 /// what the signal changes within a bracket, or by this part of a threshold, which delays no common
 /// event by more [log units].
@@ -148,14 +146,6 @@ void AdaptiveTile::sense_step(double to_s) {
     std::size_t open = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = requests[k].pixel;
-      if (is_first && is_quiet(i, samples[k])) {
-        Pixel& pixel = views_[i];
-        pixel.before_s =
-            (samples[k].log_intensity - pixel.now.log_intensity) / (samples[k].t_s - pixel.now.t_s);
-        pixel.has_slope = true;
-        pixel.now = samples[k];
-        continue;
-      }
       ahead_[i].push_back(samples[k]);
       if (const std::optional<double> t_s = sense_lines(i)) requests[open++] = {i, *t_s};
     }
@@ -163,45 +153,12 @@ void AdaptiveTile::sense_step(double to_s) {
   }
 }
 
-double AdaptiveTile::error_of(const Pixel& pixel, const ViewSample& next) {
-  const double change = next.log_intensity - pixel.now.log_intensity;
-  if (!pixel.has_slope) return 0.25 * std::abs(change);
-  const double expected = pixel.before_s * (next.t_s - pixel.now.t_s);
-  return std::max(kErrorMargin * 0.25 * std::abs(change - expected),
-                  kLeastError * std::abs(change));
-}
-
-bool AdaptiveTile::is_quiet(std::size_t i, const ViewSample& next) const {
-  const Pixel& pixel = views_[i];
-  const ViewSample& now = pixel.now;
-  if (is_filtered_ || !scene_.flickers().empty() || is_near_edge_[i] ||
-      now.triangles != next.triangles || now.lights != next.lights ||
-      std::abs(next.x - now.x) > kMaxTexels || std::abs(next.y - now.y) > kMaxTexels)
-    return false;
-  if (pixels_.is_noisy() &&
-      (pixels_.refractory_until_s(i) > now.t_s || !pixels_.is_idle(i, now.t_s, next.t_s)))
-    return false;
-  const Thresholds& thresholds = pixels_.thresholds(i);
-  const Band& band = thresholds.band();
-  const double from = thresholds.signal(LinearSample{now.t_s, now.log_intensity});
-  const double to = thresholds.signal(LinearSample{next.t_s, next.log_intensity});
-  const double margin = std::min(band.upper - std::max(from, to), std::min(from, to) - band.lower);
-  return error_of(pixel, next) + kSingleError <= margin;
-}
-
 std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
   Pixel& pixel = views_[i];
   std::vector<ViewSample>& ahead = ahead_[i];
   while (!ahead.empty()) {
-    ViewSample next = ahead.back();
-    Judgement judgement = judge(i, pixel, next);
-    if (!(pixel.now.is_exact && next.is_exact) &&
-        (is_filtered_ || !judgement.is_line || crosses(i, next))) {
-      sampler_.refine(i, pixel.now);
-      sampler_.refine(i, next);
-      ahead.back() = next;
-      judgement = judge(i, pixel, next);
-    }
+    const ViewSample next = ahead.back();
+    const Judgement judgement = judge(i, pixel, next);
     if (judgement.is_line) {
       sense_line(i, pixel, next);
       ahead.pop_back();
@@ -222,15 +179,10 @@ bool AdaptiveTile::are_neighbours(const ViewSample& a, const ViewSample& b) cons
          b.t_s - a.t_s <= kNeighbours * step_s_;
 }
 
-bool AdaptiveTile::crosses(std::size_t i, const ViewSample& next) const {
-  const Thresholds& thresholds = pixels_.thresholds(i);
-  return !thresholds.band().contains(thresholds.signal(LinearSample{next.t_s, next.log_intensity}));
-}
-
-bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) {
+bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) const {
   if (a.triangles == b.triangles && a.lights == b.lights) return true;
   return a.triangle != kNothing && b.triangle != kNothing && a.lights == b.lights &&
-         a.object == b.object &&
+         scene_.object(a.triangle) == scene_.object(b.triangle) &&
          std::abs(a.distance - b.distance) < kContinuousDepth * std::min(a.distance, b.distance);
 }
 
@@ -261,8 +213,13 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
       std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) > kMaxTexels)
     return {false, middle_s, needs_ray};
 
+  // How far the signal may be from the line in its middle: a parabola with the slope before it, or
+  // any curve of the same change.
   const double slope = change / length_s;
-  const double error = is_continuous_there ? error_of(pixel, next) : std::abs(change);
+  double error = is_continuous_there ? 0.25 * std::abs(change) : std::abs(change);
+  if (is_continuous_there && pixel.has_slope)
+    error = std::max(kErrorMargin * 0.25 * std::abs(slope - pixel.before_s) * length_s,
+                     kLeastError * std::abs(change));
   if (is_filtered_) {
     const bool is_smooth = is_continuous_there && pixel.has_slope;
     const double filtered_error = is_smooth

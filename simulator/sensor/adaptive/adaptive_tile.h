@@ -68,23 +68,15 @@ class AdaptiveTile {
   };
 
   void sense_step(double to_s);
-  /// Whether the line from a pixel's last sample to the end of the step is good enough, which most
-  /// are, and no event can be on it.
-  [[nodiscard]] bool is_quiet(std::size_t i, const ViewSample& next) const;
   /// Finds the pixels next to an edge of what they see, now or at the end of the step.
   void find_edges(std::span<const ViewSample> next);
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
   [[nodiscard]] Judgement judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
-  /// How far the signal may be from the line to the next sample of one surface in its middle: a
-  /// parabola with the slope before it, or any curve of the same change.
-  [[nodiscard]] static double error_of(const Pixel& pixel, const ViewSample& next);
-  /// Whether pixel `i` has fired at the latest by then.
-  [[nodiscard]] bool crosses(std::size_t i, const ViewSample& next) const;
   /// Whether nothing but the triangles of two samples can be seen between them.
   [[nodiscard]] bool are_neighbours(const ViewSample& a, const ViewSample& b) const;
-  [[nodiscard]] static bool is_continuous(const ViewSample& a, const ViewSample& b);
+  [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
   void update_speed(const AdaptiveSlice& slice);
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/check.h"
-#include "simulator/scene/ray_lanes.h"
 #include "simulator/sensor/rays/tile_trace.h"
 #include "simulator/sensor/signal/ray_sample.h"
 
@@ -16,32 +15,17 @@ namespace {
 /// One number for a sequence of them (FNV-1a over whole words).
 void mix(std::uint64_t value, std::uint64_t& hash) { hash = (hash ^ value) * 0x100000001b3ULL; }
 
-/// What the rays of a pixel see: of one ray as it is, of several as a hash.
-void add(TriangleId triangle, LightSet lights, bool is_only, ViewSample& sample) {
-  if (is_only) {
-    sample.triangles = triangle;
-    sample.lights = lights;
-    return;
-  }
+/// Adds one of a pixel's rays; the first tells where the pixel looks.
+void add(const SurfaceSample& seen, TriangleId triangle, bool is_first, ViewSample& sample) {
   mix(triangle, sample.triangles);
-  mix(lights, sample.lights);
-}
-
-/// Where the first ray of a pixel looks.
-void set_view(const Scene& scene, const SurfaceSample& seen, TriangleId triangle,
-              ViewSample& sample) {
+  mix(seen.lights, sample.lights);
+  if (!is_first) return;
   const double texel = seen.level > 0 ? std::exp2(-seen.level) : 1.0;
-  sample.distance = static_cast<float>(seen.distance);
-  sample.x = seen.texture == nullptr ? 0 : static_cast<float>(seen.x * texel);
-  sample.y = seen.texture == nullptr ? 0 : static_cast<float>(seen.y * texel);
+  sample.distance = seen.distance;
+  sample.x = seen.texture == nullptr ? 0 : seen.x * texel;
+  sample.y = seen.texture == nullptr ? 0 : seen.y * texel;
   sample.triangle = triangle;
-  sample.object = triangle == kNothing ? kNothing : scene.object(triangle);
-}
-
-void set_lane(const Eigen::Vector3d& vector, Eigen::Index lane, LaneVectors& lanes) {
-  lanes.x[lane] = static_cast<float>(vector.x());
-  lanes.y[lane] = static_cast<float>(vector.y());
-  lanes.z[lane] = static_cast<float>(vector.z());
+  sample.lights_of_ray = seen.lights;
 }
 
 }  // namespace
@@ -56,75 +40,12 @@ SurfaceSample ViewSampler::surface(const CameraFrame& camera, const Eigen::Vecto
 
 void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples) {
   SACCADE_CHECK(samples.size() == requests.size());
-  std::fill(samples.begin(), samples.end(), ViewSample{});
-  if (has_view_)
-    trace_in_lanes(requests, samples);
-  else
-    trace_in_double(requests, samples);
-  const std::size_t count = requests.size() * rays_.rays_per_pixel();
-  statistics_.rays += count;
-  if (scene_.is_lit()) statistics_.lit_points += count;
-}
-
-void ViewSampler::trace_in_lanes(std::span<const SampleRequest> requests,
-                                 std::span<ViewSample> samples) {
-  const std::size_t per_pixel = rays_.rays_per_pixel();
-  const std::size_t count = requests.size() * per_pixel;
-  const bool is_filtered = options_.texture_filter == TextureFilter::kMipmap;
-  RayLanes rays;
-  ViewLanes seen;
-  CameraFrame camera;
-  double camera_s = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t first = 0; first < count; first += kRayPacket) {
-    const std::size_t n = std::min(kRayPacket, count - first);
-    for (std::size_t k = 0; k < kRayPacket; ++k) {
-      // Lanes out of use repeat the last ray.
-      const std::size_t ray = first + std::min(k, n - 1);
-      const SampleRequest& request = requests[ray / per_pixel];
-      if (request.t_s != camera_s) {
-        camera = poses_->at(request.t_s);
-        camera_s = request.t_s;
-      }
-      const Eigen::Vector3d& direction = directions(request.pixel)[ray % per_pixel];
-      const auto lane = static_cast<Eigen::Index>(k);
-      set_lane(camera.position, lane, rays.origin);
-      set_lane(camera.rotation * direction, lane, rays.direction);
-      if (!is_filtered) continue;
-      const RayDifferential differential = differential_in_world(rays_, camera.rotation, direction);
-      set_lane(differential.right, lane, rays.right);
-      set_lane(differential.down, lane, rays.down);
-    }
-    scene_.view(rays, n, is_filtered, seen);
-    if (per_pixel == 1)
-      seen.radiance = (seen.radiance + static_cast<float>(options_.log_eps)).log();
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto lane = static_cast<Eigen::Index>(k);
-      ViewSample& sample = samples[(first + k) / per_pixel];
-      add(seen.triangles[k], seen.lights[k], per_pixel == 1, sample);
-      sample.log_intensity += static_cast<double>(seen.radiance[lane]);
-      if ((first + k) % per_pixel != 0) continue;
-      sample.t_s = requests[(first + k) / per_pixel].t_s;
-      sample.distance = seen.distance[lane];
-      sample.x = seen.x[lane];
-      sample.y = seen.y[lane];
-      sample.triangle = seen.triangles[k];
-      sample.object = seen.objects[k];
-      sample.is_exact = per_pixel > 1;
-    }
-  }
-  if (per_pixel == 1) return;
-  for (ViewSample& sample : samples)
-    sample.log_intensity =
-        log_intensity(sample.log_intensity / static_cast<double>(per_pixel), options_.log_eps);
-}
-
-void ViewSampler::trace_in_double(std::span<const SampleRequest> requests,
-                                  std::span<ViewSample> samples) {
   const std::size_t per_pixel = rays_.rays_per_pixel();
   const std::size_t count = requests.size() * per_pixel;
   std::array<Ray, kRayPacket> rays;
   std::array<TriangleId, kRayPacket> triangles;
   std::array<SurfaceSample, kRayPacket> seen;
+  std::fill(samples.begin(), samples.end(), ViewSample{});
   CameraFrame camera;
   double camera_s = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t first = 0; first < count; first += kRayPacket) {
@@ -150,8 +71,7 @@ void ViewSampler::trace_in_double(std::span<const SampleRequest> requests,
     scene_.illuminate({rays.data(), n}, {triangles.data(), n}, {seen.data(), n});
     for (std::size_t k = 0; k < n; ++k) {
       ViewSample& sample = samples[(first + k) / per_pixel];
-      add(triangles[k], seen[k].lights, per_pixel == 1, sample);
-      if ((first + k) % per_pixel == 0) set_view(scene_, seen[k], triangles[k], sample);
+      add(seen[k], triangles[k], (first + k) % per_pixel == 0, sample);
       sample.log_intensity += seen[k].radiance();  // the sum, until all of them are there
     }
   }
@@ -160,6 +80,8 @@ void ViewSampler::trace_in_double(std::span<const SampleRequest> requests,
     samples[i].log_intensity =
         log_intensity(samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
   }
+  statistics_.rays += count;
+  if (scene_.is_lit()) statistics_.lit_points += count;
 }
 
 ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like) {
@@ -168,10 +90,10 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   const Eigen::Vector3d& direction = directions(request.pixel)[0];
   const Ray ray{camera.position, camera.rotation * direction, request.t_s};
   SurfaceSample seen = surface(camera, direction, ray, like.triangle);
-  seen.lights = like.lights;
+  seen.lights = like.lights_of_ray;
   seen.irradiance = scene_.irradiance(ray, like.triangle, seen);
   ViewSample sample;
-  set_view(scene_, seen, like.triangle, sample);
+  add(seen, like.triangle, true, sample);
   sample.triangles = like.triangles;
   sample.lights = like.lights;
   sample.t_s = request.t_s;

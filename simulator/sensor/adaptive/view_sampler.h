@@ -28,18 +28,12 @@ class ViewSampler {
   /// All outlive the sampler.
   ViewSampler(const Scene& scene, const PixelRays& rays, const EventOptions& options,
               std::size_t tile, EventStatistics& statistics)
-      : scene_(scene),
-        rays_(rays),
-        options_(options),
-        tile_(tile),
-        statistics_(statistics),
-        has_view_(scene.has_view()) {}
+      : scene_(scene), rays_(rays), options_(options), tile_(tile), statistics_(statistics) {}
 
   /// The camera's motion during what follows; outlives it.
   void set_poses(const SplineTable& poses) { poses_ = &poses; }
 
-  /// What the pixels see, by rays, shadow rays included: in single precision where the scene has
-  /// a view of it, which is what most samples need, for no crossing is near.
+  /// What the pixels see, by rays, shadow rays included.
   void trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
 
   /// What a pixel with one ray sees at `t_s` just between two samples if it is the triangle of one
@@ -52,17 +46,10 @@ class ViewSampler {
   /// it does just before and just after: without a ray.
   [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like);
 
-  /// Samples again in double precision what is not exact.
-  void refine(std::size_t pixel, ViewSample& sample) {
-    if (!sample.is_exact) sample = resample({pixel, sample.t_s}, sample);
-  }
-
   [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
   [[nodiscard]] std::size_t rays_per_pixel() const { return rays_.rays_per_pixel(); }
 
  private:
-  void trace_in_lanes(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
-  void trace_in_double(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
   [[nodiscard]] std::span<const Eigen::Vector3d> directions(std::size_t pixel) const {
     return rays_.rays(tile_).subspan(pixel * rays_.rays_per_pixel(), rays_.rays_per_pixel());
   }
@@ -74,7 +61,6 @@ class ViewSampler {
   const EventOptions& options_;
   std::size_t tile_;
   EventStatistics& statistics_;
-  bool has_view_;
   const SplineTable* poses_ = nullptr;
 };
 
