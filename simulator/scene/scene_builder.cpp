@@ -96,6 +96,15 @@ CornerKey place_of(const Triangle& triangle, const Mesh& mesh) {
   return key;
 }
 
+/// In the order of their first use.
+std::vector<std::filesystem::path> distinct_files(const std::vector<MeshOptions>& meshes) {
+  std::vector<std::filesystem::path> files;
+  std::set<std::filesystem::path> known;
+  for (const MeshOptions& item : meshes)
+    if (known.insert(item.file).second) files.push_back(item.file);
+  return files;
+}
+
 Background read_background(const SceneOptions& options, SceneRemarks& remarks) {
   if (options.background_picture.empty()) return Background(options.background);
   const FileLocation location = FileLocation::parse(options.background_picture);
@@ -243,6 +252,7 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
 Scene build_scene(const SceneOptions& options) {
   SceneBuilder builder;
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian});
+  importer.prefetch(distinct_files(options.meshes));
   std::map<std::filesystem::path, Mesh> meshes;
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
     const MeshOptions& item = options.meshes[i];

@@ -69,8 +69,10 @@ BmpLayout read_bmp_layout(const PictureBytes& bytes, const std::string& location
   const std::uint32_t header_size = bytes.u32(kBmpFileHeader);
   const bool is_core = header_size == kBmpCoreHeader;
   if (!is_core && header_size < kBmpInfoHeader) bytes.fail("has an unknown header");
-  const std::int64_t width = is_core ? bytes.u16(18) : static_cast<std::int32_t>(bytes.u32(18));
-  const std::int64_t height = is_core ? bytes.u16(20) : static_cast<std::int32_t>(bytes.u32(22));
+  const std::int64_t width =
+      is_core ? std::int64_t{bytes.u16(18)} : static_cast<std::int32_t>(bytes.u32(18));
+  const std::int64_t height =
+      is_core ? std::int64_t{bytes.u16(20)} : static_cast<std::int32_t>(bytes.u32(22));
   layout.bits = bytes.u16(is_core ? 24 : 28);
   layout.compression = is_core ? kBmpPlain : bytes.u32(30);
   if (!is_bmp_known(layout))

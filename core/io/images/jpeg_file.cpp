@@ -25,8 +25,7 @@ struct JpegErrors {
   bool ends_early = false, lacks_data = false;
 };
 
-/// libjpeg reports errors by a jump. Each call of it that may end so stands in a function of its
-/// own whose frame holds nothing that would have to be destroyed.
+/// libjpeg reports errors by a jump: no frame between holds what would have to be destroyed.
 class JpegReader {
  public:
   JpegReader(std::span<const std::byte> bytes, const std::string& location)
@@ -40,7 +39,7 @@ class JpegReader {
   JpegReader& operator=(const JpegReader&) = delete;
 
   void begin() {
-    if (!read_header()) fail();
+    if (!succeeds(&JpegReader::read_header)) fail();
     check_picture_size(state_.image_width, state_.image_height, location_);
   }
   [[nodiscard]] bool is_cmyk() const { return state_.num_components == 4; }
@@ -49,11 +48,12 @@ class JpegReader {
   template <class Pixel>
   [[nodiscard]] Image<Pixel> pixels(J_COLOR_SPACE space) {
     Image<Pixel> image(static_cast<int>(state_.image_width), static_cast<int>(state_.image_height));
-    if (!read_pixels(space, reinterpret_cast<JSAMPROW>(image.data()),
-                     sizeof(Pixel) * state_.image_width))
-      fail();
+    state_.out_color_space = space;
+    rows_ = reinterpret_cast<JSAMPROW>(image.data());
+    row_size_ = sizeof(Pixel) * state_.image_width;
+    if (!succeeds(&JpegReader::read_rows)) fail();
     // What is missing was filled in with grey; a mark of the end alone is not missed.
-    if (errors_.ends_early && (errors_.lacks_data || jpeg_has_multiple_scans(&state_) != 0))
+    if (errors_.ends_early && (errors_.lacks_data || has_multiple_scans_))
       throw InputError(location_, "is a damaged JPEG picture: it ends too early");
     return image;
   }
@@ -72,24 +72,28 @@ class JpegReader {
     if (state->err->msg_code == JWRN_HIT_MARKER) errors.lacks_data = true;
   }
 
-  [[nodiscard]] bool read_header() {
+  /// False where `step` ended in an error. Nothing but the call stands here, because what a function
+  /// that is jumped into holds is lost.
+  [[nodiscard]] bool succeeds(void (JpegReader::*step)()) {
     if (setjmp(errors_.jump) != 0) return false;
-    jpeg_create_decompress(&state_);
-    jpeg_mem_src(&state_, reinterpret_cast<const unsigned char*>(bytes_.data()), bytes_.size());
-    jpeg_read_header(&state_, TRUE);
+    (this->*step)();
     return true;
   }
 
-  [[nodiscard]] bool read_pixels(J_COLOR_SPACE space, JSAMPROW row, std::size_t row_size) {
-    if (setjmp(errors_.jump) != 0) return false;
-    state_.out_color_space = space;
+  [[gnu::noinline]] void read_header() {
+    jpeg_create_decompress(&state_);
+    jpeg_mem_src(&state_, reinterpret_cast<const unsigned char*>(bytes_.data()), bytes_.size());
+    jpeg_read_header(&state_, TRUE);
+  }
+
+  [[gnu::noinline]] void read_rows() {
+    has_multiple_scans_ = jpeg_has_multiple_scans(&state_) != 0;
     jpeg_start_decompress(&state_);
     while (state_.output_scanline < state_.output_height) {
-      JSAMPROW next = row + state_.output_scanline * row_size;
-      jpeg_read_scanlines(&state_, &next, 1);
+      JSAMPROW row = rows_ + state_.output_scanline * row_size_;
+      jpeg_read_scanlines(&state_, &row, 1);
     }
     jpeg_finish_decompress(&state_);
-    return true;
   }
 
   [[noreturn]] void fail() const {
@@ -101,6 +105,9 @@ class JpegReader {
   const std::string& location_;
   jpeg_decompress_struct state_{};
   JpegErrors errors_;
+  bool has_multiple_scans_ = false;
+  JSAMPROW rows_ = nullptr;
+  std::size_t row_size_ = 0;
 };
 
 /// Of inks as Adobe's programs store them, inverted.

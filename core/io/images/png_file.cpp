@@ -30,8 +30,7 @@ struct PngHandles {
   PngHandles& operator=(const PngHandles&) = delete;
 };
 
-/// libpng reports errors by a jump to `png_jmpbuf`. Each call of it stands in a function of its own
-/// whose frame holds nothing that would have to be destroyed.
+/// libpng reports errors by a jump: no frame between holds what would have to be destroyed.
 class PngReader {
  public:
   PngReader(std::span<const std::byte> bytes, const std::string& location)
@@ -42,7 +41,7 @@ class PngReader {
     if (handles_.info == nullptr) throw std::bad_alloc();
     png_set_read_fn(png(), this, read);
     png_set_user_limits(png(), kMostPictureSide, kMostPictureSide);
-    if (!read_header()) fail();
+    if (!succeeds(&PngReader::read_header)) fail();
     check_picture_size(width(), height(), location_);
     const std::uint64_t bits = std::uint64_t{bit_depth()} * png_get_channels(png(), info());
     if (width() * height() * bits / 8 > kMostInflation * bytes_.size()) {
@@ -67,7 +66,10 @@ class PngReader {
     std::vector<png_bytep> rows(height());
     for (std::size_t y = 0; y < rows.size(); ++y)
       rows[y] = reinterpret_cast<png_bytep>(&image(0, static_cast<int>(y)));
-    if (!read_pixels(convert, sizeof(Pixel) * width(), rows.data())) fail();
+    convert_ = convert;
+    row_size_ = sizeof(Pixel) * width();
+    rows_ = rows.data();
+    if (!succeeds(&PngReader::read_rows)) fail();
     return image;
   }
 
@@ -89,23 +91,24 @@ class PngReader {
     reader.position_ += count;
   }
 
-  [[nodiscard]] bool read_header() {
+  /// False where `step` ended in an error. Nothing but the call stands here, because what a function
+  /// that is jumped into holds is lost.
+  [[nodiscard]] bool succeeds(void (PngReader::*step)()) {
     if (setjmp(png_jmpbuf(png())) != 0) return false;
-    png_read_info(png(), info());
+    (this->*step)();
     return true;
   }
 
-  [[nodiscard]] bool read_pixels(void (*convert)(png_structp, png_infop), std::size_t row_size,
-                                 png_bytepp rows) {
-    if (setjmp(png_jmpbuf(png())) != 0) return false;
-    convert(png(), info());
+  [[gnu::noinline]] void read_header() { png_read_info(png(), info()); }
+
+  [[gnu::noinline]] void read_rows() {
+    convert_(png(), info());
     png_set_interlace_handling(png());
     png_read_update_info(png(), info());
-    if (png_get_rowbytes(png(), info()) != row_size)
+    if (png_get_rowbytes(png(), info()) != row_size_)
       png_error(png(), "its rows have another length");
-    png_read_image(png(), rows);
+    png_read_image(png(), rows_);
     png_read_end(png(), nullptr);
-    return true;
   }
 
   [[noreturn]] void fail() const {
@@ -117,6 +120,9 @@ class PngReader {
   std::size_t position_ = 0;
   std::array<char, 160> message_{};
   PngHandles handles_;
+  void (*convert_)(png_structp, png_infop) = nullptr;
+  png_bytepp rows_ = nullptr;
+  std::size_t row_size_ = 0;
 };
 
 void set_bytes_of_machine(png_structp png) {

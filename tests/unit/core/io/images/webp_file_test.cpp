@@ -25,7 +25,7 @@ TEST(WebpFile, KeepsEveryPixel) {
         ASSERT_EQ(again(x, y)[k], image(x, y)[k]) << x << " " << y;
 }
 
-ImageRgba8 decode(const std::string& file) {
+ImageRgba8 webp_rgba(const std::string& file) {
   return decode_webp(std::as_bytes(std::span(file)), "a.webp");
 }
 
@@ -36,7 +36,7 @@ TEST(WebpFile, AlphaAndLossyPictures) {
     const std::size_t size = is_lossy
                                  ? WebPEncodeRGBA(image.data()->data(), 16, 16, 64, 90, &bytes)
                                  : WebPEncodeLosslessRGBA(image.data()->data(), 16, 16, 64, &bytes);
-    const ImageRgba8 again = decode({reinterpret_cast<const char*>(bytes), size});
+    const ImageRgba8 again = webp_rgba({reinterpret_cast<const char*>(bytes), size});
     WebPFree(bytes);
     ASSERT_EQ(again.width(), 16);
     for (std::size_t k = 0; k < 4; ++k)
@@ -46,7 +46,7 @@ TEST(WebpFile, AlphaAndLossyPictures) {
 
 TEST(WebpFile, DamageIsAnError) {
   const std::string file = encode_webp(ImageRgb8(9, 7, Rgb8{1, 2, 3}));
-  testing::expect_damage_is_reported(file, file.size() - 2, decode);
+  testing::expect_damage_is_reported(file, file.size() - 2, webp_rgba);
 }
 
 }  // namespace
