@@ -15,4 +15,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/saccadeConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/saccadeConfig.cmake ${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindSlimOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimLibzip.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindSlimWebP.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimHDF5.cmake
         DESTINATION ${package_dir})

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 
 namespace saccade {
@@ -23,10 +25,35 @@ struct ForkedResult {
   bool died = false;    ///< it had no chance to say what was wrong
 };
 
-/// Calls `work` in a copy of this process, for code that may crash, hang or take all memory. What it
-/// changes is lost but for the bytes that it returns, and what it prints is dropped. `work` must not
-/// wait for other threads: the copy has none of them. Throws InputError when the system gives no
-/// process.
+/// A copy of this process that answers calls one after the other, for code that may crash, hang or
+/// take all memory. What it changes is lost but for the bytes that it returns, and stays with it
+/// from one call to the next; what it prints is dropped. A copy that died is replaced at the next
+/// call by one of this process as it then is. Each thread may have its own.
+class ForkedWorker {
+ public:
+  /// `work`: from a request to its answer. It must not wait for other threads: the copy has none of
+  /// them. The limits hold for each call. The copy lives no longer than the thread that makes it.
+  /// Throws InputError when the system gives no process.
+  using Work = std::function<std::string(const std::string&)>;
+  explicit ForkedWorker(Work work, const ForkLimits& limits = {});
+  ~ForkedWorker();
+  ForkedWorker(const ForkedWorker&) = delete;
+  ForkedWorker& operator=(const ForkedWorker&) = delete;
+
+  [[nodiscard]] ForkedResult call(const std::string& request);
+  /// From any thread: the call in progress, and all that follow, end with a problem.
+  void stop();
+
+ private:
+  class Child;
+  Work work_;
+  ForkLimits limits_;
+  std::mutex mutex_;  ///< of what follows
+  std::shared_ptr<Child> child_;
+  bool is_stopped_ = false;
+};
+
+/// One call in a copy of this process as it is now.
 [[nodiscard]] ForkedResult call_in_child(const std::function<std::string()>& work,
                                          const ForkLimits& limits = {});
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -94,6 +96,55 @@ CornerKey place_of(const Triangle& triangle, const Mesh& mesh) {
   }
   std::sort(key.begin(), key.end());
   return key;
+}
+
+/// The triangles of a mesh, each place but once. A table of numbers with open addressing: a node for
+/// each of a million triangles takes as long as all else that is done with them.
+class DistinctPlaces {
+ public:
+  explicit DistinctPlaces(const Mesh& mesh)
+      : mesh_(mesh), table_(std::bit_ceil(2 * mesh.triangles.size() + 1), kFree) {}
+
+  /// False where a triangle inserted before is at the place of triangle `index`.
+  [[nodiscard]] bool insert(std::uint32_t index) {
+    const CornerKey key = place_of(mesh_.triangles[index], mesh_);
+    const std::size_t mask = table_.size() - 1;
+    for (std::size_t at = hash_of(key) & mask;; at = (at + 1) & mask) {
+      if (table_[at] == kFree) {
+        table_[at] = index;
+        return true;
+      }
+      if (place_of(mesh_.triangles[table_[at]], mesh_) == key) return false;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
+  static std::size_t hash_of(const CornerKey& key) {
+    std::uint64_t hash = 0;
+    for (const std::array<double, 3>& corner : key)
+      for (const double value : corner) {
+        hash ^= std::bit_cast<std::uint64_t>(value + 0.0);  // both zeros are one place
+        hash *= 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 32U;
+      }
+    return hash;
+  }
+
+  const Mesh& mesh_;
+  std::vector<std::uint32_t> table_;
+};
+
+using MeshUses = std::map<std::filesystem::path, std::size_t>;
+
+/// In the order of their first use; `uses` gets how often each is used.
+std::vector<std::filesystem::path> distinct_files(const std::vector<MeshOptions>& meshes,
+                                                  MeshUses& uses) {
+  std::vector<std::filesystem::path> files;
+  for (const MeshOptions& item : meshes)
+    if (++uses[item.file] == 1) files.push_back(item.file);
+  return files;
 }
 
 /// Numbers the instances of a mesh in the order in which their first triangles come.
@@ -208,10 +259,11 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
     textures_.push_back(material.opacity);
   }
   std::size_t kept = 0;
-  std::set<CornerKey> taken;
-  for (const Triangle& triangle : mesh.triangles) {
+  DistinctPlaces taken(mesh);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& triangle = mesh.triangles[i];
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
-    if (!is_cut_out && !taken.insert(place_of(triangle, mesh)).second) continue;
+    if (!is_cut_out && !taken.insert(i)) continue;
     PreparedTriangles& target = is_cut_out ? body.cut_out : body.opaque;
     if (!setup.add(triangle, target)) continue;
     target.instances.push_back(numbers.of(triangle));
@@ -297,6 +349,8 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
   MeshImporter importer(
       {options.missing_texture, options.lighting == Lighting::kLambertian, channel});
+  MeshUses uses;
+  importer.prefetch(distinct_files(options.meshes, uses));
   std::map<std::filesystem::path, Mesh> meshes;
   const std::vector<std::string> classes = class_names(options);
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
@@ -316,6 +370,7 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
             ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion), label)
             : builder.add(mesh, transform, label);
     if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
+    if (--uses[item.file] == 0) meshes.erase(known);
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian)

@@ -5,35 +5,17 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/image.h"
-#include "core/io/files/file_bytes.h"
+#include "core/io/images/image_file.h"
 #include "core/io/import/public_sequence.h"
 #include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
 
 namespace saccade {
 namespace {
-
-Image<std::uint16_t> read_16bit_picture(const std::filesystem::path& file) {
-  auto bytes = read_file_bytes(file);
-  cv::Mat mat;
-  try {
-    if (!bytes.empty())
-      mat = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()),
-                         cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    mat.release();  // a broken header; the message below says so
-  }
-  if (mat.type() != CV_16UC1 || mat.empty())
-    throw InputError(file.string(), "is no 16-bit grey picture");
-  Image<std::uint16_t> image(mat.cols, mat.rows);
-  for (int y = 0; y < mat.rows; ++y) std::copy_n(mat.ptr<std::uint16_t>(y), mat.cols, &image(0, y));
-  return image;
-}
 
 namespace fs = std::filesystem;
 
@@ -130,7 +112,7 @@ ImageF depth_from_disparity(const fs::path& file, const DsecCalibration& calibra
   const Eigen::Matrix4d q = matrix_of<4>(calibration.point_from_disparity);
   const Eigen::Matrix3d camera_from_rectified =
       matrix_of<3>(calibration.rectified_from_camera).transpose();
-  const Image<std::uint16_t> codes = read_16bit_picture(file);
+  const ImageU16 codes = read_image_u16(file);
   ImageF depth(camera.width, camera.height);
   for (int v = 0; v < codes.height(); ++v)
     for (int u = 0; u < codes.width(); ++u) {

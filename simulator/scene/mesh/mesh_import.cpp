@@ -185,6 +185,8 @@ class Flattener {
   Mesh mesh_;
 };
 
+bool is_relief(const fs::path& file) { return file.string().ends_with(".relief.yaml"); }
+
 std::size_t gltf_length(const nlohmann::json& list) { return list.is_array() ? list.size() : 0; }
 
 /// assimp sees a glTF file without animations and lights (GltfFile::for_assimp()).
@@ -210,6 +212,26 @@ MeshExtras extras_of(const Model& model, const std::optional<GltfFile>& gltf) {
 
 MeshImporter::MeshImporter(const MeshImportOptions& options)
     : options_(options), textures_(options.missing_texture, remarks_, options.channel) {}
+
+void MeshImporter::prefetch(const std::vector<fs::path>& files) {
+  std::vector<fs::path> models;
+  for (const fs::path& file : files)
+    if (!is_relief(file)) models.push_back(file);
+  imports_.reset();
+  imports_.emplace(std::move(models));
+}
+
+Model MeshImporter::read_model(const fs::path& file, const FileSource& source,
+                               const std::optional<GltfFile>& gltf) {
+  const FileLocation location = FileLocation::parse(file);
+  const std::string source_name = location.text();
+  check_model_format(location.file, source_name);
+  if (imports_)
+    if (const std::optional<ForkedResult> result = imports_->take(file))
+      return model_of(*result, location.file, source_name);
+  return import_model(source, location.file, source_name,
+                      gltf ? gltf->for_assimp() : ac3d_for_assimp(source, location.file));
+}
 
 Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& source) {
   const std::string source_name = location.text();
@@ -253,12 +275,10 @@ Mesh MeshImporter::read(const fs::path& file) {
   const FileSource& source = sources_.try_emplace(location.archive, location.archive).first->second;
   const std::string source_name = location.text();
   if (!source.contains(location.file)) throw InputError(source_name, "is not in this archive");
-  if (source_name.ends_with(".relief.yaml")) return read_relief(location, source);
+  if (is_relief(file)) return read_relief(location, source);
 
   const std::optional<GltfFile> gltf = GltfFile::open(source, location.file, source_name);
-  const Model model =
-      import_model(source, location.file, source_name,
-                   gltf ? gltf->for_assimp() : ac3d_for_assimp(source, location.file));
+  const Model model = read_model(file, source, gltf);
   // What the importer read in its own process is noted in the InputLog of this one.
   for (const std::string& opened : model.opened) static_cast<void>(source.read(opened));
   const MaterialContext context{source, location.file, source_name, options_, textures_, remarks_};

@@ -5,10 +5,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "simulator/scene/mesh/file_source.h"
+#include "simulator/scene/mesh/gltf_file.h"
 #include "simulator/scene/mesh/material_import.h"
 #include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/mesh/model.h"
+#include "simulator/scene/mesh/model_imports.h"
 #include "simulator/scene/scene_remarks.h"
 #include "simulator/scene/texture/texture_library.h"
 
@@ -37,6 +41,10 @@ class MeshImporter {
   MeshImporter(const MeshImporter&) = delete;
   MeshImporter& operator=(const MeshImporter&) = delete;
 
+  /// Begins to import meshes, several at a time, that read() will be asked for in this order. What
+  /// is wrong with one of them is for read() to say.
+  void prefetch(const std::vector<std::filesystem::path>& files);
+
   /// Throws InputError naming the file, its material library or its texture: missing or unreadable,
   /// of a format that assimp does not know, without triangles, with a vertex that is not finite, or
   /// with a texture but no texture coordinates; and where assimp's importer crashes, hangs or takes
@@ -51,11 +59,15 @@ class MeshImporter {
   [[nodiscard]] SceneRemarks& remarks() { return remarks_; }
 
  private:
+  /// `gltf`: none for other formats.
+  [[nodiscard]] Model read_model(const std::filesystem::path& file, const FileSource& source,
+                                 const std::optional<GltfFile>& gltf);
   [[nodiscard]] Mesh read_relief(const FileLocation& location, const FileSource& source);
 
   MeshImportOptions options_;
   SceneRemarks remarks_;
   std::map<std::filesystem::path, FileSource> sources_;
+  std::optional<ModelImports> imports_;
   TextureLibrary textures_;
 };
 

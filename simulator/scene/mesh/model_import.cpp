@@ -263,29 +263,31 @@ bool is_consistent(const Model& model) {
 
 }  // namespace
 
-Model import_model(const FileSource& source, const fs::path& file, const std::string& source_name,
-                   const ReplacedFiles& replaced, const ForkLimits& limits) {
+std::string import_in_child(const FileSource& own, const fs::path& file,
+                            const ReplacedFiles& replaced) {
+  Assimp::Importer importer;  // owns the AssimpFiles
+  auto* const files = new AssimpFiles(own, replaced);
+  Model model = model_of(load(importer, files, file));
+  model.opened = files->opened();
+  return to_bytes(model);
+}
+
+void check_model_format(const fs::path& file, const std::string& source_name) {
   const std::string extension = file.extension().string();
   if (!Assimp::Importer().IsExtensionSupported(extension))
     throw InputError(source_name,
                      fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
                                  "COLLADA, FBX, STL and others can",
                                  extension));
-  const auto work = [&] {
-    // An archive that two processes share would be read by both at one position.
-    const FileSource own(source.archive(), FileSource::Reporting::kNone);
-    Assimp::Importer importer;  // owns the AssimpFiles
-    auto* const files = new AssimpFiles(own, replaced);
-    Model model = model_of(load(importer, files, file));
-    model.opened = files->opened();
-    return to_bytes(model);
-  };
-  const ForkedResult result = call_in_child(work, limits);
+}
+
+Model model_of(const ForkedResult& result, const fs::path& file, const std::string& source_name) {
   if (!result.problem.empty())
-    throw InputError(source_name, result.died ? fmt::format("cannot be read as a mesh: the "
-                                                            "importer of '{}' files {}",
-                                                            extension, result.problem)
-                                              : result.problem);
+    throw InputError(source_name,
+                     result.died ? fmt::format("cannot be read as a mesh: the importer of '{}' "
+                                               "files {}",
+                                               file.extension().string(), result.problem)
+                                 : result.problem);
   try {
     Model model = model_from_bytes(result.bytes);
     if (!is_consistent(model)) throw std::runtime_error("its parts do not fit together");
@@ -293,6 +295,17 @@ Model import_model(const FileSource& source, const fs::path& file, const std::st
   } catch (const std::runtime_error& error) {
     throw InputError(source_name, fmt::format("cannot be read as a mesh: {}", error.what()));
   }
+}
+
+Model import_model(const FileSource& source, const fs::path& file, const std::string& source_name,
+                   const ReplacedFiles& replaced, const ForkLimits& limits) {
+  check_model_format(file, source_name);
+  const auto work = [&] {
+    // An archive that two processes share would be read by both at one position.
+    const FileSource own(source.archive(), FileSource::Reporting::kNone);
+    return import_in_child(own, file, replaced);
+  };
+  return model_of(call_in_child(work, limits), file, source_name);
 }
 
 }  // namespace saccade

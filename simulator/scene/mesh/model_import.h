@@ -18,4 +18,12 @@ namespace saccade {
                                  const std::string& source_name, const ReplacedFiles& replaced = {},
                                  const ForkLimits& limits = {});
 
+/// Its three steps, for imports ahead of their use (model_imports.h): InputError when the format is
+/// unknown; the import itself, for the other process; and what became of it.
+void check_model_format(const std::filesystem::path& file, const std::string& source_name);
+[[nodiscard]] std::string import_in_child(const FileSource& own, const std::filesystem::path& file,
+                                          const ReplacedFiles& replaced);
+[[nodiscard]] Model model_of(const ForkedResult& result, const std::filesystem::path& file,
+                             const std::string& source_name);
+
 }  // namespace saccade

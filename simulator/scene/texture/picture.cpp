@@ -7,10 +7,10 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
 #include "core/io/images/exr_file.h"
+#include "core/io/images/hdr_file.h"
 #include "core/io/images/image_file.h"
 #include "core/srgb.h"
 
@@ -52,23 +52,6 @@ ImageF alpha_of(const ImageRgba8& image) {
   return converted(image, [](const Rgba8& p) { return static_cast<float>(p[3]) / 255; });
 }
 
-ImageRgbF decode_hdr(const Bytes& bytes, const std::string& source_name) {
-  cv::Mat decoded;
-  try {
-    decoded = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& error) {
-    throw InputError(source_name, fmt::format("cannot be decoded: {}", error.err));
-  }
-  if (decoded.type() != CV_32FC3) throw InputError(source_name, "is not a Radiance HDR picture");
-  ImageRgbF image(decoded.cols, decoded.rows);
-  for (int y = 0; y < decoded.rows; ++y)
-    for (int x = 0; x < decoded.cols; ++x) {
-      const auto& bgr = decoded.at<cv::Vec3f>(y, x);
-      image(x, y) = {bgr[2], bgr[1], bgr[0]};
-    }
-  return image;
-}
-
 /// Light this fraction of the brightest below 0 is what filters leave.
 constexpr float kDarkest = -1e-2F;
 
@@ -104,7 +87,7 @@ Picture decode_picture(const Bytes& bytes, const std::string& source_name, Scene
   if (extension == ".exr") {
     picture.grey = grey_of(decode_exr_rgb(as_bytes(bytes), source_name), factors, channel);
   } else if (extension == ".hdr") {
-    picture.grey = grey_of(decode_hdr(bytes, source_name), factors, channel);
+    picture.grey = grey_of(decode_hdr(as_bytes(bytes), source_name), factors, channel);
   } else {
     const ImageRgba8 image = decode_image_rgba(as_bytes(bytes), source_name);
     picture.grey = grey_of(image, factors, channel);

@@ -5,7 +5,10 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <ctime>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 namespace saccade {
@@ -77,6 +80,55 @@ TEST(ForkedCall, MemoryIsLimited) {
   EXPECT_FALSE(result.died);
 }
 #endif
+
+TEST(ForkedWorker, KeepsWhatItHasBetweenCalls) {
+  int calls = 0;
+  ForkedWorker worker([&](const std::string& text) { return text + std::to_string(++calls); });
+  EXPECT_EQ(worker.call("a").bytes, "a1");
+  EXPECT_EQ(worker.call("b").bytes, "b2");
+  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(worker.call(std::string(3'000'000, 'x')).bytes.size(), 3'000'001U);
+}
+
+TEST(ForkedWorker, IsReplacedWhenItDied) {
+  int calls = 0;
+  ForkedWorker worker([&](const std::string& text) {
+    if (text == "die") std::abort();
+    if (text == "fail") throw std::runtime_error("no such thing");
+    return std::to_string(++calls);
+  });
+  EXPECT_EQ(worker.call("").bytes, "1");
+  EXPECT_EQ(worker.call("fail").problem, "no such thing");
+  EXPECT_EQ(worker.call("").bytes, "2");
+  EXPECT_TRUE(worker.call("die").died);
+  EXPECT_EQ(worker.call("").bytes, "1");
+}
+
+TEST(ForkedWorker, TheLimitsAreThoseOfACall) {
+  ForkLimits limits;
+  limits.cpu_s = 1;
+  ForkedWorker worker(
+      [](const std::string& seconds) {
+        const std::clock_t end =
+            std::clock() + static_cast<std::clock_t>(std::stod(seconds) * CLOCKS_PER_SEC);
+        while (std::clock() < end) {
+        }
+        return seconds;
+      },
+      limits);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(worker.call("0.6").bytes, "0.6");
+  EXPECT_EQ(worker.call("9").problem, "took more than 1 s");
+}
+
+TEST(ForkedWorker, StopsFromAnotherThread) {
+  ForkedWorker worker([](const std::string&) -> std::string {
+    for (;;) pause();
+  });
+  std::thread other([&] { worker.stop(); });
+  EXPECT_TRUE(worker.call("").died);
+  other.join();
+  EXPECT_EQ(worker.call("").problem, "was stopped");
+}
 
 }  // namespace
 }  // namespace saccade

@@ -62,7 +62,8 @@ TEST_F(ImageFiles, PictureErrorsNameThePath) {
   EXPECT_THAT(error_of([&] { return read_image_grey(png_); }),
               HasSubstr("image.png: no such file"));
   folder_.write("image.png", "no picture");
-  EXPECT_THAT(error_of([&] { return read_image_grey(png_); }), HasSubstr("is no picture"));
+  EXPECT_THAT(error_of([&] { return read_image_grey(png_); }),
+              HasSubstr("is no picture that can be decoded: PNG, JPEG, BMP, TIFF and WebP can"));
   folder_.write("image.png", "");
   EXPECT_THAT(error_of([&] { return read_image_rgb(png_); }), HasSubstr("is empty"));
   EXPECT_THAT(error_of([&] { return decode_image_rgba({}, "a.zip!/b.jpg"); }),

@@ -1,8 +1,10 @@
 #include "core/io/images/webp_file.h"
 
 #include <gtest/gtest.h>
+#include <webp/encode.h>
 
 #include "core/io/images/image_file.h"
+#include "tests/support/damage.h"
 
 namespace saccade {
 namespace {
@@ -21,6 +23,30 @@ TEST(WebpFile, KeepsEveryPixel) {
     for (int x = 0; x < image.width(); ++x)
       for (std::size_t k = 0; k < 3; ++k)
         ASSERT_EQ(again(x, y)[k], image(x, y)[k]) << x << " " << y;
+}
+
+ImageRgba8 webp_rgba(const std::string& file) {
+  return decode_webp(std::as_bytes(std::span(file)), "a.webp");
+}
+
+TEST(WebpFile, AlphaAndLossyPictures) {
+  const ImageRgba8 image(16, 16, Rgba8{100, 150, 200, 77});
+  for (const bool is_lossy : {false, true}) {
+    std::uint8_t* bytes = nullptr;
+    const std::size_t size = is_lossy
+                                 ? WebPEncodeRGBA(image.data()->data(), 16, 16, 64, 90, &bytes)
+                                 : WebPEncodeLosslessRGBA(image.data()->data(), 16, 16, 64, &bytes);
+    const ImageRgba8 again = webp_rgba({reinterpret_cast<const char*>(bytes), size});
+    WebPFree(bytes);
+    ASSERT_EQ(again.width(), 16);
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(again(3, 5)[k], image(3, 5)[k], is_lossy ? 4 : 0) << k;
+  }
+}
+
+TEST(WebpFile, DamageIsAnError) {
+  const std::string file = encode_webp(ImageRgb8(9, 7, Rgb8{1, 2, 3}));
+  testing::expect_damage_is_reported(file, file.size() - 2, webp_rgba);
 }
 
 }  // namespace

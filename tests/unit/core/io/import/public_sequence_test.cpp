@@ -5,10 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/events_h5.h"
+#include "core/io/images/image_file.h"
 #include "core/io/import/fisheye_camera.h"
 #include "core/process/progress.h"
 #include "tests/support/command.h"
@@ -57,8 +56,7 @@ void write_dsec(const TemporaryFolder& folder) {
   folder.write("disparity/timestamps.txt", "50001000000\n50001100000\n");
   fs::create_directories(folder.path() / "disparity/event");
   for (const char* name : {"000000.png", "000002.png"})
-    ASSERT_TRUE(cv::imwrite((folder.path() / "disparity/event" / name).string(),
-                            cv::Mat(48, 64, CV_16UC1, cv::Scalar(6.25 * 256))));
+    folder.write(fs::path("disparity/event") / name, encode_png(ImageU16(64, 48, 6.25 * 256)));
 }
 
 TEST(Dsec, BecomesADatasetWithDepthInTheRawView) {

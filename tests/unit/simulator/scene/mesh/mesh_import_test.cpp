@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
 #include "core/io/files/input_log.h"
@@ -91,7 +90,9 @@ TEST_F(MeshImport, OpenExrIsLinearAndKeepsItsValues) {
 }
 
 TEST_F(MeshImport, RadianceHdrIsLinear) {
-  cv::imwrite((folder_ / "bright.hdr").string(), cv::Mat(4, 4, CV_32FC3, cv::Scalar(2, 2, 2)));
+  std::string bright = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n";
+  for (int i = 0; i < 16; ++i) bright += "\x80\x80\x80\x82";  // 128 / 256 * 2^(130 - 128)
+  write("bright.hdr", bright);
   EXPECT_NEAR(square_material("map_Kd bright.hdr\n").texture->at(0.5, 0.5), 2, 0.02);
 }
 
@@ -123,9 +124,9 @@ TEST_F(MeshImport, ParametersOfATextureAreGenerated) {
 }
 
 TEST_F(MeshImport, AlphaChannelsAndMapsCutOut) {
-  cv::Mat alpha(2, 2, CV_8UC4, cv::Scalar(200, 200, 200, 255));
-  alpha.at<cv::Vec4b>(0, 0)[3] = 0;
-  cv::imwrite((folder_ / "leaf.png").string(), alpha);
+  ImageRgba8 alpha(2, 2, Rgba8{200, 200, 200, 255});
+  alpha(0, 0)[3] = 0;
+  write("leaf.png", encode_png(alpha));
   write_png(folder_ / "mask.png", ImageU8(2, 2, 255));
   write_png(folder_ / "grey.png", ImageU8(2, 2, 128));
   const Material leaf = square_material("map_Kd leaf.png\n");
