@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simulator/sensor/adaptive/arc_signal.h"
 #include "simulator/sensor/signal/linear_signal.h"
 
 namespace saccade {
@@ -158,6 +159,15 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
   std::vector<ViewSample>& ahead = ahead_[i];
   while (!ahead.empty()) {
     const ViewSample next = ahead.back();
+    if (is_arc(pixel.now, next)) {
+      if (is_near_edge_[i] && next.t_s - pixel.now.t_s > 1.001 * kNearEdgeFraction * step_s_)
+        return pixel.now.t_s + kNearEdgeFraction * step_s_;
+      if (sense_arc(i, pixel, next))
+        ahead.pop_back();
+      else
+        ahead.push_back(sampler_.resample({i, 0.5 * (pixel.now.t_s + next.t_s)}, next));
+      continue;
+    }
     const Judgement judgement = judge(i, pixel, next);
     if (judgement.is_line) {
       sense_line(i, pixel, next);
@@ -172,6 +182,45 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
     }
   }
   return std::nullopt;
+}
+
+bool AdaptiveTile::is_arc(const ViewSample& from, const ViewSample& to) const {
+  return from.triangles == to.triangles && from.lights == to.lights && from.triangle != kNothing &&
+         sampler_.rays_per_pixel() == 1 && scene_.flickers().empty();
+}
+
+bool AdaptiveTile::is_quiet(std::size_t i, const Pixel& pixel, const ViewSample& next) const {
+  const ViewSample& now = pixel.now;
+  const double length_s = next.t_s - now.t_s;
+  const double texels = std::max(std::abs(next.x - now.x), std::abs(next.y - now.y));
+  if (!pixel.has_slope || texels > kMaxTexels || !pixels_.is_idle(i, now.t_s, next.t_s))
+    return false;
+  const double change = next.log_intensity - now.log_intensity;
+  const double error = std::max(kErrorMargin * 0.25 * std::abs(change - pixel.before_s * length_s),
+                                kLeastError * std::abs(change));
+  const Thresholds& thresholds = pixels_.thresholds(i);
+  const auto [low, high] =
+      std::minmax(thresholds.signal(LinearSample{now.t_s, now.log_intensity}),
+                  thresholds.signal(LinearSample{next.t_s, next.log_intensity}));
+  return error <= std::min(thresholds.band().upper - high, low - thresholds.band().lower);
+}
+
+bool AdaptiveTile::sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next) {
+  const double length_s = next.t_s - pixel.now.t_s;
+  if (is_quiet(i, pixel, next)) {
+    pixel.before_s = (next.log_intensity - pixel.now.log_intensity) / length_s;
+  } else {
+    const SurfaceArc arc = sampler_.arc(i, pixel.now, next);
+    if (!arc.is_smooth() && length_s > bracket_s_) return false;
+    const ArcSignal signal(arc, options_.log_eps, 1e-6 * options_.time_tolerance_us);
+    pixels_.sense(i, signal, {pixel.now.t_s, pixel.now.radiance, pixel.now.log_intensity},
+                  {next.t_s, next.radiance, next.log_intensity});
+    const double last_s = 0.25 * length_s;
+    pixel.before_s = (next.log_intensity - signal.at(next.t_s - last_s).log_intensity) / last_s;
+    pixel.has_slope = true;
+  }
+  pixel.now = next;
+  return true;
 }
 
 bool AdaptiveTile::are_neighbours(const ViewSample& a, const ViewSample& b) const {
@@ -209,8 +258,9 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   const double change = next.log_intensity - now.log_intensity;
   if (is_near_edge_[i] && length_s > 1.001 * kNearEdgeFraction * step_s_)
     return {false, now.t_s + kNearEdgeFraction * step_s_, true};
+  const double texel = now.level > 0 ? std::exp2(-now.level) : 1;
   if (is_continuous_there &&
-      std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) > kMaxTexels)
+      std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) * texel > kMaxTexels)
     return {false, middle_s, needs_ray};
 
   // How far the signal may be from the line in its middle: a parabola with the slope before it, or

@@ -78,6 +78,13 @@ class AdaptiveTile {
   [[nodiscard]] bool are_neighbours(const ViewSample& a, const ViewSample& b) const;
   [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
+  /// Whether all between two samples follows from what both see.
+  [[nodiscard]] bool is_arc(const ViewSample& from, const ViewSample& to) const;
+  /// Senses pixel `i`, which sees one triangle up to its next sample. False where that needs more
+  /// samples in between.
+  [[nodiscard]] bool sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next);
+  /// Whether the signal stays in the band of pixel `i` until its next sample, by its slope before.
+  [[nodiscard]] bool is_quiet(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
   void update_speed(const AdaptiveSlice& slice);
 
   const Scene& scene_;

@@ -20,10 +20,12 @@ void add(const SurfaceSample& seen, TriangleId triangle, bool is_first, ViewSamp
   mix(triangle, sample.triangles);
   mix(seen.lights, sample.lights);
   if (!is_first) return;
-  const double texel = seen.level > 0 ? std::exp2(-seen.level) : 1.0;
   sample.distance = seen.distance;
-  sample.x = seen.texture == nullptr ? 0 : seen.x * texel;
-  sample.y = seen.texture == nullptr ? 0 : seen.y * texel;
+  sample.x = seen.x;
+  sample.y = seen.y;
+  sample.level = seen.level;
+  sample.factor = seen.factor;
+  sample.irradiance = seen.irradiance;
   sample.triangle = triangle;
   sample.lights_of_ray = seen.lights;
 }
@@ -46,65 +48,72 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
   std::array<TriangleId, kRayPacket> triangles;
   std::array<SurfaceSample, kRayPacket> seen;
   std::fill(samples.begin(), samples.end(), ViewSample{});
-  CameraFrame camera;
-  double camera_s = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t first = 0; first < count; first += kRayPacket) {
     const std::size_t n = std::min(kRayPacket, count - first);
     const auto direction = [&](std::size_t k) -> const Eigen::Vector3d& {
       return directions(requests[k / per_pixel].pixel)[k % per_pixel];
     };
-    const auto look = [&](std::size_t k) {
-      const double t_s = requests[k / per_pixel].t_s;
-      if (t_s == camera_s) return;
-      camera = poses_->at(t_s);
-      camera_s = t_s;
+    const auto camera = [&](std::size_t k) -> const CameraFrame& {
+      return camera_at(requests[(first + k) / per_pixel].t_s);
     };
-    for (std::size_t k = 0; k < n; ++k) {
-      look(first + k);
-      rays[k] = {camera.position, camera.rotation * direction(first + k), camera_s};
-    }
+    for (std::size_t k = 0; k < n; ++k)
+      rays[k] = {camera(k).position, camera(k).rotation * direction(first + k),
+                 requests[(first + k) / per_pixel].t_s};
     scene_.visible({rays.data(), n}, {triangles.data(), n});
-    for (std::size_t k = 0; k < n; ++k) {
-      if (options_.texture_filter == TextureFilter::kMipmap) look(first + k);
-      seen[k] = surface(camera, direction(first + k), rays[k], triangles[k]);
-    }
+    for (std::size_t k = 0; k < n; ++k)
+      seen[k] = surface(camera(k), direction(first + k), rays[k], triangles[k]);
     scene_.illuminate({rays.data(), n}, {triangles.data(), n}, {seen.data(), n});
     for (std::size_t k = 0; k < n; ++k) {
       ViewSample& sample = samples[(first + k) / per_pixel];
       add(seen[k], triangles[k], (first + k) % per_pixel == 0, sample);
-      sample.log_intensity += seen[k].radiance();  // the sum, until all of them are there
+      sample.radiance += seen[k].radiance();  // the sum, until all of them are there
     }
   }
   for (std::size_t i = 0; i < requests.size(); ++i) {
     samples[i].t_s = requests[i].t_s;
-    samples[i].log_intensity =
-        log_intensity(samples[i].log_intensity / static_cast<double>(per_pixel), options_.log_eps);
+    samples[i].radiance /= static_cast<double>(per_pixel);
+    samples[i].log_intensity = log_intensity(samples[i].radiance, options_.log_eps);
   }
   statistics_.rays += count;
   if (scene_.is_lit()) statistics_.lit_points += count;
 }
 
-ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like) {
+SurfaceSample ViewSampler::surface_like(const SampleRequest& request, const ViewSample& like) {
   SACCADE_CHECK(rays_.rays_per_pixel() == 1);
-  const CameraFrame camera = poses_->at(request.t_s);
+  const CameraFrame& camera = camera_at(request.t_s);
   const Eigen::Vector3d& direction = directions(request.pixel)[0];
   const Ray ray{camera.position, camera.rotation * direction, request.t_s};
   SurfaceSample seen = surface(camera, direction, ray, like.triangle);
   seen.lights = like.lights_of_ray;
   seen.irradiance = scene_.irradiance(ray, like.triangle, seen);
+  ++statistics_.surface_samples;
+  return seen;
+}
+
+ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like) {
+  const SurfaceSample seen = surface_like(request, like);
   ViewSample sample;
   add(seen, like.triangle, true, sample);
   sample.triangles = like.triangles;
   sample.lights = like.lights;
   sample.t_s = request.t_s;
-  sample.log_intensity = log_intensity(seen.radiance(), options_.log_eps);
-  ++statistics_.surface_samples;
+  sample.radiance = seen.radiance();
+  sample.log_intensity = log_intensity(sample.radiance, options_.log_eps);
   return sample;
+}
+
+SurfaceArc ViewSampler::arc(std::size_t pixel, const ViewSample& from, const ViewSample& to) {
+  const SurfaceSample middle = surface_like({pixel, 0.5 * (from.t_s + to.t_s)}, from);
+  const auto end = [&](const ViewSample& seen) {
+    return SurfaceSample{middle.texture,  seen.x,        seen.y,     seen.factor,
+                         seen.irradiance, seen.distance, seen.level, seen.lights_of_ray};
+  };
+  return {from.t_s, to.t_s, end(from), middle, end(to)};
 }
 
 std::optional<ViewSample> ViewSampler::resample(const SampleRequest& request,
                                                 const ViewSample& before, const ViewSample& after) {
-  const CameraFrame camera = poses_->at(request.t_s);
+  const CameraFrame& camera = camera_at(request.t_s);
   const Ray ray{camera.position, camera.rotation * directions(request.pixel)[0], request.t_s};
   const std::array<TriangleId, 2> triangles{before.triangle, after.triangle};
   const TriangleId nearest = scene_.nearest_among(triangles, ray);

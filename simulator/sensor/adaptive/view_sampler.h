@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -8,6 +9,7 @@
 
 #include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/adaptive/surface_arc.h"
 #include "simulator/sensor/adaptive/view_sample.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/rays/pixel_rays.h"
@@ -31,7 +33,10 @@ class ViewSampler {
       : scene_(scene), rays_(rays), options_(options), tile_(tile), statistics_(statistics) {}
 
   /// The camera's motion during what follows; outlives it.
-  void set_poses(const SplineTable& poses) { poses_ = &poses; }
+  void set_poses(const SplineTable& poses) {
+    poses_ = &poses;
+    camera_s_ = std::numeric_limits<double>::quiet_NaN();
+  }
 
   /// What the pixels see, by rays, shadow rays included.
   void trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
@@ -46,15 +51,28 @@ class ViewSampler {
   /// it does just before and just after: without a ray.
   [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like);
 
-  [[nodiscard]] CameraFrame camera_at(double t_s) const { return poses_->at(t_s); }
+  /// What a pixel with one ray sees from one sample to a later one if it sees the same triangle and
+  /// the same lights all the time: without a ray.
+  [[nodiscard]] SurfaceArc arc(std::size_t pixel, const ViewSample& from, const ViewSample& to);
+
   [[nodiscard]] std::size_t rays_per_pixel() const { return rays_.rays_per_pixel(); }
 
  private:
   [[nodiscard]] std::span<const Eigen::Vector3d> directions(std::size_t pixel) const {
     return rays_.rays(tile_).subspan(pixel * rays_.rays_per_pixel(), rays_.rays_per_pixel());
   }
+  /// Of a time that is often asked for more than once in a row.
+  [[nodiscard]] const CameraFrame& camera_at(double t_s) {
+    if (t_s != camera_s_) {
+      camera_ = poses_->at(t_s);
+      camera_s_ = t_s;
+    }
+    return camera_;
+  }
   [[nodiscard]] SurfaceSample surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
                                       const Ray& ray, TriangleId triangle) const;
+  /// Along the first ray of a pixel, on the triangle and under the lights of `like`.
+  [[nodiscard]] SurfaceSample surface_like(const SampleRequest& request, const ViewSample& like);
 
   const Scene& scene_;
   const PixelRays& rays_;
@@ -62,6 +80,8 @@ class ViewSampler {
   std::size_t tile_;
   EventStatistics& statistics_;
   const SplineTable* poses_ = nullptr;
+  CameraFrame camera_;
+  double camera_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of camera_
 };
 
 }  // namespace saccade
