@@ -260,6 +260,7 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
   }
   std::size_t kept = 0;
   DistinctPlaces taken(mesh);
+  body.opaque.reserve_more(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& triangle = mesh.triangles[i];
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;

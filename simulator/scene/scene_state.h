@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "core/large_vector.h"
 #include "simulator/scene/background.h"
 #include "simulator/scene/intersection/triangle_bvh.h"
 #include "simulator/scene/intersection/visibility.h"
@@ -88,9 +89,9 @@ struct TriangleLighting {
 /// The triangles of a scene by number: opaque ones first, then those with cutouts; in both parts
 /// what is static first, then object by object what moves.
 struct Scene::State {
-  std::vector<TriangleSurface> surfaces;
-  std::vector<TriangleInterior> interiors;
-  std::vector<ShadingNormals> normals;                   ///< empty without lighting
+  LargeVector<TriangleSurface> surfaces;
+  LargeVector<TriangleInterior> interiors;
+  LargeVector<ShadingNormals> normals;                   ///< empty without lighting
   std::vector<Cutout> cutouts;                           ///< of the last triangles
   std::vector<std::uint16_t> triangle_instances;         ///< from 1 on
   std::vector<SceneInstance> instances;                  ///< instance k is item k - 1

@@ -43,8 +43,8 @@ TexelForms texel_forms(const Texture& texture, const Mesh& mesh, const Triangle&
   return {through(interior, x), through(interior, y)};
 }
 
-template <class T>
-void append(std::vector<T>& to, std::vector<T>&& from) {
+template <class Items>
+void append(Items& to, Items&& from) {
   if (to.empty()) {
     to = std::move(from);
   } else {
@@ -61,6 +61,14 @@ void PreparedTriangles::append(PreparedTriangles&& other) {
   saccade::append(normals, std::move(other.normals));
   saccade::append(cutouts, std::move(other.cutouts));
   saccade::append(instances, std::move(other.instances));
+}
+
+void PreparedTriangles::reserve_more(std::size_t count) {
+  saccade::reserve_more(corners, count);
+  saccade::reserve_more(surfaces, count);
+  saccade::reserve_more(interiors, count);
+  saccade::reserve_more(normals, count);
+  saccade::reserve_more(instances, count);
 }
 
 TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/large_vector.h"
 #include "simulator/scene/scene_state.h"
 
 namespace saccade {
@@ -12,13 +13,15 @@ namespace saccade {
 /// Triangles in the form that rendering reads, in the frame of their body.
 struct PreparedTriangles {
   std::vector<Corners> corners;
-  std::vector<TriangleSurface> surfaces;
-  std::vector<TriangleInterior> interiors;
-  std::vector<ShadingNormals> normals;
+  LargeVector<TriangleSurface> surfaces;
+  LargeVector<TriangleInterior> interiors;
+  LargeVector<ShadingNormals> normals;
   std::vector<Cutout> cutouts;           ///< one per triangle, or none at all
   std::vector<std::uint16_t> instances;  ///< what each of them is labelled with
 
   void append(PreparedTriangles&& other);
+  /// Makes room for `count` more triangles without cutouts.
+  void reserve_more(std::size_t count);
 };
 
 /// Prepares the triangles of a mesh, one by one.

@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kLongestSlice_s = 0.005;
+constexpr double kLongestSlice_s = 0.02;
 constexpr double kShortestSlice_s = 1e-4;
 /// What moves by at most this in a slice comes from the tiles next to its own.
 constexpr double kSliceMotion_px = kTileSize;

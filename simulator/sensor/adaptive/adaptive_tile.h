@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -67,9 +66,12 @@ class AdaptiveTile {
     bool needs_ray = true;
   };
 
-  void sense_step(double to_s);
-  /// Finds the pixels next to an edge of what they see, now or at the end of the step.
-  void find_edges(std::span<const ViewSample> next);
+  /// `step_px`: how far the image moves until then, at most.
+  void sense_step(double to_s, double step_px);
+  /// Samples all pixels within the step.
+  void sample_parts(double step_px);
+  /// Whether there is an edge among what the pixels see now and at the end of the step.
+  [[nodiscard]] bool has_edge(std::span<const ViewSample> next) const;
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
@@ -95,13 +97,13 @@ class AdaptiveTile {
   bool is_filtered_;
   double refractory_s_;
   double longest_line_s_;  ///< under flickering lights
+  bool has_arcs_;          ///< one ray per pixel and steady light
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;
   std::array<Pixel, kTilePixels> views_;
   double speed_px_s_ = 0;
   double step_s_ = 0;                                       ///< length of the step at work
-  std::bitset<kTilePixels> is_near_edge_;                   ///< in it
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
 

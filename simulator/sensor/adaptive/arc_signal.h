@@ -94,8 +94,7 @@ class ArcSignal {
            !search.thresholds.band().contains(search.thresholds.signal(with_log(sample)));
   }
 
-  [[nodiscard]] std::optional<Bracket<Sample>> exit_of_piece(const Search& search,
-                                                             const Sample& lo,
+  [[nodiscard]] std::optional<Bracket<Sample>> exit_of_piece(const Search& search, const Sample& lo,
                                                              const Sample& hi) const {
     const Sample middle = dark(0.5 * (lo.t_s + hi.t_s));
     // A parabola departs from the lines through these by an eighth of the bend.

@@ -24,8 +24,8 @@ class SurfaceArc {
         y_(from.y, middle.y, to.y),
         light_(light_of(from), light_of(middle), light_of(to)),
         level_(from.level, middle.level, to.level) {
-    const double bend = std::hypot(x_.c, y_.c);
-    const double way = std::hypot(x_.b + x_.c, y_.b + y_.c);
+    const double bend = std::max(std::abs(x_.c), std::abs(y_.c));
+    const double way = std::max(std::abs(x_.b + x_.c), std::abs(y_.b + y_.c));
     is_smooth_ = from.distance > 0 && middle.distance > 0 && to.distance > 0 &&
                  bend <= kMostBend * way + kLeastBend;
   }
@@ -40,8 +40,8 @@ class SurfaceArc {
     const double x = x_.at(u);
     if (texture_ == nullptr) return light_.at(u) * x;
     const double level = level_.at(u);
-    return light_.at(u) * (level > 0 ? texture_->at_texel(x, y_.at(u), level)
-                                     : texture_->at_texel(x, y_.at(u)));
+    return light_.at(u) *
+           (level > 0 ? texture_->at_texel(x, y_.at(u), level) : texture_->at_texel(x, y_.at(u)));
   }
   /// When the ray first comes to other texels after `t_s`, or `end_s` where that is earlier: until
   /// then the texture is bilinear along its way.
@@ -55,9 +55,9 @@ class SurfaceArc {
       const auto finer = std::min(static_cast<std::size_t>(level), texture_->level_count() - 1);
       for (std::size_t k = finer; k < std::min(finer + 2, texture_->level_count()); ++k) {
         const Texture& picture = texture_->level(k);
-        next = std::min(next, border_of(x_, picture.width() / double(texture_->width()), u, next));
+        next = std::min(next, border_of(x_, scale_of(picture.width(), texture_->width()), u, next));
         next =
-            std::min(next, border_of(y_, picture.height() / double(texture_->height()), u, next));
+            std::min(next, border_of(y_, scale_of(picture.height(), texture_->height()), u, next));
       }
     } else {
       next = border_of(y_, 1, u, border_of(x_, 1, u, next));
@@ -99,10 +99,13 @@ class SurfaceArc {
   /// Borders nearer than this part of the arc are passed over: there the ray is just on one.
   static constexpr double kOnBorder = 1e-6;
 
+  [[nodiscard]] static double scale_of(int size, int whole) {
+    return static_cast<double>(size) / static_cast<double>(whole);
+  }
+
   /// The first place up to `next` at which the coordinate of a picture of `scale` times the size
   /// comes to the next texel.
-  [[nodiscard]] static double border_of(const Parabola& path, double scale, double u,
-                                        double next) {
+  [[nodiscard]] static double border_of(const Parabola& path, double scale, double u, double next) {
     const Parabola scaled = path.scaled(scale);
     const double from = u + kOnBorder;
     const double texel = std::floor(scaled.at(from));
