@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -59,6 +60,11 @@ class AdaptiveTile {
     double before_s = 0;  ///< slope of the signal before that [1/s]
     bool has_slope = false;
   };
+  /// Among what the pixels see now and at the end of a step.
+  struct Edges {
+    bool of_surfaces = false;
+    std::bitset<kTilePixels> of_shadows;  ///< the pixels next to one
+  };
   /// What to do with the interval from a pixel's last sample to the next known one.
   struct Judgement {
     bool is_line = true;  ///< the line between both ends is good enough
@@ -68,16 +74,17 @@ class AdaptiveTile {
 
   /// `step_px`: how far the image moves until then, at most.
   void sense_step(double to_s, double step_px);
-  /// Samples all pixels within the step.
-  void sample_parts(double step_px);
-  /// Whether there is an edge among what the pixels see now and at the end of the step.
-  [[nodiscard]] bool has_edge(std::span<const ViewSample> next) const;
+  [[nodiscard]] Edges find_edges(std::span<const ViewSample> next) const;
+  /// Samples the pixels within the step where there are edges.
+  void sample_parts(const Edges& edges, double step_px);
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
   [[nodiscard]] Judgement judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
   /// Whether nothing but the triangles of two samples can be seen between them.
   [[nodiscard]] bool are_neighbours(const ViewSample& a, const ViewSample& b) const;
+  /// Whether two samples lie on one smooth surface; is_continuous(): under the same lights as well.
+  [[nodiscard]] bool is_one_surface(const ViewSample& a, const ViewSample& b) const;
   [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
   /// Whether all between two samples follows from what both see.

@@ -78,6 +78,16 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
   if (scene_.is_lit()) statistics_.lit_points += count;
 }
 
+void ViewSampler::look(double t_s, std::span<TriangleId> triangles) {
+  SACCADE_CHECK(rays_.rays_per_pixel() == 1 && triangles.size() <= kRayPacket);
+  const CameraFrame& camera = camera_at(t_s);
+  std::array<Ray, kRayPacket> rays;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    rays[i] = {camera.position, camera.rotation * directions(i)[0], t_s};
+  scene_.visible({rays.data(), triangles.size()}, triangles);
+  statistics_.rays += triangles.size();
+}
+
 SurfaceSample ViewSampler::surface_like(const SampleRequest& request, const ViewSample& like) {
   SACCADE_CHECK(rays_.rays_per_pixel() == 1);
   const CameraFrame& camera = camera_at(request.t_s);

@@ -41,6 +41,9 @@ class ViewSampler {
   /// What the pixels see, by rays, shadow rays included.
   void trace(std::span<const SampleRequest> requests, std::span<ViewSample> samples);
 
+  /// The triangles that all pixels of the tile, with one ray each, see at `t_s`.
+  void look(double t_s, std::span<TriangleId> triangles);
+
   /// What a pixel with one ray sees at `t_s` just between two samples if it is the triangle of one
   /// of them, with its lights: without a ray and in double precision, which single precision may
   /// confuse next to their edges. Neither is hit: nullopt.
