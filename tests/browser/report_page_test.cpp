@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/report/report.h"
+#include "tests/support/source_path.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {
@@ -32,7 +33,7 @@ TEST_F(ReportPage, OpensInChromium) {
     testing::write_fake_run(runs.back(), dataset(), errors, name);
   }
   write_report(runs, page);
-  const std::string script = SACCADE_SOURCE_DIR "/tests/browser/report_page.mjs";
+  const std::string script = testing::source_path("tests/browser/report_page.mjs");
   EXPECT_EQ(std::system(("node '" + script + "' chromium '" + page.string() + "'").c_str()), 0);
 }
 

@@ -20,6 +20,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/support/source_path.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {
@@ -28,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-std::string single_node() { return std::string(SACCADE_SOURCE_DIR) + "/tests/slurm/single_node"; }
+std::string single_node() { return testing::source_path("tests/slurm/single_node"); }
 
 int jobs_of_sweep() {
   const char* text = std::getenv("SACCADE_SLURM_JOBS");

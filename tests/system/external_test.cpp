@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/io/tables/csv_reader.h"
+#include "tests/support/source_path.h"
 #include "tests/system/saccade_command.h"
 
 namespace saccade::testing {
@@ -17,9 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string example() {
-  return std::string(SACCADE_SOURCE_DIR) + "/examples/external/constant_velocity.yaml";
-}
+std::string example() { return testing::source_path("examples/external/constant_velocity.yaml"); }
 
 /// The fast tracker, the worked example and a program that crashes, over the begin of Walls on a
 /// small sensor.

@@ -11,6 +11,7 @@
 
 #include "eval/metrics/metrics.h"
 #include "tests/support/command.h"
+#include "tests/support/source_path.h"
 
 namespace saccade::testing {
 
@@ -57,7 +58,7 @@ inline std::string saccade_ok(const std::vector<std::string>& arguments) {
 
 /// A shipped configuration, e.g. "simulation/walls.yaml".
 [[nodiscard]] inline std::string shipped_config(const std::string& name) {
-  return std::string(SACCADE_SOURCE_DIR) + "/configs/" + name;
+  return testing::source_path("configs/") + name;
 }
 
 /// A score that must be there.

@@ -1,4 +1,5 @@
 #include "apps/reference_page.h"
+#include "tests/support/source_path.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ namespace {
 using config::ReferenceKey;
 
 std::filesystem::path file_of(const std::string& page) {
-  return std::filesystem::path(SACCADE_SOURCE_DIR) / "docs/reference" / (page + ".md");
+  return std::filesystem::path(testing::source_path("docs/reference")) / (page + ".md");
 }
 
 std::string text_of(const std::filesystem::path& file) {

@@ -9,6 +9,7 @@
 
 #include "core/config/config.h"
 #include "tests/support/error_of.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -21,7 +22,7 @@ DepthConfig parsed(const std::string& yaml) {
 }
 
 TEST(DepthConfig, TheShippedFileHoldsTheDefaults) {
-  const auto document = config::load(SACCADE_SOURCE_DIR "/configs/depth/thesis.yaml");
+  const auto document = config::load(testing::source_path("configs/depth/thesis.yaml"));
   EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(DepthConfig{}));
 }
 
@@ -29,8 +30,7 @@ TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
   const std::pair<const char*, std::string_view> files[] = {{"best", DepthConfig::Method::kRays},
                                                             {"sweep", DepthConfig::Method::kSweep}};
   for (const auto& [name, method] : files) {
-    const auto document =
-        config::load(std::string(SACCADE_SOURCE_DIR "/configs/depth/") + name + ".yaml");
+    const auto document = config::load(testing::source_path("configs/depth/") + name + ".yaml");
     DepthConfig expected;
     expected.method = method;
     expected.window.reference = ViewWindowOptions::Reference::kMiddle;

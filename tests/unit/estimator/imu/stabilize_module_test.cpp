@@ -14,6 +14,7 @@
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/support/shared_folder.h"
+#include "tests/support/source_path.h"
 #include "tests/unit/estimator/imu/turning_dataset.h"
 #include "tests/unit/estimator/run_request.h"
 
@@ -130,7 +131,7 @@ TEST_F(StabilizeModule, WithoutASensorItSaysWhatIsMissing) {
 }
 
 TEST(StabilizeConfig, ShippedFilesAreRead) {
-  const std::string folder = SACCADE_SOURCE_DIR "/configs/stabilization/";
+  const std::string folder = testing::source_path("configs/stabilization/");
   const auto method = [&](const char* name) {
     return config::read<StabilizeConfig>(config::load(folder + name)).orientation.method;
   };

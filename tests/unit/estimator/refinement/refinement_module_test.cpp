@@ -22,6 +22,7 @@
 #include "tests/support/planar_world.h"
 #include "tests/support/recording.h"
 #include "tests/support/shared_folder.h"
+#include "tests/support/source_path.h"
 #include "tests/unit/estimator/run_request.h"
 
 namespace saccade {
@@ -201,11 +202,11 @@ TEST_F(RefinementModule, OtherModulesRefineNothing) {
 
 TEST(RefinementConfigs, ShippedOnesAreRead) {
   for (const char* name : {"poses", "depth", "joint"})
-    EXPECT_THAT(find_module("refine").print_config(config::load(
-                    std::string(SACCADE_SOURCE_DIR) + "/configs/refinement/" + name + ".yaml")),
+    EXPECT_THAT(find_module("refine").print_config(
+                    config::load(testing::source_path("configs/refinement/") + name + ".yaml")),
                 HasSubstr(std::string("method: ") + name));
-  EXPECT_THAT(find_module("refine").print_config(config::load(
-                  std::string(SACCADE_SOURCE_DIR) + "/configs/refinement/poses_frames.yaml")),
+  EXPECT_THAT(find_module("refine").print_config(
+                  config::load(testing::source_path("configs/refinement/poses_frames.yaml"))),
               HasSubstr("residual: frames"));
 }
 

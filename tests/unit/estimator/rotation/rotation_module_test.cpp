@@ -6,6 +6,7 @@
 #include "core/config/config.h"
 #include "tests/support/error_of.h"
 #include "tests/support/shared_folder.h"
+#include "tests/support/source_path.h"
 #include "tests/unit/estimator/imu/turning_dataset.h"
 #include "tests/unit/estimator/run_request.h"
 
@@ -75,7 +76,7 @@ TEST_F(RotationModule, WithoutASensorItSaysWhatIsMissing) {
 }
 
 TEST(RotationConfig, ShippedFilesAreRead) {
-  const std::string folder = SACCADE_SOURCE_DIR "/configs/rotation/";
+  const std::string folder = testing::source_path("configs/rotation/");
   const auto method = [&](const char* name) {
     return config::read<RotationConfig>(config::load(folder + name)).method;
   };

@@ -16,6 +16,7 @@
 #include "estimator/tracking/reference_view.h"
 #include "estimator/tracking/track_config.h"
 #include "tests/support/planar_world.h"
+#include "tests/support/source_path.h"
 
 namespace saccade::testing {
 
@@ -93,7 +94,7 @@ inline CornerRecording::Errors resolved_errors(const std::vector<TrackedPose>& p
 
 /// A file of configs/tracking, without its ending.
 inline TrackConfig tracking_config(const std::string& name) {
-  const std::string file = SACCADE_SOURCE_DIR "/configs/tracking/" + name + ".yaml";
+  const std::string file = testing::source_path("configs/tracking/") + name + ".yaml";
   return config::read<TrackConfig>(config::load(file));
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/config/config.h"
 #include "tests/support/error_of.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -28,7 +29,7 @@ TEST(TrackConfig, DefaultsAreTheAccurateSetting) {
 }
 
 TEST(TrackConfig, FilesOfTheSettingsAreValid) {
-  const std::string folder = std::string(SACCADE_SOURCE_DIR) + "/configs/tracking/";
+  const std::string folder = testing::source_path("configs/tracking/");
   const auto accurate = config::read<TrackConfig>(config::load(folder + "accurate.yaml"));
   EXPECT_EQ(accurate.edges.align.samples, 500);
   EXPECT_EQ(accurate.edges.align.iterations, 30);

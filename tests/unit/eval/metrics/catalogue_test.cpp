@@ -10,6 +10,7 @@
 #include "eval/gate/gate_metric.h"
 #include "eval/table/table.h"
 #include "tests/support/command.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -89,7 +90,7 @@ std::string documented_catalogue() {
 }
 
 TEST(Catalogue, StandsInTheDocumentation) {
-  EXPECT_THAT(testing::read_file(SACCADE_SOURCE_DIR "/docs/metrics.md"),
+  EXPECT_THAT(testing::read_file(testing::source_path("docs/metrics.md")),
               ::testing::HasSubstr(documented_catalogue()))
       << "put this table in place of the one of docs/metrics.md:\n"
       << documented_catalogue();

@@ -9,6 +9,7 @@
 #include "core/io/trajectory_file.h"
 #include "eval/metrics/trajectory/consistency.h"
 #include "eval/metrics/trajectory/trajectory_metrics.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kMeanDepthM = 1.7;
 class GoldenTrajectories : public ::testing::TestWithParam<const char*> {
  protected:
   [[nodiscard]] static fs::path file(const char* name) {
-    return fs::path(SACCADE_SOURCE_DIR) / "tests/golden/trajectories" / GetParam() / name;
+    return fs::path(testing::source_path("tests/golden/trajectories")) / GetParam() / name;
   }
 };
 

@@ -13,13 +13,14 @@
 #include "eval/metrics/image_metrics.h"
 #include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory/reprojection.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kGolden = fs::path(SACCADE_SOURCE_DIR) / "tests/golden";
+const fs::path kGolden = fs::path(testing::source_path("tests/golden"));
 
 std::vector<std::vector<double>> read_table(const std::string& name) {
   std::vector<std::vector<double>> rows;

@@ -8,6 +8,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "simulator/preview.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -20,7 +21,7 @@ constexpr const char* kFast = "_fast";
 std::vector<std::string> catalogue_names() {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry :
-       fs::directory_iterator(fs::path(SACCADE_SOURCE_DIR) / "configs/simulation/catalogue"))
+       fs::directory_iterator(fs::path(testing::source_path("configs/simulation/catalogue"))))
     names.push_back(entry.path().stem().string());
   std::ranges::sort(names);
   return names;
@@ -44,7 +45,7 @@ class CatalogueScene : public ::testing::TestWithParam<std::string> {};
 /// rate within the factor that the bounds leave.
 TEST_P(CatalogueScene, SeesTextureAndNoWallFromWithin) {
   const fs::path file =
-      fs::path(SACCADE_SOURCE_DIR) / "configs/simulation/catalogue" / (GetParam() + ".yaml");
+      fs::path(testing::source_path("configs/simulation/catalogue")) / (GetParam() + ".yaml");
   SimulationConfig config;
   try {
     config = config::read<SimulationConfig>(config::load(file.string(), {}));

@@ -7,6 +7,7 @@
 
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -48,8 +49,7 @@ TEST(PublishedRows, RefusesWhatIsIncomplete) {
 }
 
 TEST(PublishedRows, TheShippedOnesNameTheirSource) {
-  const auto rows =
-      read_published_rows(std::string(SACCADE_SOURCE_DIR) + "/reports/published.yaml");
+  const auto rows = read_published_rows(testing::source_path("reports/published.yaml"));
   EXPECT_EQ(rows.size(), 72U);
   for (const PublishedRow& row : rows) {
     EXPECT_THAT(row.url, HasSubstr("https://"));
