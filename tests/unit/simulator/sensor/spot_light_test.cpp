@@ -163,6 +163,24 @@ TEST(SpotLight, ExactEventsAgreeWithBruteForce) {
   }
 }
 
+// Beams a third of a pixel wide pass between two samples of a pixel, which see nothing of them: only
+// the bounds of the falloff tell of them.
+TEST(SpotLight, BeamsThinnerThanAPixelPassUnseenNowhere) {
+  std::vector<LightOptions> beams;
+  for (int k = 0; k < 24; ++k) {
+    LightOptions beam = spot(0.02, 0.05);
+    beam.direction = {-0.06 + 0.016 * (k % 6), 0.02 + 0.017 * std::floor(k / 6), 1};
+    beams.push_back(beam);
+  }
+  const testing::Agreement result =
+      testing::agreement(scene_under(beams, false, false),
+                         testing::lively_motion(kSpotDuration_s, 1.5, 1, 4), kSpotCamera, {});
+  std::printf("%s\n", result.text().c_str());
+  EXPECT_GT(result.expected, 1000U);
+  EXPECT_GE(result.share_10_us(), 0.999);
+  EXPECT_GE(result.share_1_us(), 0.99);
+}
+
 template <class Camera>
 Events events_of(const Scene& scene, const Spline& motion, const EventOptions& options) {
   Camera sensor(scene, motion, kSpotCamera, options);
