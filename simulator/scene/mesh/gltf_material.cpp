@@ -344,7 +344,7 @@ void GltfMaterials::remark_ignored() const {
     if (name == "EXT_mesh_gpu_instancing")
       ignore(name.get<std::string>());
     else if (name == "KHR_lights_punctual" && !context_.options.takes_lights)
-      ignore("KHR_lights_punctual (lit by it with scene.lights_from_meshes: true)");
+      ignore("KHR_lights_punctual (scene.lights_from_meshes: true takes those)");
 }
 
 }  // namespace saccade
