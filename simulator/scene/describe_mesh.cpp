@@ -64,6 +64,11 @@ bool is_y_up(const fs::path& path) {
   return kYUp.contains(lower_ending(path));
 }
 
+bool is_gltf(const fs::path& path) {
+  const std::string ending = lower_ending(path);
+  return ending == ".gltf" || ending == ".glb";
+}
+
 /// As `up: y` turns it.
 Eigen::Vector3d upright(const Eigen::Vector3d& v, bool is_turned) {
   return is_turned ? Eigen::Vector3d(v.x(), -v.z(), v.y()) : v;
@@ -130,7 +135,9 @@ std::string describe_mesh(const fs::path& file) {
                                             extras.parts, extras.instances));
   text += mesh_line("textures", texture_sizes(mesh));
   if (extras.lights > 0)
-    text += mesh_line("lights", fmt::format("{} (not used: state scene.lights)", extras.lights));
+    text += mesh_line(
+        "lights", fmt::format("{} (not used: state {})", extras.lights,
+                              is_gltf(file) ? "scene.lights_from_meshes: true" : "scene.lights"));
   if (extras.animations > 0)
     text += mesh_line("animations", fmt::format("{} (not shown)", extras.animations));
   for (const MeshCamera& camera : extras.cameras) text += camera_line(camera, is_turned);
@@ -138,7 +145,9 @@ std::string describe_mesh(const fs::path& file) {
 }
 
 std::string describe_scene(const SceneOptions& options) {
-  MeshImporter importer({MissingTexture::kGrey, options.lighting == Lighting::kLambertian});
+  MeshImporter importer({.missing_texture = MissingTexture::kGrey,
+                         .is_lit = options.lighting == Lighting::kLambertian,
+                         .takes_lights = takes_lights(options)});
   std::string text;
   std::map<fs::path, int> uses;
   for (const MeshOptions& item : options.meshes) ++uses[item.file];

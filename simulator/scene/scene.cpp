@@ -141,7 +141,7 @@ TriangleId Scene::nearest_among(std::span<const TriangleId> triangles, const Ray
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
   SurfaceSample seen = sample_surface(ray, triangle);
-  illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
+  state_->illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1}, true);
   return {seen.radiance(), seen.distance};
 }
 
@@ -172,7 +172,7 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
 
 Shade Scene::shade(const Ray& ray, TriangleId triangle, const RayDifferential& differential) const {
   SurfaceSample seen = sample_surface(ray, triangle, differential);
-  illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1});
+  state_->illuminate({&ray, 1}, {&triangle, 1}, {&seen, 1}, true);
   return {seen.radiance(), seen.distance};
 }
 
@@ -190,28 +190,33 @@ TexelHomography Scene::texel_homography(TriangleId triangle, const Eigen::Vector
           depth,          surface.texture, surface.factor};
 }
 
-void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
-                       std::span<SurfaceSample> samples) const {
+void Scene::State::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                              std::span<SurfaceSample> samples, bool within_cones) const {
   SACCADE_CHECK(rays.size() <= kRayPacket && triangles.size() == rays.size() &&
                 samples.size() == rays.size());
-  if (!state_->illumination) return;
+  if (!illumination) return;
   std::array<LitPoint, kRayPacket> points;
   std::array<LightSet, kRayPacket> lights;
   std::array<std::size_t, kRayPacket> owners;
   std::size_t n = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(samples[i].distance > 0)) continue;
-    points[n] = state_->surface_point(rays[i], samples[i].distance, triangles[i]);
+    points[n] = surface_point(rays[i], samples[i].distance, triangles[i]);
     owners[n++] = i;
   }
-  state_->illumination->find_unoccluded_lights({points.data(), n}, *state_->visibility,
-                                               {lights.data(), n});
+  illumination->find_unoccluded_lights({points.data(), n}, *visibility, {lights.data(), n},
+                                       within_cones);
   for (std::size_t k = 0; k < n; ++k) {
     SurfaceSample& surface = samples[owners[k]];
     surface.lights = lights[k];
-    surface.irradiance = state_->surfaces[triangles[owners[k]]].with_self_light(
-        state_->illumination->irradiance(points[k], lights[k]));
+    surface.irradiance = surfaces[triangles[owners[k]]].with_self_light(
+        illumination->irradiance(points[k], lights[k]));
   }
+}
+
+void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                       std::span<SurfaceSample> samples) const {
+  state_->illuminate(rays, triangles, samples, false);
 }
 
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
@@ -226,14 +231,23 @@ std::span<const Flicker> Scene::flickers() const {
   return state_->illumination ? state_->illumination->flickers() : std::span<const Flicker>();
 }
 
+bool Scene::has_spots() const { return state_->illumination && state_->illumination->has_cones(); }
+
 std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const SurfaceSample& from,
-                                                  const Ray& to_ray, const SurfaceSample& to,
-                                                  TriangleId triangle, LightSet lights) const {
+                                                  const Ray& middle_ray, const Ray& to_ray,
+                                                  const SurfaceSample& to, TriangleId triangle,
+                                                  LightSet lights) const {
   if (!state_->illumination || triangle == kNothing) return LightRange{};
   if (!(from.distance > 0 && to.distance > 0)) return std::nullopt;
-  LightRange range = state_->illumination->irradiance_range(
-      state_->surface_point(from_ray, from.distance, triangle),
-      state_->surface_point(to_ray, to.distance, triangle), lights);
+  const LitPoint first = state_->surface_point(from_ray, from.distance, triangle);
+  const LitPoint last = state_->surface_point(to_ray, to.distance, triangle);
+  Eigen::Vector3d middle = first.position;
+  if (has_spots()) {
+    const double distance = sample_surface(middle_ray, triangle).distance;
+    if (!(distance > 0)) return std::nullopt;
+    middle = middle_ray.origin + distance * middle_ray.direction;
+  }
+  LightRange range = state_->illumination->irradiance_range(first, middle, last, lights);
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (std::isinf(surface.self_light)) return LightRange{};
   range.low = surface.with_self_light(range.low);

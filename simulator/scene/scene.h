@@ -149,8 +149,8 @@ class Scene {
   [[nodiscard]] TexelHomography texel_homography(TriangleId triangle,
                                                  const Eigen::Vector3d& position,
                                                  const Eigen::Matrix3d& world_from_camera) const;
-  /// Finds the lights that light the points of at most 16 samples along `rays` at `triangles`, and
-  /// the irradiance: 1 in an unlit scene and for the background.
+  /// Finds the lights that nothing hides from the points of at most 16 samples along `rays` at
+  /// `triangles` (spots whether or not a point is in their cone), and the irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
   /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
@@ -159,12 +159,14 @@ class Scene {
   [[nodiscard]] bool is_lit() const;
   /// The flickers of its lights, each once; empty in steady light.
   [[nodiscard]] std::span<const Flicker> flickers() const;
+  /// Whether some of its lights are spots, whose irradiance changes fast at the edge of their cone.
+  [[nodiscard]] bool has_spots() const;
   /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, if just
   /// `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
-  /// rays. nullopt where one misses the triangle's plane.
+  /// rays, `middle_ray` is halfway in time. nullopt where one misses the triangle's plane.
   [[nodiscard]] std::optional<LightRange> irradiance_range(
-      const Ray& from_ray, const SurfaceSample& from, const Ray& to_ray, const SurfaceSample& to,
-      TriangleId triangle, LightSet lights) const;
+      const Ray& from_ray, const SurfaceSample& from, const Ray& middle_ray, const Ray& to_ray,
+      const SurfaceSample& to, TriangleId triangle, LightSet lights) const;
   /// Which lights reach the part of `triangle` that a frustum sees on its way through `frusta` (at
   /// most 4): known for the whole triangle, or else put into `lighting`. nullptr where that is not
   /// known: for moving triangles and among moving objects, where light goes through cutouts, and

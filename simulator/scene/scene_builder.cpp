@@ -198,6 +198,21 @@ Background read_background(const SceneOptions& options, ColourChannel channel,
   return Background(decode_picture(*bytes, location.text(), remarks, {1, 1, 1}, channel).grey);
 }
 
+/// Appends the lights of a file, moved to where its mesh stands.
+void add_lights(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, double scale,
+                std::vector<LightOptions>& lights) {
+  for (LightOptions light : mesh.lights) {
+    light.position = world_from_mesh * light.position;
+    light.direction = (world_from_mesh.linear() * light.direction).normalized();
+    light.intensity *= scale;
+    lights.push_back(light);
+  }
+  if (lights.size() > kMaxLights)
+    throw InputError("scene.lights",
+                     fmt::format("are {} with those of the mesh files, which must be at most {}",
+                                 lights.size(), kMaxLights));
+}
+
 }  // namespace
 
 Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
@@ -348,12 +363,13 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
 
 Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
-  MeshImporter importer(
-      {options.missing_texture, options.lighting == Lighting::kLambertian, channel});
+  MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian,
+                         channel, takes_lights(options)});
   MeshUses uses;
   importer.prefetch(distinct_files(options.meshes, uses));
   std::map<std::filesystem::path, Mesh> meshes;
   const std::vector<std::string> classes = class_names(options);
+  std::vector<LightOptions> lights = options.lights;
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
     const MeshOptions& item = options.meshes[i];
     auto known = meshes.find(item.file);
@@ -371,11 +387,17 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
             ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion), label)
             : builder.add(mesh, transform, label);
     if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
+    if (!item.trajectory)
+      add_lights(mesh, transform, options.light_scale, lights);
+    else if (!mesh.lights.empty())
+      importer.remarks().say(fmt::format(
+          "{}: its lights do not light the scene, because scene.meshes[{}] has a trajectory",
+          item.file.string(), i));
     if (--uses[item.file] == 0) meshes.erase(known);
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian)
-    builder.light(options.ambient, options.lights, options.ambient_flicker);
+    builder.light(options.ambient, std::move(lights), options.ambient_flicker);
   const Background background = read_background(options, channel, importer.remarks());
   if (channel == ColourChannel::kLuminance)
     for (const std::string& line : importer.remarks().lines()) show_warning(line);

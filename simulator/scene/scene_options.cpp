@@ -97,30 +97,6 @@ void describe(config::Fields& fields, MeshOptions& options) {
                 "cannot be combined with transform.scale");
 }
 
-void describe(config::Fields& fields, LightOptions& options) {
-  fields.choice("type", options.type,
-                {{"point", LightType::kPoint}, {"directional", LightType::kDirectional}},
-                "Kind of light.");
-  if (options.type == LightType::kPoint) {
-    fields.value("position", options.position, "Position of the light, in metres.")
-        .range(-1e6, 1e6)
-        .required();
-  } else {
-    fields.value("direction", options.direction, "Direction in which the light travels.")
-        .range(-1e6, 1e6)
-        .required();
-    fields.expect(options.direction.norm() > 0, "direction", "must not be zero");
-  }
-  fields
-      .value("intensity", options.intensity,
-             "Radiance of a white surface that faces the light, at a distance of 1 m from a point "
-             "light.")
-      .at_least(0);
-  fields.value("shadows", options.shadows, "Whether meshes cast shadows in this light.");
-  fields.section("flicker", options.flicker,
-                 "Flicker of the light, whose mean over a period is its intensity.");
-}
-
 void describe(config::Fields& fields, SceneOptions& options) {
   fields.list("meshes", options.meshes, "Meshes of the scene.").length(1, 1'000'000);
   fields.list("more_meshes", options.more_meshes,
@@ -164,8 +140,20 @@ void describe(config::Fields& fields, SceneOptions& options) {
         "ambient_flicker", options.ambient_flicker,
         "Flicker of the ambient light: in a room, that of the lamps whose light the walls "
         "scatter.");
-    fields.list("lights", options.lights, "Point lights and directional lights, at most 64.");
+    fields.list("lights", options.lights,
+                "Point lights, spots and directional lights, at most 64.");
     fields.expect(options.lights.size() <= kMaxLights, "lights", "must be at most 64");
+    fields.value("lights_from_meshes", options.lights_from_meshes,
+                 "Whether the lights of glTF files (KHR_lights_punctual) light the scene as well, "
+                 "where their meshes stand. Those of meshes with a trajectory do not.");
+    if (options.lights_from_meshes)
+      fields
+          .value(
+              "light_scale", options.light_scale,
+              "Intensity of a light of a glTF file per candela, of a directional one per lux. By "
+              "default 1 / pi: then radiance is luminance in cd/m^2, as a white surface under E "
+              "lux has E / pi of it, and as the files state emission.")
+          .above(0);
   }
 }
 

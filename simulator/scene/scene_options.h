@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "simulator/motion/motion_options.h"
 #include "simulator/scene/light/flicker.h"
+#include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture_library.h"
 
 namespace saccade {
@@ -40,17 +42,6 @@ struct MeshOptions {
   std::optional<MotionOptions> trajectory;
 };
 
-enum class LightType { kPoint, kDirectional };
-
-struct LightOptions {
-  LightType type = LightType::kPoint;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();
-  double intensity = 1;
-  bool shadows = true;
-  std::optional<FlickerOptions> flicker = std::nullopt;  ///< of its intensity
-};
-
 enum class Lighting { kNone, kLambertian };
 
 /// The `scene` section of a simulation.
@@ -65,14 +56,20 @@ struct SceneOptions {
   double ambient = 0;
   std::optional<FlickerOptions> ambient_flicker;
   std::vector<LightOptions> lights;
+  bool lights_from_meshes = false;            ///< adds those of glTF files
+  double light_scale = 1 / std::numbers::pi;  ///< their intensity per candela or lux
 };
+
+/// Whether the lights of its mesh files light a scene.
+[[nodiscard]] inline bool takes_lights(const SceneOptions& options) {
+  return options.lighting == Lighting::kLambertian && options.lights_from_meshes;
+}
 
 /// The names of the classes 1, 2 ...: those that `options` lists, else those of its meshes in the
 /// order in which they are named first.
 [[nodiscard]] std::vector<std::string> class_names(const SceneOptions& options);
 
 void describe(config::Fields& fields, MeshOptions& options);
-void describe(config::Fields& fields, LightOptions& options);
 void describe(config::Fields& fields, SceneOptions& options);
 
 }  // namespace saccade

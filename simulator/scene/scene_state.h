@@ -155,6 +155,10 @@ struct Scene::State {
   /// Of a whole triangle, found once.
   [[nodiscard]] const TriangleLighting& triangle_lighting(TriangleId triangle, double side);
 
+  /// As Scene::illuminate(). `within_cones`: of spots only those in whose cone a point is.
+  void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                  std::span<SurfaceSample> samples, bool within_cones) const;
+
   /// In the world, as is `ray`.
   [[nodiscard]] LitPoint surface_point(const Ray& ray, double distance, TriangleId triangle) const;
 };

@@ -10,7 +10,8 @@
 namespace saccade {
 namespace {
 
-/// The path from a point to a light; one length of `direction` ends at a point light.
+/// The path from a point to a light; one length of `direction` ends at a light with a
+/// position. Without the falloff of a cone.
 struct LightPath {
   Eigen::Vector3d direction;
   double distance;  ///< [length of direction]
@@ -18,13 +19,13 @@ struct LightPath {
 };
 
 LightPath path_to(const LightOptions& light, const LitPoint& point) {
-  const bool is_point = light.type == LightType::kPoint;
-  const Eigen::Vector3d direction = is_point ? Eigen::Vector3d(light.position - point.position)
-                                             : Eigen::Vector3d(-light.direction);
+  const bool is_near = light.has_position();
+  const Eigen::Vector3d direction = is_near ? Eigen::Vector3d(light.position - point.position)
+                                            : Eigen::Vector3d(-light.direction);
   const double squared = direction.squaredNorm();
   const double along_normal = point.shading_normal.dot(direction) / std::sqrt(squared);
-  return {direction, is_point ? 1.0 : std::numeric_limits<double>::infinity(),
-          light.intensity * along_normal / (is_point ? squared : 1.0)};
+  return {direction, is_near ? 1.0 : std::numeric_limits<double>::infinity(),
+          light.intensity * along_normal / (is_near ? squared : 1.0)};
 }
 
 }  // namespace
@@ -37,7 +38,12 @@ Illumination::Illumination(double ambient, const std::optional<FlickerOptions>& 
       shadow_offset_(shadow_offset) {
   SACCADE_CHECK(lights.size() <= kMaxLights);
   for (LightOptions& light : lights_) light.direction.normalize();
-  for (const LightOptions& light : lights_) light_flickers_.push_back(index_of(light.flicker));
+  for (const LightOptions& light : lights_) {
+    light_flickers_.push_back(index_of(light.flicker));
+    const bool is_spot = light.type == LightType::kSpot;
+    cones_.push_back(is_spot ? std::optional<SpotCone>(light) : std::nullopt);
+    has_cones_ = has_cones_ || is_spot;
+  }
 }
 
 std::size_t Illumination::index_of(const std::optional<FlickerOptions>& options) {
@@ -57,8 +63,8 @@ LightRange Illumination::factor_range(std::size_t flicker, double from_s, double
 }
 
 void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
-                                          const Visibility& blockers,
-                                          std::span<LightSet> lights) const {
+                                          const Visibility& blockers, std::span<LightSet> lights,
+                                          bool within_cones) const {
   std::fill(lights.begin(), lights.end(), LightSet{0});
   std::array<Ray, kRayPacket> rays;
   std::array<float, kRayPacket> distances;
@@ -70,6 +76,7 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
       const LitPoint& point = points[i];
       const LightPath path = path_to(lights_[index], point);
       if (!(path.irradiance > 0) || point.plane_normal.dot(path.direction) <= 0) continue;
+      if (within_cones && !(falloff(index, point) > 0)) continue;
       rays[n] = {point.position + shadow_offset_ * point.plane_normal, path.direction,
                  point.time_s};
       distances[n] = static_cast<float>(path.distance);
@@ -87,13 +94,13 @@ double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
   double sum = ambient_ * factor(ambient_flicker_, point);
   for (std::size_t index = 0; index < lights_.size(); ++index)
     if ((lights >> index & 1) != 0)
-      sum += factor(light_flickers_[index], point) *
+      sum += factor(light_flickers_[index], point) * falloff(index, point) *
              std::max(0.0, path_to(lights_[index], point).irradiance);
   return sum;
 }
 
-LightRange Illumination::irradiance_range(const LitPoint& from, const LitPoint& to,
-                                          LightSet lights) const {
+LightRange Illumination::irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
+                                          const LitPoint& to, LightSet lights) const {
   const double length_s = to.time_s - from.time_s;
   const LightRange ambient{ambient_, ambient_, 0, 0};
   LightRange sum = ambient.times(factor_range(ambient_flicker_, from.time_s, to.time_s));
@@ -102,8 +109,10 @@ LightRange Illumination::irradiance_range(const LitPoint& from, const LitPoint& 
     const double a = std::max(0.0, path_to(lights_[index], from).irradiance);
     const double b = std::max(0.0, path_to(lights_[index], to).irradiance);
     const double slack = 0.25 * std::abs(b - a);
-    const LightRange steady{std::max(0.0, std::min(a, b) - slack), std::max(a, b) + slack,
-                            (b - a - 2 * slack) / length_s, (b - a + 2 * slack) / length_s};
+    LightRange steady{std::max(0.0, std::min(a, b) - slack), std::max(a, b) + slack,
+                      (b - a - 2 * slack) / length_s, (b - a + 2 * slack) / length_s};
+    if (const auto& cone = cones_[index])
+      steady = steady.times(cone->falloff_range(from.position, middle, to.position, length_s));
     sum.add(steady.times(factor_range(light_flickers_[index], from.time_s, to.time_s)));
   }
   return sum;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,7 +9,8 @@
 
 #include "simulator/scene/intersection/visibility.h"
 #include "simulator/scene/light/flicker.h"
-#include "simulator/scene/scene_options.h"
+#include "simulator/scene/light/light_options.h"
+#include "simulator/scene/light/spot_cone.h"
 
 namespace saccade {
 
@@ -28,22 +30,33 @@ class Illumination {
   Illumination(double ambient, const std::optional<FlickerOptions>& ambient_flicker,
                const std::vector<LightOptions>& lights, double shadow_offset);
 
-  /// The lights that each of at most 16 points faces and that nothing hides from it.
+  /// The lights that each of at most 16 points faces and that nothing hides from it. Of spots also
+  /// those whose cone a point is outside of, so that a cone's edge is no edge of a shadow: with
+  /// `within_cones` without them, which takes no ray.
   void find_unoccluded_lights(std::span<const LitPoint> points, const Visibility& blockers,
-                              std::span<LightSet> lights) const;
+                              std::span<LightSet> lights, bool within_cones = false) const;
 
   /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
-  /// without the distance) over `lights`, each times its flicker.
+  /// without the distance, of spots times the falloff of their cone) over `lights`, each times its
+  /// flicker.
   [[nodiscard]] double irradiance(const LitPoint& point, LightSet lights) const;
 
   /// The bounds of irradiance() from `from` to `to`, two points of a surface at the ends of an
-  /// interval that `lights` light throughout. The cosine over the distance squared is taken to stay
-  /// near the line between both ends; the flicker is bounded in closed form.
-  [[nodiscard]] LightRange irradiance_range(const LitPoint& from, const LitPoint& to,
-                                            LightSet lights) const;
+  /// interval that `lights` light throughout, and at `middle` halfway in time, of which only spots
+  /// ask. The cosine over the distance squared is taken to stay near the line between both ends; the
+  /// falloff of cones and the flicker are bounded in closed form.
+  [[nodiscard]] LightRange irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
+                                            const LitPoint& to, LightSet lights) const;
 
   /// All that there are, each once.
   [[nodiscard]] std::span<const Flicker> flickers() const { return flickers_; }
+
+  /// Whether there are spots.
+  [[nodiscard]] bool has_cones() const { return has_cones_; }
+  /// Whether the cone of a light, if it has one, meets no point of a sphere.
+  [[nodiscard]] bool misses(std::size_t light, const Eigen::Vector3d& centre, double radius) const {
+    return cones_[light] && cones_[light]->misses(centre, radius);
+  }
 
   /// With unit directions.
   [[nodiscard]] std::span<const LightOptions> lights() const { return lights_; }
@@ -57,12 +70,18 @@ class Illumination {
   /// Of a flicker by its index, or 1.
   [[nodiscard]] double factor(std::size_t flicker, const LitPoint& point) const;
   [[nodiscard]] LightRange factor_range(std::size_t flicker, double from_s, double to_s) const;
+  /// Of a light's intensity at a point what its cone leaves.
+  [[nodiscard]] double falloff(std::size_t light, const LitPoint& point) const {
+    return cones_[light] ? cones_[light]->falloff(point.position) : 1;
+  }
 
   double ambient_;
   std::vector<LightOptions> lights_;
   std::vector<Flicker> flickers_;
   std::size_t ambient_flicker_;
   std::vector<std::size_t> light_flickers_;
+  std::vector<std::optional<SpotCone>> cones_;  ///< of lights that are spots
+  bool has_cones_ = false;
   double shadow_offset_;
 };
 

@@ -112,6 +112,9 @@ std::pair<Eigen::Vector3d, double> sphere_around(std::span<const Eigen::Vector3d
   return {centre, radius};
 }
 
+/// Of the light with this bit.
+std::size_t index_of(LightSet bit) { return static_cast<std::size_t>(std::countr_zero(bit)); }
+
 /// Adds margin for the rounding between neighbours to the edges.
 Occluder with_tolerance(Occluder occluder, double scale) {
   for (std::size_t k = 0; k < 3; ++k) occluder.forms[k].offset += kLightTolerance * scale;
@@ -166,7 +169,7 @@ LightSet PatchLighting::lights_at(const Eigen::Vector3d& point) const {
 
 std::optional<Occluder> Scene::State::make_occluder(TriangleId triangle, const LightOptions& light,
                                                     const Eigen::Vector3d& patch) const {
-  if (light.type == LightType::kPoint) {
+  if (light.has_position()) {
     const EdgeFunctions pass =
         edge_functions(triangle, light.position, Eigen::Matrix3d::Identity());
     if (pass.depth == 0) return std::nullopt;
@@ -181,7 +184,7 @@ bool Scene::State::collect_occluders(const LightOptions& light,
                                      std::span<const Eigen::Vector3d> patch,
                                      const AffineForm& front, std::size_t most,
                                      std::vector<TriangleId>& found) {
-  const Eigen::Vector3d eye = light.type == LightType::kPoint
+  const Eigen::Vector3d eye = light.has_position()
                                   ? light.position
                                   : Eigen::Vector3d(patch[0] - kFar * size_m * light.direction);
   const auto frustum = frustum_around(eye, patch);
@@ -201,12 +204,12 @@ bool Scene::State::find_lighting(const Patch& patch, std::size_t most, PatchLigh
   // Paths to lights begin above the surface: what reaches less high cannot be in them.
   const AffineForm front{patch.side * plane.gradient, patch.side * plane.offset - 0.5 * offset};
   const std::span<const LightOptions> lights = illumination->lights();
+  const auto [centre, radius] = sphere_around(patch.corners, lighting.shadow_offset);
   std::vector<TriangleId> found;
   for (std::size_t k = 0; k < lights.size(); ++k) {
-    const double height = lights[k].type == LightType::kPoint
-                              ? plane.at(lights[k].position)
-                              : -plane.gradient.dot(lights[k].direction);
-    if (!(patch.side * height > 0)) continue;
+    const double height = lights[k].has_position() ? plane.at(lights[k].position)
+                                                   : -plane.gradient.dot(lights[k].direction);
+    if (!(patch.side * height > 0) || illumination->misses(k, centre, radius)) continue;
     found.clear();
     if (lights[k].shadows && !collect_occluders(lights[k], patch.corners, front, most, found))
       return false;
@@ -221,15 +224,16 @@ void Scene::State::find_lighting(const Patch& patch, const TriangleLighting& who
       illumination->shadow_offset() * patch.side * surfaces[patch.triangle].plane.gradient;
   lighting.unoccluded = whole.unoccluded;
   lighting.partly_occluded.clear();
+  const auto [centre, radius] = sphere_around(patch.corners, lighting.shadow_offset);
   for (const OccluderCandidates& light : *whole.candidates)
-    add_light(light.bit, patch, light.triangles, lighting);
+    if (!illumination->misses(index_of(light.bit), centre, radius))
+      add_light(light.bit, patch, light.triangles, lighting);
 }
 
 void Scene::State::add_light(LightSet bit, const Patch& patch, std::span<const TriangleId> found,
                              PatchLighting& lighting) const {
   PartlyOccludedLight light{bit, {}, {}};
-  const LightOptions& options =
-      illumination->lights()[static_cast<std::size_t>(std::countr_zero(bit))];
+  const LightOptions& options = illumination->lights()[index_of(bit)];
   if (!select_occluders(options, patch, lighting.shadow_offset, found, light.occluders)) return;
   if (light.occluders.empty()) {
     lighting.unoccluded |= bit;

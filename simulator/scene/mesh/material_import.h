@@ -19,6 +19,7 @@ struct MeshImportOptions {
   MissingTexture missing_texture = MissingTexture::kError;
   bool is_lit = false;  ///< by lights; otherwise the albedo is the radiance
   ColourChannel channel = ColourChannel::kLuminance;  ///< what becomes of colours
+  bool takes_lights = false;                          ///< of glTF files
 };
 
 /// Where a file's materials and textures come from.

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
@@ -53,6 +54,9 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<std::string> nodes{};  ///< names of the file's nodes that have triangles
+  /// In the file's coordinates, with intensities in candela and, of directional ones, in lux; only
+  /// where they were asked for.
+  std::vector<LightOptions> lights{};
   MeshExtras extras{};
 };
 

@@ -14,6 +14,7 @@
 #include "core/srgb.h"
 #include "simulator/scene/mesh/ac3d_file.h"
 #include "simulator/scene/mesh/gltf_file.h"
+#include "simulator/scene/mesh/gltf_lights.h"
 #include "simulator/scene/mesh/gltf_material.h"
 #include "simulator/scene/mesh/model_import.h"
 #include "simulator/scene/mesh/relief.h"
@@ -302,6 +303,7 @@ Mesh MeshImporter::read(const fs::path& file) {
   for (const ModelInstance& instance : model.instances) flattener.add(instance);
   Mesh mesh = flattener.take();
   mesh.nodes = model.nodes;
+  if (gltf && options_.takes_lights) mesh.lights = read_gltf_lights(*gltf, options_.channel);
   mesh.extras = extras_of(model, gltf);
   return mesh;
 }

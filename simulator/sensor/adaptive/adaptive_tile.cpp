@@ -75,7 +75,7 @@ AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const Even
       is_filtered_(noise.filter.on()),
       refractory_s_(noise.refractory_s),
       longest_line_s_(longest_line_s(scene.flickers())),
-      has_arcs_(rays.rays_per_pixel() == 1 && scene.flickers().empty()),
+      has_arcs_(rays.rays_per_pixel() == 1 && scene.flickers().empty() && !scene.has_spots()),
       pixels_(options, noise, seed, rays.tile(index)),
       sampler_(scene, rays, options, index, statistics_) {}
 

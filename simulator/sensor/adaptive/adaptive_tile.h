@@ -104,7 +104,7 @@ class AdaptiveTile {
   bool is_filtered_;
   double refractory_s_;
   double longest_line_s_;  ///< under flickering lights
-  bool has_arcs_;          ///< one ray per pixel and steady light
+  bool has_arcs_;          ///< one ray per pixel, and light without flicker and cones
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;

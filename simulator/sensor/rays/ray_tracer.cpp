@@ -85,13 +85,15 @@ RaySample RayTracer::sample_unlit(const Eigen::Vector3d& direction, TriangleId t
                     soon_s, triangle);
 }
 
-RadianceRange RayTracer::flickering_range(const Eigen::Vector3d& direction, const RaySample& from,
-                                          double from_s, const RaySample& to, double to_s) const {
+RadianceRange RayTracer::varying_light_range(const Eigen::Vector3d& direction,
+                                             const RaySample& from, double from_s,
+                                             const RaySample& to, double to_s) const {
   const Ray from_ray = ray_at(direction, from_s);
+  const Ray middle_ray = ray_at(direction, 0.5 * (from_s + to_s));
   const Ray to_ray = ray_at(direction, to_s);
   const auto light_of = [&](LightSet lights) {
-    return scene_.irradiance_range(from_ray, from.surface, to_ray, to.surface, from.triangle,
-                                   lights);
+    return scene_.irradiance_range(from_ray, from.surface, middle_ray, to_ray, to.surface,
+                                   from.triangle, lights);
   };
   std::optional<LightRange> light = light_of(from.surface.lights);
   if (!light) return {};

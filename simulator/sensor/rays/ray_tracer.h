@@ -47,7 +47,7 @@ class RayTracer {
       : scene_(scene),
         statistics_(statistics),
         footprints_(footprints),
-        flickers_(!scene.flickers().empty()) {}
+        has_varying_light_(!scene.flickers().empty() || scene.has_spots()) {}
 
   /// The motion during what follows; outlives it.
   void set_poses(const SplineTable& poses) { poses_ = &poses; }
@@ -125,12 +125,12 @@ class RayTracer {
                                        double t_s);
 
   /// radiance_range() of a ray that sees one triangle from `from_s` to `to_s`, in light that may
-  /// flicker.
+  /// flicker or come from spots.
   [[nodiscard]] RadianceRange radiance_range(const Eigen::Vector3d& direction,
                                              const RaySample& from, double from_s,
                                              const RaySample& to, double to_s) const {
-    return flickers_ ? flickering_range(direction, from, from_s, to, to_s)
-                     : saccade::radiance_range(from, to, to_s - from_s);
+    return has_varying_light_ ? varying_light_range(direction, from, from_s, to, to_s)
+                              : saccade::radiance_range(from, to, to_s - from_s);
   }
 
   /// When a ray's visible triangle changes from `from` to `to`, within `tolerance_s`: where the ray
@@ -160,9 +160,10 @@ class RayTracer {
     }
   };
 
-  [[nodiscard]] RadianceRange flickering_range(const Eigen::Vector3d& direction,
-                                               const RaySample& from, double from_s,
-                                               const RaySample& to, double to_s) const;
+  /// With bounds of the irradiance, which need not stay near a line.
+  [[nodiscard]] RadianceRange varying_light_range(const Eigen::Vector3d& direction,
+                                                  const RaySample& from, double from_s,
+                                                  const RaySample& to, double to_s) const;
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double min_barycentric(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s) const;
@@ -184,7 +185,7 @@ class RayTracer {
   const Scene& scene_;
   EventStatistics& statistics_;
   const PixelRays* footprints_;
-  bool flickers_;
+  bool has_varying_light_;
   const SplineTable* poses_ = nullptr;
   std::span<const TriangleId> candidates_;
   Frusta frusta_;  ///< of what follows

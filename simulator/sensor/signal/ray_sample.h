@@ -58,8 +58,8 @@ struct RadianceRange {
 /// chord by at most 4/27 of the sum of both ends' differences from the chord's rate, times the
 /// length. A box within one cell of the texture is bounded by the bilinear function there, which
 /// also bounds the rate; a larger one by its texels. Filtered textures likewise, on both levels
-/// around the path's. `light`: bounds of the irradiance where it flickers; else it is taken to stay
-/// near the line between both ends'.
+/// around the path's. `light`: bounds of the irradiance where it may leave the line between both
+/// ends'; else it is taken to stay near that.
 [[nodiscard]] RadianceRange radiance_range(const RaySample& from, const RaySample& to,
                                            double length_s, const LightRange* light = nullptr);
 

@@ -136,7 +136,9 @@ TEST_F(SceneFile, PrintsWhatItReads) {
   const std::string yaml =
       "meshes: [{file: square.obj, size_m: [1, 2, 3], anchor: bottom, transform: {rotation_deg: "
       "[90, 0, 0]}}, {file: square.obj, transform: {scale: [1, 2, 3]}}]\nbackground: 0.25\n"
-      "lighting: lambertian\nlights: [{type: directional, direction: [1, 0, 0]}]\n";
+      "lighting: lambertian\nlights_from_meshes: true\nlight_scale: 2\n"
+      "lights: [{type: directional, direction: [1, 0, 0]}, {type: spot, position: [1, 2, 3], "
+      "direction: [1, 0, 0], inner_angle_deg: 10, outer_angle_deg: 20}]\n";
   const std::string printed = config::print(options(yaml));
   EXPECT_EQ(config::print(options(printed)), printed);
 }
@@ -249,6 +251,22 @@ TEST_F(SceneFile, MalformedScenesAreErrorsWithTheirPlace) {
   EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nlighting: lambertian\nlights: [{type: "
                        "directional, direction: [0, 0, 0]}]"),
               HasSubstr("direction"));
+  const std::string lit = "meshes: [{file: square.obj}]\nlighting: lambertian\nlights: [{";
+  const std::string spot = lit + "type: spot, position: [0, 0, 1], ";
+  EXPECT_THAT(error_of(lit + "type: spto, position: [0, 0, 1]}]"), HasSubstr("spot"));
+  EXPECT_THAT(error_of(lit + "type: spot, direction: [0, 0, -1]}]"), HasSubstr("position"));
+  EXPECT_THAT(error_of(spot + "intensity: 1}]"), HasSubstr("direction"));
+  EXPECT_THAT(error_of(spot + "direction: [0, 0, 0]}]"), HasSubstr("direction"));
+  EXPECT_THAT(error_of(spot + "direction: [0, 0, -1], intensity: -1}]"), HasSubstr("intensity"));
+  EXPECT_THAT(error_of(spot + "direction: [0, 0, -1], inner_angle_deg: 30, outer_angle_deg: 20}]"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("outer_angle_deg")));
+  EXPECT_THAT(error_of(spot + "direction: [0, 0, -1], outer_angle_deg: 91}]"),
+              HasSubstr("outer_angle_deg"));
+  EXPECT_THAT(error_of(lit + "position: [0, 0, 1], outer_angle_deg: 20}]"), HasSubstr("spot"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nlights_from_meshes: true"),
+              HasSubstr("lambertian"));
+  EXPECT_THAT(error_of("meshes: [{file: square.obj}]\nlighting: lambertian\nlight_scale: 2"),
+              HasSubstr("lights_from_meshes"));
 }
 
 TEST_F(SceneFile, MissingFurnitureSaysHowToGetIt) {
