@@ -58,8 +58,8 @@ std::string in_quotes(std::string_view text) {
 
 std::string scalar_text(const Node& node) {
   if (node.kind == Node::Kind::kNull) return "~";
-  const bool plain = node.quoted ? is_safe_plain(node.text) : is_one_word(node.text);
-  if (plain) return node.text;
+  // What is printed plain is read again as unquoted, and has to be printed the same then.
+  if (is_safe_plain(node.text) || (!node.quoted && is_one_word(node.text))) return node.text;
   return in_quotes(node.text);
 }
 

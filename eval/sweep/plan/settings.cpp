@@ -34,10 +34,8 @@ Node value_node(const std::string& yaml) {
 void make_paths_absolute(Node& node) {
   const bool is_path = node.kind == Node::Kind::kScalar &&
                        (node.text.starts_with("./") || node.text.starts_with("../"));
-  if (is_path && node.location.source) {
+  if (is_path && node.location.source)
     node.text = fs::absolute(node.location.source->folder / node.text).lexically_normal().string();
-    node.quoted = true;  // as any other path is printed
-  }
   for (Node& item : node.items) make_paths_absolute(item);
   for (config::Entry& entry : node.entries) make_paths_absolute(entry.value);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/config/config.h"
+#include "core/config/yaml_emit.h"
 #include "tests/unit/core/config/example_options.h"
 
 namespace saccade::config {
@@ -72,6 +73,14 @@ TEST(Print, WhatIsAbsentStaysAbsent) {
   EXPECT_FALSE(again.extra_blur);
   EXPECT_TRUE(again.meshes.empty());
   EXPECT_EQ(print(again), text);
+}
+
+TEST(Print, TextsOfTreesStayTheSameHoweverTheyWereWritten) {
+  for (const char* text : {"/a/b.yaml", "'/a/b.yaml'", "./a.yaml", "word", "'a b'", "1", "'1'",
+                           "-.5", "true", "'true'", "~", "a/b-c_d.e"}) {
+    const std::string once = to_yaml(parse("k: [" + std::string(text) + "]\n", "a.yaml").root());
+    EXPECT_EQ(to_yaml(parse(once, "b.yaml").root()), once) << text;
+  }
 }
 
 TEST(Print, IsPlainYaml) {
