@@ -181,9 +181,10 @@ bool answer(const ForkedWorker::Work& work, const std::string& request, const Fo
   }
 }
 
-/// All that the copy of this process does.
+/// All that the copy of this process does. No exception may lead it into what the process itself
+/// would do next: it ends by a signal, of which the process is told.
 [[noreturn]] void run_as_child(const ForkedWorker::Work& work, const ForkLimits& limits,
-                               pid_t parent, int socket) {
+                               pid_t parent, int socket) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU})

@@ -143,13 +143,14 @@ ImageRgba8 read_bmp_runs(const PictureBytes& bytes, const BmpLayout& layout) {
         put(is_half ? (i % 2 == 0 ? value >> 4U : value & 15U) : value);
     } else if (value == 0) {
       x = 0;
-      ++y;
+      if (++y > layout.height) bytes.fail("has a row beyond its border");
     } else if (value == 1) {
       return image;
     } else if (value == 2) {
       x += static_cast<int>(bytes.u8(at));
       y += static_cast<int>(bytes.u8(at + 1));
       at += 2;
+      if (x > layout.width || y > layout.height) bytes.fail("has a jump beyond its border");
     } else {
       for (unsigned i = 0; i < value; ++i) {
         const unsigned byte = bytes.u8(at + (is_half ? i / 2 : i));

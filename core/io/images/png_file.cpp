@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/io/images/picture_bytes.h"
+#include "core/io/images/rgb_grey.h"
 
 namespace saccade {
 namespace {
@@ -127,13 +128,11 @@ void set_bytes_of_machine(png_structp png) {
   if constexpr (std::endian::native == std::endian::little) png_set_swap(png);
 }
 
+/// Of a grey picture.
 void to_grey8(png_structp png, png_infop info) {
   png_set_strip_16(png);
   png_set_strip_alpha(png);
-  png_set_palette_to_rgb(png);
   if (png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY) png_set_expand_gray_1_2_4_to_8(png);
-  constexpr int kSilently = 1;
-  png_set_rgb_to_gray(png, kSilently, 0.299, 0.587);
 }
 
 void to_rgb8(png_structp png, png_infop info) {
@@ -158,7 +157,11 @@ void to_all_bits(png_structp png, png_infop /*info*/) { set_bytes_of_machine(png
 bool is_png(std::span<const std::byte> bytes) { return begins_with(bytes, "\x89PNG\r\n\x1A\n"); }
 
 ImageU8 decode_png_grey(std::span<const std::byte> bytes, const std::string& location) {
-  return PngReader(bytes, location).pixels<std::uint8_t>(to_grey8);
+  PngReader reader(bytes, location);
+  // libpng would mix the colours of a file that states its gamma in linear light.
+  if ((reader.color_type() & PNG_COLOR_MASK_COLOR) != 0)
+    return grey_from(reader.pixels<Rgb8>(to_rgb8));
+  return reader.pixels<std::uint8_t>(to_grey8);
 }
 
 ImageRgb8 decode_png_rgb(std::span<const std::byte> bytes, const std::string& location) {

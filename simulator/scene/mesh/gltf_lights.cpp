@@ -38,7 +38,7 @@ Eigen::Matrix<double, n, 1> vector_in(const json& object, const char* key,
 
 Eigen::Affine3d parent_from_node(const json& node) {
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  if (node.contains("matrix")) {
+  if (!part_of(node, "matrix").is_null()) {
     const auto numbers = vector_in<16>(node, "matrix", {});
     transform.matrix() = Eigen::Map<const Eigen::Matrix4d>(numbers.data());  // both by columns
     return transform;

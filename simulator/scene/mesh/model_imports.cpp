@@ -32,6 +32,15 @@ std::string import_from(OpenSources& sources, const std::string& path) {
                          gltf ? gltf->for_assimp() : ac3d_for_assimp(source, location.file));
 }
 
+/// Whatever happens is a result: an exception would end the program, in a thread of its own.
+ForkedResult result_of(ForkedWorker& worker, const std::string& file) {
+  try {
+    return worker.call(file);
+  } catch (const std::exception& error) {
+    return {{}, error.what(), true};
+  }
+}
+
 }  // namespace
 
 ModelImports::ModelImports(std::vector<fs::path> files) : files_(std::move(files)) {
@@ -65,7 +74,7 @@ void ModelImports::work(ForkedWorker& worker) {
     if (is_stopped_) return;
     const std::size_t index = next_++;
     lock.unlock();
-    ForkedResult result = worker.call(files_[index].string());
+    ForkedResult result = result_of(worker, files_[index].string());
     lock.lock();
     results_.emplace(index, std::move(result));
     changed_.notify_all();

@@ -264,7 +264,11 @@ bool AdaptiveTile::sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next
     pixel.before_s = (next.log_intensity - pixel.now.log_intensity) / length_s;
   } else {
     const SurfaceArc arc = sampler_.arc(i, pixel.now, next);
-    if (!arc.is_smooth() && length_s > bracket_s_) return false;
+    if (!arc.is_smooth()) {
+      if (length_s > bracket_s_) return false;
+      sense_line(i, pixel, next);
+      return true;
+    }
     const ArcSignal signal(arc, options_.log_eps, 1e-6 * options_.time_tolerance_us);
     pixels_.sense(i, signal, {pixel.now.t_s, pixel.now.radiance, pixel.now.log_intensity},
                   {next.t_s, next.radiance, next.log_intensity});

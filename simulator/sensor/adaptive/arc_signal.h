@@ -36,10 +36,14 @@ class ArcSignal {
   [[nodiscard]] Sample at(double t_s, const Sample& /*lo*/, const Sample& /*hi*/) const {
     return at(t_s);
   }
-  /// At the border of a texel, else in the middle.
+  /// At a border of texels near the middle, else in the middle: so that the parts of the finest
+  /// texture are as short as the tolerance after few divisions.
   [[nodiscard]] Sample divide(const Sample& lo, const Sample& hi, int /*depth*/) const {
-    const double border_s = arc_.next_border_s(lo.t_s, hi.t_s);
-    return at(border_s < hi.t_s ? border_s : 0.5 * (lo.t_s + hi.t_s));
+    const double middle_s = 0.5 * (lo.t_s + hi.t_s);
+    const double first_s = arc_.next_border_s(lo.t_s, hi.t_s);
+    if (first_s < middle_s && arc_.next_border_s(first_s, hi.t_s) == hi.t_s) return at(first_s);
+    const double border_s = arc_.next_border_s(middle_s, hi.t_s);
+    return at(border_s < hi.t_s ? border_s : middle_s);
   }
 
   /// Of the parabola through both ends and the middle; unknown across the border of a texel.

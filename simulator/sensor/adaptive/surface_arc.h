@@ -49,7 +49,13 @@ class SurfaceArc {
     if (texture_ == nullptr) return end_s;
     const double u = (t_s - from_s_) * per_s_;
     double next = (end_s - from_s_) * per_s_;
-    const double level = level_.at(u);
+    const double level = level_.at(u + kOnBorder);
+    if (level_.a > 0 || level_.a + level_.b + level_.c > 0) {
+      // Where other pictures of the pyramid come in.
+      const double from = u + kOnBorder;
+      next = level_.first_at(std::floor(level), from, next);
+      next = level_.first_at(std::floor(level) + 1, from, next);
+    }
     if (level > 0) {
       // Between two pictures of the pyramid, whose borders are those of neither.
       const auto finer = std::min(static_cast<std::size_t>(level), texture_->level_count() - 1);

@@ -122,6 +122,9 @@ TEST(BmpFile, DamageIsAnError) {
   Bmp plain{3, 2, 24};
   plain.pixels = std::string(24, '\x7F');
   testing::expect_damage_is_reported(plain.file(), plain.file().size(), bmp_rgba);
+  runs.pixels = std::string("\0\2\5\0\0\1", 6);
+  EXPECT_THAT(error_of([&] { return bmp_rgba(runs.file()); }),
+              HasSubstr("has a jump beyond its border"));
   runs.pixels = std::string("\5\1\0\1", 4);
   EXPECT_THAT(error_of([&] { return bmp_rgba(runs.file()); }),
               HasSubstr("a.bmp: is no BMP picture that can be decoded: it has a run beyond"));

@@ -143,5 +143,31 @@ TEST(ArcSignal, TheFinestTextureEndsAsWell) {
   EXPECT_FALSE(first_exit(even_arc(texture, 0, 1e9), 0.2));
 }
 
+TEST(ArcSignal, DividingTheFinestTextureComesToTheToleranceSoon) {
+  const Texture texture = columns({0.79F, 0.81F, 0.79F, 0.81F, 0.79F, 0.81F, 0.79F, 0.81F});
+  const SurfaceArc arc = even_arc(texture, 0, 1e6);
+  const ArcSignal signal(arc, kEps, kTolerance_s);
+  const ArcSample from = signal.at(kFrom_s);
+  ArcSample first = signal.at(kFrom_s + kLength_s);
+  ArcSample last = from;
+  const ArcSample to = first;
+  for (int depth = 0; depth < 20; ++depth) {
+    first = signal.divide(from, first, depth);
+    last = signal.divide(last, to, depth);
+  }
+  EXPECT_LT(first.t_s - from.t_s, kTolerance_s);
+  EXPECT_LT(to.t_s - last.t_s, kTolerance_s);
+}
+
+TEST(SurfaceArc, WholeLevelsOfFilteredTexturesAreBorders) {
+  const Texture texture = columns({0.F, 1.F, 0.F, 1.F, 0.F, 1.F, 0.F, 1.F});
+  const SurfaceArc arc(kFrom_s, kFrom_s + kLength_s, seen_at(&texture, 3, 3, 1, 0.8),
+                       seen_at(&texture, 3, 3, 1, 1.3), seen_at(&texture, 3, 3, 1, 1.8));
+  const double end_s = kFrom_s + kLength_s;
+  const double one_s = kFrom_s + 0.2 * kLength_s;
+  EXPECT_NEAR(arc.next_border_s(kFrom_s, end_s), one_s, 1e-12);
+  EXPECT_EQ(arc.next_border_s(one_s, end_s), end_s);
+}
+
 }  // namespace
 }  // namespace saccade
