@@ -15,6 +15,7 @@
 namespace saccade {
 namespace {
 
+using ::testing::AnyOf;
 using testing::error_of;
 using ::testing::HasSubstr;
 
@@ -78,8 +79,10 @@ TEST_F(TiffFiles, AHeaderAloneTakesNoMemory) {
   const std::string height("\1\1\3\0\1\0\0\0\5\0\0\0", 12);  // tag 257, one short number: 5
   ASSERT_NE(file.find(height), std::string::npos);
   file.replace(file.find(height), height.size(), std::string("\1\1\4\0\1\0\0\0\0\0\0\x70", 12));
+  // libtiff sees by itself that its strips are too few, as far as it is told how many rows they have.
   EXPECT_THAT(error_of([&] { return tiff_rgba(file); }),
-              HasSubstr("is a picture of 9 x 1879048192"));
+              AnyOf(HasSubstr("a.tiff: is a picture of 9 x 1879048192"),
+                    HasSubstr("a.tiff: is no TIFF picture that can be decoded, or is damaged")));
 }
 
 }  // namespace
