@@ -28,8 +28,9 @@ struct AdaptiveSlice {
   const RelativeTwists& last;   ///< and at its end
 };
 
-/// 4 x 4 event pixels that are sampled with rays: all of them after every `max_step_px` of image
-/// motion, and each in between wherever its line between two samples may be wrong about a crossing.
+/// 4 x 4 event pixels that are sampled with rays: all of them after every half
+/// `max_step_px` of image motion, and each in between where it comes to see another surface or
+/// another light. While it sees one triangle, its signal is an arc, else lines.
 class AdaptiveTile {
  public:
   /// All outlive the tile.

@@ -8,9 +8,10 @@
 namespace saccade {
 
 /// What a ray sees of one triangle, under the same lights, from one instant to a later one: the
-/// parabolas in time through three samples. Over the motion of a pixel or less they are off by far
-/// less than a hundredth of a microsecond's motion, and are many times cheaper than the triangle,
-/// the pose and the lights.
+/// parabolas in time through three samples, with u = 0..1 from the first to the last
+///   v(u) = v0 + u (4 vm - 3 v0 - v1) + 2 u^2 (v0 - 2 vm + v1)
+/// of the texel, the pyramid's level and the irradiance. They are many times cheaper than the
+/// triangle, the pose and the lights.
 class SurfaceArc {
  public:
   SurfaceArc() = default;
