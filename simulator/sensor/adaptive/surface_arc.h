@@ -14,7 +14,6 @@ namespace saccade {
 /// triangle, the pose and the lights.
 class SurfaceArc {
  public:
-  SurfaceArc() = default;
   /// `middle` is seen halfway from `from_s` to `to_s` > from_s. All are of one triangle.
   SurfaceArc(double from_s, double to_s, const SurfaceSample& from, const SurfaceSample& middle,
              const SurfaceSample& to)

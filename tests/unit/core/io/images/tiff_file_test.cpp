@@ -74,7 +74,7 @@ TEST_F(TiffFiles, DamageIsAnError) {
   }
 }
 
-TEST_F(TiffFiles, AHeaderAloneTakesNoMemory) {
+TEST_F(TiffFiles, AHeaderThatStatesTooManyRowsIsAnError) {
   std::string file = file_of(1, 8, COMPRESSION_NONE);
   const std::string height("\1\1\3\0\1\0\0\0\5\0\0\0", 12);  // tag 257, one short number: 5
   ASSERT_NE(file.find(height), std::string::npos);
