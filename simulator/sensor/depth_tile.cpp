@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "simulator/sensor/event_tile.h"
@@ -42,11 +43,14 @@ class DepthTile final : public EventTile {
  private:
   /// One ray of each pixel: what lies between two of them is seen by neither camera.
   void trace(double t_s) {
-    std::array<Eigen::Vector3d, kTilePixels> rays;
-    std::array<TriangleId, kTilePixels> triangles;
+    std::array<Eigen::Vector3d, kMaxTilePixels> rays;
+    std::array<TriangleId, kMaxTilePixels> triangles;
     const std::size_t n = directions_.size() / per_pixel_;
     for (std::size_t i = 0; i < n; ++i) rays[i] = directions_[i * per_pixel_];
-    tracer_.find_triangles({rays.data(), n}, t_s, {triangles.data(), n});
+    for (std::size_t first = 0; first < n; first += kRayPacket) {
+      const std::size_t count = std::min(kRayPacket, n - first);
+      tracer_.find_triangles({&rays[first], count}, t_s, {&triangles[first], count});
+    }
     inverse_depths_ = tracer_.inverse_depths({rays.data(), n}, {triangles.data(), n}, t_s);
   }
 

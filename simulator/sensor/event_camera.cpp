@@ -17,17 +17,20 @@ namespace {
 
 constexpr double kLongestSlice_s = 0.030;
 constexpr double kShortestSlice_s = 1e-4;
-/// Of tiles around one: from there things come into its view within a slice.
-constexpr int kRings = 2;
-constexpr double kSliceMotion_px = kRings * kTileSize;
+/// From so far around a tile things come into its view within a slice [px]; whole tiles.
+constexpr int kReach_px = 8;
 /// Where surfaces slide over one another, at more than this fraction of their motion, one can show
 /// for less than a step behind another's edge; the steps there are shorter.
 constexpr double kOccluding = 0.15;
 constexpr double kOccludedStepDivisor = 2;
-/// From the tile's centre to the centres of its corner pixels, and half a pixel more [px].
-constexpr double kTileRadius_px = 2.83;
-/// To the corners of the tiles around.
-constexpr double kNeighbourhood_px = 1.4143 * (0.5 + kRings) * kTileSize;
+/// Half the diagonal of a square.
+constexpr double kHalfDiagonal = 0.70711;
+
+/// Large tiles share more of what is found out about them; where only some sense, or pixels have
+/// many rays, small ones are enough.
+int tile_size(const EventOptions& options, std::span<const std::size_t> only) {
+  return only.empty() && options.samples_per_pixel == 1 ? kLargeTileSize : kTileSize;
+}
 
 }  // namespace
 
@@ -35,7 +38,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
                          const PinholeCamera& camera, const EventOptions& options,
                          std::uint64_t seed, std::span<const std::size_t> only)
     : motion_(world_from_camera),
-      rays_(camera, options.samples_per_pixel, options.pixel_side),
+      rays_(camera, options.samples_per_pixel, options.pixel_side, tile_size(options, only)),
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       motions_(rays_.tile_count()),
       delivery_(options, camera, seed) {
@@ -84,7 +87,7 @@ void EventCamera::sense_slice(double duration_s) {
     started_ = true;
   }
   const double fastest = bound_speeds(t_s_);
-  const double slice_s = std::clamp(kSliceMotion_px / fastest, kShortestSlice_s, kLongestSlice_s);
+  const double slice_s = std::clamp(kReach_px / fastest, kShortestSlice_s, kLongestSlice_s);
   const double until_s = next_motion_change_s(duration_s);
   // No sliver at the end: the rest is split evenly.
   const double slices_left = std::ceil((until_s - t_s_) / slice_s);
@@ -141,17 +144,18 @@ double EventCamera::bound_speeds(double t_s) {
   for (std::size_t k = 0; k < twists.size(); ++k)
     twists[k] = camera_twist(motion_.state(t_s + static_cast<double>(k) * kLongestSlice_s / 6));
   const PinholeCamera& camera = rays_.camera();
+  const double side = rays_.tile_size();
   const ObjectMotion objects(world_.scene, motion_, t_s, t_s + kLongestSlice_s);
   for_each_tile([&](EventTile&, std::size_t i) {
     if (!senses_[i]) return;
     const Tile tile = rays_.tile(i);
-    const Eigen::Vector3d centre = camera.ray(
-        Eigen::Vector2d(tile.x0 + 0.5 * (kTileSize - 1), tile.y0 + 0.5 * (kTileSize - 1)));
+    const Eigen::Vector3d centre =
+        camera.ray(Eigen::Vector2d(tile.x0 + 0.5 * (side - 1), tile.y0 + 0.5 * (side - 1)));
     const InverseDepthRange range = neighbourhood(i);
-    ImageSpeed speed = objects.bound(camera, centre, kNeighbourhood_px, range);
+    ImageSpeed speed = objects.bound(camera, centre, kHalfDiagonal * (side + 2 * kReach_px), range);
     motions_[i].has_objects = speed.fastest > 0;
     for (const Twist& twist : twists) {
-      const ImageSpeed now = image_speed_bound(camera, centre, kTileRadius_px, twist, range);
+      const ImageSpeed now = image_speed_bound(camera, centre, kHalfDiagonal * side, twist, range);
       speed.fastest = std::max(speed.fastest, now.fastest);
       speed.parallax = std::max(speed.parallax, now.parallax);
     }
@@ -169,8 +173,9 @@ template <class Use>
 void EventCamera::for_each_around(std::size_t tile, const Use& use) const {
   const int tx = static_cast<int>(tile) % rays_.tiles_x();
   const int ty = static_cast<int>(tile) / rays_.tiles_x();
-  for (int y = std::max(0, ty - kRings); y <= std::min(ty + kRings, rays_.tiles_y() - 1); ++y)
-    for (int x = std::max(0, tx - kRings); x <= std::min(tx + kRings, rays_.tiles_x() - 1); ++x)
+  const int rings = kReach_px / rays_.tile_size();
+  for (int y = std::max(0, ty - rings); y <= std::min(ty + rings, rays_.tiles_y() - 1); ++y)
+    for (int x = std::max(0, tx - rings); x <= std::min(tx + rings, rays_.tiles_x() - 1); ++x)
       use(static_cast<std::size_t>(y * rays_.tiles_x() + x));
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "simulator/sensor/rays/tile_samples.h"
+#include "simulator/sensor/signal/linear_signal.h"
 #include "simulator/sensor/signal/pixel_signal.h"
 #include "simulator/sensor/signal/texture_signal.h"
 #include "simulator/sensor/signal/tile_trajectories.h"
@@ -137,7 +138,7 @@ class LockstepTile final : public EventTile {
     store_state(next);
   }
 
-  [[nodiscard]] PixelSet all_pixels() const { return (1ULL << pixels_.size()) - 1; }
+  [[nodiscard]] PixelSet all_pixels() const { return ~0ULL >> (64 - pixels_.size()); }
 
   /// With rays, if it takes any.
   void sample_at(double t_s, TileSamples& now, const PixelSet& pixels) {
@@ -189,8 +190,8 @@ class LockstepTile final : public EventTile {
     return true;
   }
 
-  /// The same for the planes of two, one after the other: around the change on the pixel's general
-  /// signal.
+  /// The same for the planes of two, one after the other; from right before the change to right
+  /// after it along a line.
   bool sense_change(std::size_t i, TriangleId from, TriangleId to, TileTrajectories& paths) {
     if (sees_one_triangle_) return false;
     const double change_s =
@@ -204,14 +205,18 @@ class LockstepTile final : public EventTile {
     const PlaneTrajectories& second = paths.over(to);
     const TexelTrajectory next_path = second.of_pixel(i);
     if (!is_usable(second, next_path)) return false;
-    const Signal pixel_signal = signal(i);
-    const Sample before = pixel_signal.trace(before_s);
-    const Sample after = pixel_signal.trace(after_s);
-    if (before.rays[0].triangle != from || after.rays[0].triangle != to) return false;
     sense_path(i, path, first.surface, paths.from_s, before_s);
-    sense(i, pixel_signal, before, after);
+    sense(i, LinearSignal(context_.options.log_eps, tolerance_s_),
+          seen_at(before_s, path, first.surface), seen_at(after_s, next_path, second.surface));
     sense_path(i, next_path, second.surface, after_s, paths.to_s);
     return true;
+  }
+
+  [[nodiscard]] LinearSample seen_at(double t_s, const TexelTrajectory& path,
+                                     const SurfaceSample& surface) const {
+    const double u = path.fraction(t_s);
+    const SurfaceSample seen{surface.texture, path.x.at(u), path.y.at(u), surface.factor};
+    return {t_s, log_intensity(seen.radiance(), context_.options.log_eps)};
   }
 
   [[nodiscard]] bool is_usable(const PlaneTrajectories& trajectories,

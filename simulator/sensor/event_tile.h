@@ -40,7 +40,7 @@ struct TileMotion {
   bool has_objects = false;  ///< that move may come into view
 };
 
-/// 4 x 4 event pixels. Those that provably see one plane all the time are sensed along their exact
+/// A square of event pixels. Those that provably see one plane all the time are sensed along their exact
 /// path over its texture, without rays. The others are traced in lockstep, one packet of rays per
 /// step: where the bounds of a pixel's radiance over a step prove that nothing can have fired,
 /// nothing more is done; else its signal is searched alone, on the surfaces that both ends of the

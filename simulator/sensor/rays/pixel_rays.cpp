@@ -25,18 +25,20 @@ std::vector<Eigen::Vector2d> ray_pattern(int rays_per_pixel) {
 
 }  // namespace
 
-PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px)
+PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px,
+                     int tile_size)
     : camera_(camera),
       rays_per_pixel_(static_cast<std::size_t>(rays_per_pixel)),
       side_px_(side_px),
-      tiles_x_((camera.width + kTileSize - 1) / kTileSize),
-      tiles_y_((camera.height + kTileSize - 1) / kTileSize) {
+      tile_size_(tile_size),
+      tiles_x_((camera.width + tile_size - 1) / tile_size),
+      tiles_y_((camera.height + tile_size - 1) / tile_size) {
   const std::vector<Eigen::Vector2d> pattern = ray_pattern(rays_per_pixel);
-  directions_.resize(tile_count() * kTilePixels * rays_per_pixel_);
+  directions_.resize(tile_count() * tile_pixels() * rays_per_pixel_);
   for (std::size_t index = 0; index < tile_count(); ++index) {
     const Tile block = tile(index);
     auto out =
-        directions_.begin() + static_cast<std::ptrdiff_t>(index * kTilePixels * rays_per_pixel_);
+        directions_.begin() + static_cast<std::ptrdiff_t>(index * tile_pixels() * rays_per_pixel_);
     for (std::size_t i = 0; i < block.pixels(); ++i) {
       const Eigen::Vector2d centre(block.x(i), block.y(i));
       for (const Eigen::Vector2d& offset : pattern)
@@ -57,10 +59,10 @@ std::array<Eigen::Vector3d, 4> PixelRays::outline(std::size_t index, double marg
 
 Tile PixelRays::tile(std::size_t index) const {
   Tile tile;
-  tile.x0 = kTileSize * (static_cast<int>(index) % tiles_x_);
-  tile.y0 = kTileSize * (static_cast<int>(index) / tiles_x_);
-  tile.width = std::min(kTileSize, camera_.width - tile.x0);
-  tile.height = std::min(kTileSize, camera_.height - tile.y0);
+  tile.x0 = tile_size_ * (static_cast<int>(index) % tiles_x_);
+  tile.y0 = tile_size_ * (static_cast<int>(index) / tiles_x_);
+  tile.width = std::min(tile_size_, camera_.width - tile.x0);
+  tile.height = std::min(tile_size_, camera_.height - tile.y0);
   return tile;
 }
 

@@ -10,14 +10,15 @@
 namespace saccade {
 
 /// One number for each pixel of a tile, side by side for the compiler to vectorise.
-using Lanes = std::array<double, kTilePixels>;
+using Lanes = std::array<double, kMaxTilePixels>;
 
 /// Directions (x, y, 1) of the pixels of a tile with one ray each.
 struct DirectionLanes {
   Lanes x{}, y{};
+  std::size_t count = 0;
 
   DirectionLanes() = default;
-  explicit DirectionLanes(std::span<const Eigen::Vector3d> directions) {
+  explicit DirectionLanes(std::span<const Eigen::Vector3d> directions) : count(directions.size()) {
     for (std::size_t i = 0; i < directions.size(); ++i) {
       x[i] = directions[i].x();
       y[i] = directions[i].y();
@@ -60,7 +61,7 @@ class PlaneSampler {
 
   /// The same for all pixels of a tile.
   void at(const DirectionLanes& directions, TexelLanes& lanes) const {
-    for (std::size_t i = 0; i < kTilePixels; ++i) {
+    for (std::size_t i = 0; i < directions.count; ++i) {
       const double dx = directions.x[i];
       const double dy = directions.y[i];
       const auto along = [dx, dy](const Eigen::Vector3d& row) {

@@ -11,18 +11,18 @@
 
 namespace saccade {
 
-using PixelSet = std::bitset<kTilePixels>;
+using PixelSet = std::bitset<kMaxTilePixels>;
 
 /// What the rays of a tile see at an instant, pixel by pixel: which triangles, and, where it is
 /// asked for, what of them.
 template <std::size_t kRays>
 struct TileSamples {
-  using Triangles = std::array<TriangleId, kTilePixels * kRays>;
+  using Triangles = std::array<TriangleId, kMaxTilePixels * kRays>;
 
   double t_s;
   Triangles triangles;
   bool has_samples;
-  std::array<RaySample, kTilePixels * kRays> samples;
+  std::array<RaySample, kMaxTilePixels * kRays> samples;
 
   /// The visible triangles are known.
   void set_triangles(const Triangles& seen, double at_s) {
