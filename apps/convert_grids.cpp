@@ -19,15 +19,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The events with what belongs to them.
-struct Recording {
+struct GridInput {
   Events events;
   SensorSize size;
   std::vector<TimeNs> frames;
 };
 
-Recording load(const fs::path& input) {
+GridInput load(const fs::path& input) {
   if (!fs::is_directory(input)) {
-    Recording recording{{}, stated_sensor(input), {}};
+    GridInput recording{{}, stated_sensor(input), {}};
     if (recording.size.width == 0)
       throw InputError(input.string(),
                        "does not state the size of the sensor; convert the dataset folder, whose "
@@ -36,7 +36,7 @@ Recording load(const fs::path& input) {
     return recording;
   }
   const Dataset dataset = Dataset::open(input);
-  Recording recording{dataset.load_events(), {dataset.camera().width, dataset.camera().height}, {}};
+  GridInput recording{dataset.load_events(), {dataset.camera().width, dataset.camera().height}, {}};
   for (const StampedFile& frame : dataset.frames())
     recording.frames.push_back(ns_from_seconds(frame.t_s));
   return recording;
@@ -60,14 +60,14 @@ Options parse(const std::string& text, const std::string& option) {
   return config::read<Options>(config::parse(yaml.empty() ? "{}" : yaml, option));
 }
 
-std::vector<GridWindow> windows_of(const Recording& recording, const WindowOptions& options,
+std::vector<GridWindow> windows_of(const GridInput& recording, const WindowOptions& options,
                                    const fs::path& input) {
   if (options.by_frames && recording.frames.size() < 2)
     throw InputError(input.string(), "has no two frames to cut windows at (by_frames)");
   return cut_windows(recording.events, options, recording.frames);
 }
 
-std::span<const Event> events_of(const Recording& recording, const GridWindow& window) {
+std::span<const Event> events_of(const GridInput& recording, const GridWindow& window) {
   return std::span(recording.events).subspan(window.first, window.last - window.first);
 }
 
@@ -86,7 +86,7 @@ std::string convert_to_grids(const fs::path& input, const fs::path& output,
     voxels = parse<VoxelGridOptions>(request.voxel_grid, "--voxel-grid");
   else
     frames = parse<FrameGridOptions>(request.event_frame, "--event-frame");
-  const Recording recording = load(input);
+  const GridInput recording = load(input);
   const std::vector<GridWindow> windows =
       windows_of(recording, voxels ? voxels->window : frames.window, input);
   const GridShape shape{voxels ? "voxel_grid" : "event_frame", windows.size(),

@@ -6,6 +6,9 @@
 
 namespace saccade {
 
+/// The longest time whose nanoseconds a clock can count [s].
+constexpr double kLongest_s = 4e9;
+
 /// Checks of the text of an option's value. CLI11's own let NaN and wrapped negative numbers pass
 /// and name bounds of 308 digits.
 

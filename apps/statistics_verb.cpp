@@ -16,8 +16,6 @@
 namespace saccade {
 namespace {
 
-constexpr double kLongest_s = 4e9;  ///< whose nanoseconds a clock can count
-
 struct StatisticsOptions {
   std::vector<std::filesystem::path> paths;
   std::optional<std::filesystem::path> output;

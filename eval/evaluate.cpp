@@ -34,14 +34,6 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
   for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
 }
 
-/// Every score has a row in the catalogue, which says how it is called, shown and judged. (What
-/// "speed." is followed by stands in the timing.json of a run.)
-Metrics catalogued(Metrics metrics) {
-  for (const auto& [key, value] : metrics.values())
-    SACCADE_CHECK(key.starts_with("speed.") || is_catalogued(key));
-  return metrics;
-}
-
 /// The orientations that `run` estimated, and the events that it stabilized.
 void score_rotation(const RunFolder& run, const Dataset& dataset, Metrics& metrics) {
   const std::filesystem::path orientation = run.folder / "orientation.txt";

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <sstream>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "core/io/events/labels_h5.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
 #include "eval/table/number_text.h"
@@ -164,6 +166,31 @@ void add_mosaic(std::string& text, const Metrics& metrics) {
                       of.fixed("span.horizontal", 2));
 }
 
+void add_events(std::string& text, const Metrics& metrics) {
+  const Shown of(metrics, "events.");
+  text += fmt::format("  {} events, {} in the truth: {} x\n", of.grouped("count"),
+                      of.grouped("true_count"), of.fixed("ratio", 4));
+  Table table = table_of({"partners within", "precision %", "recall %"});
+  for (const char* tolerance : {"1us", "10us", "100us"})
+    table.add({tolerance, of.fixed(std::string("precision_") + tolerance, 3),
+               of.fixed(std::string("recall_") + tolerance, 3)});
+  for (const char* polarity : {"on", "off"}) {
+    const Shown part(metrics, std::string("events.") + polarity + ".");
+    table.add({fmt::format("10us, {} ({} x)", polarity, part.fixed("ratio", 4)),
+               part.fixed("precision_10us", 3), part.fixed("recall_10us", 3)});
+  }
+  for (const std::string_view origin : kEventOriginNames) {
+    const Shown part(metrics, fmt::format("events.origin.{}.", origin));
+    if (part.has("precision_10us") || part.has("recall_10us"))
+      table.add({fmt::format("10us, {}", origin), part.fixed("precision_10us", 3),
+                 part.fixed("recall_10us", 3)});
+  }
+  add(text, table);
+  text += fmt::format("  time error of pairs: median {} us (signed {}), 99 % below {} us\n",
+                      of.fixed("median_dt_us", 3), of.fixed("median_signed_dt_us", 3),
+                      of.fixed("p99_dt_us", 3));
+}
+
 void add_ratios(std::string& text, const Metrics& metrics) {
   const Shown of(metrics, "refined_ratio.");
   if (metrics.values().contains("refined_ratio.trajectory.dt_rel_percent.mean"))
@@ -208,6 +235,7 @@ std::string format_metrics(const Metrics& metrics, const std::string& title) {
   if (metrics.values().contains("mosaic.ssim")) add_mosaic(text, metrics);
   if (metrics.get("orientation.rate_rmse_rad_s")) add_rates(text, metrics);
   if (metrics.get("sharpness.stabilized")) add_sharpness(text, metrics);
+  if (metrics.values().contains("events.count")) add_events(text, metrics);
   add_ratios(text, metrics);
   if (metrics.get("trajectory.nees"))
     text += fmt::format("  NEES {} of 6\n", fixed(metrics.get("trajectory.nees"), 2));

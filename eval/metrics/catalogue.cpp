@@ -4,6 +4,8 @@
 #include <iterator>
 #include <vector>
 
+#include "core/check.h"
+
 namespace saccade {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr const char* kTruePathAndDepth = "trajectory, ground truth, mean scene 
 constexpr const char* kTrueDepth = "depth maps, true depth";
 constexpr const char* kTrueFrames = "images, true frames";
 constexpr const char* kTruePanorama = "mosaic, true panorama";
+constexpr const char* kTwoStreams = "two streams of events";
 constexpr const char* kTiming = "timing.json";
 constexpr const char* kDataset = "dataset.yaml";
 
@@ -152,6 +155,26 @@ std::vector<MetricInfo> rotation_rows() {
   };
 }
 
+std::vector<MetricInfo> event_rows() {
+  return {
+      {.key = "events.precision_10us", .label = "precision at 10 us", .scale = 100,
+       .better = kHigher, .needs = kTwoStreams, .floor = 0.001, .board = "events, precision"},
+      {.key = "events.recall_10us", .label = "recall at 10 us", .scale = 100,
+       .better = kHigher, .needs = kTwoStreams, .floor = 0.001, .board = "events, recall"},
+      {.key = "events.median_dt_us", .unit = "us", .needs = kTwoStreams, .floor = 0.1},
+      {.key = "events.median_signed_dt_us", .unit = "us", .better = kNeither,
+       .needs = kTwoStreams},
+      {.key = "events.p99_dt_us", .unit = "us", .needs = kTwoStreams, .floor = 1},
+      {.key = "events.ratio", .better = kNeither, .needs = kTwoStreams},
+      {.key = "events.*ratio", .better = kNeither, .needs = kTwoStreams},
+      {.key = "events.*count", .better = kNeither, .needs = kTwoStreams},
+      {.key = "events.origin.*", .scale = 100, .better = kHigher,
+       .needs = "two streams of events, labels"},
+      {.key = "events.*precision_*", .scale = 100, .better = kHigher, .needs = kTwoStreams},
+      {.key = "events.*recall_*", .scale = 100, .better = kHigher, .needs = kTwoStreams},
+  };
+}
+
 std::vector<MetricInfo> other_rows() {
   return {
       {.key = "keyframes.jump_percent.*", .unit = "%",
@@ -225,7 +248,7 @@ std::span<const MetricInfo> metric_catalogue() {
   static const std::vector<MetricInfo> catalogue = [] {
     std::vector<MetricInfo> all;
     for (const auto& part : {trajectory_rows(), depth_rows(), image_rows(), rotation_rows(),
-                             other_rows(), speed_rows(), dataset_rows()})
+                             event_rows(), other_rows(), speed_rows(), dataset_rows()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();
@@ -248,6 +271,12 @@ const MetricInfo* row_of(std::string_view key) {
 }  // namespace
 
 bool is_catalogued(std::string_view key) { return row_of(key) != nullptr; }
+
+Metrics catalogued(Metrics metrics) {
+  for (const auto& [key, value] : metrics.values())
+    SACCADE_CHECK(key.starts_with("speed.") || is_catalogued(key));
+  return metrics;
+}
 
 MetricInfo metric_info(std::string_view key) {
   const MetricInfo* row = row_of(key);

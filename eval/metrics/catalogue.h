@@ -48,6 +48,10 @@ struct MetricInfo {
 /// Whether a row has that very key or a pattern that it matches.
 [[nodiscard]] bool is_catalogued(std::string_view key);
 
+/// The same metrics. Every score has a row, which says how it is called, shown and judged
+/// (contract); what "speed." is followed by stands in the timing.json of a run.
+[[nodiscard]] Metrics catalogued(Metrics metrics);
+
 /// The metrics that tables show where their reader named none, in their order.
 [[nodiscard]] std::span<const MetricInfo> default_metrics();
 

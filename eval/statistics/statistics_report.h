@@ -1,20 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 
 #include "core/image.h"
+#include "eval/recording.h"
 #include "eval/statistics/stream_statistics.h"
 
 namespace saccade {
-
-/// Part of a recording, on its own clock [s].
-struct RecordingPart {
-  std::optional<double> start_s;     ///< default: the first event
-  std::optional<double> duration_s;  ///< default: to the last event
-};
 
 /// Statistics of a dataset folder or an event file, named after that folder or file. The sensor of
 /// an event file is taken to be as large as its events ask for. Throws InputError for what cannot

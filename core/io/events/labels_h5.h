@@ -1,13 +1,18 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "core/io/tables/h5_table.h"
 
 namespace saccade {
+
+/// What makes an event fire: the signal, the leaking reference, shot noise, a hot pixel.
+constexpr std::array<std::string_view, 4> kEventOriginNames{"signal", "leak", "shot", "hot"};
 
 /// What a simulator knows about events beyond what a sensor tells; one entry per event in each.
 struct EventLabels {
@@ -17,7 +22,7 @@ struct EventLabels {
   std::vector<std::int32_t> object;     ///< index into the scene's meshes, -1 = nothing hit
   std::vector<std::uint16_t> instance;  ///< id in labels.yaml, 0 = nothing hit
   std::vector<std::uint8_t> class_id;   ///< that of its instance, 0 = none
-  std::vector<std::uint8_t> origin;     ///< 0 signal, 1 leak, 2 shot noise, 3 hot pixel
+  std::vector<std::uint8_t> origin;     ///< index into kEventOriginNames
 
   [[nodiscard]] std::size_t size() const { return origin.size(); }
   void resize(std::size_t count);

@@ -1,0 +1,66 @@
+#include "eval/recording.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "core/io/dataset/dataset.h"
+
+namespace saccade {
+namespace fs = std::filesystem;
+namespace {
+
+TimeWindow window_of(const fs::path& file, const RecordingPart& part) {
+  TimeWindow window;
+  if (part.start_s) window.start_ns = ns_from_seconds(*part.start_s);
+  if (part.duration_s) {
+    const TimeNs start_ns = part.start_s ? window.start_ns : read_event_file_info(file).first_ns;
+    window.end_ns = start_ns + ns_from_seconds(*part.duration_s);
+  }
+  return window;
+}
+
+SensorSize extent(const Events& events) {
+  SensorSize size;
+  for (const Event& event : events)
+    size = {std::max(size.width, event.x + 1), std::max(size.height, event.y + 1)};
+  return size;
+}
+
+}  // namespace
+
+Recording read_recording(const fs::path& path, const RecordingPart& part) {
+  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  Recording recording;
+  // "data/walls/" has an empty file name.
+  recording.name = (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
+  recording.file = path;
+  if (!fs::is_directory(path)) {
+    recording.events = read_events(path, {}, window_of(path, part));
+    recording.size = extent(recording.events);
+    return recording;
+  }
+  const Dataset dataset = Dataset::open(path);
+  recording.file = dataset.events_file();
+  if (recording.file.empty()) throw InputError(path.string(), "holds no events");
+  recording.size = {dataset.camera().width, dataset.camera().height};
+  recording.events = read_events(recording.file, recording.size, window_of(recording.file, part));
+  recording.is_size_stated = true;
+  return recording;
+}
+
+std::vector<std::uint8_t> read_origins(const fs::path& path, const RecordingPart& part) {
+  if (!fs::is_directory(path)) return {};
+  const Dataset dataset = Dataset::open(path);
+  if (!dataset.has_labels()) return {};
+  if (!part.start_s && !part.duration_s) return dataset.load_labels().origin;
+  const TimeWindow window = window_of(dataset.events_file(), part);
+  constexpr double kForever_s = std::numeric_limits<double>::infinity();
+  const bool is_open = !part.duration_s;
+  return dataset
+      .load_labels(part.start_s ? seconds_from_ns(window.start_ns) : -kForever_s,
+                   is_open ? kForever_s : seconds_from_ns(window.end_ns))
+      .origin;
+}
+
+}  // namespace saccade

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/event.h"
+#include "core/io/events/event_file.h"
+
+namespace saccade {
+
+/// Part of a recording, on its own clock [s].
+struct RecordingPart {
+  std::optional<double> start_s;     ///< default: the first event
+  std::optional<double> duration_s;  ///< default: to the last event
+};
+
+/// The events of a dataset folder or an event file.
+struct Recording {
+  std::string name;  ///< of that folder or file
+  std::filesystem::path file;
+  Events events;
+  SensorSize size;              ///< of an event file: as large as its events ask for
+  bool is_size_stated = false;  ///< by a dataset
+};
+
+/// Throws InputError for what is not there or cannot be read.
+[[nodiscard]] Recording read_recording(const std::filesystem::path& path,
+                                       const RecordingPart& part = {});
+
+/// EventLabels::origin of these events; empty where the recording has no labels.
+[[nodiscard]] std::vector<std::uint8_t> read_origins(const std::filesystem::path& path,
+                                                     const RecordingPart& part = {});
+
+}  // namespace saccade
