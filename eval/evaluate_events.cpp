@@ -23,7 +23,7 @@ std::string size_text(const SensorSize& size) {
   return fmt::format("{} x {} pixels", size.width, size.height);
 }
 
-SensorSize common_size(const Recording& events, const Recording& truth) {
+SensorSize common_size(const EventRecording& events, const EventRecording& truth) {
   const bool differ =
       events.size.width != truth.size.width || events.size.height != truth.size.height;
   if (events.is_size_stated && truth.is_size_stated && differ)
@@ -44,8 +44,8 @@ void count_unmatched(const Events& events, const std::vector<bool>& matched,
 
 /// Pixels by their events without a partner at 10 us: red where events of the truth are missing,
 /// green where there are superfluous ones, full from ten on; white where all have one.
-ImageRgb8 draw_pixels(const Recording& events, const Recording& truth, const MatchedEvents& matched,
-                      const SensorSize& size) {
+ImageRgb8 draw_pixels(const EventRecording& events, const EventRecording& truth,
+                      const MatchedEvents& matched, const SensorSize& size) {
   constexpr double kMany = 10;
   const auto width = static_cast<std::size_t>(size.width);
   std::vector<double> extra(width * static_cast<std::size_t>(size.height));
@@ -69,8 +69,8 @@ ImageRgb8 draw_pixels(const Recording& events, const Recording& truth, const Mat
 }  // namespace
 
 Metrics evaluate_events(const EventsToCompare& compared, const std::optional<fs::path>& output) {
-  const Recording events = read_recording(compared.events, compared.part);
-  const Recording truth = read_recording(compared.truth, compared.part);
+  const EventRecording events = read_recording(compared.events, compared.part);
+  const EventRecording truth = read_recording(compared.truth, compared.part);
   const SensorSize size = common_size(events, truth);
   if (events.events.empty() && truth.events.empty())
     throw InputError(compared.events.string(),

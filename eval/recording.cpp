@@ -29,9 +29,9 @@ SensorSize extent(const Events& events) {
 
 }  // namespace
 
-Recording read_recording(const fs::path& path, const RecordingPart& part) {
+EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
   if (!fs::exists(path)) throw InputError(path.string(), "is not there");
-  Recording recording;
+  EventRecording recording;
   // "data/walls/" has an empty file name.
   recording.name = (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
   recording.file = path;

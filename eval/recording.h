@@ -18,7 +18,7 @@ struct RecordingPart {
 };
 
 /// The events of a dataset folder or an event file.
-struct Recording {
+struct EventRecording {
   std::string name;  ///< of that folder or file
   std::filesystem::path file;
   Events events;
@@ -27,8 +27,8 @@ struct Recording {
 };
 
 /// Throws InputError for what is not there or cannot be read.
-[[nodiscard]] Recording read_recording(const std::filesystem::path& path,
-                                       const RecordingPart& part = {});
+[[nodiscard]] EventRecording read_recording(const std::filesystem::path& path,
+                                            const RecordingPart& part = {});
 
 /// EventLabels::origin of these events; empty where the recording has no labels.
 [[nodiscard]] std::vector<std::uint8_t> read_origins(const std::filesystem::path& path,

@@ -130,7 +130,7 @@ std::string seconds_text(const Event& event) {
 }  // namespace
 
 StreamStatistics statistics_of_recording(const fs::path& path, const RecordingPart& part) {
-  const Recording recording = read_recording(path, part);
+  const EventRecording recording = read_recording(path, part);
   const Events& events = recording.events;
   const std::string file = recording.file.string();
   if (events.empty() || events.front().t_ns == events.back().t_ns)

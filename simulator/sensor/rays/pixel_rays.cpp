@@ -25,8 +25,7 @@ std::vector<Eigen::Vector2d> ray_pattern(int rays_per_pixel) {
 
 }  // namespace
 
-PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px,
-                     int tile_size)
+PixelRays::PixelRays(const PinholeCamera& camera, int rays_per_pixel, double side_px, int tile_size)
     : camera_(camera),
       rays_per_pixel_(static_cast<std::size_t>(rays_per_pixel)),
       side_px_(side_px),
