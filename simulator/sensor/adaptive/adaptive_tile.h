@@ -87,6 +87,13 @@ class AdaptiveTile {
   /// Whether two samples lie on one smooth surface; is_continuous(): under the same lights as well.
   [[nodiscard]] bool is_one_surface(const ViewSample& a, const ViewSample& b) const;
   [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
+  /// Settles which lights light the later of two samples of one triangle, where that is not known
+  /// well enough for the time between them; whether there was anything to settle.
+  [[nodiscard]] bool settle_lights(std::size_t i, ViewSample& from, ViewSample& to);
+  /// Between two such samples that have been settled.
+  [[nodiscard]] std::optional<ViewSample> resample_settled(std::size_t i, double t_s,
+                                                           const ViewSample& from,
+                                                           const ViewSample& to);
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
   /// Whether all between two samples follows from what both see.
   [[nodiscard]] bool is_arc(const ViewSample& from, const ViewSample& to) const;

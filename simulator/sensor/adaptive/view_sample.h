@@ -21,6 +21,7 @@ struct ViewSample {
   std::uint64_t triangles = 0;     ///< a hash of those of all rays
   std::uint64_t lights = 0;        ///< a hash of the lights that light all of them
   LightSet lights_of_ray = 0;      ///< that light the first
+  LightSet settled = 0;  ///< lights of which it is known in double precision whether they do
 };
 
 }  // namespace saccade

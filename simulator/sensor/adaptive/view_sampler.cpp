@@ -112,6 +112,25 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   return sample;
 }
 
+bool ViewSampler::settle_lights(std::size_t pixel, LightSet lights, ViewSample& sample) {
+  const LightSet open = lights & ~sample.settled;
+  if (open == 0) return true;
+  const CameraFrame& camera = camera_at(sample.t_s);
+  const Ray ray{camera.position, camera.rotation * directions(pixel)[0], sample.t_s};
+  const std::optional<LightSet> lit = scene_.lights_at(ray, sample.triangle, sample.distance, open);
+  if (!lit) return false;
+  const LightSet known = (sample.lights_of_ray & ~open) | *lit;
+  const LightSet settled = sample.settled | lights;
+  if (known != sample.lights_of_ray) {
+    sample.lights_of_ray = known;
+    sample.lights = 0;
+    mix(known, sample.lights);
+    sample = resample({pixel, sample.t_s}, sample);
+  }
+  sample.settled = settled;
+  return true;
+}
+
 SurfaceArc ViewSampler::arc(std::size_t pixel, const ViewSample& from, const ViewSample& to) {
   const SurfaceSample middle = surface_like({pixel, 0.5 * (from.t_s + to.t_s)}, from);
   const auto end = [&](const ViewSample& seen) {
