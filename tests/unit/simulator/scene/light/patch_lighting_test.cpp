@@ -64,6 +64,28 @@ TEST_P(PatchLightOf, TellsShadowsExactly) {
   EXPECT_EQ(light->lights_at({edge() + 1e-4, -0.05, 0}), 0U);
 }
 
+TEST_P(PatchLightOf, APointIsJudgedInDoublePrecision) {
+  const Scene scene =
+      floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.9, 0.2)}}, GetParam());
+  const auto lights_at = [&](double x) {
+    const Eigen::Vector3d eye(0, 0, 0.5);
+    return scene.lights_at({eye, Eigen::Vector3d(x, -0.05, 0) - eye}, 0, 1, 1);
+  };
+  // The shadow is that of points just above the floor, some 1e-6 m nearer to its edge.
+  EXPECT_EQ(lights_at(edge() - 1e-5), 1U);
+  EXPECT_EQ(lights_at(edge() + 1e-5), 0U);
+  double lit = edge() - 1e-5, dark = edge() + 1e-5;
+  for (int k = 0; k < 20; ++k)
+    (lights_at(0.5 * (lit + dark)) == 1U ? lit : dark) = 0.5 * (lit + dark);
+  const Frustum sight = sight_of({edge(), -0.05});
+  PatchLighting buffer;
+  const PatchLighting* light = scene.find_lighting(0, {&sight, 1}, 100, buffer);
+  ASSERT_NE(light, nullptr);
+  EXPECT_EQ(light->lights_at({lit - 1e-10, -0.05, 0}), 1U) << "as the exact sampler sees it";
+  EXPECT_EQ(light->lights_at({dark + 1e-10, -0.05, 0}), 0U);
+  EXPECT_EQ(scene.lights_at({{0, 0, 0.5}, {0, 0, -0.5}}, 0, 1, 0), 0U) << "none is asked for";
+}
+
 TEST_P(PatchLightOf, LeavesNoLightBetweenNeighbours) {
   const Scene scene =
       floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.6, 0.2)}}, GetParam());
