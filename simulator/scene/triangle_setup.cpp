@@ -158,7 +158,8 @@ NormalFrame TriangleSetup::normal_frame(const Triangle& triangle, const Triangle
 
 double TriangleSetup::side_of(const Triangle& triangle, std::size_t corner,
                               const Eigen::Vector3d& plane_normal) const {
-  if (mesh_.normals.empty()) return 1;
+  // A mirrored mesh winds its triangles the other way.
+  if (mesh_.normals.empty()) return normal_matrix_.determinant() < 0 ? -1 : 1;
   const Eigen::Vector3d stated = normal_matrix_ * mesh_.normals[triangle.corners[corner]];
   return stated.dot(plane_normal) < 0 ? -1 : 1;
 }

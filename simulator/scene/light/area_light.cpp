@@ -1,6 +1,5 @@
 #include "simulator/scene/light/area_light.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -24,15 +23,16 @@ std::vector<Eigen::Vector2d> turned_grid(std::size_t n) {
   return points;
 }
 
-/// From the square [-1, 1]^2 to the unit disc, equal areas to equal ones.
-Eigen::Vector2d on_disc(const Eigen::Vector2d& square) {
-  const double x = square.x();
-  const double y = square.y();
-  if (x == 0 && y == 0) return Eigen::Vector2d::Zero();
-  const bool is_wide = std::abs(x) > std::abs(y);
-  const double radius = is_wide ? x : y;
-  const double angle = is_wide ? pi / 4 * (y / x) : pi / 2 - pi / 4 * (x / y);
-  return {radius * std::cos(angle), radius * std::sin(angle)};
+/// Points of the unit disc, each of an equal area: those of a sunflower (Vogel, 1979).
+std::vector<Eigen::Vector2d> sunflower(std::size_t count) {
+  const double turn = pi * (3 - std::sqrt(5.0));
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double index = static_cast<double>(k);
+    const double radius = std::sqrt((index + 0.5) / static_cast<double>(count));
+    points.emplace_back(radius * std::cos(index * turn), radius * std::sin(index * turn));
+  }
+  return points;
 }
 
 /// The axes of an area: along its width, its height, and where it shines.
@@ -50,13 +50,6 @@ Eigen::Matrix3d axes_of(const LightOptions& light) {
   return axes;
 }
 
-Eigen::Vector3d on_unit_sphere(const Eigen::Vector2d& point) {
-  const double z = point.x();
-  const double radius = std::sqrt(std::max(0.0, 1 - z * z));
-  const double azimuth = pi * point.y();
-  return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
-}
-
 }  // namespace
 
 std::size_t emitter_count(const LightOptions& light) {
@@ -68,21 +61,15 @@ std::vector<LightOptions> emitters_of(const LightOptions& light) {
   LightOptions emitter = light;
   emitter.type = LightType::kEmitter;
   emitter.intensity /= static_cast<double>(emitter_count(light));
-  // A sphere has four times the area of the disc that it looks like.
-  if (light.type == LightType::kSphere) emitter.intensity *= 4;
   const Eigen::Matrix3d axes = axes_of(light);
+  emitter.direction = axes.col(2);
+  const bool is_disc = light.type == LightType::kDisc;
   std::vector<LightOptions> emitters;
-  for (const Eigen::Vector2d& point : turned_grid(light.samples_per_side)) {
-    if (light.type == LightType::kSphere) {
-      emitter.direction = on_unit_sphere(point);
-      emitter.position = light.position + light.radius_m * emitter.direction;
-    } else {
-      const Eigen::Vector2d offset = light.type == LightType::kDisc
-                                         ? Eigen::Vector2d(light.radius_m * on_disc(point))
-                                         : Eigen::Vector2d(0.5 * light.size_m.cwiseProduct(point));
-      emitter.direction = axes.col(2);
-      emitter.position = light.position + axes.leftCols<2>() * offset;
-    }
+  for (const Eigen::Vector2d& point :
+       is_disc ? sunflower(emitter_count(light)) : turned_grid(light.samples_per_side)) {
+    const Eigen::Vector2d half =
+        is_disc ? Eigen::Vector2d::Constant(light.radius_m) : Eigen::Vector2d(0.5 * light.size_m);
+    emitter.position = light.position + axes.leftCols<2>() * half.cwiseProduct(point);
     emitters.push_back(emitter);
   }
   return emitters;

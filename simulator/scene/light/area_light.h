@@ -18,8 +18,7 @@ namespace saccade {
 ///   ((i + (j + 1/2) / n) / n, (j + (n - i - 1/2) / n) / n)   with i, j = 0 .. n - 1
 /// one in each of n x n cells, and one in each of n^2 columns and n^2 rows: the edge of a shadow that
 /// is parallel to a side uncovers them one by one. They have the centre and the second moments of
-/// the rectangle, but for n^-4 of these. Discs are that mapped by Shirley and Chiu (JGT 2(3), 1997),
-/// spheres by Archimedes' cylinder.
+/// the rectangle, but for n^-4 of these. Those of a disc are a sunflower's, n^2 of one area each.
 [[nodiscard]] std::vector<LightOptions> emitters_of(const LightOptions& light);
 
 }  // namespace saccade

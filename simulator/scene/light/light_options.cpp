@@ -21,8 +21,7 @@ void describe_area(config::Fields& fields, LightOptions& options) {
                           1e-6 * options.width_direction.norm() * options.direction.norm(),
                   "width_direction", "must not be parallel to 'direction'");
   } else {
-    fields.value("radius_m", options.radius_m, "Radius of the disc or sphere, in metres.")
-        .range(1e-4, 1e4);
+    fields.value("radius_m", options.radius_m, "Radius of the disc, in metres.").range(1e-4, 1e4);
   }
   fields
       .value("samples_per_side", options.samples_per_side,
@@ -41,18 +40,17 @@ void describe(config::Fields& fields, LightOptions& options) {
                  {"directional", LightType::kDirectional},
                  {"spot", LightType::kSpot},
                  {"rectangle", LightType::kRectangle},
-                 {"disc", LightType::kDisc},
-                 {"sphere", LightType::kSphere}},
+                 {"disc", LightType::kDisc}},
                 "Kind of light: point shines from its position to all sides, spot from there into "
                 "a cone, and directional comes from afar in parallel. A rectangle or a disc shines "
-                "from one of its faces, a sphere to all sides; their shadows are soft.");
+                "from one of its faces and casts soft shadows.");
   if (options.has_position())
     fields
         .value("position", options.position,
                "Position of the light, of an area light that of its centre, in metres.")
         .range(-1e6, 1e6)
         .required();
-  if (options.type != LightType::kPoint && options.type != LightType::kSphere) {
+  if (options.type != LightType::kPoint) {
     fields
         .value(
             "direction", options.direction,

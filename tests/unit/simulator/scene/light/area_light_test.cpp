@@ -99,21 +99,9 @@ TEST(AreaLight, DiscOnItsAxisIsTheClosedForm) {
     const auto error = [&](std::size_t n) {
       return std::abs(irradiance(area(LightType::kDisc, n), point, {0, 0, 1}) / truth - 1);
     };
-    EXPECT_LT(error(4), 0.012) << distance;
-    EXPECT_LT(error(8), 0.003) << distance;
+    EXPECT_LT(error(4), 1e-3) << distance;
+    EXPECT_LT(error(8), 1e-4) << distance;
   }
-}
-
-TEST(AreaLight, SphereLooksLikeItsDiscFromEverywhere) {
-  for (const Eigen::Vector3d& way :
-       {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, 0.64, 0.48)})
-    for (const double distance : {1.0, 3.0}) {
-      // A sphere's irradiance is that of a point in its centre: L R^2 / d^2.
-      const Eigen::Vector3d point = Eigen::Vector3d(0, 0, 1) + distance * way;
-      const double truth = 1 / (distance * distance);
-      EXPECT_NEAR(irradiance(area(LightType::kSphere, 4), point, -way), truth, 0.12 * truth);
-      EXPECT_NEAR(irradiance(area(LightType::kSphere, 8), point, -way), truth, 0.03 * truth);
-    }
 }
 
 TEST(AreaLight, ShinesFromOneFace) {
@@ -199,7 +187,8 @@ TEST(AreaLight, CountsEachEmitterAmongTheLightsOfAScene) {
                InputError);
   EXPECT_THROW(read("{type: disc, position: [0, 0, 1], direction: [0, 0, 1], size_m: [1, 1]}"),
                InputError);
-  EXPECT_THROW(read("{type: sphere, position: [0, 0, 1], radius_m: 0}"), InputError);
+  EXPECT_THROW(read("{type: disc, position: [0, 0, 1], direction: [0, 0, 1], radius_m: 0}"),
+               InputError);
 }
 
 }  // namespace
