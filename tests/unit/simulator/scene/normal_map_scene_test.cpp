@@ -173,30 +173,7 @@ std::vector<LightOptions> some_lights() {
   return {near, far};
 }
 
-TEST(NormalMapEvents, Variants) {
-  const Spline motion = testing::lively_motion(kMapDuration_s, 1, 0.5, 3);
-  for (int wall = 0; wall < 2; ++wall)
-    for (int ball = 0; ball < 3; ++ball)
-      for (int lights = 0; lights < 3; ++lights) {
-        SceneBuilder builder;
-        const Mesh w = testing::slanted_wall();
-        const Mesh b = testing::ball({0.2, 0.1, 2.2}, 0.1, 16, testing::patches(128, 64, 4));
-        builder.add(wall == 1 ? mapped(w, random_map(512, 512, 0.4)) : w,
-                    Eigen::Affine3d::Identity());
-        if (ball > 0)
-          builder.add(ball == 2 ? mapped(b, random_map(128, 128, 0.3)) : b,
-                      Eigen::Affine3d::Identity());
-        auto all = some_lights();
-        if (lights < 2) all = {all[static_cast<std::size_t>(lights)]};
-        builder.light(0.05, all);
-        const Scene scene = std::move(builder).build(Background(0.5));
-        const testing::Agreement agreement =
-            testing::agreement(scene, motion, kMapCamera, testing::in_nanoseconds());
-        std::printf("wall %d ball %d lights %d: %s\n", wall, ball, lights,
-                    agreement.text().c_str());
-      }
-}
-
+/// Of a whole scene some events are missed at the facets of its ball, as without normal maps.
 TEST(NormalMapEvents, ExactOnesAreThoseOfBruteForce) {
   const Spline motion = testing::lively_motion(kMapDuration_s, 1, 0.5, 3);
   for (const bool has_environment : {false, true}) {
@@ -205,8 +182,22 @@ TEST(NormalMapEvents, ExactOnesAreThoseOfBruteForce) {
         testing::agreement(scene, motion, kMapCamera, testing::in_nanoseconds());
     std::printf("%s\n", agreement.text().c_str());
     EXPECT_GT(agreement.expected, 1000U);
-    EXPECT_GT(agreement.share_1_us(), 0.999);
+    EXPECT_GT(agreement.share_1_us(), 0.995);
   }
+}
+
+TEST(NormalMapEvents, ExactOnesMissNothingOnAWall) {
+  SceneBuilder builder;
+  builder.add(mapped(testing::slanted_wall(), random_map(1024, 1024, 0.8)),
+              Eigen::Affine3d::Identity());
+  builder.light(0.02, some_lights());
+  const Scene scene = std::move(builder).build(Background(0.5));
+  const Spline motion = testing::lively_motion(kMapDuration_s, 2, 1, 3);
+  const testing::Agreement agreement =
+      testing::agreement(scene, motion, kMapCamera, testing::in_nanoseconds());
+  std::printf("%s\n", agreement.text().c_str());
+  EXPECT_GT(agreement.expected, 500U);
+  EXPECT_GT(agreement.share_1_us(), 0.9995);
 }
 
 TEST(NormalMapEvents, ExactOnesAreThoseOfBruteForceWithoutTexture) {
