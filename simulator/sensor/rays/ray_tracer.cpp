@@ -151,6 +151,22 @@ std::optional<VectorRange> RayTracer::normal_map_range(const Eigen::Vector3d& di
   return ranges;
 }
 
+double RayTracer::split_fraction(const Eigen::Vector3d& direction, const RaySample& from,
+                                 double from_s, const RaySample& to, double to_s) const {
+  const double length_s = to_s - from_s;
+  if (has_normal_maps_ && scene_.has_normal_map(from.triangle) && from.surface.distance > 0 &&
+      to.surface.distance > 0 && from.surface.lights == to.surface.lights) {
+    const RaySample first = normal_map_sample(direction, from, from_s);
+    const RaySample last = normal_map_sample(direction, to, to_s);
+    SplitPoint division;
+    if (!is_filtered(first, last))
+      division.consider_cell(x_coordinate(first, last, length_s),
+                             y_coordinate(first, last, length_s));
+    if (division.found()) return division.fraction();
+  }
+  return saccade::split_fraction(from, to, length_s);
+}
+
 void RayTracer::set_region(const std::array<Eigen::Vector3d, 4>& outline, double from_s,
                            double to_s) {
   finds_lighting_ = is_lit();

@@ -136,6 +136,11 @@ class RayTracer {
                : saccade::radiance_range(from, to, to_s - from_s);
   }
 
+  /// split_fraction() of a ray that sees one triangle from `from_s` to `to_s`: the borders of a normal
+  /// map's texels count as well.
+  [[nodiscard]] double split_fraction(const Eigen::Vector3d& direction, const RaySample& from,
+                                      double from_s, const RaySample& to, double to_s) const;
+
   /// When a ray's visible triangle changes from `from` to `to`, within `tolerance_s`: where the ray
   /// leaves the first or else enters the second; NaN if neither.
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
