@@ -24,11 +24,12 @@ void describe_area(config::Fields& fields, LightOptions& options) {
     fields.value("radius_m", options.radius_m, "Radius of the disc, in metres.").range(1e-4, 1e4);
   }
   fields
-      .value("samples_per_side", options.samples_per_side,
-             "Point emitters along each side of the area: its square stand for the light. Its "
-             "half-shadows fall off in so many steps, and light nearby is the more exact; each "
-             "costs as much as a point light. All lights of a scene are 64 at most, each emitter "
-             "counted.")
+      .value(
+          "samples_per_side", options.samples_per_side,
+          "Point emitters along each side of the area: n for n x n that stand for the light. Its "
+          "half-shadows fall off in so many steps, and light nearby is the more exact; each "
+          "costs as much as a point light. All lights of a scene are 64 at most, each emitter "
+          "counted.")
       .range(1, kMostSamples);
 }
 
