@@ -13,20 +13,35 @@ namespace {
 /// Rays through a shared edge must meet at least one of its triangles, whatever the rounding.
 constexpr double kEdgeTolerance = 1e-10;
 
+/// A shorter vector of a normal map has no direction.
+constexpr double kLeastNormal = 1e-6;
+
 /// Triangles this fraction of the scene's size before a plane count as lying in it: what single
 /// precision leaves of neighbours in one plane.
 constexpr double kCoplanar = 3e-7;
 
 /// As Scene::sample_surface() has it; everything in the surface's frame.
-double level_of(const TriangleSurface& surface, const Eigen::Vector3d& direction, double distance,
+double level_of(const Eigen::Vector3d& normal, const AffineForm& x, const AffineForm& y,
+                const Eigen::Vector3d& direction, double distance,
                 const RayDifferential& differential) {
-  const Eigen::Vector3d& normal = surface.plane.gradient;
   const auto texels = [&](const Eigen::Vector3d& change) {
     const Eigen::Vector3d shift =
         distance * (change - normal.dot(change) / normal.dot(direction) * direction);
-    return std::hypot(surface.x.gradient.dot(shift), surface.y.gradient.dot(shift));
+    return std::hypot(x.gradient.dot(shift), y.gradient.dot(shift));
   };
   return std::max(0.0, std::log2(std::max(texels(differential.right), texels(differential.down))));
+}
+
+/// The unit normals that vectors of a normal map stand for, on the way between two places that have
+/// these axes.
+VectorRange mapped_normal(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to,
+                          const VectorRange& mapped, double length_s) {
+  VectorRange vector;
+  for (Eigen::Index k = 0; k < 3; ++k)
+    vector[static_cast<std::size_t>(k)] =
+        dot(range_near_line(Eigen::Vector3d(from.row(k)), Eigen::Vector3d(to.row(k)), length_s),
+            mapped);
+  return unit(vector);
 }
 
 /// What is nearer than `farthest_m` of z depth. Such frusta are narrow and move little, so that a
@@ -49,18 +64,43 @@ bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
   return cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point)) >= 0.5;
 }
 
-LitPoint Scene::State::surface_point(const Ray& ray, double distance, TriangleId triangle) const {
+LitPoint Scene::State::surface_point(const Ray& ray, const SurfaceSample& seen,
+                                     TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
-  if (surface.body == kStaticBody) return local_point(ray, distance, triangle);
+  if (surface.body == kStaticBody) return local_point(ray, seen, triangle);
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
-  const LitPoint local = local_point(in_frame(frame, ray), distance, triangle);
-  return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
-          frame.rotation * local.shading_normal, ray.time_s, ray.span_s};
+  const LitPoint local = local_point(in_frame(frame, ray), seen, triangle);
+  return {ray.origin + seen.distance * ray.direction,
+          frame.rotation * local.plane_normal,
+          frame.rotation * local.shading_normal,
+          ray.time_s,
+          ray.span_s,
+          local.has_normal_map};
 }
 
-LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
+Eigen::Matrix3d Scene::State::normal_map_axes(const Ray& ray, double distance,
+                                              TriangleId triangle) const {
+  const auto local_axes = [&](const Ray& local) {
+    const Eigen::Vector3d point = local.origin + distance * local.direction;
+    const double second = interiors[triangle].second.at(point);
+    const double third = interiors[triangle].third.at(point);
+    const double side = surfaces[triangle].plane.gradient.dot(local.direction) > 0 ? -1.0 : 1.0;
+    const ShadingNormals& corners = normals[triangle];
+    const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
+                                   second * corners[1].cast<double>() +
+                                   third * corners[2].cast<double>();
+    return Eigen::Matrix3d(side * normal_frame(triangle)->axes(normal.normalized(), second, third));
+  };
+  const std::uint32_t body = surfaces[triangle].body;
+  if (body == kStaticBody) return local_axes(ray);
+  const CameraFrame frame = visibility->objects()[body].frame(ray.time_s);
+  return frame.rotation * local_axes(in_frame(frame, ray));
+}
+
+LitPoint Scene::State::local_point(const Ray& ray, const SurfaceSample& seen,
+                                   TriangleId triangle) const {
   const AffineForm& plane = surfaces[triangle].plane;
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
+  const Eigen::Vector3d point = ray.origin + seen.distance * ray.direction;
   const double side = plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
   const double second = interiors[triangle].second.at(point);
   const double third = interiors[triangle].third.at(point);
@@ -68,7 +108,15 @@ LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId t
   const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
                                  second * corners[1].cast<double>() +
                                  third * corners[2].cast<double>();
-  return {point, side * plane.gradient, side * normal.normalized(), ray.time_s, ray.span_s};
+  LitPoint lit{point, side * plane.gradient, side * normal.normalized(), ray.time_s, ray.span_s};
+  if (const NormalFrame* frame = normal_frame(triangle)) {
+    const Eigen::Vector3d mapped =
+        frame->axes(normal.normalized(), second, third) *
+        frame->map->at_texel(frame->x.at(point), frame->y.at(point), seen.normal_level);
+    if (mapped.norm() > kLeastNormal) lit.shading_normal = side * mapped.normalized();
+    lit.has_normal_map = true;
+  }
+  return lit;
 }
 
 SurfaceSample Scene::State::sample_surface(const Ray& ray, const TriangleSurface& surface) const {
@@ -156,16 +204,24 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
 SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
                                     const RayDifferential& differential) const {
   SurfaceSample seen = sample_surface(ray, triangle);
-  if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
+  if (!(seen.distance > 0)) return seen;
+  const NormalFrame* const frame = state_->normal_frame(triangle);
+  if (seen.texture == nullptr && frame == nullptr) return seen;
   const TriangleSurface& surface = state_->surfaces[triangle];
+  const auto set_levels = [&](const Eigen::Vector3d& direction, const RayDifferential& local) {
+    const Eigen::Vector3d& normal = surface.plane.gradient;
+    if (seen.texture != nullptr)
+      seen.level = level_of(normal, surface.x, surface.y, direction, seen.distance, local);
+    if (frame != nullptr)
+      seen.normal_level = level_of(normal, frame->x, frame->y, direction, seen.distance, local);
+  };
   if (surface.body == kStaticBody) {
-    seen.level = level_of(surface, ray.direction, seen.distance, differential);
+    set_levels(ray.direction, differential);
   } else {
     const Eigen::Matrix3d body_from_world =
         state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
-    seen.level =
-        level_of(surface, body_from_world * ray.direction, seen.distance,
-                 {body_from_world * differential.right, body_from_world * differential.down});
+    set_levels(body_from_world * ray.direction,
+               {body_from_world * differential.right, body_from_world * differential.down});
   }
   return seen;
 }
@@ -201,7 +257,7 @@ void Scene::State::illuminate(std::span<const Ray> rays, std::span<const Triangl
   std::size_t n = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(samples[i].distance > 0)) continue;
-    points[n] = surface_point(rays[i], samples[i].distance, triangles[i]);
+    points[n] = surface_point(rays[i], samples[i], triangles[i]);
     owners[n++] = i;
   }
   illumination->find_unoccluded_lights({points.data(), n}, *visibility, {lights.data(), n},
@@ -222,7 +278,7 @@ void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> tr
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
   if (!state_->illumination || !(surface.distance > 0)) return 1;
   return state_->surfaces[triangle].with_self_light(state_->illumination->irradiance(
-      state_->surface_point(ray, surface.distance, triangle), surface.lights));
+      state_->surface_point(ray, surface, triangle), surface.lights));
 }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
@@ -231,23 +287,46 @@ std::span<const Flicker> Scene::flickers() const {
   return state_->illumination ? state_->illumination->flickers() : std::span<const Flicker>();
 }
 
+bool Scene::has_normal_map(TriangleId triangle) const {
+  return triangle != kNothing && state_->normal_frame(triangle) != nullptr;
+}
+
+bool Scene::has_normal_maps() const { return !state_->normal_frames.empty(); }
+
+NormalTextureSample Scene::sample_normal_map(const Ray& ray, TriangleId triangle,
+                                             const SurfaceSample& seen) const {
+  SACCADE_CHECK(has_normal_map(triangle));
+  const NormalFrame& frame = *state_->normal_frame(triangle);
+  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
+    const Eigen::Vector3d point = local.origin + seen.distance * local.direction;
+    return NormalTextureSample{frame.map, frame.x.at(point), frame.y.at(point), seen.normal_level};
+  });
+}
+
 bool Scene::has_spots() const { return state_->illumination && state_->illumination->has_cones(); }
 
 std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const SurfaceSample& from,
                                                   const Ray& middle_ray, const Ray& to_ray,
                                                   const SurfaceSample& to, TriangleId triangle,
-                                                  LightSet lights) const {
+                                                  LightSet lights,
+                                                  const VectorRange* mapped) const {
   if (!state_->illumination || triangle == kNothing) return LightRange{};
   if (!(from.distance > 0 && to.distance > 0)) return std::nullopt;
-  const LitPoint first = state_->surface_point(from_ray, from.distance, triangle);
-  const LitPoint last = state_->surface_point(to_ray, to.distance, triangle);
+  const LitPoint first = state_->surface_point(from_ray, from, triangle);
+  const LitPoint last = state_->surface_point(to_ray, to, triangle);
   Eigen::Vector3d middle = first.position;
   if (has_spots()) {
     const double distance = sample_surface(middle_ray, triangle).distance;
     if (!(distance > 0)) return std::nullopt;
     middle = middle_ray.origin + distance * middle_ray.direction;
   }
-  LightRange range = state_->illumination->irradiance_range(first, middle, last, lights);
+  std::optional<VectorRange> normal;
+  if (mapped != nullptr)
+    normal = mapped_normal(state_->normal_map_axes(from_ray, from.distance, triangle),
+                           state_->normal_map_axes(to_ray, to.distance, triangle), *mapped,
+                           last.time_s - first.time_s);
+  LightRange range = state_->illumination->irradiance_range(first, middle, last, lights,
+                                                            normal ? &*normal : nullptr);
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (std::isinf(surface.self_light)) return LightRange{};
   range.low = surface.with_self_light(range.low);

@@ -12,9 +12,12 @@
 
 #include "simulator/scene/instance.h"
 #include "simulator/scene/light/flicker.h"
+#include "simulator/scene/light/vector_range.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
+
+class NormalTexture;
 
 /// A triangle of the scene, numbered over all meshes; kNothing where a ray intersects none.
 using TriangleId = std::uint32_t;
@@ -55,12 +58,13 @@ constexpr std::size_t kMaxLights = 64;
 /// without a texture irradiance * x.
 struct SurfaceSample {
   const Texture* texture = nullptr;
-  double x = 0, y = 0;    ///< texel coordinates; without a texture x is the albedo
-  double factor = 1;      ///< multiplies the texture
-  double irradiance = 1;  ///< under lights; else 1
-  double distance = 0;    ///< along Ray::direction [its length]; 0 = background
-  double level = 0;       ///< of the texture's pyramid; <= 0: the texture itself
-  LightSet lights = 0;    ///< that light the point
+  double x = 0, y = 0;      ///< texel coordinates; without a texture x is the albedo
+  double factor = 1;        ///< multiplies the texture
+  double irradiance = 1;    ///< under lights; else 1
+  double distance = 0;      ///< along Ray::direction [its length]; 0 = background
+  double level = 0;         ///< of the texture's pyramid; <= 0: the texture itself
+  LightSet lights = 0;      ///< that light the point
+  double normal_level = 0;  ///< of the pyramid of the surface's normal map
 
   [[nodiscard]] double radiance() const {
     if (texture == nullptr) return irradiance * x;
@@ -87,6 +91,13 @@ struct EdgeFunctions {
   std::array<Eigen::Vector3d, 3> edges;
   Eigen::Vector3d w;
   double depth;
+};
+
+/// Where a ray sees a normal map.
+struct NormalTextureSample {
+  const NormalTexture* map = nullptr;
+  double x = 0, y = 0;  ///< texel coordinates
+  double level = 0;     ///< of the map's pyramid
 };
 
 /// What a camera ray sees.
@@ -168,10 +179,18 @@ class Scene {
   [[nodiscard]] bool has_spots() const;
   /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, if just
   /// `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
-  /// rays, `middle_ray` is halfway in time. nullopt where one misses the triangle's plane.
+  /// rays, `middle_ray` is halfway in time. nullopt where one misses the triangle's plane. With a
+  /// normal map, `mapped` bounds its vector on the way.
   [[nodiscard]] std::optional<LightRange> irradiance_range(
       const Ray& from_ray, const SurfaceSample& from, const Ray& middle_ray, const Ray& to_ray,
-      const SurfaceSample& to, TriangleId triangle, LightSet lights) const;
+      const SurfaceSample& to, TriangleId triangle, LightSet lights,
+      const VectorRange* mapped = nullptr) const;
+  /// Whether a normal map bends the shading normal of a triangle, of any at all without one.
+  [[nodiscard]] bool has_normal_map(TriangleId triangle) const;
+  [[nodiscard]] bool has_normal_maps() const;
+  /// What `seen` is on the normal map of such a triangle.
+  [[nodiscard]] NormalTextureSample sample_normal_map(const Ray& ray, TriangleId triangle,
+                                                      const SurfaceSample& seen) const;
   /// Which lights reach the part of `triangle` that a frustum sees on its way through `frusta` (at
   /// most 4): known for the whole triangle, or else put into `lighting`. nullptr where that is not
   /// known: for moving triangles and among moving objects, where light goes through cutouts, and

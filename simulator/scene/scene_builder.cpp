@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/process/progress.h"
 #include "simulator/motion/motion.h"
+#include "simulator/scene/light/area_light.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/texture/picture.h"
 #include "simulator/scene/triangle_setup.h"
@@ -189,13 +190,28 @@ InstanceLabel label_of(const MeshOptions& options, const std::vector<std::string
           static_cast<std::uint8_t>(class_id), options.instances == Instances::kNodes};
 }
 
+ImageF read_surroundings(const std::filesystem::path& picture, ColourChannel channel,
+                         SceneRemarks& remarks) {
+  const FileLocation location = FileLocation::parse(picture);
+  const std::optional<Bytes> bytes = FileSource(location.archive).read(location.file);
+  if (!bytes) throw InputError(location.text(), "this background picture does not exist");
+  return decode_picture(*bytes, location.text(), remarks, {1, 1, 1}, channel).grey;
+}
+
 Background read_background(const SceneOptions& options, ColourChannel channel,
                            SceneRemarks& remarks) {
   if (options.background_picture.empty()) return Background(options.background);
-  const FileLocation location = FileLocation::parse(options.background_picture);
-  const std::optional<Bytes> bytes = FileSource(location.archive).read(location.file);
-  if (!bytes) throw InputError(location.text(), "this background picture does not exist");
-  return Background(decode_picture(*bytes, location.text(), remarks, {1, 1, 1}, channel).grey);
+  return Background(read_surroundings(options.background_picture, channel, remarks),
+                    options.background_yaw_deg);
+}
+
+EnvironmentLight read_environment(const SceneOptions& options, ColourChannel channel,
+                                  SceneRemarks& remarks) {
+  const EnvironmentLightOptions& light = *options.environment_light;
+  const std::filesystem::path& picture =
+      light.picture ? *light.picture : options.background_picture;
+  if (picture.empty()) return EnvironmentLight(light.scale * options.background);
+  return {read_surroundings(picture, channel, remarks), options.background_yaw_deg, light.scale};
 }
 
 /// Appends the lights of a file, moved to where its mesh stands.
@@ -207,10 +223,10 @@ void add_lights(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, double
     light.intensity *= scale;
     lights.push_back(light);
   }
-  if (lights.size() > kMaxLights)
+  if (const std::size_t count = emitter_count(lights); count > kMaxLights)
     throw InputError("scene.lights",
                      fmt::format("are {} with those of the mesh files, which must be at most {}",
-                                 lights.size(), kMaxLights));
+                                 count, kMaxLights));
 }
 
 }  // namespace
@@ -272,6 +288,7 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
   for (const Material& material : mesh.materials) {
     textures_.push_back(material.texture);
     textures_.push_back(material.opacity);
+    if (material.normal_map) normal_maps_.push_back(material.normal_map);
   }
   std::size_t kept = 0;
   DistinctPlaces taken(mesh);
@@ -293,7 +310,9 @@ void SceneBuilder::light(double ambient, std::vector<LightOptions> lights,
   is_lit_ = true;
   ambient_ = ambient;
   ambient_flicker_ = ambient_flicker;
-  lights_ = std::move(lights);
+  lights_.clear();
+  for (const LightOptions& light : lights)
+    for (LightOptions& emitter : emitters_of(light)) lights_.push_back(std::move(emitter));
 }
 
 Scene SceneBuilder::build(const Background& background) && {
@@ -306,8 +325,10 @@ Scene SceneBuilder::build(const Background& background) && {
     double extent = 0;
     for (const Body& body : bodies_)
       if (!body.is_empty()) extent = std::max(extent, extent_of(body.box()));
-    state->illumination.emplace(ambient_, ambient_flicker_, lights_, kShadowOffset * extent);
+    state->illumination.emplace(ambient_, ambient_flicker_, lights_, kShadowOffset * extent,
+                                environment_);
     state->normals = std::move(all.normals);
+    set_normal_frames(std::move(all.normal_frames), all.surfaces.size(), *state);
   }
   state->surfaces = std::move(all.surfaces);
   state->interiors = std::move(all.interiors);
@@ -319,6 +340,16 @@ Scene SceneBuilder::build(const Background& background) && {
   if (!still.is_empty()) state->size_m = extent_of(still.box());
   for (Body& body : bodies_) state->bvh_triangles.push_back(std::move(body).occluders());
   return Scene(std::move(state));
+}
+
+void SceneBuilder::set_normal_frames(std::vector<NormalFrame> frames, std::size_t triangles,
+                                     Scene::State& state) const {
+  if (frames.empty()) return;
+  state.normal_frame_of.assign(triangles, kNoFrame);
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    state.normal_frame_of[frames[k].triangle] = static_cast<std::uint32_t>(k);
+  state.normal_frames = std::move(frames);
+  state.normal_maps = normal_maps_;
 }
 
 PreparedTriangles SceneBuilder::number_triangles() {
@@ -364,7 +395,7 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
 Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian,
-                         channel, takes_lights(options)});
+                         channel, takes_lights(options), options.normal_maps});
   MeshUses uses;
   importer.prefetch(distinct_files(options.meshes, uses));
   std::map<std::filesystem::path, Mesh> meshes;
@@ -396,8 +427,11 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
     if (--uses[item.file] == 0) meshes.erase(known);
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
-  if (options.lighting == Lighting::kLambertian)
+  if (options.lighting == Lighting::kLambertian) {
     builder.light(options.ambient, std::move(lights), options.ambient_flicker);
+    if (options.environment_light)
+      builder.light_from_around(read_environment(options, channel, importer.remarks()));
+  }
   const Background background = read_background(options, channel, importer.remarks());
   if (channel == ColourChannel::kLuminance)
     for (const std::string& line : importer.remarks().lines()) show_warning(line);

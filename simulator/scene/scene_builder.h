@@ -11,6 +11,7 @@
 #include "core/spline/spline.h"
 #include "simulator/scene/background.h"
 #include "simulator/scene/colour_channel.h"
+#include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_options.h"
@@ -27,6 +28,7 @@ namespace saccade {
 [[nodiscard]] Scene build_scene(const SceneOptions& options,
                                 ColourChannel channel = ColourChannel::kLuminance);
 
+struct NormalFrame;
 struct PreparedTriangles;
 class Visibility;
 
@@ -50,6 +52,8 @@ class SceneBuilder {
   /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
   void light(double ambient, std::vector<LightOptions> lights,
              const std::optional<FlickerOptions>& ambient_flicker = std::nullopt);
+  /// Of a scene with light(), that of its surroundings as well.
+  void light_from_around(const EnvironmentLight& environment) { environment_ = environment; }
 
   /// At least one triangle was added.
   [[nodiscard]] Scene build(const Background& background) &&;
@@ -61,16 +65,21 @@ class SceneBuilder {
                      const InstanceLabel& label);
   /// Moves all triangles together and numbers them; the corners stay.
   [[nodiscard]] PreparedTriangles number_triangles();
+  /// Into `state`, which has so many triangles.
+  void set_normal_frames(std::vector<NormalFrame> frames, std::size_t triangles,
+                         Scene::State& state) const;
   [[nodiscard]] Visibility make_visibility(const Scene::State& state) const;
 
   std::vector<Body> bodies_;  ///< what is static, then the moving objects
   std::vector<std::shared_ptr<const Texture>> textures_;
+  std::vector<std::shared_ptr<const NormalTexture>> normal_maps_;
   std::vector<SceneInstance> instances_;
   std::uint32_t objects_ = 0;
   bool is_lit_ = false;
   double ambient_ = 0;
   std::optional<FlickerOptions> ambient_flicker_;
-  std::vector<LightOptions> lights_;
+  std::vector<LightOptions> lights_;  ///< of area lights their emitters
+  std::optional<EnvironmentLight> environment_;
 };
 
 }  // namespace saccade

@@ -6,6 +6,7 @@
 #include "core/config/fields.h"
 #include "core/config/suggest.h"
 #include "simulator/scene/instance.h"
+#include "simulator/scene/light/area_light.h"
 #include "simulator/scene/mesh/file_source.h"
 #include "simulator/scene/scene.h"
 
@@ -40,6 +41,12 @@ std::vector<std::string> class_names(const SceneOptions& options) {
     if (!mesh.class_name.empty() && std::ranges::find(names, mesh.class_name) == names.end())
       names.push_back(mesh.class_name);
   return names;
+}
+
+std::size_t emitter_count(const std::vector<LightOptions>& lights) {
+  std::size_t count = 0;
+  for (const LightOptions& light : lights) count += emitter_count(light);
+  return count;
 }
 
 void describe(config::Fields& fields, MeshOptions& options) {
@@ -124,6 +131,11 @@ void describe(config::Fields& fields, SceneOptions& options) {
     fields.value("background", options.background, help).at_least(0);
     if (fields.has("background")) options.background_picture.clear();
   }
+  fields
+      .value("background_yaw_deg", options.background_yaw_deg,
+             "Angle by which the background's picture, and that of environment_light, are turned "
+             "about the vertical, from +x towards +y, in degrees.")
+      .range(-360, 360);
   fields.choice("missing_texture", options.missing_texture,
                 {{"error", MissingTexture::kError}, {"grey", MissingTexture::kGrey}},
                 "What becomes of a texture that is missing or cannot be decoded: an error, or grey "
@@ -140,9 +152,19 @@ void describe(config::Fields& fields, SceneOptions& options) {
         "ambient_flicker", options.ambient_flicker,
         "Flicker of the ambient light: in a room, that of the lamps whose light the walls "
         "scatter.");
+    fields.section(
+        "environment_light", options.environment_light,
+        "Light of the surroundings on all surfaces, by their normals and without shadows, "
+        "in spherical harmonics up to second order. By default there is none: the background is "
+        "only seen.");
     fields.list("lights", options.lights,
-                "Point lights, spots and directional lights, at most 64.");
-    fields.expect(options.lights.size() <= kMaxLights, "lights", "must be at most 64");
+                "Point lights, spots, directional lights and area lights, at most 64, each emitter "
+                "of an area light counted.");
+    fields.expect(emitter_count(options.lights) <= kMaxLights, "lights",
+                  "must be at most 64, with every emitter of area lights counted");
+    fields.value("normal_maps", options.normal_maps,
+                 "Whether the normal maps of mesh files bend the normals that light falls on. "
+                 "Normals of labels stay those of the triangles.");
     fields.value("lights_from_meshes", options.lights_from_meshes,
                  "Whether the lights of glTF files (KHR_lights_punctual) light the scene as well, "
                  "where their meshes stand. Those of meshes with a trajectory do not.");

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/motion_options.h"
+#include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/light/flicker.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture_library.h"
@@ -51,11 +52,14 @@ struct SceneOptions {
   std::vector<std::string> classes;      ///< class k is item k - 1; empty: as the meshes name them
   double background = 0.5;
   std::filesystem::path background_picture;
+  double background_yaw_deg = 0;  ///< of it, and of the picture of the environment light
   MissingTexture missing_texture = MissingTexture::kError;
   Lighting lighting = Lighting::kNone;
   double ambient = 0;
   std::optional<FlickerOptions> ambient_flicker;
+  std::optional<EnvironmentLightOptions> environment_light;
   std::vector<LightOptions> lights;
+  bool normal_maps = true;                    ///< of mesh files, under lights
   bool lights_from_meshes = false;            ///< adds those of glTF files
   double light_scale = 1 / std::numbers::pi;  ///< their intensity per candela or lux
 };
@@ -68,6 +72,9 @@ struct SceneOptions {
 /// The names of the classes 1, 2 ...: those that `options` lists, else those of its meshes in the
 /// order in which they are named first.
 [[nodiscard]] std::vector<std::string> class_names(const SceneOptions& options);
+
+/// Of some lights, all emitters of area lights counted.
+[[nodiscard]] std::size_t emitter_count(const std::vector<LightOptions>& lights);
 
 void describe(config::Fields& fields, MeshOptions& options);
 void describe(config::Fields& fields, SceneOptions& options);

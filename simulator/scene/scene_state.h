@@ -17,6 +17,7 @@
 #include "simulator/scene/light/illumination.h"
 #include "simulator/scene/light/patch_lighting.h"
 #include "simulator/scene/mesh/mesh.h"
+#include "simulator/scene/normal_frame.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {
@@ -64,6 +65,9 @@ struct BvhTriangles {
 /// Corners' unit normals in the body's frame.
 using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 
+/// Of triangles without a normal map.
+constexpr std::uint32_t kNoFrame = std::numeric_limits<std::uint32_t>::max();
+
 /// A part of a triangle.
 struct Patch {
   TriangleId triangle;
@@ -91,11 +95,14 @@ struct TriangleLighting {
 struct Scene::State {
   LargeVector<TriangleSurface> surfaces;
   LargeVector<TriangleInterior> interiors;
-  LargeVector<ShadingNormals> normals;                   ///< empty without lighting
-  std::vector<Cutout> cutouts;                           ///< of the last triangles
-  std::vector<std::uint16_t> triangle_instances;         ///< from 1 on
-  std::vector<SceneInstance> instances;                  ///< instance k is item k - 1
-  std::vector<std::shared_ptr<const Texture>> textures;  ///< keeps them alive
+  LargeVector<ShadingNormals> normals;         ///< empty without lighting
+  std::vector<NormalFrame> normal_frames;      ///< of triangles with a normal map
+  std::vector<std::uint32_t> normal_frame_of;  ///< by triangle, or kNoFrame; empty: of none
+  std::vector<std::shared_ptr<const NormalTexture>> normal_maps;  ///< keeps them alive
+  std::vector<Cutout> cutouts;                                    ///< of the last triangles
+  std::vector<std::uint16_t> triangle_instances;                  ///< from 1 on
+  std::vector<SceneInstance> instances;                           ///< instance k is item k - 1
+  std::vector<std::shared_ptr<const Texture>> textures;           ///< keeps them alive
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
   std::optional<Visibility> visibility;
@@ -126,8 +133,18 @@ struct Scene::State {
   /// As Scene::edge_functions(), in the body's frame.
   [[nodiscard]] EdgeFunctions edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
                                              const Eigen::Matrix3d& body_from_camera) const;
+  /// nullptr: it has no normal map.
+  [[nodiscard]] const NormalFrame* normal_frame(TriangleId triangle) const {
+    if (normal_frame_of.empty() || normal_frame_of[triangle] == kNoFrame) return nullptr;
+    return &normal_frames[normal_frame_of[triangle]];
+  }
   /// In the body's frame.
-  [[nodiscard]] LitPoint local_point(const Ray& ray, double distance, TriangleId triangle) const;
+  [[nodiscard]] LitPoint local_point(const Ray& ray, const SurfaceSample& seen,
+                                     TriangleId triangle) const;
+  /// The axes of its normal map where a ray meets a triangle that has one, on the side that is seen;
+  /// in the world, as is `ray`.
+  [[nodiscard]] Eigen::Matrix3d normal_map_axes(const Ray& ray, double distance,
+                                                TriangleId triangle) const;
 
   /// nullopt: it casts none, edge-on to the light. `patch`: a point near where it may fall.
   [[nodiscard]] std::optional<Occluder> make_occluder(TriangleId triangle,
@@ -160,7 +177,8 @@ struct Scene::State {
                   std::span<SurfaceSample> samples, bool within_cones) const;
 
   /// In the world, as is `ray`.
-  [[nodiscard]] LitPoint surface_point(const Ray& ray, double distance, TriangleId triangle) const;
+  [[nodiscard]] LitPoint surface_point(const Ray& ray, const SurfaceSample& seen,
+                                       TriangleId triangle) const;
 };
 
 /// Distance along the ray to a plane [length of the direction]; not finite where they are parallel.

@@ -26,11 +26,11 @@ struct TexelForms {
 
 /// Texel coordinates x = u W - 0.5, y = (1 - v) H - 0.5. Repeated textures are shifted by whole
 /// periods towards their first one, where reading is fastest.
-TexelForms texel_forms(const Texture& texture, const Mesh& mesh, const Triangle& triangle,
-                       const TriangleInterior& interior) {
+TexelForms texel_forms(const Texture& texture, const std::vector<Eigen::Vector2d>& uvs,
+                       const Triangle& triangle, const TriangleInterior& interior) {
   Eigen::Vector3d x, y;
   for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector2d& uv = mesh.uvs[triangle.corners[static_cast<std::size_t>(i)]];
+    const Eigen::Vector2d& uv = uvs[triangle.corners[static_cast<std::size_t>(i)]];
     x[i] = uv.x() * texture.width();
     y[i] = (1 - uv.y()) * texture.height();
   }
@@ -55,6 +55,9 @@ void append(Items& to, Items&& from) {
 }  // namespace
 
 void PreparedTriangles::append(PreparedTriangles&& other) {
+  const auto first = static_cast<std::uint32_t>(surfaces.size());
+  for (NormalFrame& frame : other.normal_frames) frame.triangle += first;
+  saccade::append(normal_frames, std::move(other.normal_frames));
   saccade::append(corners, std::move(other.corners));
   saccade::append(surfaces, std::move(other.surfaces));
   saccade::append(interiors, std::move(other.interiors));
@@ -79,6 +82,9 @@ TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_
   vertices_.reserve(mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices)
     vertices_.emplace_back(body_from_mesh * vertex);
+  if (std::ranges::any_of(mesh.materials,
+                          [](const Material& m) { return m.normal_map != nullptr; }))
+    tangents_.emplace(mesh, vertices_, body_from_mesh.linear());
 }
 
 bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) const {
@@ -102,8 +108,12 @@ bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) con
   target.surfaces.push_back(surface(triangle, plane, interior));
   target.interiors.push_back(interior);
   target.normals.push_back(shading_normals(triangle, plane.gradient));
+  if (mesh_.materials[triangle.material].normal_map) {
+    target.normal_frames.push_back(normal_frame(triangle, interior, target.normals.back()));
+    target.normal_frames.back().triangle = static_cast<std::uint32_t>(target.surfaces.size() - 1);
+  }
   if (const Texture* opacity = mesh_.materials[triangle.material].opacity.get()) {
-    const TexelForms forms = texel_forms(*opacity, mesh_, triangle, interior);
+    const TexelForms forms = texel_forms(*opacity, mesh_.uvs, triangle, interior);
     target.cutouts.push_back({forms.x, forms.y, opacity});
   }
   return true;
@@ -116,7 +126,7 @@ TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineFor
   surface.self_light = material.self_light;
   if (material.texture != nullptr) {
     SACCADE_CHECK(!mesh_.uvs.empty());
-    const TexelForms forms = texel_forms(*material.texture, mesh_, triangle, interior);
+    const TexelForms forms = texel_forms(*material.texture, mesh_.uvs, triangle, interior);
     surface.x = forms.x;
     surface.y = forms.y;
   } else if (!mesh_.colours.empty()) {
@@ -126,6 +136,32 @@ TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineFor
     surface.x.offset = material.albedo;
   }
   return surface;
+}
+
+NormalFrame TriangleSetup::normal_frame(const Triangle& triangle, const TriangleInterior& interior,
+                                        const ShadingNormals& normals) const {
+  const NormalTexture& map = *mesh_.materials[triangle.material].normal_map;
+  const TexelForms forms = texel_forms(map.part(0), mesh_.normal_uvs, triangle, interior);
+  const Eigen::Vector3d plane_normal =
+      interior.second.gradient.cross(interior.third.gradient).normalized();
+  // The tangents belong to the normals that the mesh states, which may be turned over here: then
+  // the whole vector is, so that the map's hollows stay hollows.
+  const double first_side = side_of(triangle, 0, plane_normal);
+  const VertexTangents::Corners corners =
+      tangents_->of(triangle, first_side * normals[0].cast<double>());
+  NormalFrame frame{
+      forms.x, forms.y, {}, static_cast<float>(first_side * corners.handedness), &map};
+  for (std::size_t i = 0; i < frame.tangents.size(); ++i)
+    frame.tangents[i] = (side_of(triangle, i, plane_normal) * corners.tangents[i]).cast<float>();
+  return frame;
+}
+
+double TriangleSetup::side_of(const Triangle& triangle, std::size_t corner,
+                              const Eigen::Vector3d& plane_normal) const {
+  // A mirrored mesh winds its triangles the other way.
+  if (mesh_.normals.empty()) return normal_matrix_.determinant() < 0 ? -1 : 1;
+  const Eigen::Vector3d stated = normal_matrix_ * mesh_.normals[triangle.corners[corner]];
+  return stated.dot(plane_normal) < 0 ? -1 : 1;
 }
 
 ShadingNormals TriangleSetup::shading_normals(const Triangle& triangle,

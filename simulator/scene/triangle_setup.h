@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "core/large_vector.h"
+#include "simulator/scene/mesh/tangents.h"
 #include "simulator/scene/scene_state.h"
 
 namespace saccade {
@@ -16,7 +18,9 @@ struct PreparedTriangles {
   LargeVector<TriangleSurface> surfaces;
   LargeVector<TriangleInterior> interiors;
   LargeVector<ShadingNormals> normals;
-  std::vector<Cutout> cutouts;           ///< one per triangle, or none at all
+  std::vector<Cutout> cutouts;  ///< one per triangle, or none at all
+  std::vector<NormalFrame>
+      normal_frames;                     ///< of those that have a normal map, by their number here
   std::vector<std::uint16_t> instances;  ///< what each of them is labelled with
 
   void append(PreparedTriangles&& other);
@@ -39,10 +43,18 @@ class TriangleSetup {
   [[nodiscard]] ShadingNormals shading_normals(const Triangle& triangle,
                                                const Eigen::Vector3d& plane_normal) const;
 
+  /// `normals`: those of its corners.
+  [[nodiscard]] NormalFrame normal_frame(const Triangle& triangle, const TriangleInterior& interior,
+                                         const ShadingNormals& normals) const;
+  /// 1, or -1 where the normal that the mesh states at a corner is against the triangle's winding.
+  [[nodiscard]] double side_of(const Triangle& triangle, std::size_t corner,
+                               const Eigen::Vector3d& plane_normal) const;
+
   const Mesh& mesh_;
   std::uint32_t object_;
   Eigen::Matrix3d normal_matrix_;
-  std::vector<Eigen::Vector3d> vertices_;  ///< in the body's frame
+  std::vector<Eigen::Vector3d> vertices_;   ///< in the body's frame
+  std::optional<VertexTangents> tangents_;  ///< where there are normal maps
 };
 
 }  // namespace saccade

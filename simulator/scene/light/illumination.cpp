@@ -24,18 +24,41 @@ LightPath path_to(const LightOptions& light, const LitPoint& point) {
                                             : Eigen::Vector3d(-light.direction);
   const double squared = direction.squaredNorm();
   const double along_normal = point.shading_normal.dot(direction) / std::sqrt(squared);
-  return {direction, is_near ? 1.0 : std::numeric_limits<double>::infinity(),
-          light.intensity * along_normal / (is_near ? squared : 1.0)};
+  double irradiance = light.intensity * along_normal / (is_near ? squared : 1.0);
+  if (light.type == LightType::kEmitter)
+    irradiance *= std::max(0.0, -light.direction.dot(direction)) / std::sqrt(squared);
+  return {direction, is_near ? 1.0 : std::numeric_limits<double>::infinity(), irradiance};
+}
+
+/// The range near a line of a quantity that is not negative.
+LightRange near_line(double from, double to, double length_s) {
+  LightRange range = range_near_line(from, to, length_s);
+  range.low = std::max(0.0, range.low);
+  return range;
+}
+
+/// What a light throws onto a surface with the normal n is n times this, where that is positive.
+/// Without the falloff of a cone.
+Eigen::Vector3d flux_of(const LightOptions& light, const Eigen::Vector3d& point) {
+  if (!light.has_position()) return -light.intensity * light.direction;
+  const Eigen::Vector3d direction = light.position - point;
+  const double squared = direction.squaredNorm();
+  double flux = light.intensity / (squared * std::sqrt(squared));
+  if (light.type == LightType::kEmitter)
+    flux *= std::max(0.0, -light.direction.dot(direction)) / std::sqrt(squared);
+  return flux * direction;
 }
 
 }  // namespace
 
 Illumination::Illumination(double ambient, const std::optional<FlickerOptions>& ambient_flicker,
-                           const std::vector<LightOptions>& lights, double shadow_offset)
+                           const std::vector<LightOptions>& lights, double shadow_offset,
+                           const std::optional<EnvironmentLight>& environment)
     : ambient_(ambient),
       lights_(lights),
       ambient_flicker_(index_of(ambient_flicker)),
-      shadow_offset_(shadow_offset) {
+      shadow_offset_(shadow_offset),
+      environment_(environment) {
   SACCADE_CHECK(lights.size() <= kMaxLights);
   for (LightOptions& light : lights_) light.direction.normalize();
   for (const LightOptions& light : lights_) {
@@ -75,7 +98,9 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
     for (std::size_t i = 0; i < points.size(); ++i) {
       const LitPoint& point = points[i];
       const LightPath path = path_to(lights_[index], point);
-      if (!(path.irradiance > 0) || point.plane_normal.dot(path.direction) <= 0) continue;
+      // A normal map turns away from a light and back within a texel: that is no edge of a shadow.
+      if (!(path.irradiance > 0) && !point.has_normal_map) continue;
+      if (point.plane_normal.dot(path.direction) <= 0) continue;
       if (within_cones && !(falloff(index, point) > 0)) continue;
       rays[n] = {point.position + shadow_offset_ * point.plane_normal, path.direction,
                  point.time_s};
@@ -92,6 +117,7 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
 
 double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
   double sum = ambient_ * factor(ambient_flicker_, point);
+  if (environment_) sum += environment_->radiance(point.shading_normal);
   for (std::size_t index = 0; index < lights_.size(); ++index)
     if ((lights >> index & 1) != 0)
       sum += factor(light_flickers_[index], point) * falloff(index, point) *
@@ -100,17 +126,24 @@ double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
 }
 
 LightRange Illumination::irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
-                                          const LitPoint& to, LightSet lights) const {
+                                          const LitPoint& to, LightSet lights,
+                                          const VectorRange* normal) const {
   const double length_s = to.time_s - from.time_s;
   const LightRange ambient{ambient_, ambient_, 0, 0};
   LightRange sum = ambient.times(factor_range(ambient_flicker_, from.time_s, to.time_s));
+  if (environment_)
+    sum.add(normal != nullptr ? environment_->range(*normal)
+                              : near_line(environment_->radiance(from.shading_normal),
+                                          environment_->radiance(to.shading_normal), length_s));
   for (std::size_t index = 0; index < lights_.size(); ++index) {
     if ((lights >> index & 1) == 0) continue;
-    const double a = std::max(0.0, path_to(lights_[index], from).irradiance);
-    const double b = std::max(0.0, path_to(lights_[index], to).irradiance);
-    const double slack = 0.25 * std::abs(b - a);
-    LightRange steady{std::max(0.0, std::min(a, b) - slack), std::max(a, b) + slack,
-                      (b - a - 2 * slack) / length_s, (b - a + 2 * slack) / length_s};
+    const LightOptions& light = lights_[index];
+    LightRange steady =
+        normal != nullptr
+            ? positive_part(dot(*normal, range_near_line(flux_of(light, from.position),
+                                                         flux_of(light, to.position), length_s)))
+            : near_line(std::max(0.0, path_to(light, from).irradiance),
+                        std::max(0.0, path_to(light, to).irradiance), length_s);
     if (const auto& cone = cones_[index])
       steady = steady.times(cone->falloff_range(from.position, middle, to.position, length_s));
     sum.add(steady.times(factor_range(light_flickers_[index], from.time_s, to.time_s)));

@@ -8,9 +8,11 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/intersection/visibility.h"
+#include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/light/flicker.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/light/spot_cone.h"
+#include "simulator/scene/light/vector_range.h"
 
 namespace saccade {
 
@@ -19,16 +21,19 @@ struct LitPoint {
   Eigen::Vector3d position;
   Eigen::Vector3d plane_normal;
   Eigen::Vector3d shading_normal;
-  double time_s;  ///< at which it is seen
-  double span_s;  ///< around it, over which flickering light is averaged
+  double time_s;                ///< at which it is seen
+  double span_s;                ///< around it, over which flickering light is averaged
+  bool has_normal_map = false;  ///< which the shading normal follows
 };
 
-/// What falls onto a Lambertian surface: ambient light and lights with shadows.
+/// What falls onto a Lambertian surface: ambient light, the light of surroundings, and lights with
+/// shadows.
 class Illumination {
  public:
   /// `shadow_offset`: how far shadow rays start above their surface [m].
   Illumination(double ambient, const std::optional<FlickerOptions>& ambient_flicker,
-               const std::vector<LightOptions>& lights, double shadow_offset);
+               const std::vector<LightOptions>& lights, double shadow_offset,
+               const std::optional<EnvironmentLight>& environment = std::nullopt);
 
   /// The lights that each of at most 16 points faces and that nothing hides from it. Of spots also
   /// those whose cone a point is outside of, so that a cone's edge is no edge of a shadow: with
@@ -36,26 +41,31 @@ class Illumination {
   void find_unoccluded_lights(std::span<const LitPoint> points, const Visibility& blockers,
                               std::span<LightSet> lights, bool within_cones = false) const;
 
-  /// Radiance per albedo: ambient + sum of intensity cos(angle) / distance^2 (of directional lights
-  /// without the distance, of spots times the falloff of their cone) over `lights`, each times its
-  /// flicker.
+  /// Radiance per albedo: ambient + environment(normal) + sum of intensity cos(angle) / distance^2
+  /// (of directional lights without the distance, of spots times the falloff of their cone, of
+  /// emitters times the cosine at their normal) over `lights`, each times its flicker.
   [[nodiscard]] double irradiance(const LitPoint& point, LightSet lights) const;
 
   /// The bounds of irradiance() from `from` to `to`, two points of a surface at the ends of an
   /// interval that `lights` light throughout, and at `middle` halfway in time, of which only spots
   /// ask. The cosine over the distance squared is taken to stay near the line between both ends; the
-  /// falloff of cones and the flicker are bounded in closed form.
+  /// falloff of cones and the flicker are bounded in closed form. `normal`: bounds of a shading normal
+  /// that may leave the line between both ends'.
   [[nodiscard]] LightRange irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
-                                            const LitPoint& to, LightSet lights) const;
+                                            const LitPoint& to, LightSet lights,
+                                            const VectorRange* normal = nullptr) const;
 
   /// All that there are, each once.
   [[nodiscard]] std::span<const Flicker> flickers() const { return flickers_; }
 
   /// Whether there are spots.
   [[nodiscard]] bool has_cones() const { return has_cones_; }
-  /// Whether the cone of a light, if it has one, meets no point of a sphere.
+  /// Whether no point of a sphere is in front of a light that is an emitter, or in the cone of one
+  /// that has one.
   [[nodiscard]] bool misses(std::size_t light, const Eigen::Vector3d& centre, double radius) const {
-    return cones_[light] && cones_[light]->misses(centre, radius);
+    return (cones_[light] && cones_[light]->misses(centre, radius)) ||
+           (lights_[light].type == LightType::kEmitter &&
+            lights_[light].direction.dot(centre - lights_[light].position) < -radius);
   }
 
   /// With unit directions.
@@ -83,6 +93,7 @@ class Illumination {
   std::vector<std::optional<SpotCone>> cones_;  ///< of lights that are spots
   bool has_cones_ = false;
   double shadow_offset_;
+  std::optional<EnvironmentLight> environment_;
 };
 
 }  // namespace saccade

@@ -110,8 +110,8 @@ GltfComponent gltf_component(std::uint64_t code) {
 constexpr std::uint64_t kGltfFloat = 5126;
 
 bool is_attribute_shown(const std::string& name) {
-  return name == "POSITION" || name == "NORMAL" || name.starts_with("TEXCOORD_") ||
-         name == "COLOR_0";
+  return name == "POSITION" || name == "NORMAL" || name == "TANGENT" ||
+         name.starts_with("TEXCOORD_") || name == "COLOR_0";
 }
 
 std::string lower_case(std::string text) {

@@ -253,6 +253,25 @@ void GltfMaterials::add_emission(const json& material, const Base& base,
   if (use) take_coordinates(*use, result);
 }
 
+void GltfMaterials::add_normal_map(const json& material, ImportedMaterial& result) {
+  const json& info = member(material, "normalTexture");
+  const std::optional<TextureUse> use = texture_use(info);
+  if (!use || leaves_out_normal_map(context_)) return;
+  const float scale = number(member(info, "scale"), 1);
+  const std::string key = fmt::format("{} {} {} {}", use->texture, static_cast<int>(use->wrap.u),
+                                      static_cast<int>(use->wrap.v), scale);
+  const auto [known, is_new] = normal_maps_.try_emplace(key);
+  if (is_new)
+    known->second = load_or_flat(context_.options.missing_texture, context_.remarks, [&] {
+      const GltfFile::NamedBytes image = file_.image(image_of(use->texture));
+      return std::make_shared<const NormalTexture>(
+          decode_normal_map(image.bytes, image.name, use->wrap, scale));
+    });
+  result.material.normal_map = known->second;
+  result.normal_uv_channel = use->uv_channel;
+  result.normal_uv_transform = use->uv_transform;
+}
+
 void GltfMaterials::add_self_light(const Base& base, const std::optional<TextureUse>& use,
                                    ImportedMaterial& result) const {
   Material& surface = result.material;
@@ -308,13 +327,13 @@ ImportedMaterial GltfMaterials::read(const json& material) {
     }
   }
   add_emission(material, base, result);
+  add_normal_map(material, result);
   return result;
 }
 
 void GltfMaterials::remark_ignored(const json& material) const {
   if (!material.is_object()) return;
   const json& surface = member(material, "pbrMetallicRoughness");
-  if (member(material, "normalTexture").is_object()) ignore("normal maps");
   if (member(material, "occlusionTexture").is_object()) ignore("occlusion maps");
   if (member(surface, "metallicRoughnessTexture").is_object() ||
       (surface.is_object() && number(member(surface, "metallicFactor"), 1) > 0))

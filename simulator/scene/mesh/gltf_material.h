@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,7 @@
 
 namespace saccade {
 
-/// The materials of a glTF file in linear grey: base colour, opacity and emission. What else they
+/// The materials of a glTF file in linear grey: base colour, opacity, emission and normal map. What else they
 /// state is remarked, not shown.
 ///   radiance = luminance(base factor * base texture) * light
 ///              + luminance(emissive factor * emissive texture)
@@ -48,6 +49,7 @@ class GltfMaterials {
   [[nodiscard]] TexturePair textures(const Base& base);
   void add_emission(const nlohmann::json& material, const Base& base,
                     ImportedMaterial& result) const;
+  void add_normal_map(const nlohmann::json& material, ImportedMaterial& result);
   /// Under lights: emission counts as light that falls on the surface.
   void add_self_light(const Base& base, const std::optional<TextureUse>& use,
                       ImportedMaterial& result) const;
@@ -59,6 +61,7 @@ class GltfMaterials {
   const MaterialContext& context_;
   /// By what they are made of: many materials share one.
   std::map<std::string, TexturePair> textures_;
+  std::map<std::string, std::shared_ptr<const NormalTexture>> normal_maps_;
 };
 
 }  // namespace saccade

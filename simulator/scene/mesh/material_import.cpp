@@ -54,6 +54,25 @@ TexturePair load_texture(const Model& model, const ModelTexture& reference,
   });
 }
 
+std::shared_ptr<const NormalTexture> load_normal_map(const Model& model,
+                                                     const ModelTexture& reference,
+                                                     const MaterialContext& context) {
+  if (reference.embedded < 0)
+    return context.textures.normal_map(context.source, texture_file(reference, context),
+                                       reference.wrap, context.source_name);
+  const ModelPicture& embedded = model.pictures.at(static_cast<std::size_t>(reference.embedded));
+  if (embedded.height != 0) {
+    context.remarks.ignore("normal maps inside the file that are not encoded", context.source_name);
+    return nullptr;
+  }
+  const std::string name =
+      fmt::format("{}:{}.{}", context.source_name, reference.name, embedded.hint);
+  return load_or_flat(context.options.missing_texture, context.remarks, [&] {
+    return std::make_shared<const NormalTexture>(
+        decode_normal_map(embedded.bytes, name, reference.wrap));
+  });
+}
+
 std::array<float, 3> linear_colour(const ModelMaterial& material) {
   if (material.is_linear) return material.colour;
   std::array<float, 3> linear{};
@@ -67,6 +86,16 @@ std::array<float, 3> linear_colour(const ModelMaterial& material) {
 
 double grey_of(const std::array<float, 3>& colour, ColourChannel channel) {
   return in_channel(channel, colour[0], colour[1], colour[2]);
+}
+
+bool leaves_out_normal_map(const MaterialContext& context) {
+  if (!context.options.is_lit)
+    context.remarks.ignore("normal maps (they count under lights)", context.source_name);
+  else if (!context.options.takes_normal_maps)
+    context.remarks.ignore("normal maps (scene.normal_maps: true takes them)", context.source_name);
+  else
+    return false;
+  return true;
 }
 
 ImportedMaterial import_material(const Model& model, const ModelMaterial& material,
@@ -83,6 +112,11 @@ ImportedMaterial import_material(const Model& model, const ModelMaterial& materi
     if (!material.ignores_alpha) result.material.opacity = std::move(pair.opacity);
     result.material.factor = material.is_linear ? result.material.albedo : 1.0;
     result.uv_channel = reference->uv_channel;
+  }
+  if (const auto& reference = material.normal_texture;
+      reference && !leaves_out_normal_map(context)) {
+    result.material.normal_map = load_normal_map(model, *reference, context);
+    result.normal_uv_channel = reference->uv_channel;
   }
   if (const auto& alpha = material.opacity_texture)
     result.material.opacity = context.textures.opacity(

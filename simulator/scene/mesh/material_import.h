@@ -20,6 +20,7 @@ struct MeshImportOptions {
   bool is_lit = false;  ///< by lights; otherwise the albedo is the radiance
   ColourChannel channel = ColourChannel::kLuminance;  ///< what becomes of colours
   bool takes_lights = false;                          ///< of glTF files
+  bool takes_normal_maps = true;                      ///< where lights are
 };
 
 /// Where a file's materials and textures come from.
@@ -37,6 +38,8 @@ struct ImportedMaterial {
   bool invisible = false;        ///< cut out everywhere
   std::uint32_t uv_channel = 0;  ///< texture coordinates that the texture asks for
   std::optional<Eigen::Affine2d> uv_transform;
+  std::uint32_t normal_uv_channel = 0;  ///< those that the normal map asks for
+  std::optional<Eigen::Affine2d> normal_uv_transform{};
   /// Linear colour that vertex colours, linear as well, multiply. None: they are sRGB and replace
   /// the albedo.
   std::optional<std::array<float, 3>> colour;
@@ -47,6 +50,9 @@ struct ImportedMaterial {
 /// cannot be decoded, unless it may be grey.
 [[nodiscard]] ImportedMaterial import_material(const Model& model, const ModelMaterial& material,
                                                const MaterialContext& context);
+
+/// Remarks that a normal map is not shown; false where it is.
+[[nodiscard]] bool leaves_out_normal_map(const MaterialContext& context);
 
 /// Linear colour in one channel.
 [[nodiscard]] double grey_of(const std::array<float, 3>& colour, ColourChannel channel);

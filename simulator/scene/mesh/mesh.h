@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/light/light_options.h"
+#include "simulator/scene/texture/normal_texture.h"
 #include "simulator/scene/texture/texture.h"
 
 namespace saccade {
@@ -22,6 +23,7 @@ struct Material {
   std::shared_ptr<const Texture> opacity;  ///< cut out where below 0.5
   /// Under lights the radiance is albedo x (irradiance + self_light). Infinite: it is the albedo.
   double self_light = 0;
+  std::shared_ptr<const NormalTexture> normal_map = nullptr;  ///< bends the shading normal
 };
 
 struct Triangle {
@@ -58,6 +60,10 @@ struct Mesh {
   /// where they were asked for.
   std::vector<LightOptions> lights{};
   MeshExtras extras{};
+  std::vector<Eigen::Vector2d> normal_uvs{};  ///< of normal maps; needed where a material has one
+  /// Unit tangents of normal maps, and the handedness of the bitangent, w (normal x tangent); zero
+  /// where the file states none.
+  std::vector<Eigen::Vector4d> tangents{};
 };
 
 }  // namespace saccade

@@ -69,8 +69,10 @@ class Flattener {
         channel_(channel),
         source_name_(std::move(source_name)),
         remarks_(remarks) {
-    for (const ImportedMaterial& imported : materials_)
+    for (const ImportedMaterial& imported : materials_) {
       mesh_.materials.push_back(imported.material);
+      has_normal_maps_ = has_normal_maps_ || imported.material.normal_map != nullptr;
+    }
   }
 
   void add(const ModelInstance& instance) {
@@ -85,13 +87,23 @@ class Flattener {
                        fmt::format("material '{}' has a texture, but its faces have no "
                                    "texture coordinates",
                                    model_.materials[part.material].name));
+    if (!imported.invisible && material.normal_map && !has_uvs(part, imported.normal_uv_channel))
+      throw InputError(source_name_,
+                       fmt::format("material '{}' has a normal map, but its faces have no "
+                                   "texture coordinates for it",
+                                   model_.materials[part.material].name));
     const std::size_t first = mesh_.vertices.size();
     const Eigen::Matrix3d normal_matrix = file_from_part.linear().inverse().transpose();
     for (std::size_t i = 0; i < part.vertices.size(); ++i) {
       mesh_.vertices.push_back(file_from_part * vector_of(part.vertices[i]));
       check_finite(mesh_.vertices.back(), first + i);
       mesh_.normals.push_back(normal_of(part, i, normal_matrix));
-      mesh_.uvs.push_back(uv_of(part, i, imported));
+      mesh_.uvs.push_back(uv_of(part, i, imported.uv_channel, imported.uv_transform));
+      if (has_normal_maps_) {
+        mesh_.normal_uvs.push_back(
+            uv_of(part, i, imported.normal_uv_channel, imported.normal_uv_transform));
+        mesh_.tangents.push_back(tangent_of(part, i, imported, file_from_part.linear()));
+      }
       mesh_.colours.push_back(colour_of(part, i, imported));
     }
     if (has_opacities(part)) remarks_.ignore("opacity of vertices", source_name_);
@@ -153,12 +165,26 @@ class Flattener {
     return normal / length;
   }
 
-  Eigen::Vector2d uv_of(const ModelPart& part, std::size_t i,
-                        const ImportedMaterial& imported) const {
-    if (!has_uvs(part, imported.uv_channel)) return Eigen::Vector2d::Zero();
-    const auto& [u, v] = part.uvs[imported.uv_channel][i];
+  /// A transform of the texture's coordinates may turn them: then those that are stated do not count.
+  static Eigen::Vector4d tangent_of(const ModelPart& part, std::size_t i,
+                                    const ImportedMaterial& imported,
+                                    const Eigen::Matrix3d& file_from_part) {
+    if (part.tangents.empty() || imported.normal_uv_transform) return Eigen::Vector4d::Zero();
+    const auto& [x, y, z, w] = part.tangents[i];
+    const Eigen::Vector3d tangent = file_from_part * vector_of({x, y, z});
+    const double length = tangent.norm();
+    if (!(length > 0) || !std::isfinite(length)) return Eigen::Vector4d::Zero();
+    Eigen::Vector4d result;
+    result << tangent / length, (w < 0) != (file_from_part.determinant() < 0) ? -1.0 : 1.0;
+    return result;
+  }
+
+  Eigen::Vector2d uv_of(const ModelPart& part, std::size_t i, std::uint32_t channel,
+                        const std::optional<Eigen::Affine2d>& transform) const {
+    if (!has_uvs(part, channel)) return Eigen::Vector2d::Zero();
+    const auto& [u, v] = part.uvs[channel][i];
     Eigen::Vector2d uv(static_cast<double>(u), static_cast<double>(v));
-    if (imported.uv_transform) uv = *imported.uv_transform * uv;
+    if (transform) uv = *transform * uv;
     if (!uv.allFinite())
       throw InputError(source_name_,
                        fmt::format("texture coordinate of vertex {} is not finite", i));
@@ -183,6 +209,7 @@ class Flattener {
   ColourChannel channel_;
   std::string source_name_;
   SceneRemarks& remarks_;
+  bool has_normal_maps_ = false;
   Mesh mesh_;
 };
 

@@ -120,10 +120,11 @@ void visit(Archive& archive, T& value) {
   } else if constexpr (kIsA<T, ModelMaterial>) {
     archive(value.name), archive(value.colour), archive(value.opacity), archive(value.is_linear);
     archive(value.ignores_alpha), archive(value.colour_texture), archive(value.opacity_texture);
+    archive(value.normal_texture);
     archive(value.ignored);
   } else if constexpr (kIsA<T, ModelPart>) {
     archive(value.material), archive(value.vertices), archive(value.normals), archive(value.uvs);
-    archive(value.colours), archive(value.triangles);
+    archive(value.colours), archive(value.tangents), archive(value.triangles);
   } else if constexpr (kIsA<T, ModelInstance>) {
     archive(value.part), archive(value.node), archive(value.file_from_part);
   } else if constexpr (kIsA<T, ModelPicture>) {

@@ -27,7 +27,8 @@ struct ModelMaterial {
   bool ignores_alpha = false;  ///< is opaque whatever its texture says
   std::optional<ModelTexture> colour_texture;
   std::optional<ModelTexture> opacity_texture;
-  std::vector<std::string> ignored;  ///< what else it states, in words
+  std::optional<ModelTexture> normal_texture;  ///< of normals in tangent space
+  std::vector<std::string> ignored;            ///< what else it states, in words
 };
 
 /// Triangles of one material. The attributes have one entry per vertex, or none.
@@ -37,6 +38,7 @@ struct ModelPart {
   std::vector<std::array<float, 3>> normals;
   std::vector<std::vector<std::array<float, 2>>> uvs;  ///< by channel; an empty one is not there
   std::vector<std::array<float, 4>> colours;
+  std::vector<std::array<float, 4>> tangents;  ///< the last: the handedness of the bitangent
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 

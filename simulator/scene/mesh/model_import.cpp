@@ -105,9 +105,11 @@ constexpr struct {
   aiTextureType type;
   const char* feature;
 } kIgnoredTextures[] = {
-    {aiTextureType_NORMALS, "normal maps"}, {aiTextureType_HEIGHT, "bump maps"},
-    {aiTextureType_EMISSIVE, "emission"},   {aiTextureType_SPECULAR, "specular reflection"},
-    {aiTextureType_LIGHTMAP, "light maps"}, {aiTextureType_REFLECTION, "mirror reflection"},
+    {aiTextureType_HEIGHT, "bump maps"},
+    {aiTextureType_EMISSIVE, "emission"},
+    {aiTextureType_SPECULAR, "specular reflection"},
+    {aiTextureType_LIGHTMAP, "light maps"},
+    {aiTextureType_REFLECTION, "mirror reflection"},
 };
 
 std::vector<std::string> ignored_features(const aiMaterial& material) {
@@ -136,6 +138,7 @@ ModelMaterial material_of(const aiScene& scene, const aiMaterial& material) {
   if (!result.colour_texture)
     result.colour_texture = find_texture(scene, material, aiTextureType_BASE_COLOR);
   result.opacity_texture = find_texture(scene, material, aiTextureType_OPACITY);
+  result.normal_texture = find_texture(scene, material, aiTextureType_NORMALS);
   result.ignored = ignored_features(material);
   return result;
 }
@@ -178,6 +181,12 @@ ModelPart part_of(const aiMesh& mesh) {
   for (unsigned i = 0; mesh.HasVertexColors(0) && i < n; ++i) {
     const aiColor4D& colour = mesh.mColors[0][i];
     part.colours.push_back({colour.r, colour.g, colour.b, colour.a});
+  }
+  for (unsigned i = 0; mesh.HasNormals() && mesh.HasTangentsAndBitangents() && i < n; ++i) {
+    const aiVector3D& tangent = mesh.mTangents[i];
+    const bool is_left = (mesh.mNormals[i] ^ tangent) * mesh.mBitangents[i] < 0;
+    part.tangents.push_back({static_cast<float>(tangent.x), static_cast<float>(tangent.y),
+                             static_cast<float>(tangent.z), is_left ? -1.0F : 1.0F});
   }
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];

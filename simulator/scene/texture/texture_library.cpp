@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "simulator/scene/texture/normal_texture.h"
 #include "simulator/scene/texture/picture.h"
 #include "simulator/scene/texture/texture_generator.h"
 
@@ -69,6 +70,19 @@ std::shared_ptr<const Texture> TextureLibrary::opacity(const FileSource& source,
                ImageF image = decode_opacity(read_texture(source, file, user), place, remarks_);
                return std::make_shared<Texture>(std::move(image), wrap.u, wrap.v);
              });
+}
+
+std::shared_ptr<const NormalTexture> TextureLibrary::normal_map(const FileSource& source,
+                                                                const fs::path& file,
+                                                                const WrapModes& wrap,
+                                                                const std::string& user) {
+  const std::string place = FileLocation{source.archive(), file}.text();
+  const auto known = normal_maps_.find({place, wrap});
+  if (known != normal_maps_.end()) return known->second;
+  return normal_maps_[{place, wrap}] = load_or_flat(missing_, remarks_, [&] {
+           return std::make_shared<const NormalTexture>(
+               decode_normal_map(read_texture(source, file, user), place, wrap));
+         });
 }
 
 }  // namespace saccade

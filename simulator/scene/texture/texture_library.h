@@ -15,6 +15,8 @@
 
 namespace saccade {
 
+class NormalTexture;
+
 /// What becomes of a texture that is missing or cannot be decoded: an error, or grey 0.5 and a
 /// remark.
 enum class MissingTexture { kError, kGrey };
@@ -29,6 +31,20 @@ auto load_or_grey(MissingTexture missing, SceneRemarks& remarks, const Load& loa
   } catch (const InputError& error) {
     remarks.say(std::string(error.what()) + "; grey 0.5 is shown instead");
     return {};
+  }
+}
+
+/// load(), or where it throws InputError and textures may be missing, null and a remark: surfaces
+/// stay without their normal map.
+template <class Load>
+auto load_or_flat(MissingTexture missing, SceneRemarks& remarks, const Load& load)
+    -> decltype(load()) {
+  if (missing == MissingTexture::kError) return load();
+  try {
+    return load();
+  } catch (const InputError& error) {
+    remarks.say(std::string(error.what()) + "; the surface is shown without its normal map");
+    return nullptr;
   }
 }
 
@@ -67,6 +83,12 @@ class TextureLibrary {
                                                        const WrapModes& wrap,
                                                        const std::string& user);
 
+  /// The same picture read as a normal map; null where it is missing and may be.
+  [[nodiscard]] std::shared_ptr<const NormalTexture> normal_map(const FileSource& source,
+                                                                const std::filesystem::path& file,
+                                                                const WrapModes& wrap,
+                                                                const std::string& user);
+
  private:
   using Key = std::pair<std::string, WrapModes>;
   using SeededKey = std::pair<Key, std::optional<std::uint64_t>>;
@@ -75,6 +97,7 @@ class TextureLibrary {
   ColourChannel channel_;
   std::map<SeededKey, TexturePair> colours_;
   std::map<Key, std::shared_ptr<const Texture>> opacities_;
+  std::map<Key, std::shared_ptr<const NormalTexture>> normal_maps_;
 };
 
 /// A picture as a pair of textures. `alpha_scale` multiplies the opacity.

@@ -265,7 +265,7 @@ std::optional<ViewSample> AdaptiveTile::resample_settled(std::size_t i, double t
 
 bool AdaptiveTile::is_arc(const ViewSample& from, const ViewSample& to) const {
   return from.triangles == to.triangles && from.lights == to.lights && from.triangle != kNothing &&
-         has_arcs_;
+         has_arcs_ && !scene_.has_normal_map(from.triangle);
 }
 
 bool AdaptiveTile::is_quiet(std::size_t i, const Pixel& pixel, const ViewSample& next) const {
@@ -347,6 +347,12 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   const double texel = now.level > 0 ? std::exp2(-now.level) : 1;
   if (is_continuous_there &&
       std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) * texel > kMaxTexels)
+    return {false, middle_s, needs_ray};
+  const double normal_texel = now.normal_level > 0 ? std::exp2(-now.normal_level) : 1;
+  if (is_continuous_there &&
+      std::max(std::abs(next.normal_x - now.normal_x), std::abs(next.normal_y - now.normal_y)) *
+              normal_texel >
+          kMaxTexels)
     return {false, middle_s, needs_ray};
 
   // How far the signal may be from the line in its middle: a parabola with the slope before it, or

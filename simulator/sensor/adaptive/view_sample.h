@@ -22,6 +22,8 @@ struct ViewSample {
   std::uint64_t lights = 0;        ///< a hash of the lights that light all of them
   LightSet lights_of_ray = 0;      ///< that light the first
   LightSet settled = 0;  ///< lights of which it is known in double precision whether they do
+  double normal_x = 0, normal_y = 0;  ///< of the first ray on a normal map [texel]
+  double normal_level = 0;            ///< of its pyramid
 };
 
 }  // namespace saccade

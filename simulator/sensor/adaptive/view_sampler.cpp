@@ -66,6 +66,7 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
     for (std::size_t k = 0; k < n; ++k) {
       ViewSample& sample = samples[(first + k) / per_pixel];
       add(seen[k], triangles[k], (first + k) % per_pixel == 0, sample);
+      if ((first + k) % per_pixel == 0) add_normal_map(rays[k], seen[k], sample);
       sample.radiance += seen[k].radiance();  // the sum, until all of them are there
     }
   }
@@ -76,6 +77,15 @@ void ViewSampler::trace(std::span<const SampleRequest> requests, std::span<ViewS
   }
   statistics_.rays += count;
   if (scene_.is_lit()) statistics_.lit_points += count;
+}
+
+void ViewSampler::add_normal_map(const Ray& ray, const SurfaceSample& seen,
+                                 ViewSample& sample) const {
+  if (!scene_.has_normal_map(sample.triangle) || !(seen.distance > 0)) return;
+  const NormalTextureSample map = scene_.sample_normal_map(ray, sample.triangle, seen);
+  sample.normal_x = map.x;
+  sample.normal_y = map.y;
+  sample.normal_level = map.level;
 }
 
 void ViewSampler::look(double t_s, std::span<TriangleId> triangles) {
@@ -104,6 +114,11 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   const SurfaceSample seen = surface_like(request, like);
   ViewSample sample;
   add(seen, like.triangle, true, sample);
+  if (scene_.has_normal_maps()) {
+    const CameraFrame& camera = camera_at(request.t_s);
+    add_normal_map({camera.position, camera.rotation * directions(request.pixel)[0], request.t_s},
+                   seen, sample);
+  }
   sample.triangles = like.triangles;
   sample.lights = like.lights;
   sample.t_s = request.t_s;

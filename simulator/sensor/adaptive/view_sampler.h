@@ -79,6 +79,8 @@ class ViewSampler {
   }
   [[nodiscard]] SurfaceSample surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
                                       const Ray& ray, TriangleId triangle) const;
+  /// Adds where a ray, the first of its pixel, sees a normal map.
+  void add_normal_map(const Ray& ray, const SurfaceSample& seen, ViewSample& sample) const;
   /// Along the first ray of a pixel, on the triangle and under the lights of `like`.
   [[nodiscard]] SurfaceSample surface_like(const SampleRequest& request, const ViewSample& like);
 

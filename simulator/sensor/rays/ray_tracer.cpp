@@ -6,7 +6,10 @@
 #include <optional>
 
 #include "core/check.h"
+#include "simulator/scene/texture/normal_texture.h"
 #include "simulator/sensor/rays/tile_trace.h"
+#include "simulator/sensor/signal/cell_bounds.h"
+#include "simulator/sensor/signal/mipmap_bounds.h"
 
 namespace saccade {
 namespace {
@@ -91,15 +94,77 @@ RadianceRange RayTracer::varying_light_range(const Eigen::Vector3d& direction,
   const Ray from_ray = ray_at(direction, from_s);
   const Ray middle_ray = ray_at(direction, 0.5 * (from_s + to_s));
   const Ray to_ray = ray_at(direction, to_s);
+  std::optional<VectorRange> mapped;
+  if (scene_.has_normal_map(from.triangle)) {
+    mapped = normal_map_range(direction, from, from_s, to, to_s);
+    if (!mapped) return {};
+  }
   const auto light_of = [&](LightSet lights) {
     return scene_.irradiance_range(from_ray, from.surface, middle_ray, to_ray, to.surface,
-                                   from.triangle, lights);
+                                   from.triangle, lights, mapped ? &*mapped : nullptr);
   };
   std::optional<LightRange> light = light_of(from.surface.lights);
   if (!light) return {};
   // At the edge of a shadow the light is that of one end or the other.
   if (from.surface.lights != to.surface.lights) light->include(*light_of(to.surface.lights));
   return saccade::radiance_range(from, to, to_s - from_s, &*light);
+}
+
+RaySample RayTracer::normal_map_sample(const Eigen::Vector3d& direction, const RaySample& seen,
+                                       double t_s) const {
+  const double soon_s = difference_s(t_s);
+  const SurfaceSample soon =
+      sample_surface(direction, seen.triangle, poses_->at(t_s + soon_s), t_s + soon_s);
+  const auto on_map = [&](const SurfaceSample& surface, double at_s) {
+    const NormalTextureSample sample =
+        scene_.sample_normal_map(ray_at(direction, at_s), seen.triangle, surface);
+    return SurfaceSample{.texture = &sample.map->part(0),
+                         .x = sample.x,
+                         .y = sample.y,
+                         .distance = surface.distance,
+                         .level = sample.level};
+  };
+  return with_rates(on_map(seen.surface, t_s), on_map(soon, t_s + soon_s), soon_s, seen.triangle);
+}
+
+std::optional<VectorRange> RayTracer::normal_map_range(const Eigen::Vector3d& direction,
+                                                       const RaySample& from, double from_s,
+                                                       const RaySample& to, double to_s) const {
+  constexpr double kMostTexels = 1e6;
+  if (!(from.surface.distance > 0 && to.surface.distance > 0)) return std::nullopt;
+  const double length_s = to_s - from_s;
+  RaySample first = normal_map_sample(direction, from, from_s);
+  RaySample last = normal_map_sample(direction, to, to_s);
+  const Interval across = x_coordinate(first, last, length_s).values();
+  const Interval down = y_coordinate(first, last, length_s).values();
+  if (!(across.high - across.low < kMostTexels && down.high - down.low < kMostTexels))
+    return std::nullopt;
+  const NormalTexture& map =
+      *scene_.sample_normal_map(ray_at(direction, from_s), from.triangle, from.surface).map;
+  VectorRange ranges;
+  for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
+    first.surface.texture = last.surface.texture = &map.part(axis);
+    const TextureRange range = is_filtered(first, last) ? mipmap_range(first, last, length_s)
+                                                        : texture_range(first, last, length_s);
+    ranges[axis] = {range.values.low, range.values.high, range.rates.low, range.rates.high};
+  }
+  return ranges;
+}
+
+double RayTracer::split_fraction(const Eigen::Vector3d& direction, const RaySample& from,
+                                 double from_s, const RaySample& to, double to_s) const {
+  const double length_s = to_s - from_s;
+  if (has_normal_maps_ && scene_.has_normal_map(from.triangle) && from.surface.distance > 0 &&
+      to.surface.distance > 0 && from.surface.lights == to.surface.lights) {
+    const RaySample first = normal_map_sample(direction, from, from_s);
+    const RaySample last = normal_map_sample(direction, to, to_s);
+    SplitPoint division;
+    if (!is_filtered(first, last))
+      division.consider_cell(x_coordinate(first, last, length_s),
+                             y_coordinate(first, last, length_s));
+    if (division.found()) return division.fraction();
+  }
+  return saccade::split_fraction(from, to, length_s);
 }
 
 void RayTracer::set_region(const std::array<Eigen::Vector3d, 4>& outline, double from_s,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,8 @@ class RayTracer {
       : scene_(scene),
         statistics_(statistics),
         footprints_(footprints),
-        has_varying_light_(!scene.flickers().empty() || scene.has_spots()) {}
+        has_varying_light_(!scene.flickers().empty() || scene.has_spots()),
+        has_normal_maps_(scene.has_normal_maps()) {}
 
   /// The motion during what follows; outlives it.
   void set_poses(const SplineTable& poses) { poses_ = &poses; }
@@ -125,13 +127,19 @@ class RayTracer {
                                        double t_s);
 
   /// radiance_range() of a ray that sees one triangle from `from_s` to `to_s`, in light that may
-  /// flicker or come from spots.
+  /// flicker or come from spots, and on normal maps.
   [[nodiscard]] RadianceRange radiance_range(const Eigen::Vector3d& direction,
                                              const RaySample& from, double from_s,
                                              const RaySample& to, double to_s) const {
-    return has_varying_light_ ? varying_light_range(direction, from, from_s, to, to_s)
-                              : saccade::radiance_range(from, to, to_s - from_s);
+    return has_varying_light_ || (has_normal_maps_ && scene_.has_normal_map(from.triangle))
+               ? varying_light_range(direction, from, from_s, to, to_s)
+               : saccade::radiance_range(from, to, to_s - from_s);
   }
+
+  /// split_fraction() of a ray that sees one triangle from `from_s` to `to_s`: the borders of a normal
+  /// map's texels count as well.
+  [[nodiscard]] double split_fraction(const Eigen::Vector3d& direction, const RaySample& from,
+                                      double from_s, const RaySample& to, double to_s) const;
 
   /// When a ray's visible triangle changes from `from` to `to`, within `tolerance_s`: where the ray
   /// leaves the first or else enters the second; NaN if neither.
@@ -164,6 +172,14 @@ class RayTracer {
   [[nodiscard]] RadianceRange varying_light_range(const Eigen::Vector3d& direction,
                                                   const RaySample& from, double from_s,
                                                   const RaySample& to, double to_s) const;
+  /// Bounds of the vector of the normal map that a ray sees between two samples of one triangle;
+  /// nullopt where it comes too far over it.
+  [[nodiscard]] std::optional<VectorRange> normal_map_range(const Eigen::Vector3d& direction,
+                                                            const RaySample& from, double from_s,
+                                                            const RaySample& to, double to_s) const;
+  /// Where a ray sees the normal map of a triangle, and how that moves; its texture is left out.
+  [[nodiscard]] RaySample normal_map_sample(const Eigen::Vector3d& direction, const RaySample& seen,
+                                            double t_s) const;
   [[nodiscard]] Ray ray_at(const Eigen::Vector3d& direction, double t_s) const;
   [[nodiscard]] double min_barycentric(const Eigen::Vector3d& direction, TriangleId triangle,
                                        double t_s) const;
@@ -186,6 +202,7 @@ class RayTracer {
   EventStatistics& statistics_;
   const PixelRays* footprints_;
   bool has_varying_light_;
+  bool has_normal_maps_;
   const SplineTable* poses_ = nullptr;
   std::span<const TriangleId> candidates_;
   Frusta frusta_;  ///< of what follows

@@ -125,7 +125,7 @@ auto PixelSignal<kRays>::divide(const Sample& lo, const Sample& hi, int depth) c
   double fraction = 0.5;
   for (std::size_t k = 0; k < kRays && fraction == 0.5 && changing == kRays; ++k)
     if (kRays == 1 || !radiance_range(lo.rays[k], hi.rays[k], length_s).is_monotone())
-      fraction = split_fraction(lo.rays[k], hi.rays[k], length_s);
+      fraction = tracer_.split_fraction(directions_[k], lo.rays[k], lo.t_s, hi.rays[k], hi.t_s);
   return at(lo.t_s + fraction * length_s, lo, hi);
 }
 

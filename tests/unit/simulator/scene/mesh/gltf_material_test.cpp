@@ -408,8 +408,74 @@ TEST_F(Gltf, EmissionUnderLightsIsAMultipleOfTheBaseColour) {
   EXPECT_NEAR(read(document, lit).at(0.25, 0.25), linear(128), 1e-6) << "the lamp's own picture";
 }
 
+TEST_F(Gltf, NormalMapsCountUnderLights) {
+  ImageRgb8 image(2, 2);
+  image(0, 0) = {255, 0, 255};
+  write_png(folder_ / "bumps.png", image);
+  json document = square();
+  document["images"] = {{{"uri", "bumps.png"}}};
+  document["textures"] = {{{"source", 0}}};
+  material(document)["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+  EXPECT_THAT(read(document).remarks, ElementsAre(HasSubstr("normal maps (they count under")));
+  EXPECT_EQ(read(document).material().normal_map, nullptr);
+
+  MeshImportOptions lit;
+  lit.is_lit = true;
+  const Result shown = read(document, lit);
+  EXPECT_THAT(shown.remarks, IsEmpty());
+  ASSERT_NE(shown.material().normal_map, nullptr);
+  EXPECT_LT((shown.material().normal_map->at_texel(0, 0, 0) - Eigen::Vector3d(0.5, -0.5, 1)).norm(),
+            1e-6);
+  EXPECT_EQ(shown.mesh.normal_uvs.size(), shown.mesh.vertices.size());
+  lit.takes_normal_maps = false;
+  EXPECT_THAT(read(document, lit).remarks, ElementsAre(HasSubstr("scene.normal_maps: true")));
+}
+
+TEST_F(Gltf, NormalMapsAreMissedAndRemarked) {
+  json document = square();
+  document["images"] = {{{"uri", "gone.png"}}};
+  document["textures"] = {{{"source", 0}}};
+  material(document)["normalTexture"] = {{"index", 0}};
+  MeshImportOptions lit;
+  lit.is_lit = true;
+  EXPECT_THROW(static_cast<void>(read(document, lit)), InputError);
+  lit.missing_texture = MissingTexture::kGrey;
+  EXPECT_THAT(read(document, lit).remarks,
+              ElementsAre(AllOf(HasSubstr("gone.png"), HasSubstr("without its normal map"))));
+  document["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+  write_four();
+  document["images"][0]["uri"] = "four.png";
+  try {
+    static_cast<void>(read(document, lit));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has a normal map, but its faces have no"));
+  }
+}
+
+TEST_F(Gltf, StatedTangentsAreTaken) {
+  write_four();
+  json document = square();
+  set_texture(document, "four.png");
+  material(document)["normalTexture"] = {{"index", 0}};
+  add_attribute<float>(document, "NORMAL", 5126, "VEC3", false,
+                       {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  add_attribute<float>(document, "TANGENT", 5126, "VEC4", false,
+                       {0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1});
+  MeshImportOptions lit;
+  lit.is_lit = true;
+  const Result shown = read(document, lit);
+  ASSERT_EQ(shown.mesh.tangents.size(), shown.mesh.vertices.size());
+  for (const Eigen::Vector4d& tangent : shown.mesh.tangents)
+    EXPECT_EQ(tangent, Eigen::Vector4d(0, 1, 0, -1));
+  material(document)["normalTexture"]["extensions"]["KHR_texture_transform"] = {{"rotation", 1}};
+  EXPECT_TRUE(read(document, lit).mesh.tangents.at(0).isZero());
+}
+
 TEST_F(Gltf, WhatIsNotShownIsSaidInOneLine) {
   json document = square();
+  document["textures"] = {{{"source", 0}}};
+  document["images"] = {{{"uri", "four.png"}}};
   document["materials"].push_back(material(document));
   document["materials"][0]["normalTexture"] = {{"index", 0}};
   document["materials"][1]["occlusionTexture"] = {{"index", 0}};

@@ -96,6 +96,19 @@ TEST_F(MeshImport, RadianceHdrIsLinear) {
   EXPECT_NEAR(square_material("map_Kd bright.hdr\n").texture->at(0.5, 0.5), 2, 0.02);
 }
 
+TEST_F(MeshImport, NormalMapsOfOtherFormatsCountUnderLights) {
+  write_png(folder_ / "bumps.png", ImageRgb8(2, 2, Rgb8{255, 0, 255}));
+  write("surface.mtl", "newmtl surface\nnorm -clamp on bumps.png\n");
+  MeshImporter lit({.is_lit = true});
+  const Mesh mesh = lit.read(write("square.obj", testing::square_obj("surface.mtl")));
+  const auto map = mesh.materials.at(mesh.triangles.at(0).material).normal_map;
+  ASSERT_NE(map, nullptr);
+  EXPECT_LT((map->at_texel(0, 0, 0) - Eigen::Vector3d(1, -1, 1)).norm(), 1e-6);
+  EXPECT_EQ(map->part(0).wrap_u(), Wrap::kClamp);
+  EXPECT_TRUE(lit.remarks().lines().empty());
+  EXPECT_THAT(error_of("square.obj"), HasSubstr("no error"));
+}
+
 TEST_F(MeshImport, WrapModeComesFromTheMaterial) {
   write_png(folder_ / "grey.png", ImageU8(2, 2, 128));
   EXPECT_EQ(square_material("map_Kd grey.png\n").texture->wrap_u(), Wrap::kRepeat);
