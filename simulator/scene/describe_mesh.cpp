@@ -15,6 +15,8 @@
 #include <assimp/Importer.hpp>
 
 #include "core/io/events/event_file.h"
+#include "simulator/scene/animation/model_motion.h"
+#include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/mesh_import.h"
 
 namespace saccade {
@@ -74,14 +76,37 @@ Eigen::Vector3d upright(const Eigen::Vector3d& v, bool is_turned) {
   return is_turned ? Eigen::Vector3d(v.x(), -v.z(), v.y()) : v;
 }
 
-std::string camera_line(const MeshCamera& camera, bool is_turned) {
-  const Eigen::Vector3d position = upright(camera.position, is_turned);
-  const Eigen::Vector3d target = position + upright(camera.forward, is_turned).normalized();
+/// As the trajectory's or a view's camera is stated.
+std::string camera_line(const Model& model, const ModelCamera& camera, bool is_turned) {
+  const NodeAnimation still(model.tree, nullptr);
+  const auto nodes = still.file_from_nodes(0);
+  const Eigen::Affine3d file_from_node =
+      camera.node < 0 ? Eigen::Affine3d::Identity() : nodes[static_cast<std::size_t>(camera.node)];
+  const Eigen::Vector3d at = file_from_node * Eigen::Vector3d(camera.position.data());
+  const Eigen::Vector3d forward = file_from_node.linear() * Eigen::Vector3d(camera.forward.data());
+  const Eigen::Vector3d position = upright(at, is_turned);
+  const Eigen::Vector3d target = position + upright(forward, is_turned).normalized();
   return mesh_line("camera",
                    fmt::format("'{}' {:.0f} deg wide; as a view in the entry below: "
                                "{{t_s: 0, position: {}, look_at: {}}}",
                                camera.name, camera.horizontal_fov_rad * 180 / std::numbers::pi,
                                vector_text(position), vector_text(target)));
+}
+
+/// Animations and cameras.
+std::string motion_lines(const fs::path& file, bool is_turned) {
+  std::string text;
+  const Model model = read_model_motion(file);
+  for (std::size_t i = 0; i < model.animations.size(); ++i) {
+    const ModelAnimation& animation = model.animations[i];
+    const std::string problem = problem_of(animation);
+    text += mesh_line("animation",
+                      fmt::format("{} '{}' of {:.4g} s moves {} nodes{}", i, animation.name,
+                                  animation.duration_s, animation.channels.size(),
+                                  problem.empty() ? "" : "; cannot be played: it " + problem));
+  }
+  for (const ModelCamera& camera : model.cameras) text += camera_line(model, camera, is_turned);
+  return text;
 }
 
 /// A model of less than a millimetre or more than ten kilometres is in other units than metres.
@@ -138,9 +163,7 @@ std::string describe_mesh(const fs::path& file) {
     text += mesh_line(
         "lights", fmt::format("{} (not used: state {})", extras.lights,
                               is_gltf(file) ? "scene.lights_from_meshes: true" : "scene.lights"));
-  if (extras.animations > 0)
-    text += mesh_line("animations", fmt::format("{} (not shown)", extras.animations));
-  for (const MeshCamera& camera : extras.cameras) text += camera_line(camera, is_turned);
+  if (lower_ending(file) != ".yaml") text += motion_lines(file, is_turned);
   return text + problem_lines(importer.remarks()) + suggestion(file, box.sizes(), is_turned);
 }
 

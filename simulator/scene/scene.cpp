@@ -42,29 +42,55 @@ AffineForm nearer_than(double farthest_m, const Frustum& frustum) {
 }  // namespace
 
 bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
+  // The ray is in the body's frame already.
+  if (animation_of(triangle) != nullptr) {
+    const TriangleInstant now = instant(triangle, ray.time_s);
+    const CutoutSample seen = sample_cutout(ray, triangle, now.surface, now.interior);
+    return !(seen.distance > 0) || seen.opacity >= 0.5;
+  }
+  const CutoutSample seen =
+      sample_cutout(ray, triangle, surfaces[triangle], interiors[triangle]);
+  return !(seen.distance > 0) || seen.opacity >= 0.5;
+}
+
+CutoutSample Scene::State::sample_cutout(const Ray& ray, TriangleId triangle,
+                                         const TriangleSurface& surface,
+                                         const TriangleInterior& interior) const {
   const Cutout& cutout = cutouts[triangle - (surfaces.size() - cutouts.size())];
-  const double distance = distance_to(surfaces[triangle].plane, ray);
-  if (!(distance > 0 && distance < kFarthest)) return true;
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  return cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point)) >= 0.5;
+  const double distance = distance_to(surface.plane, ray);
+  if (!(distance > 0 && distance < kFarthest)) return {};
+  Eigen::Vector3d point = ray.origin + distance * ray.direction;
+  if (animation_of(triangle) != nullptr)
+    point = {interior.second.at(point), interior.third.at(point), 0};
+  const double x = cutout.x.at(point);
+  const double y = cutout.y.at(point);
+  return {x, y, distance, cutout.opacity->at_texel(x, y)};
 }
 
 LitPoint Scene::State::surface_point(const Ray& ray, double distance, TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
-  if (surface.body == kStaticBody) return local_point(ray, distance, triangle);
+  if (surface.body == kStaticBody)
+    return local_point(ray, distance, surface.plane, interiors[triangle], normals[triangle]);
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
-  const LitPoint local = local_point(in_frame(frame, ray), distance, triangle);
+  const LitPoint local = with_triangle(
+      triangle, ray,
+      [&](const Ray& local_ray, const TriangleSurface& now, const TriangleInterior& interior) {
+        if (animation_of(triangle) == nullptr)
+          return local_point(local_ray, distance, now.plane, interior, normals[triangle]);
+        return local_point(local_ray, distance, now.plane, interior,
+                           normals_at(triangle, ray.time_s, now.plane));
+      });
   return {ray.origin + distance * ray.direction, frame.rotation * local.plane_normal,
           frame.rotation * local.shading_normal, ray.time_s, ray.span_s};
 }
 
-LitPoint Scene::State::local_point(const Ray& ray, double distance, TriangleId triangle) const {
-  const AffineForm& plane = surfaces[triangle].plane;
+LitPoint Scene::State::local_point(const Ray& ray, double distance, const AffineForm& plane,
+                                   const TriangleInterior& interior,
+                                   const ShadingNormals& corners) const {
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
   const double side = plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
-  const double second = interiors[triangle].second.at(point);
-  const double third = interiors[triangle].third.at(point);
-  const ShadingNormals& corners = normals[triangle];
+  const double second = interior.second.at(point);
+  const double third = interior.third.at(point);
   const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
                                  second * corners[1].cast<double>() +
                                  third * corners[2].cast<double>();
@@ -79,11 +105,11 @@ SurfaceSample Scene::State::sample_surface(const Ray& ray, const TriangleSurface
   return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
 }
 
-double Scene::State::min_barycentric(const Ray& ray, TriangleId triangle) const {
-  const double distance = distance_to(surfaces[triangle].plane, ray);
+double Scene::State::min_barycentric(const Ray& ray, const TriangleSurface& surface,
+                                     const TriangleInterior& interior) const {
+  const double distance = distance_to(surface.plane, ray);
   if (!(distance > 0 && distance < kFarthest)) return -1;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const TriangleInterior& interior = interiors[triangle];
   const double second = interior.second.at(point);
   const double third = interior.third.at(point);
   return std::min({second, third, 1 - second - third});
@@ -147,9 +173,10 @@ Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
 
 SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return state_->background.sample(ray.direction);
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  const SurfaceSample seen = state_->in_frame_of(
-      surface.body, ray, [&](const Ray& local) { return state_->sample_surface(local, surface); });
+  const SurfaceSample seen = state_->with_triangle(
+      triangle, ray, [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+        return state_->sample_surface(local, surface);
+      });
   return seen.distance > 0 ? seen : state_->background.sample(ray.direction);
 }
 
@@ -157,16 +184,16 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
                                     const RayDifferential& differential) const {
   SurfaceSample seen = sample_surface(ray, triangle);
   if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  if (surface.body == kStaticBody) {
-    seen.level = level_of(surface, ray.direction, seen.distance, differential);
-  } else {
-    const Eigen::Matrix3d body_from_world =
-        state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
-    seen.level =
-        level_of(surface, body_from_world * ray.direction, seen.distance,
-                 {body_from_world * differential.right, body_from_world * differential.down});
-  }
+  const std::uint32_t body = state_->surfaces[triangle].body;
+  seen.level = state_->with_triangle(
+      triangle, ray, [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+        if (body == kStaticBody) return level_of(surface, ray.direction, seen.distance, differential);
+        const Eigen::Matrix3d body_from_world =
+            moving_objects()[body].frame(ray.time_s).rotation.transpose();
+        return level_of(
+            surface, local.direction, seen.distance,
+            {body_from_world * differential.right, body_from_world * differential.down});
+      });
   return seen;
 }
 
@@ -257,18 +284,23 @@ std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const Sur
 
 bool Scene::intersects(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return false;
-  const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    return state_->min_barycentric(local, triangle) >= -kEdgeTolerance &&
-           (triangle < opaque || state_->is_opaque(local, triangle));
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        if (!(state_->min_barycentric(local, surface, interior) >= -kEdgeTolerance)) return false;
+        if (!is_cut_out(triangle)) return true;
+        const CutoutSample seen = state_->sample_cutout(local, triangle, surface, interior);
+        return !(seen.distance > 0) || seen.opacity >= 0.5;
+      });
 }
 
 double Scene::min_barycentric(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return -1;
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    return state_->min_barycentric(local, triangle);
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        return state_->min_barycentric(local, surface, interior);
+      });
 }
 
 const TriangleBvh& Scene::State::bvh(std::size_t body) {
@@ -287,7 +319,8 @@ bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta
   if (surface.body != kStaticBody) return false;
   for (const Frustum& frustum : frusta)
     for (const Eigen::Vector3d& corner : frustum.corners)
-      if (state_->min_barycentric({frustum.eye, corner}, triangle) < 0) return false;
+      if (state_->min_barycentric({frustum.eye, corner}, surface, state_->interiors[triangle]) < 0)
+        return false;
   // On the eye's side of the plane; what lies in the plane itself, to single precision, is not.
   AffineForm front = surface.plane;
   if (front.at(frusta.front().eye) < 0) front = {-front.gradient, -front.offset};
@@ -329,15 +362,11 @@ bool Scene::is_cut_out(TriangleId triangle) const {
 
 CutoutSample Scene::sample_cutout(const Ray& ray, TriangleId triangle) const {
   SACCADE_CHECK(is_cut_out(triangle));
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    const double distance = distance_to(state_->surfaces[triangle].plane, local);
-    if (!(distance > 0 && distance < kFarthest)) return CutoutSample();
-    const Cutout& cutout =
-        state_->cutouts[triangle - (state_->surfaces.size() - state_->cutouts.size())];
-    const Eigen::Vector3d point = local.origin + distance * local.direction;
-    return CutoutSample{cutout.x.at(point), cutout.y.at(point), distance,
-                        cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point))};
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        return state_->sample_cutout(local, triangle, surface, interior);
+      });
 }
 
 EdgeFunctions Scene::State::edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
@@ -380,10 +409,12 @@ std::uint8_t Scene::class_of(std::uint16_t instance) const {
 }
 
 Eigen::Vector3d Scene::normal(const Ray& ray, TriangleId triangle) const {
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  Eigen::Vector3d normal = surface.plane.gradient;
-  if (surface.body != kStaticBody)
-    normal = moving_objects()[surface.body].frame(ray.time_s).rotation * normal;
+  Eigen::Vector3d normal = state_->with_triangle(
+      triangle, ray, [](const Ray&, const TriangleSurface& surface, const TriangleInterior&) {
+        return surface.plane.gradient;
+      });
+  const std::uint32_t body = state_->surfaces[triangle].body;
+  if (body != kStaticBody) normal = moving_objects()[body].frame(ray.time_s).rotation * normal;
   return normal.dot(ray.direction) > 0 ? Eigen::Vector3d(-normal) : normal;
 }
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/animation/mesh_animation.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture.h"
 
@@ -30,18 +31,9 @@ struct Triangle {
   std::uint32_t node = 0;  ///< index into the mesh's nodes, where it has names for them
 };
 
-/// A camera that a mesh file holds, in its coordinates: shown by `saccade info`, not used.
-struct MeshCamera {
-  std::string name;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();  ///< of any length
-  double horizontal_fov_rad = 0;
-};
-
 /// What a mesh file holds beside surfaces.
 struct MeshExtras {
-  std::vector<MeshCamera> cameras;
-  std::size_t lights = 0, animations = 0;
+  std::size_t lights = 0;
   std::size_t parts = 1, instances = 1;
 };
 
@@ -58,6 +50,8 @@ struct Mesh {
   /// where they were asked for.
   std::vector<LightOptions> lights{};
   MeshExtras extras{};
+  /// Its first pose is that of `vertices` and `normals`. nullptr: the mesh is still.
+  std::shared_ptr<const MeshAnimation> animation{};
 };
 
 }  // namespace saccade
