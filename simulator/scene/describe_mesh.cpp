@@ -140,6 +140,12 @@ std::string counts_of(const Mesh& mesh) {
 bool is_mesh_name(const fs::path& path) {
   if (path.string().ends_with(".relief.yaml")) return true;
   const std::string ending = lower_ending(path);
+  // What is not built in is a mesh all the same: the importer says so.
+  static const std::set<std::string> kNotBuiltIn{".wrl", ".vrml", ".x3dv", ".blend", ".max", ".ma",
+                                                 ".mb",  ".usd",  ".usda", ".usdc",  ".usdz",
+                                                 ".abc", ".c4d",  ".skp",  ".step",  ".stp",
+                                                 ".iges"};
+  if (kNotBuiltIn.contains(ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.
   return !ending.empty() && ending != ".raw" && find_event_format(path) == nullptr &&

@@ -138,6 +138,7 @@ TriangleId Scene::visible_exactly(const Ray& ray) const {
   // What single precision sees is as far as a search needs to go, if it is met at all.
   TriangleId guess = kNothing;
   visible({&ray, 1}, {&guess, 1});
+  if (is_animated()) return guess;
   std::vector<TriangleId> triangles;
   const auto nearest_up_to = [&](double farthest) {
     static_cast<void>(collect({&around, 1}, farthest, kAll, triangles));

@@ -120,7 +120,8 @@ class Scene {
   void visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
 
   /// The same for one ray, in double precision throughout: exact next to edges, but many times
-  /// slower. Builds the trees of collect() when first asked.
+  /// slower. Builds the trees of collect() when first asked. In animated scenes, where these do not
+  /// hold, as visible() has it.
   [[nodiscard]] TriangleId visible_exactly(const Ray& ray) const;
   /// The nearest of `triangles` along a ray, in double precision; kNothing where it intersects
   /// none.

@@ -13,6 +13,8 @@ namespace {
 
 /// So far from a jump its two sides are sampled [s].
 constexpr double kAroundJump_s = 1e-9;
+/// Nearer to an end of an interval a kink is there [s].
+constexpr double kSameTime_s = 1e-10;
 /// The first and the last pose of a loop are one where they differ by less than this part of its
 /// size.
 constexpr double kClosed = 1e-6;
@@ -88,7 +90,7 @@ std::optional<double> VertexAnimation::first_kink_s(double from_s, double to_s) 
   const double duration_s = times_s_.back();
   double best = std::numeric_limits<double>::infinity();
   const auto consider = [&](double t_s) {
-    if (t_s > from_s) best = std::min(best, t_s);
+    if (t_s > from_s + kSameTime_s) best = std::min(best, t_s);
   };
   const double first_round = std::floor(played_s(from_s) / duration_s);
   // Rounding may put the interval's start on either side of a pose: those of the rounds around it.
@@ -105,7 +107,7 @@ std::optional<double> VertexAnimation::first_kink_s(double from_s, double to_s) 
       consider(t_s + (is_jump ? kAroundJump_s : 0));
     }
   }
-  if (!(best < to_s)) return std::nullopt;
+  if (!(best < to_s - kSameTime_s)) return std::nullopt;
   return best;
 }
 
