@@ -96,11 +96,9 @@ void describe(config::Fields& fields, ModelCameraOptions& options) {
   fields.value("animation", options.animation,
                "Name or index of the animation that moves it; by default the first one of the "
                "file.");
-  bool is_z_up = !options.is_y_up;
-  fields.choice("up", is_z_up, {{"y", false}, {"z", true}},
+  fields.choice("up", options.is_y_up, {{"y", true}, {"z", false}},
                 "Axis of the file that points upwards. y turns the path by 90 degrees about x, as "
-                "up: y turns a mesh.");
-  options.is_y_up = !is_z_up;
+                "up: y turns a mesh; z leaves it as it is.");
   fields
       .value("duration_s", options.duration_s,
              "Duration in seconds where the camera does not move.")

@@ -17,7 +17,7 @@ struct ModelCameraOptions {
   std::filesystem::path file;
   std::string camera;      ///< its name; empty: the only one
   std::string animation;   ///< its name or index; empty: the first one, if there is one
-  bool is_y_up = true;     ///< the file's axis that points upwards, which the world's z is
+  bool is_y_up = false;    ///< the file's axis that points upwards, which the world's z is
   double duration_s = 1;   ///< of a camera that does not move
   bool sets_focal_length = false;  ///< the recording's from the vertical field of view
 };

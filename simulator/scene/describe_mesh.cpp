@@ -87,9 +87,13 @@ std::string camera_line(const Model& model, const ModelCamera& camera, bool is_t
   const Eigen::Vector3d position = upright(at, is_turned);
   const Eigen::Vector3d target = position + upright(forward, is_turned).normalized();
   return mesh_line("camera",
-                   fmt::format("'{}' {:.0f} deg wide; as a view in the entry below: "
+                   fmt::format("'{}'{}; as a view in the entry below: "
                                "{{t_s: 0, position: {}, look_at: {}}}",
-                               camera.name, camera.horizontal_fov_rad * 180 / std::numbers::pi,
+                               camera.name,
+                               camera.horizontal_fov_rad > 0
+                                   ? fmt::format(" {:.0f} deg wide", camera.horizontal_fov_rad *
+                                                                         180 / std::numbers::pi)
+                                   : "",
                                vector_text(position), vector_text(target)));
 }
 

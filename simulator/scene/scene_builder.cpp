@@ -261,7 +261,10 @@ struct SceneBuilder::Body {
   TriangleId first_opaque = 0, first_cut_out = 0;
 
   [[nodiscard]] bool is_moving() const { return world_from_body || animation; }
-  [[nodiscard]] bool is_empty() const { return opaque.surfaces.empty() && cut_out.surfaces.empty(); }
+  [[nodiscard]] bool is_empty() const {
+    return opaque.corners.empty() && cut_out.corners.empty() && opaque.corner_indices.empty() &&
+           cut_out.corner_indices.empty();
+  }
   [[nodiscard]] Eigen::AlignedBox3f box() const {
     return animation ? animation->box() : box_of(opaque).merged(box_of(cut_out));
   }
