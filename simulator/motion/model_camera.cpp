@@ -35,8 +35,8 @@ const ModelCamera& find_camera(const Model& model, const ModelCameraOptions& opt
     throw InputError(source_name, fmt::format("holds {} cameras; state one: {}", names.size(),
                                               config::joined(names)));
   }
-  throw InputError(source_name, fmt::format("holds no camera '{}'; its cameras: {}",
-                                            options.camera, config::joined(names)));
+  throw InputError(source_name, fmt::format("holds no camera '{}'; its cameras: {}", options.camera,
+                                            config::joined(names)));
 }
 
 Eigen::Matrix3d upright(bool is_y_up) {
@@ -68,10 +68,11 @@ const ModelAnimation* animation_of(const Model& model, const ModelCameraOptions&
   const ModelAnimation& animation =
       find_animation(model.animations, options.animation, options.file.string());
   const bool moves =
-      node >= 0 && NodeAnimation(model.tree, &animation).moved_nodes()[static_cast<std::size_t>(node)];
+      node >= 0 &&
+      NodeAnimation(model.tree, &animation).moved_nodes()[static_cast<std::size_t>(node)];
   if (!moves && !options.animation.empty())
-    throw InputError(options.file.string(), fmt::format("its animation '{}' does not move the camera",
-                                                        animation.name));
+    throw InputError(options.file.string(),
+                     fmt::format("its animation '{}' does not move the camera", animation.name));
   return moves ? &animation : nullptr;
 }
 

@@ -15,10 +15,10 @@ class Fields;
 /// A camera of a model file as the source of a motion.
 struct ModelCameraOptions {
   std::filesystem::path file;
-  std::string camera;      ///< its name; empty: the only one
-  std::string animation;   ///< its name or index; empty: the first one, if there is one
-  bool is_y_up = false;    ///< the file's axis that points upwards, which the world's z is
-  double duration_s = 1;   ///< of a camera that does not move
+  std::string camera;              ///< its name; empty: the only one
+  std::string animation;           ///< its name or index; empty: the first one, if there is one
+  bool is_y_up = false;            ///< the file's axis that points upwards, which the world's z is
+  double duration_s = 1;           ///< of a camera that does not move
   bool sets_focal_length = false;  ///< the recording's from the vertical field of view
 };
 

@@ -51,9 +51,8 @@ ShadingNormals Scene::State::normals_at(TriangleId triangle, double t_s,
     const Eigen::Vector3d stated = animation.normal(moment, animated[body].corners(triangle)[k]);
     // As TriangleSetup has it: many files wind their faces against their normals.
     const double side = stated.dot(plane.gradient) < 0 ? -1.0 : 1.0;
-    result[k] =
-        (stated.norm() > 0 ? Eigen::Vector3d(side * stated.normalized()) : plane.gradient)
-            .cast<float>();
+    result[k] = (stated.norm() > 0 ? Eigen::Vector3d(side * stated.normalized()) : plane.gradient)
+                    .cast<float>();
   }
   return result;
 }

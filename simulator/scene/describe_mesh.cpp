@@ -91,8 +91,8 @@ std::string camera_line(const Model& model, const ModelCamera& camera, bool is_t
                                "{{t_s: 0, position: {}, look_at: {}}}",
                                camera.name,
                                camera.horizontal_fov_rad > 0
-                                   ? fmt::format(" {:.0f} deg wide", camera.horizontal_fov_rad *
-                                                                         180 / std::numbers::pi)
+                                   ? fmt::format(" {:.0f} deg wide",
+                                                 camera.horizontal_fov_rad * 180 / std::numbers::pi)
                                    : "",
                                vector_text(position), vector_text(target)));
 }
@@ -145,10 +145,9 @@ bool is_mesh_name(const fs::path& path) {
   if (path.string().ends_with(".relief.yaml")) return true;
   const std::string ending = lower_ending(path);
   // What is not built in is a mesh all the same: the importer says so.
-  static const std::set<std::string> kNotBuiltIn{".wrl", ".vrml", ".x3dv", ".blend", ".max", ".ma",
-                                                 ".mb",  ".usd",  ".usda", ".usdc",  ".usdz",
-                                                 ".abc", ".c4d",  ".skp",  ".step",  ".stp",
-                                                 ".iges"};
+  static const std::set<std::string> kNotBuiltIn{
+      ".wrl",  ".vrml", ".x3dv", ".blend", ".max", ".ma",   ".mb",  ".usd", ".usda",
+      ".usdc", ".usdz", ".abc",  ".c4d",   ".skp", ".step", ".stp", ".iges"};
   if (kNotBuiltIn.contains(ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.

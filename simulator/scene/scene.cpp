@@ -48,8 +48,7 @@ bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
     const CutoutSample seen = sample_cutout(ray, triangle, now.surface, now.interior);
     return !(seen.distance > 0) || seen.opacity >= 0.5;
   }
-  const CutoutSample seen =
-      sample_cutout(ray, triangle, surfaces[triangle], interiors[triangle]);
+  const CutoutSample seen = sample_cutout(ray, triangle, surfaces[triangle], interiors[triangle]);
   return !(seen.distance > 0) || seen.opacity >= 0.5;
 }
 
@@ -175,7 +174,8 @@ Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
 SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return state_->background.sample(ray.direction);
   const SurfaceSample seen = state_->with_triangle(
-      triangle, ray, [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
         return state_->sample_surface(local, surface);
       });
   return seen.distance > 0 ? seen : state_->background.sample(ray.direction);
@@ -187,8 +187,10 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
   if (seen.texture == nullptr || !(seen.distance > 0)) return seen;
   const std::uint32_t body = state_->surfaces[triangle].body;
   seen.level = state_->with_triangle(
-      triangle, ray, [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
-        if (body == kStaticBody) return level_of(surface, ray.direction, seen.distance, differential);
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+        if (body == kStaticBody)
+          return level_of(surface, ray.direction, seen.distance, differential);
         const Eigen::Matrix3d body_from_world =
             moving_objects()[body].frame(ray.time_s).rotation.transpose();
         return level_of(

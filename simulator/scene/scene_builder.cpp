@@ -369,8 +369,7 @@ Scene SceneBuilder::build(const Background& background) && {
   state->triangle_instances = std::move(all.instances);
   state->instances = std::move(instances_);
   // After the triangles have their numbers, and before they move on with the bodies.
-  for (std::size_t i = 1; i < bodies_.size(); ++i)
-    state->animated.push_back(bodies_[i].animated());
+  for (std::size_t i = 1; i < bodies_.size(); ++i) state->animated.push_back(bodies_[i].animated());
   state->visibility.emplace(make_visibility(*state));
   const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());

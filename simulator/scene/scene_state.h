@@ -121,7 +121,7 @@ struct Scene::State {
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
   std::optional<Visibility> visibility;
   std::vector<AnimatedTriangles> animated;  ///< of the moving objects
-  double size_m = 0;  ///< of everything that is static
+  double size_m = 0;                        ///< of everything that is static
   /// What the trees are made from when one is first asked.
   std::vector<BvhTriangles> bvh_triangles;
   std::once_flag bvhs_built;

@@ -58,9 +58,8 @@ void EventLabeller::label_packet(std::span<const SensedEvent> events, std::size_
     Twist twist = object == nullptr ? camera_twist(states[k])
                                     : relative_twist(states[k], object->state(rays[k].time_s));
     if (object != nullptr && object->animation() != nullptr)
-      twist.head<3>() -=
-          states[k].world_from_body.rotation().conjugate() *
-          scene_.deformation_velocity(rays[k], triangles[k], rays[k].time_s);
+      twist.head<3>() -= states[k].world_from_body.rotation().conjugate() *
+                         scene_.deformation_velocity(rays[k], triangles[k], rays[k].time_s);
     const Eigen::Vector2d flow =
         point_motion(rays_.camera(), centre_ray(rays_, event), depth, twist);
     labels.depth[i] = static_cast<float>(depth);

@@ -66,8 +66,8 @@ struct DatasetRecord {
   std::optional<double> path_length_m;  ///< of the camera
   std::optional<std::string> sampling;  ///< of the events: exact, adaptive or frames
   std::optional<std::string> sampling_reason;  ///< where it was chosen automatically
-  std::optional<Audit> audit;           ///< of events that were sampled adaptively
-  std::map<std::string, std::string> sha256;  ///< of every file but dataset.yaml, by relative path
+  std::optional<Audit> audit;                  ///< of events that were sampled adaptively
+  std::map<std::string, std::string> sha256;   ///< of every file but dataset.yaml, by relative path
 };
 
 void describe(config::Fields& fields, DatasetRecord& record);

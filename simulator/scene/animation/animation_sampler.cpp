@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -112,8 +113,12 @@ class Sampler {
       }
       return true;
     };
-    if (is_near(0.5, middle) && is_near(0.25, pose(0.75 * from_s + 0.25 * to_s)) &&
-        is_near(0.75, pose(0.25 * from_s + 0.75 * to_s)))
+    const auto vertices_at = [&](double fraction) {
+      return poser_.pose(nodes_.file_from_nodes(std::lerp(from_s, to_s, fraction)),
+                         ModelPoser::Normals::kNone);
+    };
+    if (is_near(0.5, middle) && is_near(0.25, vertices_at(0.25)) &&
+        is_near(0.75, vertices_at(0.75)))
       return;
     refine(from_s, from, middle_s, middle);
     append(middle_s, middle);

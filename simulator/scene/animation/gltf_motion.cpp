@@ -41,8 +41,8 @@ std::array<double, 16> parent_from_node(const json& node) {
     const auto rotation = vector_in<4>(node, "rotation", {0, 0, 0, 1});
     const Eigen::Quaterniond turn(rotation[3], rotation[0], rotation[1], rotation[2]);
     transform.translation() = vector_in<3>(node, "translation", {0, 0, 0});
-    transform.linear() = turn.normalized().toRotationMatrix() *
-                         vector_in<3>(node, "scale", {1, 1, 1}).asDiagonal();
+    transform.linear() =
+        turn.normalized().toRotationMatrix() * vector_in<3>(node, "scale", {1, 1, 1}).asDiagonal();
   }
   std::array<double, 16> columns;
   std::copy_n(transform.matrix().data(), columns.size(), columns.begin());

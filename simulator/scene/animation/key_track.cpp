@@ -19,8 +19,8 @@ struct KeyInterval {
 
 KeyInterval interval_at(const ModelTrack& track, double t_s) {
   const std::vector<double>& times = track.times_s;
-  const auto next = static_cast<std::size_t>(
-      std::upper_bound(times.begin(), times.end(), t_s) - times.begin());
+  const auto next =
+      static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t_s) - times.begin());
   if (next == 0) return {0, 0, 0, 0};
   if (next == times.size()) return {next - 1, next - 1, 0, 0};
   const double length_s = times[next] - times[next - 1];
@@ -29,8 +29,8 @@ KeyInterval interval_at(const ModelTrack& track, double t_s) {
 
 template <int n>
 Eigen::Matrix<double, n, 1> value_of(const ModelTrack& track, std::size_t key, std::size_t part) {
-  return Eigen::Map<const Eigen::Matrix<double, n, 1>>(&track.values[key * stride(track, n) +
-                                                                     part * n]);
+  return Eigen::Map<const Eigen::Matrix<double, n, 1>>(
+      &track.values[key * stride(track, n) + part * n]);
 }
 
 /// Value and slopes of a cubic key, in their order.

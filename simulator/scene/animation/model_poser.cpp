@@ -72,39 +72,48 @@ ModelPoser::Skin ModelPoser::skin_of(const ModelPart& part, const std::string& s
   return skin;
 }
 
-ModelPose ModelPoser::pose(std::span<const Eigen::Affine3d> file_from_nodes) const {
+ModelPose ModelPoser::pose(std::span<const Eigen::Affine3d> file_from_nodes,
+                           Normals normals) const {
+  std::size_t count = 0;
+  for (const ModelInstance& instance : model_.instances)
+    count += model_.parts[instance.part].vertices.size();
   ModelPose pose;
+  pose.vertices.resize(count);
+  if (normals == Normals::kPosed) pose.normals.resize(count, Eigen::Vector3d::Zero());
+  std::size_t first = 0;
   for (const ModelInstance& instance : model_.instances) {
     const ModelPart& part = model_.parts[instance.part];
-    const Skin& skin = skins_[instance.part];
     const Eigen::Affine3d& file_from_instance = file_from_nodes[instance.tree_node];
-    std::vector<Eigen::Matrix<double, 3, 4>> file_from_part;  // of the bones
+    std::vector<BlendMatrix> file_from_bones;
     for (const ModelBone& bone : part.bones)
-      file_from_part.push_back(
-          bone.node < 0 ? file_from_instance.affine()
-                        : (file_from_nodes[static_cast<std::size_t>(bone.node)] *
-                           affine_of(bone.bone_from_part))
-                              .affine());
-    const Eigen::Matrix3d rigid_normals = normal_matrix_of(file_from_instance.linear());
-    for (std::size_t i = 0; i < part.vertices.size(); ++i) {
-      Eigen::Matrix<double, 3, 4> blend = Eigen::Matrix<double, 3, 4>::Zero();
-      double total = 0;
-      for (std::uint32_t k = skin.first.empty() ? 0 : skin.first[i];
-           !skin.first.empty() && k < skin.first[i + 1]; ++k) {
-        blend += skin.influences[k].weight * file_from_part[skin.influences[k].bone];
-        total += skin.influences[k].weight;
-      }
-      const bool is_skinned = total > 0;
-      if (!is_skinned) blend = file_from_instance.affine();
-      pose.vertices.push_back(blend * vector_of(part.vertices[i]).homogeneous());
-      const Eigen::Matrix3d normals =
-          is_skinned ? normal_matrix_of(blend.leftCols<3>()) : rigid_normals;
-      pose.normals.push_back(part.normals.empty()
-                                 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                 : turned(normals, vector_of(part.normals[i])));
-    }
+      file_from_bones.push_back(bone.node < 0
+                                    ? file_from_instance.affine()
+                                    : (file_from_nodes[static_cast<std::size_t>(bone.node)] *
+                                       affine_of(bone.bone_from_part))
+                                          .affine());
+    for (std::size_t i = 0; i < part.vertices.size(); ++i)
+      pose_vertex(part, skins_[instance.part], i, file_from_instance, file_from_bones, first + i,
+                  pose);
+    first += part.vertices.size();
   }
   return pose;
+}
+
+void ModelPoser::pose_vertex(const ModelPart& part, const Skin& skin, std::size_t i,
+                             const Eigen::Affine3d& file_from_instance,
+                             std::span<const BlendMatrix> file_from_bones, std::size_t at,
+                             ModelPose& pose) const {
+  BlendMatrix blend = BlendMatrix::Zero();
+  double total = 0;
+  if (!skin.first.empty())
+    for (std::uint32_t k = skin.first[i]; k < skin.first[i + 1]; ++k) {
+      blend += skin.influences[k].weight * file_from_bones[skin.influences[k].bone];
+      total += skin.influences[k].weight;
+    }
+  if (!(total > 0)) blend = file_from_instance.affine();
+  pose.vertices[at] = blend.leftCols<3>() * vector_of(part.vertices[i]) + blend.col(3);
+  if (!pose.normals.empty() && !part.normals.empty())
+    pose.normals[at] = turned(normal_matrix_of(blend.leftCols<3>()), vector_of(part.normals[i]));
 }
 
 std::vector<bool> ModelPoser::nodes() const {

@@ -28,8 +28,10 @@ class ModelPoser {
   /// or with a weight that is negative or not finite.
   ModelPoser(const Model& model, const std::string& source_name);
 
-  /// `file_from_nodes`: of the model's tree.
-  [[nodiscard]] ModelPose pose(std::span<const Eigen::Affine3d> file_from_nodes) const;
+  enum class Normals { kNone, kPosed };
+  /// `file_from_nodes`: of the model's tree. With kNone the normals stay empty.
+  [[nodiscard]] ModelPose pose(std::span<const Eigen::Affine3d> file_from_nodes,
+                               Normals normals = Normals::kPosed) const;
 
   /// Nodes that move a vertex.
   [[nodiscard]] std::vector<bool> nodes() const;
@@ -37,6 +39,7 @@ class ModelPoser {
   [[nodiscard]] bool has_scaled_weights() const { return has_scaled_weights_; }
 
  private:
+  using BlendMatrix = Eigen::Matrix<double, 3, 4>;
   struct Influence {
     std::uint32_t bone;
     double weight;
@@ -47,6 +50,11 @@ class ModelPoser {
     std::vector<Influence> influences;
   };
 
+  /// Places vertex `i` of an instance, the `at`-th of the pose.
+  void pose_vertex(const ModelPart& part, const Skin& skin, std::size_t i,
+                   const Eigen::Affine3d& file_from_instance,
+                   std::span<const BlendMatrix> file_from_bones, std::size_t at,
+                   ModelPose& pose) const;
   [[nodiscard]] Skin skin_of(const ModelPart& part, const std::string& source_name);
 
   const Model& model_;

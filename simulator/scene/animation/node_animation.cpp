@@ -61,9 +61,8 @@ Eigen::Affine3d NodeAnimation::parent_from_node(std::size_t node, double t_s) co
   const auto vector = [t_s](const ModelTrack& track, const Eigen::Vector3d& otherwise) {
     return track.times_s.empty() ? otherwise : vector_at(track, t_s);
   };
-  const Eigen::Quaterniond rotation = channel->rotation.times_s.empty()
-                                          ? rest.rotation
-                                          : rotation_at(channel->rotation, t_s);
+  const Eigen::Quaterniond rotation =
+      channel->rotation.times_s.empty() ? rest.rotation : rotation_at(channel->rotation, t_s);
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
   transform.translation() = vector(channel->translation, rest.translation);
   transform.linear() =
@@ -129,10 +128,10 @@ const ModelAnimation& find_animation(std::span<const ModelAnimation> animations,
     std::vector<std::string> names;
     for (const ModelAnimation& animation : animations) names.push_back(animation.name);
     const auto meant = config::nearest(wanted, names);
-    throw InputError(source_name,
-                     fmt::format("holds no animation '{}'{}; its animations: {}", wanted,
-                                 meant ? fmt::format("; did you mean '{}'?", *meant) : "",
-                                 list_of(animations)));
+    throw InputError(
+        source_name,
+        fmt::format("holds no animation '{}'{}; its animations: {}", wanted,
+                    meant ? fmt::format("; did you mean '{}'?", *meant) : "", list_of(animations)));
   }
   const std::string problem = problem_of(animations[index]);
   if (!problem.empty())

@@ -102,7 +102,8 @@ std::optional<double> VertexAnimation::first_kink_s(double from_s, double to_s) 
     for (auto it = first; it != times_s_.end() && it < first + 3; ++it) {
       const double t_s = start_s_ + (round * duration_s + *it) / speed_;
       const bool is_end = it + 1 == times_s_.end();
-      const bool is_jump = loop_ && !is_closed_ && (is_end || (it == times_s_.begin() && round > 0));
+      const bool is_jump =
+          loop_ && !is_closed_ && (is_end || (it == times_s_.begin() && round > 0));
       consider(t_s - (is_jump ? kAroundJump_s : 0));
       consider(t_s + (is_jump ? kAroundJump_s : 0));
     }

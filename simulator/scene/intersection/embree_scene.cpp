@@ -218,8 +218,8 @@ struct EmbreeScene::State {
 };
 
 EmbreeScene::EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque)
-    : state_(std::make_unique<State>(std::array{opaque.first, cut_out.first},
-                                     std::move(is_opaque))) {
+    : state_(
+          std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
   const std::size_t count = opaque.corners.size() + cut_out.corners.size();
   SACCADE_CHECK(count < kNothing / 3);
   if (count > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -232,8 +232,8 @@ EmbreeScene::EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, 
 EmbreeScene::EmbreeScene(std::shared_ptr<const VertexAnimation> animation,
                          const AnimatedTriangleRun& opaque, const AnimatedTriangleRun& cut_out,
                          IsOpaque is_opaque)
-    : state_(std::make_unique<State>(std::array{opaque.first, cut_out.first},
-                                     std::move(is_opaque))) {
+    : state_(
+          std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
   SACCADE_CHECK(animation != nullptr);
   state_->animation = std::move(animation);
   state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;

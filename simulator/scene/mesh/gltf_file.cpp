@@ -293,6 +293,29 @@ void GltfFile::make_attributes_float(json& document) const {
          {"uri", "data:application/octet-stream;base64," + base64_of(floats)}});
 }
 
+void GltfFile::add_inverse_binds(json& document) {
+  constexpr std::array<float, 16> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (!document.contains("skins")) return;
+  for (json& skin : document["skins"]) {
+    if (skin.contains("inverseBindMatrices")) continue;
+    const std::size_t count = skin.at("joints").size();
+    Bytes matrices(count * sizeof kIdentity);
+    for (std::size_t k = 0; k < count; ++k)
+      std::memcpy(matrices.data() + k * sizeof kIdentity, kIdentity.data(), sizeof kIdentity);
+    document["buffers"].push_back(
+        {{"byteLength", matrices.size()},
+         {"uri", "data:application/octet-stream;base64," + base64_of(matrices)}});
+    document["bufferViews"].push_back({{"buffer", document["buffers"].size() - 1},
+                                       {"byteOffset", 0},
+                                       {"byteLength", matrices.size()}});
+    document["accessors"].push_back({{"bufferView", document["bufferViews"].size() - 1},
+                                     {"componentType", kGltfFloat},
+                                     {"count", count},
+                                     {"type", "MAT4"}});
+    skin["inverseBindMatrices"] = document["accessors"].size() - 1;
+  }
+}
+
 Bytes GltfFile::encoded(json document) const {
   // assimp takes the first buffer of a binary file for its binary chunk, whether it has one or not.
   Bytes chunk = binary_chunk_;
@@ -347,6 +370,7 @@ ReplacedFiles GltfFile::for_assimp(Stillness stillness) const {
             it = is_attribute_shown(it.key(), is_moving) ? std::next(it) : attributes.erase(it);
         }
       make_attributes_float(document);
+      add_inverse_binds(document);
     }
     return {{file_.generic_string(), encoded(std::move(document))}};
   } catch (const json::exception& error) {

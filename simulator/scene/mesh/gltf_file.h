@@ -58,6 +58,8 @@ class GltfFile {
   [[nodiscard]] const Bytes& buffer(std::size_t index) const;
   [[nodiscard]] Bytes buffer_view(std::size_t index) const;
   void make_attributes_float(nlohmann::json& document) const;
+  /// States the matrices of skins that state none, for assimp, which needs them.
+  static void add_inverse_binds(nlohmann::json& document);
   [[nodiscard]] Bytes encoded(nlohmann::json document) const;
 
   const FileSource* source_;

@@ -68,8 +68,8 @@ struct ModelPicture {
 /// A camera that the file holds.
 struct ModelCamera {
   std::string name;
-  std::int32_t node = -1;  ///< index into the model's tree; -1: the file's coordinates
-  std::array<double, 3> position{};        ///< in the node
+  std::int32_t node = -1;            ///< index into the model's tree; -1: the file's coordinates
+  std::array<double, 3> position{};  ///< in the node
   std::array<double, 3> forward{0, 0, 1};  ///< likewise, of any length
   std::array<double, 3> up{0, 1, 0};       ///< likewise, across `forward` or nearly so
   double horizontal_fov_rad = 0;           ///< from edge to edge; 0: not stated

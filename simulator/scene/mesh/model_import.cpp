@@ -327,22 +327,26 @@ bool is_consistent(const Model& model) {
   };
   const auto is_part_fine = [&model, &is_node](const ModelPart& part) {
     return part.material < model.materials.size() &&
-           std::ranges::all_of(part.triangles, [&part](const auto& corners) {
-             return std::ranges::all_of(
-                 corners, [&part](std::uint32_t corner) { return corner < part.vertices.size(); });
-           }) &&
+           std::ranges::all_of(part.triangles,
+                               [&part](const auto& corners) {
+                                 return std::ranges::all_of(corners, [&part](std::uint32_t corner) {
+                                   return corner < part.vertices.size();
+                                 });
+                               }) &&
            std::ranges::all_of(part.bones, [&part, &is_node](const ModelBone& bone) {
              return is_node(bone.node) && bone.weights.size() == bone.vertices.size() &&
                     std::ranges::all_of(bone.vertices, [&part](std::uint32_t vertex) {
-               return vertex < part.vertices.size();
-             });
+                      return vertex < part.vertices.size();
+                    });
            });
   };
   return std::ranges::all_of(model.parts, is_part_fine) &&
-         std::ranges::all_of(model.instances, [&](const ModelInstance& instance) {
-           return instance.part < model.parts.size() && instance.node < model.nodes.size() &&
-                  is_node(instance.tree_node);
-         }) &&
+         std::ranges::all_of(model.instances,
+                             [&](const ModelInstance& instance) {
+                               return instance.part < model.parts.size() &&
+                                      instance.node < model.nodes.size() &&
+                                      is_node(instance.tree_node);
+                             }) &&
          std::ranges::all_of(model.animations, [&](const ModelAnimation& animation) {
            return std::ranges::all_of(animation.channels, [&](const ModelChannel& channel) {
              return is_node(channel.node);

@@ -111,9 +111,9 @@ void AdaptiveTile::update_speed(const AdaptiveSlice& slice) {
     const CameraFrame camera = is_animated_ ? slice.poses.at(seen.t_s) : CameraFrame{};
     const Ray in_world{camera.position, camera.rotation * ray, seen.t_s};
     for (const RelativeTwists* twists : {&slice.first, &slice.last})
-      speed_px_s_ = std::max(
-          speed_px_s_, twists->fastest_px_s(rays_.camera(), ray, seen.distance, in_world,
-                                            seen.triangle, AdaptiveSlice::kLongest_s));
+      speed_px_s_ =
+          std::max(speed_px_s_, twists->fastest_px_s(rays_.camera(), ray, seen.distance, in_world,
+                                                     seen.triangle, AdaptiveSlice::kLongest_s));
   }
 }
 
@@ -307,9 +307,8 @@ bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) const
 std::optional<double> AdaptiveTile::first_kink_s(const ViewSample& from,
                                                  const ViewSample& to) const {
   const auto first = scene_.first_kink_s(from.triangle, from.t_s, to.t_s);
-  return first || from.triangle == to.triangle
-             ? first
-             : scene_.first_kink_s(to.triangle, from.t_s, to.t_s);
+  return first || from.triangle == to.triangle ? first
+                                               : scene_.first_kink_s(to.triangle, from.t_s, to.t_s);
 }
 
 auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const

@@ -106,8 +106,7 @@ Audit::Audit(const Scene& scene, const Spline& world_from_camera, const PinholeC
     return;
   }
   for (const std::size_t i : index_)
-    dense_.push_back(
-        std::make_unique<AdaptiveTile>(scene, rays_, dense_options_, noise_, seed, i));
+    dense_.push_back(std::make_unique<AdaptiveTile>(scene, rays_, dense_options_, noise_, seed, i));
 }
 
 void Audit::sense(const AdaptiveSlice& slice,

@@ -51,8 +51,7 @@ class Audit {
   void add(std::size_t tile, std::span<const SensedEvent> events);
   /// Records a slice densely where that is the reference. `around_px_s`: of a tile, as
   /// AdaptiveTile::advance() has it.
-  void sense(const AdaptiveSlice& slice,
-             const std::function<double(std::size_t)>& around_px_s);
+  void sense(const AdaptiveSlice& slice, const std::function<double(std::size_t)>& around_px_s);
   /// All events of the audited camera up to `t_s` have been added: compares up to there, with an
   /// exact reference after it is recorded.
   void advance(double t_s, double duration_s);

@@ -72,15 +72,14 @@ Twist RelativeTwists::relative_to(const Ray& ray, TriangleId triangle, double at
 double RelativeTwists::fastest_px_s(const PinholeCamera& camera, const Eigen::Vector3d& direction,
                                     double depth, const Ray& ray, TriangleId triangle,
                                     double ahead_s) const {
-  if (!is_animated_)
-    return point_motion(camera, direction, depth, relative_to(triangle)).norm();
+  if (!is_animated_) return point_motion(camera, direction, depth, relative_to(triangle)).norm();
   double fastest = 0;
   for (int k = 0; k < kLooksAhead; ++k)
     fastest = std::max(
-        fastest, point_motion(camera, direction, depth,
-                              relative_to(ray, triangle,
-                                          ray.time_s + ahead_s * k / (kLooksAhead - 1)))
-                     .norm());
+        fastest,
+        point_motion(camera, direction, depth,
+                     relative_to(ray, triangle, ray.time_s + ahead_s * k / (kLooksAhead - 1)))
+            .norm());
   return fastest;
 }
 

@@ -19,9 +19,7 @@ using testing::GltfModel;
 
 class AnimatedScene : public testing::AnimatedFiles {};
 
-Ray down_on(double x, double y, double t_s) {
-  return {{x, y, 2}, -Eigen::Vector3d::UnitZ(), t_s};
-}
+Ray down_on(double x, double y, double t_s) { return {{x, y, 2}, -Eigen::Vector3d::UnitZ(), t_s}; }
 
 Eigen::Vector3d turned(const Eigen::Vector3d& point, double angle) {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * point;
@@ -50,8 +48,9 @@ TEST_F(AnimatedScene, ASkinIsWhereItsBonesTakeItAtEveryTime) {
         EXPECT_GE(scene.min_barycentric(ray, triangle), -1e-6);
         EXPECT_LT((scene.normal(ray, triangle) - Eigen::Vector3d::UnitZ()).norm(), 1e-6);
         const Eigen::Vector3d later = pivot + turned(at - pivot, pi * 0.3);
-        if (t_s < 0.7)
+        if (t_s < 0.7) {
           EXPECT_LT((scene.carried_point(ray, triangle, t_s + 0.3) - later).norm(), 2e-4);
+        }
         const Eigen::Vector3d velocity = pi * Eigen::Vector3d::UnitZ().cross(at - pivot);
         // A chord of the least length has this error, and its end twice that.
         EXPECT_LT((scene.deformation_velocity(ray, triangle, t_s) - velocity).norm(),
@@ -111,8 +110,7 @@ TEST_F(AnimatedScene, OnATrajectoryAMeshMovesAndDeforms) {
   const TriangleId triangle = testing::look(scene, ray);
   ASSERT_NE(triangle, kNothing);
   EXPECT_NEAR(scene.sample_surface(ray, triangle).x, 0.2 + 0.4 * 0.8, 5e-5);
-  const Eigen::Vector3d later =
-      Eigen::Vector3d(0.8, 0, 0) + turned({0.3, 0.1, 0}, 0.5 * pi * 0.7);
+  const Eigen::Vector3d later = Eigen::Vector3d(0.8, 0, 0) + turned({0.3, 0.1, 0}, 0.5 * pi * 0.7);
   EXPECT_LT((scene.carried_point(ray, triangle, 0.8) - later).norm(), 1e-4);
 }
 

@@ -46,8 +46,7 @@ inline GltfModel turning_square(bool on_bone) {
         model.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.5F, -0.5F, 0, 1}, "MAT4", 16);
     model.document["skins"] = {{{"joints", {1}}, {"inverseBindMatrices", inverse_bind}}};
     auto& attributes = model.document["meshes"][0]["primitives"][0]["attributes"];
-    attributes["JOINTS_0"] =
-        model.add(std::vector<std::uint8_t>(16, 0), "VEC4", 4, 5121);
+    attributes["JOINTS_0"] = model.add(std::vector<std::uint8_t>(16, 0), "VEC4", 4, 5121);
     attributes["WEIGHTS_0"] =
         model.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
     turn_about_z(model, 1, std::numbers::pi, 2);

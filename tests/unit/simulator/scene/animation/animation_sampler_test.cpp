@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 using ::testing::AllOf;
-using ::testing::HasSubstr;
 using testing::GltfModel;
+using ::testing::HasSubstr;
 
 class AnimationSampler : public testing::MeshFiles {
  protected:
@@ -32,12 +32,11 @@ class AnimationSampler : public testing::MeshFiles {
 
 /// The pose between two of them, as a scene shows it.
 Eigen::Vector3d vertex_at(const MeshAnimation& animation, double t_s, std::size_t index) {
-  const auto next =
-      std::upper_bound(animation.times_s.begin(), animation.times_s.end(), t_s);
+  const auto next = std::upper_bound(animation.times_s.begin(), animation.times_s.end(), t_s);
   const auto k = std::min(static_cast<std::size_t>(next - animation.times_s.begin()),
-                          animation.times_s.size() - 1) - 1;
-  const double f =
-      (t_s - animation.times_s[k]) / (animation.times_s[k + 1] - animation.times_s[k]);
+                          animation.times_s.size() - 1) -
+                 1;
+  const double f = (t_s - animation.times_s[k]) / (animation.times_s[k + 1] - animation.times_s[k]);
   return (1 - f) * animation.vertices[k][index].cast<double>() +
          f * animation.vertices[k + 1][index].cast<double>();
 }
@@ -64,8 +63,7 @@ TEST_F(AnimationSampler, SkinnedVerticesAreWhereTheirBonesTakeThem) {
     // assimp may reorder vertices: where they rest tells which one is which.
     const double x = mesh.vertices[i].x(), y = mesh.vertices[i].y();
     for (double t_s = 0; t_s < 1; t_s += 0.00137)
-      largest = std::max(largest,
-                         (vertex_at(animation, t_s, i) - strip_vertex(x, y, t_s)).norm());
+      largest = std::max(largest, (vertex_at(animation, t_s, i) - strip_vertex(x, y, t_s)).norm());
   }
   EXPECT_LT(largest, 1.01 * kChordError * size);
   EXPECT_GT(largest, 0.1 * kChordError * size);  // no more poses than that takes
@@ -110,17 +108,29 @@ TEST_F(AnimationSampler, NormalsTurnWithTheirBones) {
   model.animate(2, "rotation", {0, 1}, {0, 0, 0, 1, 0, std::sqrt(0.5F), 0, std::sqrt(0.5F)});
   const Mesh mesh = read(model);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Eigen::Vector3f expected = mesh.vertices[i].x() > 1.1   ? Eigen::Vector3f(1, 0, 0)
-                                     : mesh.vertices[i].x() < 0.9 ? Eigen::Vector3f(0, 0, 1)
-                                                                  : mesh.animation->normals.back()[i];
+    const Eigen::Vector3f expected = mesh.vertices[i].x() > 1.1 ? Eigen::Vector3f(1, 0, 0)
+                                     : mesh.vertices[i].x() < 0.9
+                                         ? Eigen::Vector3f(0, 0, 1)
+                                         : mesh.animation->normals.back()[i];
     EXPECT_LT((mesh.animation->normals.back()[i] - expected).norm(), 1e-5F);
   }
 }
 
+// As bones that are bound where the file's origin is.
+TEST_F(AnimationSampler, SkinsNeedNotStateWhereTheyAreBound) {
+  GltfModel model = testing::strip_on_bones();
+  model.document["skins"][0].erase("inverseBindMatrices");
+  const Mesh mesh = read(model);
+  double right = 0;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) right = std::max(right, vertex.x());
+  EXPECT_NEAR(right, 3, 1e-6);
+}
+
 TEST_F(AnimationSampler, UnknownNamesAreErrorsThatListTheKnownOnes) {
   GltfModel model = testing::strip_on_bones();
-  EXPECT_THAT(error_of(model, "mave"), AllOf(HasSubstr("model.gltf"), HasSubstr("'mave'"),
-                                             HasSubstr("did you mean 'move'"), HasSubstr("0 'move'")));
+  EXPECT_THAT(error_of(model, "mave"),
+              AllOf(HasSubstr("model.gltf"), HasSubstr("'mave'"), HasSubstr("did you mean 'move'"),
+                    HasSubstr("0 'move'")));
   EXPECT_EQ(read(model, "0").animation->name, "move");
   EXPECT_THAT(error_of(model, "1"), HasSubstr("0 'move'"));
   model.document.erase("animations");
@@ -180,8 +190,8 @@ Model triangle_on_bone() {
   ModelPart part;
   part.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   part.triangles = {{0, 1, 2}};
-  part.bones.push_back({"bone", 1, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, {0, 1, 2},
-                        {1, 1, 1}});
+  part.bones.push_back(
+      {"bone", 1, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, {0, 1, 2}, {1, 1, 1}});
   model.parts = {part};
   model.instances.emplace_back();
   model.animations = {

@@ -49,8 +49,7 @@ class GltfModel {
                const std::vector<float>& values, const char* interpolation = "LINEAR") {
     const bool is_rotation = std::string(path) == "rotation";
     const std::size_t input = floats(times_s, "SCALAR", 1);
-    const std::size_t output =
-        floats(values, is_rotation ? "VEC4" : "VEC3", is_rotation ? 4U : 3U);
+    const std::size_t output = floats(values, is_rotation ? "VEC4" : "VEC3", is_rotation ? 4U : 3U);
     json& animation = document["animations"][0];
     if (!animation.contains("name")) animation["name"] = "move";
     animation["samplers"].push_back(
@@ -61,9 +60,8 @@ class GltfModel {
 
   [[nodiscard]] std::string text() const {
     json complete = document;
-    complete["buffers"] = {
-        {{"byteLength", bytes_.size()},
-         {"uri", "data:application/octet-stream;base64," + base64_of(bytes_)}}};
+    complete["buffers"] = {{{"byteLength", bytes_.size()},
+                            {"uri", "data:application/octet-stream;base64," + base64_of(bytes_)}}};
     return complete.dump();
   }
 
@@ -107,13 +105,14 @@ inline GltfModel strip_on_bones() {
     for (const int corner : {0, 2, 1, 1, 2, 3})
       corners.push_back(static_cast<std::uint16_t>(2 * k + corner));
   const std::size_t inverse_binds = model.floats(
-      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  // the second bone is bound at (1, 0, 0)
+      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,  // the second bone is bound at (1, 0, 0)
        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1},
       "MAT4", 16);
   model.document["scenes"][0]["nodes"] = {0, 1};
-  model.document["nodes"] = {{{"name", "body"}, {"mesh", 0}, {"skin", 0}, {"rotation", {0, 1, 0, 0}}},
-                             {{"name", "hip"}, {"children", {2}}},
-                             {{"name", "knee"}, {"translation", {1, 0, 0}}}};
+  model.document["nodes"] = {
+      {{"name", "body"}, {"mesh", 0}, {"skin", 0}, {"rotation", {0, 1, 0, 0}}},
+      {{"name", "hip"}, {"children", {2}}},
+      {{"name", "knee"}, {"translation", {1, 0, 0}}}};
   model.document["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", inverse_binds}}};
   model.document["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}};
   const auto position = model.floats(positions, "VEC3", 3);

@@ -53,8 +53,8 @@ TEST(KeyTrack, WithTooFewValuesOrTimesOutOfOrderAreNotValid) {
   EXPECT_FALSE(is_valid({KeyInterpolation::kLinear, {0, 1}, {0, 0, 0}}, 3));
   EXPECT_FALSE(is_valid({KeyInterpolation::kCubic, {0}, {0, 0, 0}}, 3));
   EXPECT_FALSE(is_valid({KeyInterpolation::kLinear, {1, 0}, {0, 0, 0, 0, 0, 0}}, 3));
-  EXPECT_FALSE(
-      is_valid({KeyInterpolation::kLinear, {0}, {0, std::numeric_limits<double>::infinity(), 0}}, 3));
+  EXPECT_FALSE(is_valid(
+      {KeyInterpolation::kLinear, {0}, {0, std::numeric_limits<double>::infinity(), 0}}, 3));
 }
 
 }  // namespace

@@ -91,7 +91,8 @@ TEST_F(AnimatedEvents, ComeAtTheTimesOfTheClosedForm) {
     const Scene scene = this->scene(testing::turning_square(on_bone));
     AdaptiveCamera recorder(scene, motion, camera, options);
     std::map<std::pair<int, int>, Events> found;
-    for (const Event& event : record(recorder, kDuration_s)) found[{event.x, event.y}].push_back(event);
+    for (const Event& event : record(recorder, kDuration_s))
+      found[{event.x, event.y}].push_back(event);
     std::size_t expected_count = 0, late = 0, extra = 0;
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x) {
@@ -103,7 +104,8 @@ TEST_F(AnimatedEvents, ComeAtTheTimesOfTheClosedForm) {
         extra += own.size() > expected.size() ? own.size() - expected.size() : 0;
         for (std::size_t k = 0; k < expected.size(); ++k) {
           // The chords are within 2.9e-5 m of the arcs, and the reference counts twice.
-          const double error_s = 1e-6 + 2 * 0.4 * 2.9e-5 / std::abs(pixel.albedo_rate(expected[k].first));
+          const double error_s =
+              1e-6 + 2 * 0.4 * 2.9e-5 / std::abs(pixel.albedo_rate(expected[k].first));
           if (k >= own.size() || own[k].polarity != expected[k].second ||
               std::abs(seconds_from_ns(own[k].t_ns) - expected[k].first) > error_s)
             ++late;
@@ -129,8 +131,9 @@ class AnimatedStrip : public AnimatedEvents {
     return Spline::interpolate(poses);
   }
   [[nodiscard]] Scene strip() const {
-    write("floor.obj", "mtllib floor.mtl\nusemtl f\nv -3 -3 -0.5\nv 4 -3 -0.5\nv 4 4 -0.5\nv -3 4 -0.5\n"
-                       "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    write("floor.obj",
+          "mtllib floor.mtl\nusemtl f\nv -3 -3 -0.5\nv 4 -3 -0.5\nv 4 4 -0.5\nv -3 4 -0.5\n"
+          "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
     write("floor.mtl", "newmtl f\nKd 0.4 0.4 0.4\n");
     return scene(testing::strip_on_bones(), "animation: {start_s: -0.1}",
                  "  - {file: floor.obj}\nbackground: 0.1\n");
@@ -231,9 +234,9 @@ TEST_F(AnimatedStrip, ExactSamplingIsAnErrorThatNamesAdaptive) {
   EXPECT_EQ(chosen_sampling(Sampling::kAuto, scene), Sampling::kAdaptive);
   EXPECT_EQ(sampling_reason(Sampling::kAuto, scene), "animated meshes");
   EXPECT_EQ(chosen_sampling(Sampling::kFrames, scene), Sampling::kFrames);
-  EXPECT_THAT(testing::error_of(
-                  [&] { static_cast<void>(chosen_sampling(Sampling::kExact, scene)); }),
-              AllOf(HasSubstr("events.sampling"), HasSubstr("adaptive")));
+  EXPECT_THAT(
+      testing::error_of([&] { static_cast<void>(chosen_sampling(Sampling::kExact, scene)); }),
+      AllOf(HasSubstr("events.sampling"), HasSubstr("adaptive")));
 }
 
 TEST_F(AnimatedStrip, AConfigurationSaysSoWithItsPlace) {
@@ -242,7 +245,8 @@ TEST_F(AnimatedStrip, AConfigurationSaysSoWithItsPlace) {
     return config::read<SimulationConfig>(
         config::parse("scene: {meshes: [{file: model.gltf, animation: {loop: true}}]}\n"
                       "trajectory: {source: shake}\n"
-                      "events: {sampling: " + sampling + "}\n",
+                      "events: {sampling: " +
+                          sampling + "}\n",
                       "walk.yaml", folder_));
   };
   EXPECT_THAT(testing::error_of([&] { static_cast<void>(read("exact")); }),
