@@ -133,10 +133,10 @@ void describe(config::Fields& fields, SimulationConfig& config) {
              "Length of the recording, in seconds; the default is the rest of the trajectory.")
       .above(0);
   fields.section("camera", config.camera, "Pinhole camera with lens distortion.");
+  const ModelCameraOptions& model = config.trajectory.model_camera;
   if (fields.reading() && config.trajectory.source == MotionSource::kModelCamera &&
-      config.trajectory.model_camera.sets_focal_length)
-    config.camera.fx = config.camera.fy =
-        model_focal_length_px(config.trajectory.model_camera, config.camera.height);
+      model.sets_focal_length && !model.file.empty())
+    config.camera.fx = config.camera.fy = model_focal_length_px(model, config.camera.height);
   fields.section("events", config.events, "Event pixels and their imperfections.");
   const bool is_animated = std::ranges::any_of(
       config.scene.meshes, [](const MeshOptions& mesh) { return mesh.animation.has_value(); });
