@@ -87,7 +87,7 @@ double step_s(const std::vector<double>& keys_s) {
 
 void describe(config::Fields& fields, ModelCameraOptions& options) {
   fields
-      .path("file", options.file,
+      .path("model", options.file,
             "Model file (glTF, FBX, COLLADA and others) that holds the camera, also "
             "archive.zip!/path/in/it.glb.")
       .required();
@@ -97,12 +97,10 @@ void describe(config::Fields& fields, ModelCameraOptions& options) {
   fields.value("animation", options.animation,
                "Name or index of the animation that moves it; by default the first one of the "
                "file.");
-  fields.choice("up", options.is_y_up, {{"y", true}, {"z", false}},
-                "Axis of the file that points upwards. y turns the path by 90 degrees about x, as "
+  fields.choice("model_up", options.is_y_up, {{"y", true}, {"z", false}},
+                "Axis of the model that points upwards. y turns the path by 90 degrees about x, as "
                 "up: y turns a mesh; z leaves it as it is.");
-  fields
-      .value("duration_s", options.duration_s,
-             "Duration in seconds where the camera does not move.")
+  fields.value("duration_s", options.duration_s, "Duration of the motion, in seconds.")
       .above(0)
       .at_most(3600);
   fields.value("sets_focal_length", options.sets_focal_length,

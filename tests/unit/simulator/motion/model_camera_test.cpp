@@ -41,7 +41,7 @@ class ModelCamera : public testing::MeshFiles {
   Spline motion(const GltfModel& model, const std::string& keys) const {
     write("set.gltf", model.text());
     return build_motion(config::read<MotionOptions>(
-        config::parse("{source: model_camera, file: set.gltf, " + keys + "}", "a.yaml", folder_)));
+        config::parse("{source: model_camera, model: set.gltf, " + keys + "}", "a.yaml", folder_)));
   }
   std::string error_of(const GltfModel& model, const std::string& keys) const {
     return testing::error_of([&] { static_cast<void>(motion(model, keys)); });
@@ -52,7 +52,7 @@ class ModelCamera : public testing::MeshFiles {
 Eigen::Matrix3d downwards() { return Eigen::Vector3d(1, -1, -1).asDiagonal(); }
 
 TEST_F(ModelCamera, AnAnimatedOneFollowsItsArm) {
-  const Spline path = motion(film_set(), "camera: crane, up: z");
+  const Spline path = motion(film_set(), "camera: crane, model_up: z");
   EXPECT_EQ(path.start_s(), 0);
   EXPECT_NEAR(path.end_s(), 3, 1e-6);
   for (double t_s = 0; t_s <= 3; t_s += 0.0371) {
@@ -71,7 +71,7 @@ TEST_F(ModelCamera, AnAnimatedOneFollowsItsArm) {
 
 TEST_F(ModelCamera, StandsUprightWithItsMesh) {
   // y of the file is z of the world, where the camera looks along +y.
-  const Rigid3 pose = motion(film_set(), "camera: tripod, up: y, duration_s: 2").pose(1);
+  const Rigid3 pose = motion(film_set(), "camera: tripod, model_up: y, duration_s: 2").pose(1);
   EXPECT_LT((pose.translation() - Eigen::Vector3d(0, -5, 1)).norm(), 1e-9);
   EXPECT_LT((pose.rotation() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-9);
   EXPECT_LT((pose.rotation() * Eigen::Vector3d::UnitY() + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
@@ -79,7 +79,8 @@ TEST_F(ModelCamera, StandsUprightWithItsMesh) {
 
 TEST_F(ModelCamera, TakesTheTransformOfEveryTrajectory) {
   const Rigid3 pose =
-      motion(film_set(), "camera: tripod, up: z, transform: {scale: 2, translation: [1, 0, 0]}")
+      motion(film_set(),
+             "camera: tripod, model_up: z, transform: {scale: 2, translation: [1, 0, 0]}")
           .pose(0.5);
   EXPECT_LT((pose.translation() - Eigen::Vector3d(1, 2, 10)).norm(), 1e-9);
 }
@@ -89,7 +90,7 @@ TEST_F(ModelCamera, ItsFieldOfViewMaySetTheFocalLength) {
   const auto config = [&](const std::string& sets) {
     return config::read<SimulationConfig>(config::parse(
         "scene: {meshes: [{file: set.gltf}]}\ncamera: {width: 320, height: 200, fx: 99}\n"
-        "trajectory: {source: model_camera, file: set.gltf, camera: crane, sets_focal_length: " +
+        "trajectory: {source: model_camera, model: set.gltf, camera: crane, sets_focal_length: " +
             sets + "}\n",
         "a.yaml", folder_));
   };
@@ -101,13 +102,13 @@ TEST_F(ModelCamera, ItsFieldOfViewMaySetTheFocalLength) {
 TEST_F(ModelCamera, UnknownNamesAreErrorsThatNameTheKnownOnes) {
   EXPECT_THAT(error_of(film_set(), "camera: train"),
               AllOf(HasSubstr("set.gltf"), HasSubstr("'train'"), HasSubstr("crane, tripod")));
-  EXPECT_THAT(error_of(film_set(), "up: y"),
+  EXPECT_THAT(error_of(film_set(), "model_up: y"),
               AllOf(HasSubstr("2 cameras"), HasSubstr("crane, tripod")));
   EXPECT_THAT(error_of(film_set(), "camera: crane, animation: fly"),
               AllOf(HasSubstr("'fly'"), HasSubstr("0 'move'")));
   EXPECT_THAT(error_of(film_set(), "camera: tripod, animation: move"),
               HasSubstr("does not move the camera"));
-  EXPECT_THAT(error_of(testing::square_on_node(), "up: y"), HasSubstr("holds no camera"));
+  EXPECT_THAT(error_of(testing::square_on_node(), "model_up: y"), HasSubstr("holds no camera"));
 }
 
 TEST_F(ModelCamera, OfFlatNodesHaveNoViewDirection) {
