@@ -86,15 +86,16 @@ std::string camera_line(const Model& model, const ModelCamera& camera, bool is_t
   const Eigen::Vector3d forward = file_from_node.linear() * Eigen::Vector3d(camera.forward.data());
   const Eigen::Vector3d position = upright(at, is_turned);
   const Eigen::Vector3d target = position + upright(forward, is_turned).normalized();
-  return mesh_line("camera",
-                   fmt::format("'{}'{}; as a view in the entry below: "
-                               "{{t_s: 0, position: {}, look_at: {}}}",
-                               camera.name,
-                               camera.horizontal_fov_rad > 0
-                                   ? fmt::format(" {:.0f} deg wide",
-                                                 camera.horizontal_fov_rad * 180 / std::numbers::pi)
-                                   : "",
-                               vector_text(position), vector_text(target)));
+  return mesh_line(
+      "camera",
+      fmt::format(
+          "'{}'{}; a trajectory of source model_camera, or a view in the entry below: "
+          "{{t_s: 0, position: {}, look_at: {}}}",
+          camera.name,
+          camera.horizontal_fov_rad > 0
+              ? fmt::format(" {:.0f} deg wide", camera.horizontal_fov_rad * 180 / std::numbers::pi)
+              : "",
+          vector_text(position), vector_text(target)));
 }
 
 /// Animations and cameras.
@@ -107,7 +108,8 @@ std::string motion_lines(const fs::path& file, bool is_turned) {
     text += mesh_line("animation",
                       fmt::format("{} '{}' of {:.4g} s moves {} nodes{}", i, animation.name,
                                   animation.duration_s, animation.channels.size(),
-                                  problem.empty() ? "" : "; cannot be played: it " + problem));
+                                  problem.empty() ? "; `animation` in the entry below plays it"
+                                                  : "; cannot be played: it " + problem));
   }
   for (const ModelCamera& camera : model.cameras) text += camera_line(model, camera, is_turned);
   return text;
