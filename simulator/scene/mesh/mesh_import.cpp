@@ -313,7 +313,7 @@ Mesh MeshImporter::read(const fs::path& file, const std::optional<std::string>& 
   std::optional<GltfMaterials> gltf_materials;
   if (gltf) {
     gltf_materials.emplace(*gltf, context);
-    gltf_materials->remark_ignored();
+    gltf_materials->remark_ignored(animation.has_value());
     read_material = [&](std::size_t index) {
       return gltf_materials->read(gltf_index(model.materials[index], *gltf));
     };

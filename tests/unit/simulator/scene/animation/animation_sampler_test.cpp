@@ -69,6 +69,15 @@ TEST_F(AnimationSampler, SkinnedVerticesAreWhereTheirBonesTakeThem) {
   EXPECT_GT(largest, 0.1 * kChordError * size);  // no more poses than that takes
 }
 
+TEST_F(AnimationSampler, WhatIsPlayedIsNotSaidToBeMissing) {
+  MeshImporter importer;
+  const auto file = write("model.gltf", testing::strip_on_bones().text());
+  static_cast<void>(importer.read(file, ""));
+  EXPECT_TRUE(importer.remarks().lines().empty());
+  static_cast<void>(importer.read(file));
+  EXPECT_THAT(importer.remarks().lines(), ::testing::Contains(HasSubstr("animations, skins")));
+}
+
 TEST_F(AnimationSampler, RigidNodesMoveAndTurnWithTheirParents) {
   GltfModel model = testing::square_on_node();
   model.document["nodes"] = {{{"name", "carrier"}, {"children", {1}}},

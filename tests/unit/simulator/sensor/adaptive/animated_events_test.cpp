@@ -172,7 +172,8 @@ TEST_F(AnimatedStrip, FramesFollowADeformationBeforeACameraAtRest) {
   const Scene scene = strip();
   EventOptions options = options_of(0.04);
   options.sampling = Sampling::kFrames;
-  FrameCamera recorder(scene, testing::resting_above({1.2, 0}, kDuration_s), camera_, options);
+  const Spline rest = testing::resting_above({1.2, 0}, kDuration_s);
+  FrameCamera recorder(scene, rest, camera_, options);
   static_cast<void>(events_recorded(recorder, kDuration_s));
   // The tip moves with pi m/s, 31 px/s: half a pixel takes 16 ms, a frame 10 ms at most.
   EXPECT_LE(recorder.statistics().time_bound_s, 0.01 + 1e-9);
