@@ -180,7 +180,8 @@ TEST_F(AnimatedStrip, FramesFollowADeformationBeforeACameraAtRest) {
   EXPECT_GT(recorder.statistics().rays, 8U * 24 * 20);
 }
 
-TEST_F(AnimatedStrip, TheAuditHasADenseReference) {
+// Also what is missed: a tip of the strip that passes a pixel unseen.
+TEST_F(AnimatedStrip, TheDenseAuditTellsWhatBruteForceTells) {
   const Scene scene = strip();
   EXPECT_EQ(audit_reference(scene), AuditReference::kDense);
   EventOptions options = options_of(0.04);
@@ -192,7 +193,11 @@ TEST_F(AnimatedStrip, TheAuditHasADenseReference) {
   EXPECT_EQ(audit.pixels, 24U * 20);
   EXPECT_EQ(audit.sampled_events, found.size());
   EXPECT_GT(audit.exact_events, 300U);
-  EXPECT_GT(audit.recall_10us.value, 0.98);
+  const Events truth = testing::brute_force(scene, path, camera_, options);
+  const auto pairs = static_cast<double>(testing::count_pairs(truth, found, 10'000));
+  EXPECT_NEAR(audit.recall_10us.value, pairs / static_cast<double>(truth.size()), 0.01);
+  EXPECT_NEAR(audit.precision_10us.value, pairs / static_cast<double>(found.size()), 0.01);
+  EXPECT_GT(audit.recall_10us.value, 0.93);
   EXPECT_GT(audit.precision_10us.value, 0.98);
 }
 
