@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/error.h"
 #include "core/io/events/labels_h5.h"
 #include "core/process/progress.h"
 #include "simulator/recording_loop.h"
@@ -76,9 +77,21 @@ constexpr std::size_t kManyTriangles = 10'000;
 }  // namespace
 
 Sampling chosen_sampling(Sampling sampling, const Scene& scene) {
+  if (sampling == Sampling::kExact && scene.is_animated())
+    throw InputError("events.sampling",
+                     "exact cannot be combined with an animated mesh: its proofs hold for rigid "
+                     "motion; state adaptive, auto or frames");
   if (sampling != Sampling::kAuto) return sampling;
+  if (scene.is_animated()) return Sampling::kAdaptive;
   return scene.is_lit() && scene.triangle_count() >= kManyTriangles ? Sampling::kAdaptive
                                                                     : Sampling::kExact;
+}
+
+std::string sampling_reason(Sampling sampling, const Scene& scene) {
+  if (sampling != Sampling::kAuto) return "stated";
+  if (scene.is_animated()) return "animated meshes";
+  return chosen_sampling(sampling, scene) == Sampling::kAdaptive ? "lights and many triangles"
+                                                                 : "rigid motion";
 }
 
 EventStatistics record_events(const CameraRecording& recording) {

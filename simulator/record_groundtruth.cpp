@@ -24,7 +24,7 @@ double record_groundtruth(const CameraRecording& recording) {
     twists.push_back({t_s, pose.rotation().conjugate() * state.velocity_in_world,
                       state.angular_velocity_in_body});
     for (const MovingObject& object : recording.scene.moving_objects())
-      objects.push_back({t_s, object.object(), object.pose(t_s)});
+      if (object.has_trajectory()) objects.push_back({t_s, object.object(), object.pose(t_s)});
   }
   recording.writer.write_groundtruth(poses);
   write_twists(recording.writer.folder() / "twist.txt", twists);

@@ -17,6 +17,7 @@
 #include "simulator/resume.h"
 #include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
+#include "simulator/sensor/adaptive/audit.h"
 
 namespace saccade {
 namespace {
@@ -25,8 +26,9 @@ DatasetRecord::Figure figure_of(const AuditFigure& figure) {
   return {figure.value, figure.low, figure.high};
 }
 
-DatasetRecord::Audit audit_record(const AuditResult& audit) {
-  return {static_cast<std::int64_t>(audit.pixels),
+DatasetRecord::Audit audit_record(const AuditResult& audit, AuditReference reference) {
+  return {reference == AuditReference::kExact ? "exact" : "dense",
+          static_cast<std::int64_t>(audit.pixels),
           static_cast<std::int64_t>(audit.exact_events),
           figure_of(audit.precision_10us),
           figure_of(audit.recall_10us),
@@ -62,9 +64,11 @@ DatasetRecord facts(const CameraRecording& recording, const EventStatistics& eve
     record.lost_events = static_cast<std::int64_t>(events.lost);
   const Sampling sampling = chosen_sampling(recording.events.sampling, recording.scene);
   record.sampling = sampling_name(sampling);
+  if (recording.events.sampling == Sampling::kAuto)
+    record.sampling_reason = sampling_reason(recording.events.sampling, recording.scene);
   if (sampling != Sampling::kAdaptive) record.time_bound_us = 1e6 * events.time_bound_s;
   if (const AuditResult& audit = recording.log.audit(); audit.pixels > 0)
-    record.audit = audit_record(audit);
+    record.audit = audit_record(audit, audit_reference(recording.scene));
   record.path_length_m = path_length_m;
   return record;
 }
@@ -118,6 +122,8 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   const Spline motion =
       cut_motion(build_motion(config.trajectory), config.start_s, config.duration_s);
   const Scene scene = build_scene(config.scene);
+  for (const RigCamera& camera : cameras)
+    static_cast<void>(chosen_sampling(camera.events.sampling, scene));  // or an error, at once
   const std::optional<ColourScenes> colours = colour_scenes(config, cameras);
   report.load_s = watch.seconds();
 

@@ -1,5 +1,7 @@
 #include "simulator/simulation_config.h"
 
+#include <algorithm>
+
 #include "core/config/rigid3_node.h"
 
 namespace saccade {
@@ -131,7 +133,16 @@ void describe(config::Fields& fields, SimulationConfig& config) {
              "Length of the recording, in seconds; the default is the rest of the trajectory.")
       .above(0);
   fields.section("camera", config.camera, "Pinhole camera with lens distortion.");
+  const ModelCameraOptions& model = config.trajectory.model_camera;
+  if (fields.reading() && config.trajectory.source == MotionSource::kModelCamera &&
+      model.sets_focal_length && !model.file.empty())
+    config.camera.fx = config.camera.fy = model_focal_length_px(model, config.camera.height);
   fields.section("events", config.events, "Event pixels and their imperfections.");
+  const bool is_animated = std::ranges::any_of(
+      config.scene.meshes, [](const MeshOptions& mesh) { return mesh.animation.has_value(); });
+  fields.expect(!is_animated || config.events.sampling != Sampling::kExact, "events",
+                "sampling: exact cannot be combined with an animated mesh, because its proofs hold "
+                "for rigid motion; state sampling: adaptive, auto or frames");
   fields
       .list("rig", config.rig, "Further cameras, fixed to the first one.",
             {config.camera, Rigid3(), config.events})

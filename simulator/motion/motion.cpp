@@ -107,6 +107,9 @@ Spline build_motion(const MotionOptions& options, const std::string& name) {
       return fitted(options, waypoint_poses(options), name + ".waypoints");
     case MotionSource::kFile:
       return fitted(options, file_poses(options.file, options.rest_s), options.file.string());
+    case MotionSource::kModelCamera:
+      return fitted(options, model_camera_poses(options.model_camera),
+                    options.model_camera.file.string());
     default:
       return sampled(options);
   }

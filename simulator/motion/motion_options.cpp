@@ -300,6 +300,7 @@ void describe(config::Fields& fields, MotionOptions& options) {
               {{"control_poses", MotionSource::kControlPoses},
                {"waypoints", MotionSource::kWaypoints},
                {"file", MotionSource::kFile},
+               {"model_camera", MotionSource::kModelCamera},
                {"slider", MotionSource::kSlider},
                {"circle", MotionSource::kCircle},
                {"lissajous", MotionSource::kLissajous},
@@ -325,6 +326,10 @@ void describe(config::Fields& fields, MotionOptions& options) {
           .value("rest_s", options.rest_s,
                  "Time for which the camera rests at the first pose before it moves, in seconds.")
           .range(0, 3600);
+      describe_fit(fields, options);
+      break;
+    case MotionSource::kModelCamera:
+      describe(fields, options.model_camera);
       describe_fit(fields, options);
       break;
     default:

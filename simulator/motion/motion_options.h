@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/config/fields.h"
+#include "simulator/motion/model_camera.h"
 
 namespace saccade {
 
@@ -104,6 +105,7 @@ enum class MotionSource {
   kControlPoses,
   kWaypoints,
   kFile,
+  kModelCamera,
   kSlider,
   kCircle,
   kLissajous,
@@ -126,6 +128,7 @@ struct MotionOptions {
   Fit fit = Fit::kInterpolate;
   double knot_spacing_s = 0.04;
   double rest_s = 0;
+  ModelCameraOptions model_camera;
 
   double duration_s = 1;
   SliderOptions slider;

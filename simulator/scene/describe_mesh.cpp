@@ -15,6 +15,8 @@
 #include <assimp/Importer.hpp>
 
 #include "core/io/events/event_file.h"
+#include "simulator/scene/animation/model_motion.h"
+#include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/mesh_import.h"
 
 namespace saccade {
@@ -74,14 +76,43 @@ Eigen::Vector3d upright(const Eigen::Vector3d& v, bool is_turned) {
   return is_turned ? Eigen::Vector3d(v.x(), -v.z(), v.y()) : v;
 }
 
-std::string camera_line(const MeshCamera& camera, bool is_turned) {
-  const Eigen::Vector3d position = upright(camera.position, is_turned);
-  const Eigen::Vector3d target = position + upright(camera.forward, is_turned).normalized();
-  return mesh_line("camera",
-                   fmt::format("'{}' {:.0f} deg wide; as a view in the entry below: "
-                               "{{t_s: 0, position: {}, look_at: {}}}",
-                               camera.name, camera.horizontal_fov_rad * 180 / std::numbers::pi,
-                               vector_text(position), vector_text(target)));
+/// As the trajectory's or a view's camera is stated.
+std::string camera_line(const Model& model, const ModelCamera& camera, bool is_turned) {
+  const NodeAnimation still(model.tree, nullptr);
+  const auto nodes = still.file_from_nodes(0);
+  const Eigen::Affine3d file_from_node =
+      camera.node < 0 ? Eigen::Affine3d::Identity() : nodes[static_cast<std::size_t>(camera.node)];
+  const Eigen::Vector3d at = file_from_node * Eigen::Vector3d(camera.position.data());
+  const Eigen::Vector3d forward = file_from_node.linear() * Eigen::Vector3d(camera.forward.data());
+  const Eigen::Vector3d position = upright(at, is_turned);
+  const Eigen::Vector3d target = position + upright(forward, is_turned).normalized();
+  return mesh_line(
+      "camera",
+      fmt::format(
+          "'{}'{}; a trajectory of source model_camera, or a view in the entry below: "
+          "{{t_s: 0, position: {}, look_at: {}}}",
+          camera.name,
+          camera.horizontal_fov_rad > 0
+              ? fmt::format(" {:.0f} deg wide", camera.horizontal_fov_rad * 180 / std::numbers::pi)
+              : "",
+          vector_text(position), vector_text(target)));
+}
+
+/// Animations and cameras.
+std::string motion_lines(const fs::path& file, bool is_turned) {
+  std::string text;
+  const Model model = read_model_motion(file);
+  for (std::size_t i = 0; i < model.animations.size(); ++i) {
+    const ModelAnimation& animation = model.animations[i];
+    const std::string problem = problem_of(animation);
+    text += mesh_line("animation",
+                      fmt::format("{} '{}' of {:.4g} s moves {} nodes{}", i, animation.name,
+                                  animation.duration_s, animation.channels.size(),
+                                  problem.empty() ? "; `animation` in the entry below plays it"
+                                                  : "; cannot be played: it " + problem));
+  }
+  for (const ModelCamera& camera : model.cameras) text += camera_line(model, camera, is_turned);
+  return text;
 }
 
 /// A model of less than a millimetre or more than ten kilometres is in other units than metres.
@@ -115,6 +146,11 @@ std::string counts_of(const Mesh& mesh) {
 bool is_mesh_name(const fs::path& path) {
   if (path.string().ends_with(".relief.yaml")) return true;
   const std::string ending = lower_ending(path);
+  // What is not built in is a mesh all the same: the importer says so.
+  static const std::set<std::string> kNotBuiltIn{
+      ".wrl",  ".vrml", ".x3dv", ".blend", ".max", ".ma",   ".mb",  ".usd", ".usda",
+      ".usdc", ".usdz", ".abc",  ".c4d",   ".skp", ".step", ".stp", ".iges"};
+  if (kNotBuiltIn.contains(ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.
   return !ending.empty() && ending != ".raw" && find_event_format(path) == nullptr &&
@@ -138,9 +174,7 @@ std::string describe_mesh(const fs::path& file) {
     text += mesh_line(
         "lights", fmt::format("{} (not used: state {})", extras.lights,
                               is_gltf(file) ? "scene.lights_from_meshes: true" : "scene.lights"));
-  if (extras.animations > 0)
-    text += mesh_line("animations", fmt::format("{} (not shown)", extras.animations));
-  for (const MeshCamera& camera : extras.cameras) text += camera_line(camera, is_turned);
+  if (lower_ending(file) != ".yaml") text += motion_lines(file, is_turned);
   return text + problem_lines(importer.remarks()) + suggestion(file, box.sizes(), is_turned);
 }
 

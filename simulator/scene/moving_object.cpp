@@ -1,6 +1,7 @@
 #include "simulator/scene/moving_object.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,11 +13,22 @@ namespace {
 /// Each interval has pieces as short as its own motion asks for.
 constexpr double kStretch_s = 0.05;
 
+/// Ends before every recording starts.
+Spline at_rest() {
+  const std::array<Rigid3, 4> poses{};
+  return Spline::from_control_poses(poses, -kStretch_s, kStretch_s);
+}
+
 }  // namespace
 
-MovingObject::MovingObject(std::uint32_t object, Spline world_from_object,
-                           const Eigen::AlignedBox3d& box)
-    : object_(object), world_from_object_(std::move(world_from_object)), box_(box) {
+MovingObject::MovingObject(std::uint32_t object, std::optional<Spline> world_from_object,
+                           const Eigen::AlignedBox3d& box,
+                           std::shared_ptr<const VertexAnimation> animation)
+    : object_(object),
+      has_trajectory_(world_from_object.has_value()),
+      world_from_object_(world_from_object ? std::move(*world_from_object) : at_rest()),
+      box_(box),
+      animation_(std::move(animation)) {
   SACCADE_CHECK(!box.isEmpty());
   const double from_s = world_from_object_.start_s();
   const double span_s = world_from_object_.end_s() - from_s;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/check.h"
@@ -57,19 +58,44 @@ AffineForm nearer_than(double farthest_m, const Frustum& frustum) {
 }  // namespace
 
 bool Scene::State::is_opaque(const Ray& ray, TriangleId triangle) const {
+  // The ray is in the body's frame already.
+  if (animation_of(triangle) != nullptr) {
+    const TriangleInstant now = instant(triangle, ray.time_s);
+    const CutoutSample seen = sample_cutout(ray, triangle, now.surface, now.interior);
+    return !(seen.distance > 0) || seen.opacity >= 0.5;
+  }
+  const CutoutSample seen = sample_cutout(ray, triangle, surfaces[triangle], interiors[triangle]);
+  return !(seen.distance > 0) || seen.opacity >= 0.5;
+}
+
+CutoutSample Scene::State::sample_cutout(const Ray& ray, TriangleId triangle,
+                                         const TriangleSurface& surface,
+                                         const TriangleInterior& interior) const {
   const Cutout& cutout = cutouts[triangle - (surfaces.size() - cutouts.size())];
-  const double distance = distance_to(surfaces[triangle].plane, ray);
-  if (!(distance > 0 && distance < kFarthest)) return true;
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  return cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point)) >= 0.5;
+  const double distance = distance_to(surface.plane, ray);
+  if (!(distance > 0 && distance < kFarthest)) return {};
+  Eigen::Vector3d point = ray.origin + distance * ray.direction;
+  if (animation_of(triangle) != nullptr)
+    point = {interior.second.at(point), interior.third.at(point), 0};
+  const double x = cutout.x.at(point);
+  const double y = cutout.y.at(point);
+  return {x, y, distance, cutout.opacity->at_texel(x, y)};
 }
 
 LitPoint Scene::State::surface_point(const Ray& ray, const SurfaceSample& seen,
                                      TriangleId triangle) const {
   const TriangleSurface& surface = surfaces[triangle];
-  if (surface.body == kStaticBody) return local_point(ray, seen, triangle);
+  if (surface.body == kStaticBody)
+    return local_point(ray, seen, triangle, surface.plane, interiors[triangle], normals[triangle]);
   const CameraFrame frame = visibility->objects()[surface.body].frame(ray.time_s);
-  const LitPoint local = local_point(in_frame(frame, ray), seen, triangle);
+  const LitPoint local = with_triangle(
+      triangle, ray,
+      [&](const Ray& local_ray, const TriangleSurface& now, const TriangleInterior& interior) {
+        if (animation_of(triangle) == nullptr)
+          return local_point(local_ray, seen, triangle, now.plane, interior, normals[triangle]);
+        return local_point(local_ray, seen, triangle, now.plane, interior,
+                           normals_at(triangle, ray.time_s, now.plane));
+      });
   return {ray.origin + seen.distance * ray.direction,
           frame.rotation * local.plane_normal,
           frame.rotation * local.shading_normal,
@@ -97,14 +123,13 @@ Eigen::Matrix3d Scene::State::normal_map_axes(const Ray& ray, double distance,
   return frame.rotation * local_axes(in_frame(frame, ray));
 }
 
-LitPoint Scene::State::local_point(const Ray& ray, const SurfaceSample& seen,
-                                   TriangleId triangle) const {
-  const AffineForm& plane = surfaces[triangle].plane;
+LitPoint Scene::State::local_point(const Ray& ray, const SurfaceSample& seen, TriangleId triangle,
+                                   const AffineForm& plane, const TriangleInterior& interior,
+                                   const ShadingNormals& corners) const {
   const Eigen::Vector3d point = ray.origin + seen.distance * ray.direction;
   const double side = plane.gradient.dot(ray.direction) > 0 ? -1.0 : 1.0;
-  const double second = interiors[triangle].second.at(point);
-  const double third = interiors[triangle].third.at(point);
-  const ShadingNormals& corners = normals[triangle];
+  const double second = interior.second.at(point);
+  const double third = interior.third.at(point);
   const Eigen::Vector3d normal = (1 - second - third) * corners[0].cast<double>() +
                                  second * corners[1].cast<double>() +
                                  third * corners[2].cast<double>();
@@ -127,11 +152,11 @@ SurfaceSample Scene::State::sample_surface(const Ray& ray, const TriangleSurface
   return {surface.texture, surface.x.at(point), surface.y.at(point), surface.factor, 1, distance};
 }
 
-double Scene::State::min_barycentric(const Ray& ray, TriangleId triangle) const {
-  const double distance = distance_to(surfaces[triangle].plane, ray);
+double Scene::State::min_barycentric(const Ray& ray, const TriangleSurface& surface,
+                                     const TriangleInterior& interior) const {
+  const double distance = distance_to(surface.plane, ray);
   if (!(distance > 0 && distance < kFarthest)) return -1;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const TriangleInterior& interior = interiors[triangle];
   const double second = interior.second.at(point);
   const double third = interior.third.at(point);
   return std::min({second, third, 1 - second - third});
@@ -160,6 +185,7 @@ TriangleId Scene::visible_exactly(const Ray& ray) const {
   // What single precision sees is as far as a search needs to go, if it is met at all.
   TriangleId guess = kNothing;
   visible({&ray, 1}, {&guess, 1});
+  if (is_animated()) return guess;
   std::vector<TriangleId> triangles;
   const auto nearest_up_to = [&](double farthest) {
     static_cast<void>(collect({&around, 1}, farthest, kAll, triangles));
@@ -195,9 +221,11 @@ Shade Scene::shade(const Ray& ray, TriangleId triangle) const {
 
 SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return state_->background.sample(ray.direction);
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  const SurfaceSample seen = state_->in_frame_of(
-      surface.body, ray, [&](const Ray& local) { return state_->sample_surface(local, surface); });
+  const SurfaceSample seen = state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+        return state_->sample_surface(local, surface);
+      });
   return seen.distance > 0 ? seen : state_->background.sample(ray.direction);
 }
 
@@ -207,22 +235,22 @@ SurfaceSample Scene::sample_surface(const Ray& ray, TriangleId triangle,
   if (!(seen.distance > 0)) return seen;
   const NormalFrame* const frame = state_->normal_frame(triangle);
   if (seen.texture == nullptr && frame == nullptr) return seen;
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  const auto set_levels = [&](const Eigen::Vector3d& direction, const RayDifferential& local) {
-    const Eigen::Vector3d& normal = surface.plane.gradient;
-    if (seen.texture != nullptr)
-      seen.level = level_of(normal, surface.x, surface.y, direction, seen.distance, local);
-    if (frame != nullptr)
-      seen.normal_level = level_of(normal, frame->x, frame->y, direction, seen.distance, local);
-  };
-  if (surface.body == kStaticBody) {
-    set_levels(ray.direction, differential);
-  } else {
+  const std::uint32_t body = state_->surfaces[triangle].body;
+  RayDifferential turned = differential;
+  if (body != kStaticBody) {
     const Eigen::Matrix3d body_from_world =
-        state_->visibility->objects()[surface.body].frame(ray.time_s).rotation.transpose();
-    set_levels(body_from_world * ray.direction,
-               {body_from_world * differential.right, body_from_world * differential.down});
+        moving_objects()[body].frame(ray.time_s).rotation.transpose();
+    turned = {body_from_world * differential.right, body_from_world * differential.down};
   }
+  std::tie(seen.level, seen.normal_level) = state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior&) {
+        const auto level = [&](const AffineForm& x, const AffineForm& y) {
+          return level_of(surface.plane.gradient, x, y, local.direction, seen.distance, turned);
+        };
+        return std::pair(seen.texture != nullptr ? level(surface.x, surface.y) : 0.0,
+                         frame != nullptr ? level(frame->x, frame->y) : 0.0);
+      });
   return seen;
 }
 
@@ -297,7 +325,7 @@ NormalTextureSample Scene::sample_normal_map(const Ray& ray, TriangleId triangle
                                              const SurfaceSample& seen) const {
   SACCADE_CHECK(has_normal_map(triangle));
   const NormalFrame& frame = *state_->normal_frame(triangle);
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
+  return state_->with_triangle(triangle, ray, [&](const Ray& local, const auto&, const auto&) {
     const Eigen::Vector3d point = local.origin + seen.distance * local.direction;
     return NormalTextureSample{frame.map, frame.x.at(point), frame.y.at(point), seen.normal_level};
   });
@@ -336,18 +364,23 @@ std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const Sur
 
 bool Scene::intersects(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return false;
-  const std::size_t opaque = state_->surfaces.size() - state_->cutouts.size();
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    return state_->min_barycentric(local, triangle) >= -kEdgeTolerance &&
-           (triangle < opaque || state_->is_opaque(local, triangle));
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        if (!(state_->min_barycentric(local, surface, interior) >= -kEdgeTolerance)) return false;
+        if (!is_cut_out(triangle)) return true;
+        const CutoutSample seen = state_->sample_cutout(local, triangle, surface, interior);
+        return !(seen.distance > 0) || seen.opacity >= 0.5;
+      });
 }
 
 double Scene::min_barycentric(const Ray& ray, TriangleId triangle) const {
   if (triangle == kNothing) return -1;
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    return state_->min_barycentric(local, triangle);
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        return state_->min_barycentric(local, surface, interior);
+      });
 }
 
 const TriangleBvh& Scene::State::bvh(std::size_t body) {
@@ -366,7 +399,8 @@ bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta
   if (surface.body != kStaticBody) return false;
   for (const Frustum& frustum : frusta)
     for (const Eigen::Vector3d& corner : frustum.corners)
-      if (state_->min_barycentric({frustum.eye, corner}, triangle) < 0) return false;
+      if (state_->min_barycentric({frustum.eye, corner}, surface, state_->interiors[triangle]) < 0)
+        return false;
   // On the eye's side of the plane; what lies in the plane itself, to single precision, is not.
   AffineForm front = surface.plane;
   if (front.at(frusta.front().eye) < 0) front = {-front.gradient, -front.offset};
@@ -408,15 +442,11 @@ bool Scene::is_cut_out(TriangleId triangle) const {
 
 CutoutSample Scene::sample_cutout(const Ray& ray, TriangleId triangle) const {
   SACCADE_CHECK(is_cut_out(triangle));
-  return state_->in_frame_of(state_->surfaces[triangle].body, ray, [&](const Ray& local) {
-    const double distance = distance_to(state_->surfaces[triangle].plane, local);
-    if (!(distance > 0 && distance < kFarthest)) return CutoutSample();
-    const Cutout& cutout =
-        state_->cutouts[triangle - (state_->surfaces.size() - state_->cutouts.size())];
-    const Eigen::Vector3d point = local.origin + distance * local.direction;
-    return CutoutSample{cutout.x.at(point), cutout.y.at(point), distance,
-                        cutout.opacity->at_texel(cutout.x.at(point), cutout.y.at(point))};
-  });
+  return state_->with_triangle(
+      triangle, ray,
+      [&](const Ray& local, const TriangleSurface& surface, const TriangleInterior& interior) {
+        return state_->sample_cutout(local, triangle, surface, interior);
+      });
 }
 
 EdgeFunctions Scene::State::edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
@@ -459,10 +489,12 @@ std::uint8_t Scene::class_of(std::uint16_t instance) const {
 }
 
 Eigen::Vector3d Scene::normal(const Ray& ray, TriangleId triangle) const {
-  const TriangleSurface& surface = state_->surfaces[triangle];
-  Eigen::Vector3d normal = surface.plane.gradient;
-  if (surface.body != kStaticBody)
-    normal = moving_objects()[surface.body].frame(ray.time_s).rotation * normal;
+  Eigen::Vector3d normal = state_->with_triangle(
+      triangle, ray, [](const Ray&, const TriangleSurface& surface, const TriangleInterior&) {
+        return surface.plane.gradient;
+      });
+  const std::uint32_t body = state_->surfaces[triangle].body;
+  if (body != kStaticBody) normal = moving_objects()[body].frame(ray.time_s).rotation * normal;
   return normal.dot(ray.direction) > 0 ? Eigen::Vector3d(-normal) : normal;
 }
 

@@ -131,7 +131,8 @@ class Scene {
   void visible(std::span<const Ray> rays, std::span<TriangleId> triangles) const;
 
   /// The same for one ray, in double precision throughout: exact next to edges, but many times
-  /// slower. Builds the trees of collect() when first asked.
+  /// slower. Builds the trees of collect() when first asked. In animated scenes, where these do not
+  /// hold, as visible() has it.
   [[nodiscard]] TriangleId visible_exactly(const Ray& ray) const;
   /// The nearest of `triangles` along a ray, in double precision; kNothing where it intersects
   /// none.
@@ -216,6 +217,21 @@ class Scene {
   /// The one that a triangle belongs to; nullptr where it is static, and for kNothing.
   [[nodiscard]] const MovingObject* moving_object(TriangleId triangle) const;
   [[nodiscard]] std::size_t triangle_count() const;
+
+  /// Whether the vertices of some object move in its frame.
+  [[nodiscard]] bool is_animated() const;
+  /// Where the point of a triangle that `ray` sees is at `to_s`, in the world, as its object
+  /// carries and deforms it. `triangle` is not kNothing.
+  [[nodiscard]] Eigen::Vector3d carried_point(const Ray& ray, TriangleId triangle,
+                                              double to_s) const;
+  /// The velocity at `at_s` in the world, beside that of its object's frame, of the point of a
+  /// triangle that `ray` sees. Zero where the object is rigid, and for kNothing.
+  [[nodiscard]] Eigen::Vector3d deformation_velocity(const Ray& ray, TriangleId triangle,
+                                                     double at_s) const;
+  /// The first time between both at which the motion of a triangle's corners in its object's frame
+  /// has a kink; at a jump just before and just after. nullopt where there is none.
+  [[nodiscard]] std::optional<double> first_kink_s(TriangleId triangle, double from_s,
+                                                   double to_s) const;
 
   /// Whether nothing but `triangle` is visible in a frustum that moves evenly through `frusta` (at
   /// most 5): it is opaque, static and fills them, and no other static triangle intersects them in

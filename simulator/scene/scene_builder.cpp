@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -115,12 +116,31 @@ class DistinctPlaces {
         table_[at] = index;
         return true;
       }
-      if (place_of(mesh_.triangles[table_[at]], mesh_) == key) return false;
+      if (place_of(mesh_.triangles[table_[at]], mesh_) == key &&
+          move_together(mesh_.triangles[table_[at]], mesh_.triangles[index]))
+        return false;
     }
   }
 
  private:
   static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
+  /// Whether two triangles that share a place in the first pose share one in all.
+  [[nodiscard]] bool move_together(const Triangle& a, const Triangle& b) const {
+    if (!mesh_.animation) return true;
+    return std::ranges::all_of(mesh_.animation->vertices, [&](const auto& vertices) {
+      const auto corners = [&](const Triangle& triangle) {
+        std::array<std::array<float, 3>, 3> places;
+        for (std::size_t k = 0; k < places.size(); ++k) {
+          const Eigen::Vector3f& vertex = vertices[triangle.corners[k]];
+          places[k] = {vertex.x(), vertex.y(), vertex.z()};
+        }
+        std::ranges::sort(places);
+        return places;
+      };
+      return corners(a) == corners(b);
+    });
+  }
 
   static std::size_t hash_of(const CornerKey& key) {
     std::uint64_t hash = 0;
@@ -137,14 +157,20 @@ class DistinctPlaces {
   std::vector<std::uint32_t> table_;
 };
 
-using MeshUses = std::map<std::filesystem::path, std::size_t>;
+/// A file, and which of its animations it is read with.
+using MeshKey = std::pair<std::filesystem::path, std::optional<std::string>>;
+using MeshUses = std::map<MeshKey, std::size_t>;
 
-/// In the order of their first use; `uses` gets how often each is used.
-std::vector<std::filesystem::path> distinct_files(const std::vector<MeshOptions>& meshes,
-                                                  MeshUses& uses) {
+MeshKey key_of(const MeshOptions& item) {
+  return {item.file, item.animation ? std::optional(item.animation->name) : std::nullopt};
+}
+
+/// Those that are still, in the order of their first use; `uses` gets how often each is used.
+std::vector<std::filesystem::path> still_files(const std::vector<MeshOptions>& meshes,
+                                               MeshUses& uses) {
   std::vector<std::filesystem::path> files;
   for (const MeshOptions& item : meshes)
-    if (++uses[item.file] == 1) files.push_back(item.file);
+    if (++uses[key_of(item)] == 1 && !item.animation) files.push_back(item.file);
   return files;
 }
 
@@ -246,11 +272,21 @@ Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
 struct SceneBuilder::Body {
   std::optional<Spline> world_from_body;  ///< none: is static
   std::uint32_t object = 0;               ///< of a moving one
+  std::shared_ptr<const VertexAnimation> animation;
   PreparedTriangles opaque, cut_out;
   TriangleId first_opaque = 0, first_cut_out = 0;
 
-  [[nodiscard]] bool is_empty() const { return opaque.corners.empty() && cut_out.corners.empty(); }
-  [[nodiscard]] Eigen::AlignedBox3f box() const { return box_of(opaque).merged(box_of(cut_out)); }
+  [[nodiscard]] bool is_moving() const { return world_from_body || animation; }
+  [[nodiscard]] bool is_empty() const {
+    return opaque.corners.empty() && cut_out.corners.empty() && opaque.corner_indices.empty() &&
+           cut_out.corner_indices.empty();
+  }
+  [[nodiscard]] Eigen::AlignedBox3f box() const {
+    return animation ? animation->box() : box_of(opaque).merged(box_of(cut_out));
+  }
+  [[nodiscard]] AnimatedTriangles animated() const {
+    return {opaque.corner_indices, cut_out.corner_indices, first_opaque, first_cut_out};
+  }
   [[nodiscard]] BvhTriangles occluders() && {
     BvhTriangles source{std::move(opaque.corners), {}};
     source.ids.resize(source.corners.size() + cut_out.corners.size());
@@ -280,6 +316,21 @@ std::size_t SceneBuilder::add_moving(const Mesh& mesh, const Eigen::Affine3d& ob
   return kept;
 }
 
+std::size_t SceneBuilder::add_animated(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
+                                       const AnimationOptions& animation,
+                                       std::optional<Spline> world_from_object,
+                                       const InstanceLabel& label) {
+  SACCADE_CHECK(mesh.animation != nullptr);
+  Body body;
+  body.world_from_body = std::move(world_from_object);
+  body.object = objects_;
+  body.animation =
+      std::make_shared<const VertexAnimation>(*mesh.animation, object_from_mesh, animation);
+  const std::size_t kept = add_to(body, mesh, object_from_mesh, label);
+  if (kept > 0) bodies_.push_back(std::move(body));
+  return kept;
+}
+
 std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
                                  const Eigen::Affine3d& body_from_mesh,
                                  const InstanceLabel& label) {
@@ -298,7 +349,10 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
     const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
     if (!is_cut_out && !taken.insert(i)) continue;
     PreparedTriangles& target = is_cut_out ? body.cut_out : body.opaque;
-    if (!setup.add(triangle, target)) continue;
+    if (body.animation)
+      setup.add_animated(triangle, target);
+    else if (!setup.add(triangle, target))
+      continue;
     target.instances.push_back(numbers.of(triangle));
     ++kept;
   }
@@ -335,6 +389,8 @@ Scene SceneBuilder::build(const Background& background) && {
   state->cutouts = std::move(all.cutouts);
   state->triangle_instances = std::move(all.instances);
   state->instances = std::move(instances_);
+  // After the triangles have their numbers, and before they move on with the bodies.
+  for (std::size_t i = 1; i < bodies_.size(); ++i) state->animated.push_back(bodies_[i].animated());
   state->visibility.emplace(make_visibility(*state));
   const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());
@@ -356,13 +412,15 @@ PreparedTriangles SceneBuilder::number_triangles() {
   PreparedTriangles all;
   const auto append = [&all](Body& body, PreparedTriangles Body::*part, std::size_t index) {
     PreparedTriangles& triangles = body.*part;
-    if (body.world_from_body)
+    if (body.is_moving())
       for (TriangleSurface& surface : triangles.surfaces)
         surface.body = static_cast<std::uint32_t>(index - 1);
     const auto first = static_cast<TriangleId>(all.surfaces.size());
     std::vector<Corners> corners = std::move(triangles.corners);
+    std::vector<CornerIndices> indices = std::move(triangles.corner_indices);
     all.append(std::move(triangles));
     triangles.corners = std::move(corners);
+    triangles.corner_indices = std::move(indices);
     return first;
   };
   for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -377,6 +435,9 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
     return state.is_opaque(ray, triangle);
   };
   const auto embree_scene_of = [&](const Body& body) {
+    if (body.animation)
+      return EmbreeScene(body.animation, {body.opaque.corner_indices, body.first_opaque},
+                         {body.cut_out.corner_indices, body.first_cut_out}, is_opaque);
     return EmbreeScene({body.opaque.corners, body.first_opaque},
                        {body.cut_out.corners, body.first_cut_out}, is_opaque);
   };
@@ -386,7 +447,7 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
   std::vector<EmbreeScene> embree_scenes;
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
-    objects.emplace_back(body.object, *body.world_from_body, roomy(body.box()));
+    objects.emplace_back(body.object, body.world_from_body, roomy(body.box()), body.animation);
     embree_scenes.push_back(embree_scene_of(body));
   }
   return {std::move(static_triangles), std::move(objects), std::move(embree_scenes)};
@@ -397,26 +458,30 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian,
                          channel, takes_lights(options), options.normal_maps});
   MeshUses uses;
-  importer.prefetch(distinct_files(options.meshes, uses));
-  std::map<std::filesystem::path, Mesh> meshes;
+  importer.prefetch(still_files(options.meshes, uses));
+  std::map<MeshKey, Mesh> meshes;
   const std::vector<std::string> classes = class_names(options);
   std::vector<LightOptions> lights = options.lights;
   for (std::size_t i = 0; i < options.meshes.size(); ++i) {
     const MeshOptions& item = options.meshes[i];
-    auto known = meshes.find(item.file);
-    if (known == meshes.end()) known = meshes.emplace(item.file, importer.read(item.file)).first;
+    const MeshKey key = key_of(item);
+    auto known = meshes.find(key);
+    if (known == meshes.end())
+      known = meshes.emplace(key, importer.read(key.first, key.second)).first;
     std::optional<Mesh> changed;
     if (const MeshSurface surface = surface_of(item); surface.is_changed())
       changed = importer.with_surface(known->second, surface, item.file.string());
     const Mesh& mesh = changed ? *changed : known->second;
     remark_up_axis(item, importer.remarks());
     const Eigen::Affine3d transform = world_from_mesh(item, mesh);
-    const std::string motion = fmt::format("scene.meshes[{}].trajectory", i);
+    std::optional<Spline> motion;
+    if (item.trajectory)
+      motion = build_motion(*item.trajectory, fmt::format("scene.meshes[{}].trajectory", i));
     const InstanceLabel label = label_of(item, classes);
     const std::size_t kept =
-        item.trajectory
-            ? builder.add_moving(mesh, transform, build_motion(*item.trajectory, motion), label)
-            : builder.add(mesh, transform, label);
+        item.animation ? builder.add_animated(mesh, transform, *item.animation, motion, label)
+        : motion       ? builder.add_moving(mesh, transform, *motion, label)
+                       : builder.add(mesh, transform, label);
     if (kept == 0) throw InputError(item.file.string(), "none of its triangles has an area");
     if (!item.trajectory)
       add_lights(mesh, transform, options.light_scale, lights);
@@ -424,7 +489,7 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
       importer.remarks().say(fmt::format(
           "{}: its lights do not light the scene, because scene.meshes[{}] has a trajectory",
           item.file.string(), i));
-    if (--uses[item.file] == 0) meshes.erase(known);
+    if (--uses[key] == 0) meshes.erase(known);
   }
   if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian) {

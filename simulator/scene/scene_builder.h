@@ -49,6 +49,13 @@ class SceneBuilder {
   std::size_t add_moving(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
                          Spline world_from_object, const InstanceLabel& label = {});
 
+  /// The same for an object whose vertices move in its frame as the animation of its mesh has it,
+  /// after `object_from_mesh`. `world_from_object`: none where its frame is the world.
+  std::size_t add_animated(const Mesh& mesh, const Eigen::Affine3d& object_from_mesh,
+                           const AnimationOptions& animation,
+                           std::optional<Spline> world_from_object,
+                           const InstanceLabel& label = {});
+
   /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
   void light(double ambient, std::vector<LightOptions> lights,
              const std::optional<FlickerOptions>& ambient_flicker = std::nullopt);

@@ -100,6 +100,10 @@ void describe(config::Fields& fields, MeshOptions& options) {
   fields.section(
       "trajectory", options.trajectory,
       "Motion of the object, applied after its transform; its time 0 is that of the recording.");
+  fields.section("animation", options.animation,
+                 "Animation of the file that the mesh plays: its nodes move, and skinned surfaces "
+                 "with their bones. Size and anchor are those of its first pose. events.sampling "
+                 "must be adaptive, auto or frames.");
   fields.expect(!options.size_m || options.transform.scale == Eigen::Vector3d::Ones(), "size_m",
                 "cannot be combined with transform.scale");
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/motion_options.h"
+#include "simulator/scene/animation/animation_options.h"
 #include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/light/flicker.h"
 #include "simulator/scene/light/light_options.h"
@@ -41,6 +42,8 @@ struct MeshOptions {
   Instances instances = Instances::kWhole;
   /// Moves the mesh: its poses come after everything above. Its time 0 is the recording's.
   std::optional<MotionOptions> trajectory;
+  /// Moves its vertices, before everything above: one of the animations of its file.
+  std::optional<AnimationOptions> animation;
 };
 
 enum class Lighting { kNone, kLambertian };

@@ -28,7 +28,9 @@ constexpr std::uint32_t kStaticBody = std::numeric_limits<std::uint32_t>::max();
 /// Beyond this many lengths of its direction a ray has left the triangle by more than a hair.
 inline constexpr double kFarthest = 1e12;
 
-/// What shading one triangle reads, in its body's frame: two cache lines.
+/// What shading one triangle reads, in its body's frame: two cache lines. Where its corners move,
+/// x and y are forms of the point's weights of the second and the third corner, as are those of its
+/// Cutout, and the plane is not known but for one instant (Scene::State::instant()).
 struct alignas(64) TriangleSurface {
   AffineForm plane;        ///< unit normal; zero on the plane
   AffineForm x;            ///< texel column; without a texture the albedo
@@ -54,6 +56,25 @@ struct alignas(64) TriangleInterior {
 struct Cutout {
   AffineForm x, y;
   const Texture* opacity;
+};
+
+/// A triangle whose corners move, as it is at one instant.
+struct TriangleInstant {
+  TriangleSurface surface;
+  TriangleInterior interior;
+};
+
+/// The triangles of a moving object by number, as indices into the vertices of its animation; none
+/// where it is rigid.
+struct AnimatedTriangles {
+  std::vector<CornerIndices> opaque, cut_out;
+  TriangleId first_opaque = 0, first_cut_out = 0;
+
+  [[nodiscard]] const CornerIndices& corners(TriangleId triangle) const {
+    return triangle >= first_opaque && triangle - first_opaque < opaque.size()
+               ? opaque[triangle - first_opaque]
+               : cut_out[triangle - first_cut_out];
+  }
 };
 
 /// The triangles of a body, in its frame.
@@ -106,7 +127,8 @@ struct Scene::State {
   Background background{0.5};
   std::optional<Illumination> illumination;  ///< none: the albedo is the radiance
   std::optional<Visibility> visibility;
-  double size_m = 0;  ///< of everything that is static
+  std::vector<AnimatedTriangles> animated;  ///< of the moving objects
+  double size_m = 0;                        ///< of everything that is static
   /// What the trees are made from when one is first asked.
   std::vector<BvhTriangles> bvh_triangles;
   std::once_flag bvhs_built;
@@ -117,19 +139,40 @@ struct Scene::State {
   /// Of what is static (0), then of the moving objects, each in its own frame.
   [[nodiscard]] const TriangleBvh& bvh(std::size_t body);
 
-  /// use(ray) with the ray in the frame of a body.
+  /// use(ray, surface, interior) in the frame of a triangle's body, at the time of the ray.
   template <class Use>
-  auto in_frame_of(std::uint32_t body, const Ray& ray, const Use& use) const {
-    if (body == kStaticBody) return use(ray);
-    return use(in_frame(visibility->objects()[body].frame(ray.time_s), ray));
+  auto with_triangle(TriangleId triangle, const Ray& ray, const Use& use) const {
+    const TriangleSurface& surface = surfaces[triangle];
+    if (surface.body == kStaticBody) return use(ray, surface, interiors[triangle]);
+    const MovingObject& object = visibility->objects()[surface.body];
+    const Ray local = in_frame(object.frame(ray.time_s), ray);
+    if (object.animation() == nullptr) return use(local, surface, interiors[triangle]);
+    const TriangleInstant now = instant(triangle, ray.time_s);
+    return use(local, now.surface, now.interior);
   }
+
+  /// How the corners of a triangle move in its body's frame; nullptr: not at all.
+  [[nodiscard]] const VertexAnimation* animation_of(TriangleId triangle) const {
+    const std::uint32_t body = surfaces[triangle].body;
+    return body == kStaticBody ? nullptr : visibility->objects()[body].animation();
+  }
+  /// Of a triangle whose corners move.
+  [[nodiscard]] TriangleInstant instant(TriangleId triangle, double t_s) const;
+  [[nodiscard]] ShadingNormals normals_at(TriangleId triangle, double t_s,
+                                          const AffineForm& plane) const;
+  /// Weights of the corners of the point that a ray meets; of any triangle.
+  [[nodiscard]] Eigen::Vector3d corner_weights(const Ray& ray, TriangleId triangle) const;
 
   /// Of a ray in the frame of the triangle's body:
   [[nodiscard]] bool is_opaque(const Ray& ray, TriangleId triangle) const;
   /// Without the light; distance 0 where the ray misses the plane.
   [[nodiscard]] SurfaceSample sample_surface(const Ray& ray, const TriangleSurface& surface) const;
+  [[nodiscard]] CutoutSample sample_cutout(const Ray& ray, TriangleId triangle,
+                                           const TriangleSurface& surface,
+                                           const TriangleInterior& interior) const;
   /// As Scene::min_barycentric().
-  [[nodiscard]] double min_barycentric(const Ray& ray, TriangleId triangle) const;
+  [[nodiscard]] double min_barycentric(const Ray& ray, const TriangleSurface& surface,
+                                       const TriangleInterior& interior) const;
   /// As Scene::edge_functions(), in the body's frame.
   [[nodiscard]] EdgeFunctions edge_functions(TriangleId triangle, const Eigen::Vector3d& position,
                                              const Eigen::Matrix3d& body_from_camera) const;
@@ -138,9 +181,10 @@ struct Scene::State {
     if (normal_frame_of.empty() || normal_frame_of[triangle] == kNoFrame) return nullptr;
     return &normal_frames[normal_frame_of[triangle]];
   }
-  /// In the body's frame.
-  [[nodiscard]] LitPoint local_point(const Ray& ray, const SurfaceSample& seen,
-                                     TriangleId triangle) const;
+  /// In the body's frame. `corners`: the normals there.
+  [[nodiscard]] LitPoint local_point(const Ray& ray, const SurfaceSample& seen, TriangleId triangle,
+                                     const AffineForm& plane, const TriangleInterior& interior,
+                                     const ShadingNormals& corners) const;
   /// The axes of its normal map where a ray meets a triangle that has one, on the side that is seen;
   /// in the world, as is `ray`.
   [[nodiscard]] Eigen::Matrix3d normal_map_axes(const Ray& ray, double distance,

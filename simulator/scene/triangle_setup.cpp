@@ -59,6 +59,7 @@ void PreparedTriangles::append(PreparedTriangles&& other) {
   for (NormalFrame& frame : other.normal_frames) frame.triangle += first;
   saccade::append(normal_frames, std::move(other.normal_frames));
   saccade::append(corners, std::move(other.corners));
+  saccade::append(corner_indices, std::move(other.corner_indices));
   saccade::append(surfaces, std::move(other.surfaces));
   saccade::append(interiors, std::move(other.interiors));
   saccade::append(normals, std::move(other.normals));
@@ -117,6 +118,19 @@ bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) con
     target.cutouts.push_back({forms.x, forms.y, opacity});
   }
   return true;
+}
+
+void TriangleSetup::add_animated(const Triangle& triangle, PreparedTriangles& target) const {
+  // Forms of the weights of the second and the third corner.
+  const TriangleInterior weights{{Eigen::Vector3d::UnitX(), 0}, {Eigen::Vector3d::UnitY(), 0}};
+  target.corner_indices.push_back(triangle.corners);
+  target.surfaces.push_back(surface(triangle, {}, weights));
+  target.interiors.push_back(weights);
+  target.normals.push_back(ShadingNormals{});
+  if (const Texture* opacity = mesh_.materials[triangle.material].opacity.get()) {
+    const TexelForms forms = texel_forms(*opacity, mesh_.uvs, triangle, weights);
+    target.cutouts.push_back({forms.x, forms.y, opacity});
+  }
 }
 
 TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineForm& plane,

@@ -15,6 +15,7 @@ namespace saccade {
 /// Triangles in the form that rendering reads, in the frame of their body.
 struct PreparedTriangles {
   std::vector<Corners> corners;
+  std::vector<CornerIndices> corner_indices;  ///< of triangles whose corners move, else none
   LargeVector<TriangleSurface> surfaces;
   LargeVector<TriangleInterior> interiors;
   LargeVector<ShadingNormals> normals;
@@ -36,6 +37,8 @@ class TriangleSetup {
   /// False, and nothing is added, for a triangle without area. `target` gets its cutout when the
   /// material has one, and no instance, which is the caller's to add.
   bool add(const Triangle& triangle, PreparedTriangles& target) const;
+  /// The same for a triangle whose corners move, whatever its area is at first.
+  void add_animated(const Triangle& triangle, PreparedTriangles& target) const;
 
  private:
   [[nodiscard]] TriangleSurface surface(const Triangle& triangle, const AffineForm& plane,

@@ -42,6 +42,7 @@ EventCamera::EventCamera(const Scene& scene, const Spline& world_from_camera,
       world_{scene, rays_, options, seed, PixelNoise(options, seed)},
       motions_(rays_.tile_count()),
       delivery_(options, camera, seed) {
+  SACCADE_CHECK(!scene.is_animated());  // its proofs are of rigid bodies
   make_tiles(only);
 }
 

@@ -55,9 +55,11 @@ void EventLabeller::label_packet(std::span<const SensedEvent> events, std::size_
     const std::size_t i = first + k;
     const double depth = scene_.sample_surface(rays[k], triangles[k]).distance;
     const MovingObject* object = scene_.moving_object(triangles[k]);
-    const Twist twist = object == nullptr
-                            ? camera_twist(states[k])
-                            : relative_twist(states[k], object->state(rays[k].time_s));
+    Twist twist = object == nullptr ? camera_twist(states[k])
+                                    : relative_twist(states[k], object->state(rays[k].time_s));
+    if (object != nullptr && object->animation() != nullptr)
+      twist.head<3>() -= states[k].world_from_body.rotation().conjugate() *
+                         scene_.deformation_velocity(rays[k], triangles[k], rays[k].time_s);
     const Eigen::Vector2d flow =
         point_motion(rays_.camera(), centre_ray(rays_, event), depth, twist);
     labels.depth[i] = static_cast<float>(depth);

@@ -121,8 +121,9 @@ void describe(config::Fields& fields, EventOptions& options) {
        {"frames", Sampling::kFrames}},
       "How the signal is sampled: exact finds every crossing (asynchronous is another "
       "name for it); adaptive samples with rays, faster in lit and dense scenes, and "
-      "measures its own error; auto takes adaptive for lit scenes of many triangles and "
-      "exact for all others; frames renders whole frames with straight lines in between.");
+      "measures its own error; auto takes adaptive for animated meshes and for lit scenes of "
+      "many triangles, and exact for all others; frames renders whole frames with straight lines "
+      "in between.");
   fields
       .value(
           "audit_fraction", options.audit_fraction,

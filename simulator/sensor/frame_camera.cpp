@@ -105,9 +105,10 @@ FrameCamera::LogIntensities FrameCamera::sample_tile(std::size_t tile, const Ins
                        : scene_.shade(ray, triangle,
                                       differential_in_world(rays_, instant.rotation, direction));
                log_intensities[k / per_pixel] += shade.radiance;
-               const Eigen::Vector2d motion = point_motion(
-                   rays_.camera(), direction, shade.distance, instant.twists.relative_to(triangle));
-               tile_state.fastest_px_s = std::max(tile_state.fastest_px_s, motion.norm());
+               tile_state.fastest_px_s =
+                   std::max(tile_state.fastest_px_s,
+                            instant.twists.fastest_px_s(rays_.camera(), direction, shade.distance,
+                                                        ray, triangle, kLongestInterval_s));
              });
   tile_state.statistics.rays += directions.size();
   if (scene_.is_lit()) tile_state.statistics.lit_points += directions.size();

@@ -141,7 +141,7 @@ FlowField ImageRenderer::flow(const SplineState& state, double t_s) const {
     trace_tile(scene_, rays, pose, [&](std::size_t i, const Ray& ray, TriangleId triangle) {
       const double depth = scene_.sample_surface(ray, triangle).distance;
       const Eigen::Vector2d flow =
-          point_motion(camera(), rays[i], depth, twists.relative_to(triangle));
+          point_motion(camera(), rays[i], depth, twists.relative_to(ray, triangle, t_s));
       field.u(tile.x(i), tile.y(i)) = static_cast<float>(flow.x());
       field.v(tile.x(i), tile.y(i)) = static_cast<float>(flow.y());
     });

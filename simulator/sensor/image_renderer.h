@@ -43,7 +43,7 @@ class ImageRenderer {
 
   /// Motion field [px/s] on the distorted image of a camera that is in `state` at `t_s`; the
   /// background is infinitely far, so only rotation moves it, and moving objects have motions of
-  /// their own besides.
+  /// their own besides, as have the points of animated ones.
   [[nodiscard]] FlowField flow(const SplineState& state, double t_s) const;
 
   [[nodiscard]] const PinholeCamera& camera() const { return radiance_rays_.camera(); }

@@ -46,8 +46,10 @@ void describe(config::Fields& fields, DatasetRecord::Figure& figure) {
 }
 
 void describe(config::Fields& fields, DatasetRecord::Audit& audit) {
-  fields.value("pixels", audit.pixels, "recorded exactly, too").at_least(0);
-  fields.value("events", audit.events, "exact ones of these pixels").at_least(0);
+  fields.value("reference", audit.reference, "of the comparison: exact events, or densely sampled")
+      .one_of({"exact", "dense"});
+  fields.value("pixels", audit.pixels, "recorded with the reference, too").at_least(0);
+  fields.value("events", audit.events, "of the reference in these pixels").at_least(0);
   fields.section("precision_10us", audit.precision_10us, "events with an exact one within 10 us");
   fields.section("recall_10us", audit.recall_10us, "exact events that were found within 10 us");
   fields.section("precision_1us", audit.precision_1us, "the same within 1 us");
@@ -83,6 +85,7 @@ void describe(config::Fields& fields, DatasetRecord& record) {
   fields.value("path_length_m", record.path_length_m, "of the camera [m]").at_least(0);
   fields.value("sampling", record.sampling, "of the events")
       .one_of({"exact", "adaptive", "frames"});
+  fields.value("sampling_reason", record.sampling_reason, "where it was chosen automatically");
   fields.section("audit", record.audit, "of sampled events against exact ones");
   fields.embed("config", record.config_yaml, "the resolved configuration");
   fields.value("sha256", record.sha256, "of every other file");

@@ -32,11 +32,12 @@ struct DatasetRecord {
     double low = 0;
     double high = 0;
   };
-  /// How events that were sampled agree with the exact ones of some pixels, one-to-one per pixel and
+  /// How events that were sampled agree with the reference's of some pixels, one-to-one per pixel and
   /// polarity within 1 or 10 us.
   struct Audit {
+    std::string reference = "exact";  ///< or dense: sampled as well, many times finer
     std::int64_t pixels = 0;
-    std::int64_t events = 0;  ///< exact ones
+    std::int64_t events = 0;  ///< of the reference
     Figure precision_10us, recall_10us;
     Figure precision_1us, recall_1us;
     Figure p99_dt_us;
@@ -64,8 +65,9 @@ struct DatasetRecord {
   std::optional<double> time_bound_us;  ///< of every event's time, before rounding to the unit
   std::optional<double> path_length_m;  ///< of the camera
   std::optional<std::string> sampling;  ///< of the events: exact, adaptive or frames
-  std::optional<Audit> audit;           ///< of events that were sampled adaptively
-  std::map<std::string, std::string> sha256;  ///< of every file but dataset.yaml, by relative path
+  std::optional<std::string> sampling_reason;  ///< where it was chosen automatically
+  std::optional<Audit> audit;                  ///< of events that were sampled adaptively
+  std::map<std::string, std::string> sha256;   ///< of every file but dataset.yaml, by relative path
 };
 
 void describe(config::Fields& fields, DatasetRecord& record);

@@ -68,6 +68,36 @@ void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> co
   rtcReleaseGeometry(geometry);
 }
 
+/// Poses of one geometry, which is as many as Embree takes, and so the poses from one piece of an
+/// animation to the next, which shares its first pose with the last of the former.
+constexpr std::size_t kPiecePoses = RTC_MAX_TIME_STEP_COUNT;
+constexpr std::size_t kPieceSteps = kPiecePoses - 1;
+
+/// `piece` of an animation. The vertices stay where they are.
+void add_animated_triangles(RTCDevice device, RTCScene scene, const VertexAnimation& animation,
+                            std::size_t piece, std::span<const CornerIndices> corners,
+                            unsigned geometry_id, RTCFilterFunctionN filter, void* user) {
+  if (corners.empty()) return;
+  const std::size_t first = piece * kPieceSteps;
+  const std::size_t poses = std::min(kPiecePoses, animation.step_count() - first);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(poses));
+  for (unsigned k = 0; k < poses; ++k)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3,
+                               animation.vertices(first + k).data(), 0, 3 * sizeof(float),
+                               animation.vertex_count());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, corners.data(),
+                             0, sizeof(CornerIndices), corners.size());
+  if (filter != nullptr) {
+    rtcSetGeometryUserData(geometry, user);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, geometry_id);
+  rtcReleaseGeometry(geometry);
+}
+
 RTCRayHit16 make_empty_packet() {
   RTCRayHit16 packet{};
   for (unsigned i = 0; i < kRayPacket; ++i) {
@@ -99,10 +129,32 @@ void set_ray(RTCRay16& packet, std::size_t i, const Ray& ray) {
 
 struct EmbreeScene::State {
   DeviceHandle device;
-  SceneHandle scene;
+  std::vector<SceneHandle> scenes;  ///< one, or one per piece of the animation
   IsOpaque is_opaque;
   std::array<TriangleId, 2> first_of_geometry{};
   RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  std::shared_ptr<const VertexAnimation> animation;
+  std::array<std::vector<CornerIndices>, 2> corners;  ///< of an animation's geometries
+
+  State(const std::array<TriangleId, 2>& first, IsOpaque opacity)
+      : device(rtcNewDevice(kDeviceOptions)),
+        is_opaque(std::move(opacity)),
+        first_of_geometry(first) {
+    SACCADE_CHECK(device != nullptr);
+  }
+
+  RTCScene add_scene() {
+    scenes.emplace_back(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scenes.back().get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scenes.back().get(), RTC_BUILD_QUALITY_HIGH);
+    return scenes.back().get();
+  }
+
+  void commit(RTCScene scene) const {
+    // One thread builds the tree, so that it is the same on every machine.
+    tbb::task_arena(1).execute([scene] { rtcCommitScene(scene); });
+    SACCADE_CHECK(rtcGetDeviceError(device.get()) == RTC_ERROR_NONE);
+  }
 
   static void filter(const RTCFilterFunctionNArguments* arguments) {
     const auto& state = *static_cast<const State*>(arguments->geometryUserPtr);
@@ -116,6 +168,35 @@ struct EmbreeScene::State {
     }
   }
 
+  /// trace(scene, valid) for the rays of a packet that are valid: once, or where they see different
+  /// pieces of the animation, once for each of these. Sets their times.
+  template <class Trace>
+  void for_pieces(std::span<const Ray> rays, RTCRay16& packet,
+                  const std::array<int, kRayPacket>& valid, const Trace& trace) const {
+    if (!animation) return trace(scenes.front().get(), valid);
+    std::array<std::size_t, kRayPacket> pieces{};
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const VertexAnimation::Moment moment = animation->at(rays[i].time_s);
+      pieces[i] = moment.step / kPieceSteps;
+      const std::size_t first = pieces[i] * kPieceSteps;
+      const std::size_t steps = std::min(kPieceSteps, animation->step_count() - 1 - first);
+      packet.time[i] =
+          static_cast<float>((static_cast<double>(moment.step - first) + moment.fraction) /
+                             static_cast<double>(steps));
+    }
+    alignas(64) std::array<int, kRayPacket> open = valid;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (open[i] == 0) continue;
+      alignas(64) std::array<int, kRayPacket> now{};
+      for (std::size_t k = i; k < rays.size(); ++k)
+        if (open[k] != 0 && pieces[k] == pieces[i]) {
+          now[k] = -1;
+          open[k] = 0;
+        }
+      trace(scenes[pieces[i]].get(), now);
+    }
+  }
+
   void trace(std::span<const Ray> rays, RTCRayHit16& packet) const {
     alignas(64) std::array<int, kRayPacket> valid{};
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -123,7 +204,10 @@ struct EmbreeScene::State {
       valid[i] = -1;
     }
     Context context(rays.data(), flags);
-    rtcIntersect16(valid.data(), scene.get(), &context.embree, &packet);
+    for_pieces(rays, packet.ray, valid,
+               [&](RTCScene scene, const std::array<int, kRayPacket>& some) {
+                 rtcIntersect16(some.data(), scene, &context.embree, &packet);
+               });
   }
 
   [[nodiscard]] TriangleId hit(const RTCRayHit16& packet, std::size_t i) const {
@@ -134,23 +218,37 @@ struct EmbreeScene::State {
 };
 
 EmbreeScene::EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque)
-    : state_(std::make_unique<State>()) {
+    : state_(
+          std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
   const std::size_t count = opaque.corners.size() + cut_out.corners.size();
   SACCADE_CHECK(count < kNothing / 3);
-  state_->device.reset(rtcNewDevice(kDeviceOptions));
-  SACCADE_CHECK(state_->device != nullptr);
-  state_->scene.reset(rtcNewScene(state_->device.get()));
-  state_->is_opaque = std::move(is_opaque);
-  state_->first_of_geometry = {opaque.first, cut_out.first};
   if (count > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  RTCScene scene = state_->scene.get();
+  RTCScene scene = state_->add_scene();
   add_triangles(state_->device.get(), scene, opaque.corners, 0, nullptr, nullptr);
   add_triangles(state_->device.get(), scene, cut_out.corners, 1, State::filter, state_.get());
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  // One thread builds the tree, so that it is the same on every machine.
-  tbb::task_arena(1).execute([scene] { rtcCommitScene(scene); });
-  SACCADE_CHECK(rtcGetDeviceError(state_->device.get()) == RTC_ERROR_NONE);
+  state_->commit(scene);
+}
+
+EmbreeScene::EmbreeScene(std::shared_ptr<const VertexAnimation> animation,
+                         const AnimatedTriangleRun& opaque, const AnimatedTriangleRun& cut_out,
+                         IsOpaque is_opaque)
+    : state_(
+          std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
+  SACCADE_CHECK(animation != nullptr);
+  state_->animation = std::move(animation);
+  state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  state_->corners = {std::vector(opaque.corners.begin(), opaque.corners.end()),
+                     std::vector(cut_out.corners.begin(), cut_out.corners.end())};
+  RTCDevice device = state_->device.get();
+  const std::size_t steps = state_->animation->step_count() - 1;
+  for (std::size_t piece = 0; piece * kPieceSteps < steps; ++piece) {
+    RTCScene scene = state_->add_scene();
+    add_animated_triangles(device, scene, *state_->animation, piece, state_->corners[0], 0, nullptr,
+                           nullptr);
+    add_animated_triangles(device, scene, *state_->animation, piece, state_->corners[1], 1,
+                           State::filter, state_.get());
+    state_->commit(scene);
+  }
 }
 
 EmbreeScene::~EmbreeScene() = default;
@@ -195,7 +293,10 @@ void EmbreeScene::find_blocked(std::span<const Ray> rays, std::span<const float>
     valid[i] = -1;
   }
   Context context(rays.data(), state_->flags);
-  rtcOccluded16(valid.data(), state_->scene.get(), &context.embree, &packet);
+  state_->for_pieces(rays, packet, valid,
+                     [&](RTCScene scene, const std::array<int, kRayPacket>& some) {
+                       rtcOccluded16(some.data(), scene, &context.embree, &packet);
+                     });
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (valid[i] != 0) blocked[i] = packet.tfar[i] < 0;
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/animation/vertex_animation.h"
 #include "simulator/scene/scene.h"
 
 namespace saccade {
@@ -16,6 +17,12 @@ using Corners = std::array<Eigen::Vector3f, 3>;
 /// Triangles numbered from `first` on.
 struct TriangleRun {
   std::span<const Corners> corners;
+  TriangleId first = 0;
+};
+
+/// The same of triangles whose vertices move.
+struct AnimatedTriangleRun {
+  std::span<const CornerIndices> corners;
   TriangleId first = 0;
 };
 
@@ -30,6 +37,9 @@ class EmbreeScene {
 
   /// `opaque` ones stop every ray, those with cutouts where `is_opaque` says so.
   EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, IsOpaque is_opaque);
+  /// Each ray sees the triangles as they are at its time.
+  EmbreeScene(std::shared_ptr<const VertexAnimation> animation, const AnimatedTriangleRun& opaque,
+              const AnimatedTriangleRun& cut_out, IsOpaque is_opaque);
   ~EmbreeScene();
   EmbreeScene(EmbreeScene&&) noexcept;
   EmbreeScene& operator=(EmbreeScene&&) noexcept;

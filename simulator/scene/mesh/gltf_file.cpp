@@ -109,9 +109,10 @@ GltfComponent gltf_component(std::uint64_t code) {
 
 constexpr std::uint64_t kGltfFloat = 5126;
 
-bool is_attribute_shown(const std::string& name) {
+bool is_attribute_shown(const std::string& name, bool is_moving) {
   return name == "POSITION" || name == "NORMAL" || name == "TANGENT" ||
-         name.starts_with("TEXCOORD_") || name == "COLOR_0";
+         name.starts_with("TEXCOORD_") || name == "COLOR_0" ||
+         (is_moving && (name == "JOINTS_0" || name == "WEIGHTS_0"));
 }
 
 std::string lower_case(std::string text) {
@@ -282,6 +283,7 @@ void GltfFile::make_attributes_float(json& document) const {
   for (json& mesh : document["meshes"])
     for (json& primitive : mesh.at("primitives"))
       for (auto& [name, index] : primitive.at("attributes").items()) {
+        if (name == "JOINTS_0") continue;  // indices
         const json& stated = item("accessors", index.get<std::size_t>());
         if (stated.is_object() && stated.value("componentType", kGltfFloat) != kGltfFloat)
           index = convert(index.get<std::size_t>());
@@ -290,6 +292,29 @@ void GltfFile::make_attributes_float(json& document) const {
     document["buffers"].push_back(
         {{"byteLength", floats.size()},
          {"uri", "data:application/octet-stream;base64," + base64_of(floats)}});
+}
+
+void GltfFile::add_inverse_binds(json& document) {
+  constexpr std::array<float, 16> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (!document.contains("skins")) return;
+  for (json& skin : document["skins"]) {
+    if (skin.contains("inverseBindMatrices")) continue;
+    const std::size_t count = skin.at("joints").size();
+    Bytes matrices(count * sizeof kIdentity);
+    for (std::size_t k = 0; k < count; ++k)
+      std::memcpy(matrices.data() + k * sizeof kIdentity, kIdentity.data(), sizeof kIdentity);
+    document["buffers"].push_back(
+        {{"byteLength", matrices.size()},
+         {"uri", "data:application/octet-stream;base64," + base64_of(matrices)}});
+    document["bufferViews"].push_back({{"buffer", document["buffers"].size() - 1},
+                                       {"byteOffset", 0},
+                                       {"byteLength", matrices.size()}});
+    document["accessors"].push_back({{"bufferView", document["bufferViews"].size() - 1},
+                                     {"componentType", kGltfFloat},
+                                     {"count", count},
+                                     {"type", "MAT4"}});
+    skin["inverseBindMatrices"] = document["accessors"].size() - 1;
+  }
 }
 
 Bytes GltfFile::encoded(json document) const {
@@ -314,12 +339,14 @@ Bytes GltfFile::encoded(json document) const {
   return file;
 }
 
-ReplacedFiles GltfFile::for_assimp() const {
+ReplacedFiles GltfFile::for_assimp(Stillness stillness) const {
+  const bool is_moving = stillness == Stillness::kMoving;
   json document = document_;
   try {
-    for (const char* key : {"textures", "images", "samplers", "animations", "skins",
-                            "extensionsUsed", "extensionsRequired", "extensions"})
+    for (const char* key : {"textures", "images", "samplers", "animations", "extensionsUsed",
+                            "extensionsRequired", "extensions"})
       document.erase(key);
+    if (!is_moving) document.erase("skins");
     if (document.contains("materials")) {
       json materials = json::array();
       for (std::size_t i = 0; i < document["materials"].size(); ++i)
@@ -327,17 +354,24 @@ ReplacedFiles GltfFile::for_assimp() const {
       document["materials"] = std::move(materials);
     }
     if (document.contains("nodes"))
-      for (json& node : document["nodes"])
-        for (const char* key : {"skin", "weights", "extensions"}) node.erase(key);
+      for (std::size_t i = 0; i < document["nodes"].size(); ++i) {
+        json& node = document["nodes"][i];
+        for (const char* key : {"weights", "extensions"}) node.erase(key);
+        if (is_moving)
+          node["name"] = std::to_string(i);
+        else
+          node.erase("skin");
+      }
     if (document.contains("meshes")) {
       for (json& mesh : document["meshes"])
         for (json& primitive : mesh.at("primitives")) {
           for (const char* key : {"targets", "extensions"}) primitive.erase(key);
           json& attributes = primitive.at("attributes");
           for (auto it = attributes.begin(); it != attributes.end();)
-            it = is_attribute_shown(it.key()) ? std::next(it) : attributes.erase(it);
+            it = is_attribute_shown(it.key(), is_moving) ? std::next(it) : attributes.erase(it);
         }
       make_attributes_float(document);
+      add_inverse_binds(document);
     }
     return {{file_.generic_string(), encoded(std::move(document))}};
   } catch (const json::exception& error) {

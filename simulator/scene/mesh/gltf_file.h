@@ -30,9 +30,14 @@ class GltfFile {
   /// Member `key` of the document, or null.
   [[nodiscard]] const nlohmann::json& item(const char* key, std::size_t index) const;
 
-  /// The file as assimp shall see it: material k is called "k" and has no textures, nothing moves,
-  /// and all vertex attributes are floats.
-  [[nodiscard]] ReplacedFiles for_assimp() const;
+  /// Whether assimp shall see what moves a mesh.
+  enum class Stillness { kStill, kMoving };
+  /// The file as assimp shall see it: material k is called "k" and has no textures, and all vertex
+  /// attributes are floats. Nothing moves, or node k is called "k" and has its skin.
+  [[nodiscard]] ReplacedFiles for_assimp(Stillness stillness = Stillness::kStill) const;
+
+  /// All numbers of an accessor, as floats.
+  [[nodiscard]] std::vector<float> accessor(std::size_t index) const;
 
   struct NamedBytes {
     std::string name;  ///< for errors; with the ending of its format
@@ -52,9 +57,9 @@ class GltfFile {
   [[nodiscard]] std::optional<Bytes> resource(const std::string& uri) const;
   [[nodiscard]] const Bytes& buffer(std::size_t index) const;
   [[nodiscard]] Bytes buffer_view(std::size_t index) const;
-  /// All numbers of an accessor, as floats.
-  [[nodiscard]] std::vector<float> accessor(std::size_t index) const;
   void make_attributes_float(nlohmann::json& document) const;
+  /// States the matrices of skins that state none, for assimp, which needs them.
+  static void add_inverse_binds(nlohmann::json& document);
   [[nodiscard]] Bytes encoded(nlohmann::json document) const;
 
   const FileSource* source_;

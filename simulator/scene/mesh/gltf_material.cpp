@@ -349,13 +349,13 @@ void GltfMaterials::remark_ignored(const json& material) const {
   }
 }
 
-void GltfMaterials::remark_ignored() const {
+void GltfMaterials::remark_ignored(bool is_moving) const {
   const json& document = file_.document();
   const auto has = [&document](const char* key) {
     return member(document, key).is_array() && !document[key].empty();
   };
-  if (has("animations")) ignore("animations");
-  if (has("skins")) ignore("skins (meshes stand as they are modelled)");
+  if (has("animations") && !is_moving) ignore("animations");
+  if (has("skins") && !is_moving) ignore("skins (meshes stand as they are modelled)");
   for (const json& mesh : member(document, "meshes"))
     for (const json& primitive : member(mesh, "primitives"))
       if (member(primitive, "targets").is_array()) ignore("morph targets");

@@ -32,8 +32,9 @@ class GltfMaterials {
   /// naming the texture that is missing or cannot be decoded, unless it may be grey.
   [[nodiscard]] ImportedMaterial read(std::size_t index);
 
-  /// Remarks what the file states beside its materials and is not shown.
-  void remark_ignored() const;
+  /// Remarks what the file states beside its materials and is not shown. `is_moving`: its
+  /// animations and skins are.
+  void remark_ignored(bool is_moving) const;
 
  private:
   struct TextureUse;

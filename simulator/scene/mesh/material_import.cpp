@@ -93,6 +93,8 @@ bool leaves_out_normal_map(const MaterialContext& context) {
     context.remarks.ignore("normal maps (they count under lights)", context.source_name);
   else if (!context.options.takes_normal_maps)
     context.remarks.ignore("normal maps (scene.normal_maps: true takes them)", context.source_name);
+  else if (context.is_animated)
+    context.remarks.ignore("normal maps of animated meshes", context.source_name);
   else
     return false;
   return true;

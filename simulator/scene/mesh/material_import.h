@@ -31,6 +31,7 @@ struct MaterialContext {
   MeshImportOptions options;
   TextureLibrary& textures;
   SceneRemarks& remarks;
+  bool is_animated = false;  ///< its vertices move
 };
 
 struct ImportedMaterial {

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "simulator/scene/animation/mesh_animation.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/normal_texture.h"
 #include "simulator/scene/texture/texture.h"
@@ -32,18 +33,9 @@ struct Triangle {
   std::uint32_t node = 0;  ///< index into the mesh's nodes, where it has names for them
 };
 
-/// A camera that a mesh file holds, in its coordinates: shown by `saccade info`, not used.
-struct MeshCamera {
-  std::string name;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();  ///< of any length
-  double horizontal_fov_rad = 0;
-};
-
 /// What a mesh file holds beside surfaces.
 struct MeshExtras {
-  std::vector<MeshCamera> cameras;
-  std::size_t lights = 0, animations = 0;
+  std::size_t lights = 0;
   std::size_t parts = 1, instances = 1;
 };
 
@@ -64,6 +56,8 @@ struct Mesh {
   /// Unit tangents of normal maps, and the handedness of the bitangent, w (normal x tangent); zero
   /// where the file states none.
   std::vector<Eigen::Vector4d> tangents{};
+  /// Its first pose is that of `vertices` and `normals`. nullptr: the mesh is still.
+  std::shared_ptr<const MeshAnimation> animation{};
 };
 
 }  // namespace saccade

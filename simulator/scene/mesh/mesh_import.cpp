@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/check.h"
 #include "core/error.h"
 #include "core/srgb.h"
+#include "simulator/scene/animation/animation_sampler.h"
+#include "simulator/scene/animation/gltf_motion.h"
+#include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/ac3d_file.h"
 #include "simulator/scene/mesh/gltf_file.h"
 #include "simulator/scene/mesh/gltf_lights.h"
@@ -217,23 +222,33 @@ bool is_relief(const fs::path& file) { return file.string().ends_with(".relief.y
 
 std::size_t gltf_length(const nlohmann::json& list) { return list.is_array() ? list.size() : 0; }
 
-/// assimp sees a glTF file without animations and lights (GltfFile::for_assimp()).
+/// assimp sees a glTF file without lights (GltfFile::for_assimp()).
 MeshExtras extras_of(const Model& model, const std::optional<GltfFile>& gltf) {
   MeshExtras extras;
-  for (const ModelCamera& camera : model.cameras)
-    extras.cameras.push_back({camera.name, Eigen::Vector3d(camera.position.data()),
-                              Eigen::Vector3d(camera.forward.data()), camera.horizontal_fov_rad});
   extras.parts = model.parts.size();
   extras.instances = model.instances.size();
   extras.lights = model.lights;
-  extras.animations = model.animations;
   if (gltf) {
     const nlohmann::json& document = gltf->document();
-    extras.animations = gltf_length(document.value("animations", nlohmann::json()));
     const nlohmann::json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
     extras.lights = document.contains(lights) ? gltf_length(document.at(lights)) : 0;
   }
   return extras;
+}
+
+/// Poses the mesh of a model by its animation, with the first pose as its own.
+void animate(const Model& model, const std::string& name, const std::string& source_name,
+             SceneRemarks& remarks, Mesh& mesh) {
+  const ModelAnimation& animation = find_animation(model.animations, name, source_name);
+  auto poses = std::make_shared<MeshAnimation>(sample_animation(model, animation, source_name));
+  SACCADE_CHECK(poses->vertices.front().size() == mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    mesh.vertices[i] = poses->vertices.front()[i].cast<double>();
+    mesh.normals[i] = poses->normals.front()[i].cast<double>();
+  }
+  if (poses->has_scaled_weights)
+    remarks.say(source_name + ": weights of its bones do not sum to one, and are scaled to do so");
+  mesh.animation = std::move(poses);
 }
 
 }  // namespace
@@ -250,10 +265,16 @@ void MeshImporter::prefetch(const std::vector<fs::path>& files) {
 }
 
 Model MeshImporter::read_model(const fs::path& file, const FileSource& source,
-                               const std::optional<GltfFile>& gltf) {
+                               const std::optional<GltfFile>& gltf, bool is_moving) {
   const FileLocation location = FileLocation::parse(file);
   const std::string source_name = location.text();
   check_model_format(location.file, source_name);
+  if (gltf && is_moving) {
+    Model model = import_model(source, location.file, source_name,
+                               gltf->for_assimp(GltfFile::Stillness::kMoving));
+    take_gltf_motion(*gltf, model);
+    return model;
+  }
   if (imports_)
     if (const std::optional<ForkedResult> result = imports_->take(file))
       return model_of(*result, location.file, source_name);
@@ -296,33 +317,37 @@ Mesh MeshImporter::with_surface(Mesh mesh, const MeshSurface& surface, const std
   return mesh;
 }
 
-Mesh MeshImporter::read(const fs::path& file) {
+Mesh MeshImporter::read(const fs::path& file, const std::optional<std::string>& animation) {
   const std::string problem = missing_file_problem(file);
   if (!problem.empty()) throw InputError(file.string(), problem);
   const FileLocation location = FileLocation::parse(file);
   const FileSource& source = sources_.try_emplace(location.archive, location.archive).first->second;
   const std::string source_name = location.text();
   if (!source.contains(location.file)) throw InputError(source_name, "is not in this archive");
-  if (is_relief(file)) return read_relief(location, source);
+  if (is_relief(file)) {
+    if (animation) throw InputError(source_name, "a relief has no animation");
+    return read_relief(location, source);
+  }
 
   const std::optional<GltfFile> gltf = GltfFile::open(source, location.file, source_name);
-  const Model model = read_model(file, source, gltf);
+  const Model model = read_model(file, source, gltf, animation.has_value());
   // What the importer read in its own process is noted in the InputLog of this one.
   for (const std::string& opened : model.opened) static_cast<void>(source.read(opened));
-  const MaterialContext context{source, location.file, source_name, options_, textures_, remarks_};
+  const MaterialContext context{source,    location.file, source_name,          options_,
+                                textures_, remarks_,      animation.has_value()};
   ReadMaterial read_material = [&](std::size_t index) {
     return import_material(model, model.materials[index], context);
   };
   std::optional<GltfMaterials> gltf_materials;
   if (gltf) {
     gltf_materials.emplace(*gltf, context);
-    gltf_materials->remark_ignored();
+    gltf_materials->remark_ignored(animation.has_value());
     read_material = [&](std::size_t index) {
       return gltf_materials->read(gltf_index(model.materials[index], *gltf));
     };
   }
   if (!gltf) {
-    if (model.animations > 0) remarks_.ignore("animations", source_name);
+    if (!model.animations.empty() && !animation) remarks_.ignore("animations", source_name);
     if (model.lights > 0) remarks_.ignore("lights", source_name);
   }
   Flattener flattener(model, used_materials(model, read_material), options_.channel, source_name,
@@ -332,6 +357,7 @@ Mesh MeshImporter::read(const fs::path& file) {
   mesh.nodes = model.nodes;
   if (gltf && options_.takes_lights) mesh.lights = read_gltf_lights(*gltf, options_.channel);
   mesh.extras = extras_of(model, gltf);
+  if (animation) animate(model, *animation, source_name, remarks_, mesh);
   return mesh;
 }
 

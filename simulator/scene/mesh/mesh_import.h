@@ -49,7 +49,10 @@ class MeshImporter {
   /// of a format that assimp does not know, without triangles, with a vertex that is not finite, or
   /// with a texture but no texture coordinates; and where assimp's importer crashes, hangs or takes
   /// too much memory (import_model()).
-  [[nodiscard]] Mesh read(const std::filesystem::path& file);
+  /// `animation`: name of the one that the mesh gets, as find_animation() has it; nullopt: it is
+  /// still. With one, the same holds for files whose animation cannot be played.
+  [[nodiscard]] Mesh read(const std::filesystem::path& file,
+                          const std::optional<std::string>& animation = std::nullopt);
 
   /// The mesh with another surface. Throws InputError naming the texture where it is missing or
   /// wrong, and `user` where the mesh has no texture coordinates for it.
@@ -59,9 +62,9 @@ class MeshImporter {
   [[nodiscard]] SceneRemarks& remarks() { return remarks_; }
 
  private:
-  /// `gltf`: none for other formats.
+  /// `gltf`: none for other formats. `is_moving`: with what moves it.
   [[nodiscard]] Model read_model(const std::filesystem::path& file, const FileSource& source,
-                                 const std::optional<GltfFile>& gltf);
+                                 const std::optional<GltfFile>& gltf, bool is_moving);
   [[nodiscard]] Mesh read_relief(const FileLocation& location, const FileSource& source);
 
   MeshImportOptions options_;

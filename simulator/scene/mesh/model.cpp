@@ -14,6 +14,8 @@ template <class T, std::size_t n>
 constexpr bool kIsPlain<std::array<T, n>> = std::is_arithmetic_v<T>;
 template <>
 constexpr bool kIsPlain<WrapModes> = std::is_trivially_copyable_v<WrapModes>;
+template <>
+constexpr bool kIsPlain<KeyInterpolation> = true;
 
 class ModelWriter {
  public:
@@ -125,18 +127,32 @@ void visit(Archive& archive, T& value) {
   } else if constexpr (kIsA<T, ModelPart>) {
     archive(value.material), archive(value.vertices), archive(value.normals), archive(value.uvs);
     archive(value.colours), archive(value.tangents), archive(value.triangles);
+    archive(value.bones);
+  } else if constexpr (kIsA<T, ModelBone>) {
+    archive(value.name), archive(value.node), archive(value.bone_from_part);
+    archive(value.vertices), archive(value.weights);
   } else if constexpr (kIsA<T, ModelInstance>) {
-    archive(value.part), archive(value.node), archive(value.file_from_part);
+    archive(value.part), archive(value.node), archive(value.tree_node);
+    archive(value.file_from_part);
   } else if constexpr (kIsA<T, ModelPicture>) {
     archive(value.hint), archive(value.width), archive(value.height), archive(value.bytes);
   } else if constexpr (kIsA<T, ModelCamera>) {
-    archive(value.name), archive(value.position), archive(value.forward);
-    archive(value.horizontal_fov_rad);
+    archive(value.name), archive(value.node), archive(value.position), archive(value.forward);
+    archive(value.up), archive(value.horizontal_fov_rad), archive(value.vertical_fov_rad);
+  } else if constexpr (kIsA<T, ModelNode>) {
+    archive(value.name), archive(value.parent), archive(value.parent_from_node);
+  } else if constexpr (kIsA<T, ModelTrack>) {
+    archive(value.interpolation), archive(value.times_s), archive(value.values);
+  } else if constexpr (kIsA<T, ModelChannel>) {
+    archive(value.node), archive(value.translation), archive(value.rotation);
+    archive(value.scale);
+  } else if constexpr (kIsA<T, ModelAnimation>) {
+    archive(value.name), archive(value.duration_s), archive(value.channels);
   } else {
     static_assert(kIsA<T, Model>);
     archive(value.materials), archive(value.parts), archive(value.instances);
     archive(value.pictures), archive(value.cameras), archive(value.lights);
-    archive(value.animations), archive(value.opened), archive(value.nodes);
+    archive(value.tree), archive(value.animations), archive(value.opened), archive(value.nodes);
   }
 }
 

@@ -9,9 +9,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <cstring>
 #include <exception>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -196,77 +199,167 @@ ModelPart part_of(const aiMesh& mesh) {
   return part;
 }
 
-Eigen::Affine3d transform_of(const aiMatrix4x4& m) {
-  Eigen::Affine3d transform;
-  transform.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
-      m.d1, m.d2, m.d3, m.d4;
-  return transform;
+/// By column, as models have them.
+std::array<double, 16> columns_of(const aiMatrix4x4& m) {
+  const auto d = [](ai_real value) { return static_cast<double>(value); };
+  return {d(m.a1), d(m.b1), d(m.c1), d(m.d1), d(m.a2), d(m.b2), d(m.c2), d(m.d2),
+          d(m.a3), d(m.b3), d(m.c3), d(m.d3), d(m.a4), d(m.b4), d(m.c4), d(m.d4)};
 }
 
-void add_instances(const aiNode& node, const Eigen::Affine3d& file_from_parent, Model& model) {
-  const Eigen::Affine3d file_from_node = file_from_parent * transform_of(node.mTransformation);
+std::array<double, 3> doubles_of(const aiVector3D& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// Appends a node and all below it, parents first.
+void add_nodes(const aiNode& node, std::int32_t parent, const Eigen::Affine3d& file_from_parent,
+               Model& model) {
+  ModelNode& added = model.tree.emplace_back();
+  added.name = node.mName.C_Str();
+  added.parent = parent;
+  added.parent_from_node = columns_of(node.mTransformation);
+  const auto index = static_cast<std::uint32_t>(model.tree.size() - 1);
+  const Eigen::Affine3d file_from_node =
+      file_from_parent *
+      Eigen::Affine3d(Eigen::Map<const Eigen::Matrix4d>(added.parent_from_node.data()));
   if (node.mNumMeshes > 0) model.nodes.emplace_back(node.mName.C_Str());
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     ModelInstance& instance = model.instances.emplace_back();
     instance.node = static_cast<std::uint32_t>(model.nodes.size() - 1);
+    instance.tree_node = index;
     instance.part = node.mMeshes[i];
     std::copy_n(file_from_node.matrix().data(), instance.file_from_part.size(),
                 instance.file_from_part.begin());
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    add_instances(*node.mChildren[i], file_from_node, model);
+    add_nodes(*node.mChildren[i], static_cast<std::int32_t>(index), file_from_node, model);
 }
 
-/// Of the node that bears the name of the camera and its parents.
-Eigen::Affine3d file_from_named(const aiScene& scene, const aiString& name) {
-  Eigen::Affine3d file_from_node = Eigen::Affine3d::Identity();
-  for (const aiNode* node = scene.mRootNode->FindNode(name); node != nullptr; node = node->mParent)
-    file_from_node = transform_of(node->mTransformation) * file_from_node;
-  return file_from_node;
+/// Nodes of a model by name; the first one of those that share it.
+class NodeIndex {
+ public:
+  explicit NodeIndex(const Model& model) {
+    for (std::size_t i = 0; i < model.tree.size(); ++i)
+      indices_.try_emplace(model.tree[i].name, static_cast<std::int32_t>(i));
+  }
+  [[nodiscard]] std::int32_t of(const aiString& name) const {
+    const auto found = indices_.find(name.C_Str());
+    return found == indices_.end() ? -1 : found->second;
+  }
+
+ private:
+  std::map<std::string, std::int32_t> indices_;
+};
+
+void add_bones(const aiMesh& mesh, const NodeIndex& nodes, ModelPart& part) {
+  for (unsigned i = 0; i < mesh.mNumBones; ++i) {
+    const aiBone& bone = *mesh.mBones[i];
+    ModelBone& added = part.bones.emplace_back();
+    added.name = bone.mName.C_Str();
+    added.node = nodes.of(bone.mName);
+    added.bone_from_part = columns_of(bone.mOffsetMatrix);
+    for (unsigned k = 0; k < bone.mNumWeights; ++k) {
+      added.vertices.push_back(bone.mWeights[k].mVertexId);
+      added.weights.push_back(static_cast<float>(bone.mWeights[k].mWeight));
+    }
+  }
 }
 
-ModelCamera camera_of(const aiScene& scene, const aiCamera& camera) {
-  const Eigen::Affine3d file_from_camera = file_from_named(scene, camera.mName);
-  const auto vector = [](const aiVector3D& v) {
-    const std::array<float, 3> f = floats_of(v);
-    return Eigen::Vector3d(static_cast<double>(f[0]), static_cast<double>(f[1]),
-                           static_cast<double>(f[2]));
-  };
-  const Eigen::Vector3d position = file_from_camera * vector(camera.mPosition);
-  const Eigen::Vector3d forward = file_from_camera.linear() * vector(camera.mLookAt);
-  return {camera.mName.C_Str(),
-          {position.x(), position.y(), position.z()},
-          {forward.x(), forward.y(), forward.z()},
-          static_cast<double>(camera.mHorizontalFOV)};
+ModelCamera camera_of(const aiCamera& camera, const NodeIndex& nodes) {
+  ModelCamera result{.name = camera.mName.C_Str(),
+                     .node = nodes.of(camera.mName),
+                     .position = doubles_of(camera.mPosition),
+                     .forward = doubles_of(camera.mLookAt),
+                     .up = doubles_of(camera.mUp),
+                     .horizontal_fov_rad = static_cast<double>(camera.mHorizontalFOV)};
+  if (camera.mAspect > 0)
+    result.vertical_fov_rad = 2 * std::atan(std::tan(0.5 * result.horizontal_fov_rad) /
+                                            static_cast<double>(camera.mAspect));
+  return result;
+}
+
+/// The keys of one kind in seconds. `numbers`: those of a key's value.
+template <class Key, class Numbers>
+ModelTrack track_of(const Key* keys, unsigned count, double ticks_per_s, const Numbers& numbers) {
+  ModelTrack track;
+  for (unsigned i = 0; i < count; ++i) {
+    track.times_s.push_back(keys[i].mTime / ticks_per_s);
+    for (const auto value : numbers(keys[i].mValue))
+      track.values.push_back(static_cast<double>(value));
+  }
+  return track;
+}
+
+ModelAnimation animation_of(const aiAnimation& animation, const NodeIndex& nodes) {
+  constexpr double kUsualTicks_per_s = 25;  // what formats mean that state none
+  const double ticks_per_s =
+      animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kUsualTicks_per_s;
+  ModelAnimation result{animation.mName.C_Str(), animation.mDuration / ticks_per_s, {}};
+  const auto vector = [](const aiVector3D& v) { return std::array{v.x, v.y, v.z}; };
+  const auto rotation = [](const aiQuaternion& q) { return std::array{q.x, q.y, q.z, q.w}; };
+  for (unsigned i = 0; i < animation.mNumChannels; ++i) {
+    const aiNodeAnim& channel = *animation.mChannels[i];
+    const std::int32_t node = nodes.of(channel.mNodeName);
+    if (node < 0) continue;  // of a light, or of what was left out
+    result.channels.push_back(
+        {static_cast<std::uint32_t>(node),
+         track_of(channel.mPositionKeys, channel.mNumPositionKeys, ticks_per_s, vector),
+         track_of(channel.mRotationKeys, channel.mNumRotationKeys, ticks_per_s, rotation),
+         track_of(channel.mScalingKeys, channel.mNumScalingKeys, ticks_per_s, vector)});
+  }
+  return result;
 }
 
 Model model_of(const aiScene& scene) {
   Model model;
+  add_nodes(*scene.mRootNode, -1, Eigen::Affine3d::Identity(), model);
+  const NodeIndex nodes(model);
   for (unsigned i = 0; i < scene.mNumMaterials; ++i)
     model.materials.push_back(material_of(scene, *scene.mMaterials[i]));
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) model.parts.push_back(part_of(*scene.mMeshes[i]));
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    model.parts.push_back(part_of(*scene.mMeshes[i]));
+    add_bones(*scene.mMeshes[i], nodes, model.parts.back());
+  }
   for (unsigned i = 0; i < scene.mNumTextures; ++i)
     model.pictures.push_back(picture_of(*scene.mTextures[i]));
-  add_instances(*scene.mRootNode, Eigen::Affine3d::Identity(), model);
   for (unsigned i = 0; i < scene.mNumCameras; ++i)
-    model.cameras.push_back(camera_of(scene, *scene.mCameras[i]));
+    model.cameras.push_back(camera_of(*scene.mCameras[i], nodes));
+  for (unsigned i = 0; i < scene.mNumAnimations; ++i)
+    model.animations.push_back(animation_of(*scene.mAnimations[i], nodes));
   model.lights = scene.mNumLights;
-  model.animations = scene.mNumAnimations;
   return model;
 }
 
 /// The indices of a file that nobody checked.
 bool is_consistent(const Model& model) {
-  const auto is_part_fine = [&model](const ModelPart& part) {
+  const auto is_node = [&model](std::int64_t node) {
+    return node < static_cast<std::int64_t>(model.tree.size());
+  };
+  const auto is_part_fine = [&model, &is_node](const ModelPart& part) {
     return part.material < model.materials.size() &&
-           std::ranges::all_of(part.triangles, [&part](const auto& corners) {
-             return std::ranges::all_of(
-                 corners, [&part](std::uint32_t corner) { return corner < part.vertices.size(); });
+           std::ranges::all_of(part.triangles,
+                               [&part](const auto& corners) {
+                                 return std::ranges::all_of(corners, [&part](std::uint32_t corner) {
+                                   return corner < part.vertices.size();
+                                 });
+                               }) &&
+           std::ranges::all_of(part.bones, [&part, &is_node](const ModelBone& bone) {
+             return is_node(bone.node) && bone.weights.size() == bone.vertices.size() &&
+                    std::ranges::all_of(bone.vertices, [&part](std::uint32_t vertex) {
+                      return vertex < part.vertices.size();
+                    });
            });
   };
   return std::ranges::all_of(model.parts, is_part_fine) &&
-         std::ranges::all_of(model.instances, [&model](const ModelInstance& instance) {
-           return instance.part < model.parts.size() && instance.node < model.nodes.size();
+         std::ranges::all_of(model.instances,
+                             [&](const ModelInstance& instance) {
+                               return instance.part < model.parts.size() &&
+                                      instance.node < model.nodes.size() &&
+                                      is_node(instance.tree_node);
+                             }) &&
+         std::ranges::all_of(model.animations, [&](const ModelAnimation& animation) {
+           return std::ranges::all_of(animation.channels, [&](const ModelChannel& channel) {
+             return is_node(channel.node);
+           });
          });
 }
 

@@ -11,9 +11,6 @@
 namespace saccade {
 namespace {
 
-/// Image speeds are those at both ends of a slice, and an arc is at most as long: longer ones would
-/// miss how hand-held motion turns in between. Four times shorter ones took up to twice the rays.
-constexpr double kLongestSlice_s = 0.02;
 constexpr double kShortestSlice_s = 1e-4;
 /// What moves by at most this in a slice comes from the tiles next to its own.
 constexpr double kSliceMotion_px = kTileSize;
@@ -55,6 +52,7 @@ void AdaptiveCamera::step(double duration_s, const Sink& sink) {
   parallel_for(
       tiles_.size(), [&](std::size_t i) { tiles_[i]->advance(slice, around_px_s(i, speeds)); },
       kTilesPerTask);
+  audit_.sense(slice, [&](std::size_t i) { return around_px_s(i, speeds); });
   t_s_ = end_s;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     const std::size_t before = delivery_.pending().size();
@@ -73,7 +71,7 @@ double AdaptiveCamera::slice_end_s(double duration_s) const {
   double fastest = 0;
   for (const auto& tile : tiles_) fastest = std::max(fastest, tile->speed_px_s());
   const double slice_s = started_ ? std::clamp(kSliceMotion_px / std::max(fastest, 1e-9),
-                                               kShortestSlice_s, kLongestSlice_s)
+                                               kShortestSlice_s, AdaptiveSlice::kLongest_s)
                                   : kShortestSlice_s;
   const double slices_left = std::ceil((until_s - t_s_) / slice_s);
   return slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;

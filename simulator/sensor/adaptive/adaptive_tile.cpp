@@ -80,6 +80,7 @@ AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const Even
       refractory_s_(noise.refractory_s),
       longest_line_s_(longest_line_s(scene.flickers())),
       has_arcs_(rays.rays_per_pixel() == 1 && scene.flickers().empty() && !scene.has_spots()),
+      is_animated_(scene.is_animated()),
       pixels_(options, noise, seed, rays.tile(index)),
       sampler_(scene, rays, options, index, statistics_) {}
 
@@ -111,10 +112,12 @@ void AdaptiveTile::update_speed(const AdaptiveSlice& slice) {
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const ViewSample& seen = views_[i].now;
     const Eigen::Vector3d& ray = rays_.rays(index_)[i * rays_.rays_per_pixel()];
+    const CameraFrame camera = is_animated_ ? slice.poses.at(seen.t_s) : CameraFrame{};
+    const Ray in_world{camera.position, camera.rotation * ray, seen.t_s};
     for (const RelativeTwists* twists : {&slice.first, &slice.last})
-      speed_px_s_ = std::max(speed_px_s_, point_motion(rays_.camera(), ray, seen.distance,
-                                                       twists->relative_to(seen.triangle))
-                                              .norm());
+      speed_px_s_ =
+          std::max(speed_px_s_, twists->fastest_px_s(rays_.camera(), ray, seen.distance, in_world,
+                                                     seen.triangle, AdaptiveSlice::kLongest_s));
   }
 }
 
@@ -214,6 +217,11 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
   Pixel& pixel = views_[i];
   std::vector<ViewSample>& ahead = ahead_[i];
   while (!ahead.empty()) {
+    if (is_animated_ && is_arc(pixel.now, ahead.back()))
+      if (const auto kink_s = first_kink_s(pixel.now, ahead.back())) {
+        ahead.push_back(sampler_.resample({i, *kink_s}, pixel.now));
+        continue;
+      }
     if (is_arc(pixel.now, ahead.back())) {
       if (sense_arc(i, pixel, ahead.back())) {
         ahead.pop_back();
@@ -323,6 +331,13 @@ bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) const
   return a.lights == b.lights && is_one_surface(a, b);
 }
 
+std::optional<double> AdaptiveTile::first_kink_s(const ViewSample& from,
+                                                 const ViewSample& to) const {
+  const auto first = scene_.first_kink_s(from.triangle, from.t_s, to.t_s);
+  return first || from.triangle == to.triangle ? first
+                                               : scene_.first_kink_s(to.triangle, from.t_s, to.t_s);
+}
+
 auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const
     -> Judgement {
   const ViewSample& now = pixel.now;
@@ -340,6 +355,8 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
     if (*jump_s - around_s > now.t_s) return {false, *jump_s - around_s, needs_ray};
     if (*jump_s + around_s < next.t_s) return {false, *jump_s + around_s, needs_ray};
   }
+  if (is_animated_)
+    if (const auto kink_s = first_kink_s(now, next)) return {false, *kink_s, needs_ray};
   const double middle_s = 0.5 * (now.t_s + next.t_s);
   if (length_s > longest_line_s_) return {false, middle_s, needs_ray};
   const bool is_continuous_there = is_continuous(now, next);

@@ -26,6 +26,11 @@ struct AdaptiveSlice {
   double from_s, to_s;
   const RelativeTwists& first;  ///< at its start
   const RelativeTwists& last;   ///< and at its end
+
+  /// Image speeds are those at both ends of a slice, and an arc is at most as long: longer ones
+  /// would miss how hand-held motion turns in between. Four times shorter ones took up to twice the
+  /// rays.
+  static constexpr double kLongest_s = 0.02;
 };
 
 /// 4 x 4 event pixels that are sampled with rays: all of them after every half
@@ -94,6 +99,9 @@ class AdaptiveTile {
   [[nodiscard]] std::optional<ViewSample> resample_settled(std::size_t i, double t_s,
                                                            const ViewSample& from,
                                                            const ViewSample& to);
+  /// The first time between two samples at which the motion of what they see has a kink.
+  [[nodiscard]] std::optional<double> first_kink_s(const ViewSample& from,
+                                                   const ViewSample& to) const;
   void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
   /// Whether all between two samples follows from what both see.
   [[nodiscard]] bool is_arc(const ViewSample& from, const ViewSample& to) const;
@@ -113,6 +121,7 @@ class AdaptiveTile {
   double refractory_s_;
   double longest_line_s_;  ///< under flickering lights
   bool has_arcs_;          ///< one ray per pixel, and light without flicker and cones
+  bool is_animated_;       ///< the corners of some triangles move in their body
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/process/parallel.h"
 #include "core/random.h"
 
 namespace saccade {
@@ -39,6 +40,17 @@ EventOptions within_pixels(const EventOptions& options) {
   result.noise.readout = {};
   result.sampling = Sampling::kExact;
   return result;
+}
+
+/// Steps and tolerances of a dense reference are finer by these factors. Then crossings are located
+/// within one tolerance, and what passes within a sixteenth of a step is missed.
+constexpr double kDenseSteps = 16;
+constexpr double kDenseTolerances = 4;
+
+EventOptions densely(EventOptions options) {
+  options.max_step_px /= kDenseSteps;
+  options.time_tolerance_us /= kDenseTolerances;
+  return options;
 }
 
 double fraction_of(std::uint64_t part, std::uint64_t whole) {
@@ -79,14 +91,40 @@ EventMatcher& Audit::AuditedTile::matcher(const SensedEvent& event) {
 
 Audit::Audit(const Scene& scene, const Spline& world_from_camera, const PinholeCamera& camera,
              const EventOptions& options, std::uint64_t seed)
-    : rays_(camera, options.samples_per_pixel, options.pixel_side), seed_(seed) {
+    : rays_(camera, options.samples_per_pixel, options.pixel_side),
+      seed_(seed),
+      dense_options_(densely(within_pixels(options))),
+      noise_(options, seed) {
   index_ = drawn_tiles(rays_.tile_count(), options.audit_fraction, seed);
   if (index_.empty()) return;
   for (const std::size_t i : index_) {
     const Tile tile = rays_.tile(i);
     tiles_.push_back({tile, std::vector<EventMatcher>(2 * tile.pixels()), {}});
   }
-  exact_.emplace(scene, world_from_camera, camera, within_pixels(options), seed, index_);
+  if (audit_reference(scene) == AuditReference::kExact) {
+    exact_.emplace(scene, world_from_camera, camera, within_pixels(options), seed, index_);
+    return;
+  }
+  for (const std::size_t i : index_)
+    dense_.push_back(std::make_unique<AdaptiveTile>(scene, rays_, dense_options_, noise_, seed, i));
+}
+
+void Audit::sense(const AdaptiveSlice& slice,
+                  const std::function<double(std::size_t)>& around_px_s) {
+  if (dense_.empty()) return;
+  parallel_for(dense_.size(), [&](std::size_t k) {
+    if (!has_started_) dense_[k]->start(slice);
+    dense_[k]->advance(slice, around_px_s(index_[k]));
+    SensedEvents events;
+    dense_[k]->take_events(events);
+    for (const SensedEvent& event : events) tiles_[k].matcher(event).add_exact(event.t_ns);
+    tiles_[k].counts.exact += events.size();
+  });
+  has_started_ = true;
+}
+
+AuditReference audit_reference(const Scene& scene) {
+  return scene.is_animated() ? AuditReference::kDense : AuditReference::kExact;
 }
 
 Audit::AuditedTile* Audit::audited(std::size_t tile) {
@@ -103,8 +141,8 @@ void Audit::add(std::size_t tile, std::span<const SensedEvent> events) {
 }
 
 void Audit::advance(double t_s, double duration_s) {
-  if (!exact_) return;
-  while (exact_->reached_s() < t_s)
+  if (tiles_.empty()) return;
+  while (exact_ && exact_->reached_s() < t_s)
     exact_->advance(duration_s, [&](std::size_t tile, std::span<const SensedEvent> events) {
       AuditedTile& own = *audited(tile);
       for (const SensedEvent& event : events) own.matcher(event).add_exact(event.t_ns);
@@ -179,8 +217,9 @@ AuditResult audit_result(std::span<const AuditedCounts> tiles, std::uint64_t see
 }
 
 void Audit::save(StateWriter& state) const {
-  if (!exact_) return;
-  state.text(exact_->state());
+  if (tiles_.empty()) return;
+  if (exact_) state.text(exact_->state());
+  for (const auto& tile : dense_) tile->save(state);
   for (const AuditedTile& tile : tiles_) {
     for (const EventMatcher& matcher : tile.matchers) matcher.save(state);
     state.value(tile.counts);
@@ -188,8 +227,10 @@ void Audit::save(StateWriter& state) const {
 }
 
 void Audit::load(StateReader& state) {
-  if (!exact_) return;
-  exact_->resume(state.text());
+  if (tiles_.empty()) return;
+  if (exact_) exact_->resume(state.text());
+  for (const auto& tile : dense_) tile->load(state);
+  has_started_ = true;
   for (AuditedTile& tile : tiles_) {
     for (EventMatcher& matcher : tile.matchers) matcher.load(state);
     state.value(tile.counts);

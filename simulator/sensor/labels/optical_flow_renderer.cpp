@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "core/process/parallel.h"
-#include "simulator/scene/moving_object.h"
 #include "simulator/sensor/rays/tile_trace.h"
 
 namespace saccade {
@@ -22,11 +21,8 @@ Eigen::Vector3d in_other_camera(const Scene& scene, const Ray& ray, TriangleId t
                                 const StampedPose& to) {
   const Eigen::Matrix3d camera_from_world = to.world_from_camera.rotation_matrix().transpose();
   if (triangle == kNothing) return camera_from_world * ray.direction;
-  const double distance = scene.sample_surface(ray, triangle).distance;
-  Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  if (const MovingObject* object = scene.moving_object(triangle))
-    point = object->pose(to.t_s) * (object->pose(ray.time_s).inverse() * point);
-  return camera_from_world * (point - to.world_from_camera.translation());
+  return camera_from_world *
+         (scene.carried_point(ray, triangle, to.t_s) - to.world_from_camera.translation());
 }
 
 /// Where a point is in a distorted image; nullopt behind the camera, and so far outside that the

@@ -11,6 +11,9 @@ namespace {
 constexpr int kInstants = 3;
 /// A pixel of a distorted image may be this many pixels of the ideal one.
 constexpr double kLensMargin = 2;
+/// Instants at which the speed of a deformation is asked for: animations have keys at 24 to 60 Hz,
+/// and slices are 20 ms long at most.
+constexpr int kLooksAhead = 5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Keeps of [low, high] the z with slope * z >= least.
@@ -45,7 +48,10 @@ double speed_between(const PinholeCamera& camera, const Eigen::Vector3d& ray, co
 }  // namespace
 
 RelativeTwists::RelativeTwists(const Scene& scene, const SplineState& camera, double t_s)
-    : scene_(scene), relative_to_static_(camera_twist(camera)) {
+    : scene_(scene),
+      is_animated_(scene.is_animated()),
+      camera_from_world_(camera.world_from_body.rotation_matrix().transpose()),
+      relative_to_static_(camera_twist(camera)) {
   for (const MovingObject& object : scene.moving_objects())
     relative_to_moving_.push_back(relative_twist(camera, object.state(t_s)));
 }
@@ -54,6 +60,27 @@ const Twist& RelativeTwists::relative_to(TriangleId triangle) const {
   const MovingObject* object = scene_.moving_object(triangle);
   if (object == nullptr) return relative_to_static_;
   return relative_to_moving_[static_cast<std::size_t>(object - scene_.moving_objects().data())];
+}
+
+Twist RelativeTwists::relative_to(const Ray& ray, TriangleId triangle, double at_s) const {
+  Twist twist = relative_to(triangle);
+  if (is_animated_)
+    twist.head<3>() -= camera_from_world_ * scene_.deformation_velocity(ray, triangle, at_s);
+  return twist;
+}
+
+double RelativeTwists::fastest_px_s(const PinholeCamera& camera, const Eigen::Vector3d& direction,
+                                    double depth, const Ray& ray, TriangleId triangle,
+                                    double ahead_s) const {
+  if (!is_animated_) return point_motion(camera, direction, depth, relative_to(triangle)).norm();
+  double fastest = 0;
+  for (int k = 0; k < kLooksAhead; ++k)
+    fastest = std::max(
+        fastest,
+        point_motion(camera, direction, depth,
+                     relative_to(ray, triangle, ray.time_s + ahead_s * k / (kLooksAhead - 1)))
+            .norm());
+  return fastest;
 }
 
 ObjectMotion::ObjectMotion(const Scene& scene, const Spline& world_from_camera, double from_s,

@@ -17,9 +17,22 @@ class RelativeTwists {
 
   /// Before the body of `triangle`; before the static scene for kNothing.
   [[nodiscard]] const Twist& relative_to(TriangleId triangle) const;
+  /// Before the point that `ray` sees of a triangle, whose corners may move in its body, with its
+  /// velocity at `at_s`: a point moves over the image as a static one does before a camera that
+  /// moves against it.
+  [[nodiscard]] Twist relative_to(const Ray& ray, TriangleId triangle, double at_s) const;
+
+  /// Greatest speed over the image [px/s] of the point that `ray`, `direction` = (x, y, 1) in the
+  /// camera, sees at `depth` of a triangle; as far as its corners move within its body, during
+  /// `ahead_s` from the ray's time on.
+  [[nodiscard]] double fastest_px_s(const PinholeCamera& camera, const Eigen::Vector3d& direction,
+                                    double depth, const Ray& ray, TriangleId triangle,
+                                    double ahead_s) const;
 
  private:
   const Scene& scene_;
+  bool is_animated_;
+  Eigen::Matrix3d camera_from_world_;
   Twist relative_to_static_;
   std::vector<Twist> relative_to_moving_;  ///< in the order of Scene::moving_objects()
 };

@@ -48,6 +48,7 @@ TEST(MeshName, IsThatOfAFormatWithSurfaces) {
   EXPECT_TRUE(is_mesh_name("chair.glb"));
   EXPECT_TRUE(is_mesh_name("rooms.zip!/chair/Chair.OBJ"));
   EXPECT_TRUE(is_mesh_name("dunes.relief.yaml"));
+  EXPECT_TRUE(is_mesh_name("robot.wrl"));  // which cannot be read, and the error says so
   EXPECT_FALSE(is_mesh_name("events.h5"));
   EXPECT_FALSE(is_mesh_name("events.raw"));
   EXPECT_FALSE(is_mesh_name("events.txt"));
