@@ -91,6 +91,8 @@ void check_comparison(const EvalOptions& options) {
   if (!compares && (part.start_s || part.duration_s))
     throw InputError(part.start_s ? "--start-s" : "--duration-s",
                      "cuts a part of --events; a run keeps the window that it was made with");
+  if (compares && options.at_s)
+    throw InputError("--at-s", "is the time of a view; --start-s and --duration-s cut --events");
   if (compares && options.evaluate.dataset)
     throw InputError("--data", "--events are scored against a recording: --against RECORDING");
 }

@@ -31,6 +31,13 @@ SensorSize common_size(const EventRecording& events, const EventRecording& truth
         events.file.string(),
         fmt::format("is of {}, but {} of {}; compare recordings of one sensor",
                     size_text(events.size), truth.file.string(), size_text(truth.size)));
+  // Of a file without a sensor a single wrong coordinate decides the size.
+  constexpr int kLargest_px = 8192;
+  for (const EventRecording* each : {&events, &truth})
+    if (std::max(each->size.width, each->size.height) > kLargest_px)
+      throw InputError(each->file.string(),
+                       fmt::format("has events at up to ({}, {}), beyond any sensor",
+                                   each->size.width - 1, each->size.height - 1));
   return {std::max(events.size.width, truth.size.width),
           std::max(events.size.height, truth.size.height)};
 }
@@ -69,14 +76,17 @@ ImageRgb8 draw_pixels(const EventRecording& events, const EventRecording& truth,
 }  // namespace
 
 Metrics evaluate_events(const EventsToCompare& compared, const std::optional<fs::path>& output) {
-  const EventRecording events = read_recording(compared.events, compared.part);
-  const EventRecording truth = read_recording(compared.truth, compared.part);
+  RecordingPart part = compared.part;
+  if (part.duration_s && !part.start_s)  // the same part of both
+    part.start_s = std::min(recording_start_s(compared.events), recording_start_s(compared.truth));
+  const EventRecording events = read_recording(compared.events, part);
+  const EventRecording truth = read_recording(compared.truth, part);
   const SensorSize size = common_size(events, truth);
   if (events.events.empty() && truth.events.empty())
     throw InputError(compared.events.string(),
                      "holds no event in this part, and neither does " + compared.truth.string());
-  const std::vector<std::uint8_t> origin = read_origins(compared.events, compared.part);
-  const std::vector<std::uint8_t> true_origin = read_origins(compared.truth, compared.part);
+  const std::vector<std::uint8_t> origin = read_origins(compared.events, part);
+  const std::vector<std::uint8_t> true_origin = read_origins(compared.truth, part);
   const MatchedEvents matched = match_events(events.events, truth.events);
   Metrics metrics =
       catalogued(score_events({events.events, origin}, {truth.events, true_origin}, matched));

@@ -15,9 +15,19 @@ TimeWindow window_of(const fs::path& file, const RecordingPart& part) {
   if (part.start_s) window.start_ns = ns_from_seconds(*part.start_s);
   if (part.duration_s) {
     const TimeNs start_ns = part.start_s ? window.start_ns : read_event_file_info(file).first_ns;
-    window.end_ns = start_ns + ns_from_seconds(*part.duration_s);
+    const TimeNs duration_ns = ns_from_seconds(*part.duration_s);
+    const bool is_open = start_ns > 0 && duration_ns > window.end_ns - start_ns;
+    if (!is_open) window.end_ns = start_ns + duration_ns;
   }
   return window;
+}
+
+fs::path events_file_of(const fs::path& path) {
+  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::is_directory(path)) return path;
+  fs::path file = Dataset::open(path).events_file();
+  if (file.empty()) throw InputError(path.string(), "holds no events");
+  return file;
 }
 
 SensorSize extent(const Events& events) {
@@ -28,6 +38,10 @@ SensorSize extent(const Events& events) {
 }
 
 }  // namespace
+
+double recording_start_s(const fs::path& path) {
+  return seconds_from_ns(read_event_file_info(events_file_of(path)).first_ns);
+}
 
 EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
   if (!fs::exists(path)) throw InputError(path.string(), "is not there");
@@ -43,9 +57,9 @@ EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
   const Dataset dataset = Dataset::open(path);
   recording.file = dataset.events_file();
   if (recording.file.empty()) throw InputError(path.string(), "holds no events");
+  recording.is_size_stated = true;
   recording.size = {dataset.camera().width, dataset.camera().height};
   recording.events = read_events(recording.file, recording.size, window_of(recording.file, part));
-  recording.is_size_stated = true;
   return recording;
 }
 

@@ -26,6 +26,9 @@ struct EventRecording {
   bool is_size_stated = false;  ///< by a dataset
 };
 
+/// Time of its first event [s].
+[[nodiscard]] double recording_start_s(const std::filesystem::path& path);
+
 /// Throws InputError for what is not there or cannot be read.
 [[nodiscard]] EventRecording read_recording(const std::filesystem::path& path,
                                             const RecordingPart& part = {});

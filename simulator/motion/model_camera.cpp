@@ -16,6 +16,10 @@ namespace saccade {
 namespace {
 
 constexpr double kLongestStep_s = 0.01;
+/// Of an animation, as of every motion.
+constexpr double kLongest_s = 3600;
+/// More poses than an hour has milliseconds are no motion that somebody has animated.
+constexpr double kMostPoses = 3.6e6;
 /// Samples from one key to the next: a spline through them rounds the kinks of linear keys within
 /// about a quarter of that.
 constexpr double kSamplesPerKey = 4;
@@ -117,11 +121,21 @@ std::vector<StampedPose> model_camera_poses(const ModelCameraOptions& options) {
   double sampling_s = kLongestStep_s;
   if (animation != nullptr) {
     duration_s = animation->duration_s;
+    if (!(duration_s <= kLongest_s))
+      throw InputError(options.file.string(),
+                       fmt::format("its animation '{}' lasts {:g} s; a motion lasts {:g} s at most",
+                                   animation->name, duration_s, kLongest_s));
     std::vector<bool> own(model.tree.size());
     own[static_cast<std::size_t>(camera.node)] = true;
     sampling_s = step_s(nodes.key_times_s(own));
   }
-  const int steps = std::max(2, static_cast<int>(std::ceil(duration_s / sampling_s - 1e-9)));
+  const double wanted = std::ceil(duration_s / sampling_s - 1e-9);
+  if (!(wanted <= kMostPoses))
+    throw InputError(options.file.string(),
+                     fmt::format("its animation has keys {:g} s apart, which makes {:.0f} poses; "
+                                 "{:.0f} at most",
+                                 sampling_s * kSamplesPerKey, wanted, kMostPoses));
+  const int steps = std::max(2, static_cast<int>(wanted));
   std::vector<StampedPose> poses;
   for (int i = 0; i <= steps; ++i) {
     const double t_s = duration_s * i / steps;

@@ -194,10 +194,11 @@ struct Scene::State {
   [[nodiscard]] std::optional<Occluder> make_occluder(TriangleId triangle,
                                                       const LightOptions& light,
                                                       const Eigen::Vector3d& patch) const;
-  /// What may stand between a light and a convex patch, given by points around it, above zero of
-  /// `front`; false where that is not known.
+  /// What may stand between a light and a convex patch, given by points around it, from
+  /// `shadow_offset` above it on, above zero of `front`; false where that is not known.
   [[nodiscard]] bool collect_occluders(const LightOptions& light,
                                        std::span<const Eigen::Vector3d> patch,
+                                       const Eigen::Vector3d& shadow_offset,
                                        const AffineForm& front, std::size_t most,
                                        std::vector<TriangleId>& found);
   /// Of the triangles `found` those that hide a part of the patch; false where one hides it all.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 
@@ -55,8 +56,7 @@ class MotionReader {
 
   [[nodiscard]] GltfMotion read() {
     const auto scene = file_.document().value("scene", std::size_t{0});
-    for (const json& root : member(file_.item("scenes", scene), "nodes"))
-      visit(root.get<std::size_t>(), -1);
+    visit_all(member(file_.item("scenes", scene), "nodes"));
     for (const json& animation : member(file_.document(), "animations"))
       motion_.animations.push_back(read(animation));
     return std::move(motion_);
@@ -67,7 +67,27 @@ class MotionReader {
     throw InputError(file_.source_name(), problem);
   }
 
-  void visit(std::size_t index, std::int32_t parent) {
+  /// Nodes in the order of the file, each before its children; without recursion, for a file may
+  /// hang as many below each other as it likes.
+  void visit_all(const json& roots) {
+    std::vector<std::pair<std::size_t, std::int32_t>>
+        open;  // with their parents, the next one last
+    const auto add = [&](const json& nodes, std::int32_t parent) {
+      const std::size_t first = open.size();
+      for (const json& node : nodes) open.emplace_back(node.get<std::size_t>(), parent);
+      std::reverse(open.begin() + static_cast<std::ptrdiff_t>(first), open.end());
+    };
+    add(roots, -1);
+    while (!open.empty()) {
+      const auto [index, parent] = open.back();
+      open.pop_back();
+      const json& children = visit(index, parent);
+      add(children, static_cast<std::int32_t>(motion_.tree_index.at(index)));
+    }
+  }
+
+  /// Returns its children.
+  const json& visit(std::size_t index, std::int32_t parent) {
     const json& node = file_.item("nodes", index);
     if (!node.is_object()) fail(fmt::format("it has no node {}", index));
     const auto own = static_cast<std::uint32_t>(motion_.tree.size());
@@ -76,8 +96,7 @@ class MotionReader {
     motion_.tree.push_back({node.value("name", ""), parent, parent_from_node(node)});
     const json& camera = member(node, "camera");
     if (!camera.is_null()) add_camera(camera.get<std::size_t>(), index, node);
-    for (const json& child : member(node, "children"))
-      visit(child.get<std::size_t>(), static_cast<std::int32_t>(own));
+    return member(node, "children");
   }
 
   void add_camera(std::size_t index, std::size_t node_index, const json& node) {

@@ -18,8 +18,11 @@ constexpr double kLightTolerance = 1e-10;
 /// How much wider than a patch the frustum from a light is, for what is seen by a hair beside it.
 constexpr double kFrustumMargin = 0.01;
 /// A light without a place is taken to be this many sizes of the scene away where its triangles are
-/// searched for: less than the margin off its parallel light.
-constexpr double kFar = 1e4;
+/// searched for. Then its rays through a patch spread by a tenth of the patch within the scene,
+/// which kFarMargin takes in. Further away the frustum would be so narrow that double precision
+/// does not tell its sides apart: 1e-16 of the square of the way, relative to the patch.
+constexpr double kFar = 10;
+constexpr double kFarMargin = 0.12;
 
 std::array<Eigen::Vector3d, 3> corners_of(const TriangleSurface& surface,
                                           const TriangleInterior& interior) {
@@ -67,7 +70,8 @@ std::vector<Eigen::Vector3d> patch_corners(const std::array<Eigen::Vector3d, 3>&
 /// The narrowest frustum with margin from `eye` around points, of those along their longest extent;
 /// none where they are all around it.
 std::optional<Frustum> frustum_around(const Eigen::Vector3d& eye,
-                                      std::span<const Eigen::Vector3d> points) {
+                                      std::span<const Eigen::Vector3d> points,
+                                      double relative_margin) {
   constexpr double kWidest = 0.2;  // cosine
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) axis += (point - eye).normalized();
@@ -87,7 +91,7 @@ std::optional<Frustum> frustum_around(const Eigen::Vector3d& eye,
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& point : on_plane)
     box.extend(Eigen::Vector2d(point.dot(right), point.dot(down)));
-  const double margin = kFrustumMargin * box.sizes().maxCoeff() + 1e-12;
+  const double margin = relative_margin * box.sizes().maxCoeff() + 1e-12;
   const auto corner = [&](double x, double y) -> Eigen::Vector3d {
     return axis + x * right + y * down;
   };
@@ -182,12 +186,16 @@ std::optional<Occluder> Scene::State::make_occluder(TriangleId triangle, const L
 
 bool Scene::State::collect_occluders(const LightOptions& light,
                                      std::span<const Eigen::Vector3d> patch,
-                                     const AffineForm& front, std::size_t most,
-                                     std::vector<TriangleId>& found) {
+                                     const Eigen::Vector3d& shadow_offset, const AffineForm& front,
+                                     std::size_t most, std::vector<TriangleId>& found) {
+  // Paths begin at the lifted points, which in a large scene are far from a small patch.
+  std::vector<Eigen::Vector3d> around(patch.begin(), patch.end());
+  for (const Eigen::Vector3d& point : patch) around.push_back(point + shadow_offset);
   const Eigen::Vector3d eye = light.has_position()
                                   ? light.position
                                   : Eigen::Vector3d(patch[0] - kFar * size_m * light.direction);
-  const auto frustum = frustum_around(eye, patch);
+  const auto frustum =
+      frustum_around(eye, around, light.has_position() ? kFrustumMargin : kFarMargin);
   found.clear();
   return frustum && bvh(0).collect({&*frustum, 1}, front, most, found) &&
          std::all_of(found.begin(), found.end(), [&](TriangleId triangle) {
@@ -211,7 +219,8 @@ bool Scene::State::find_lighting(const Patch& patch, std::size_t most, PatchLigh
                                                    : -plane.gradient.dot(lights[k].direction);
     if (!(patch.side * height > 0) || illumination->misses(k, centre, radius)) continue;
     found.clear();
-    if (lights[k].shadows && !collect_occluders(lights[k], patch.corners, front, most, found))
+    if (lights[k].shadows &&
+        !collect_occluders(lights[k], patch.corners, lighting.shadow_offset, front, most, found))
       return false;
     add_light(LightSet{1} << k, patch, found, lighting);
   }
@@ -323,7 +332,8 @@ std::optional<LightSet> Scene::lights_at(const Ray& ray, TriangleId triangle, do
   const AffineForm& plane = state_->surfaces[triangle].plane;
   const double side = plane.at(ray.origin) > 0 ? 1 : -1;
   const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const Eigen::Vector3d start = point + illumination.shadow_offset() * side * plane.gradient;
+  const Eigen::Vector3d shadow_offset = illumination.shadow_offset() * side * plane.gradient;
+  const Eigen::Vector3d start = point + shadow_offset;
   const Eigen::Vector3d right =
       kAround * distance * ray.direction.norm() * plane.gradient.unitOrthogonal();
   const Eigen::Vector3d down = plane.gradient.cross(right);
@@ -340,7 +350,8 @@ std::optional<LightSet> Scene::lights_at(const Ray& ray, TriangleId triangle, do
         light.has_position() ? plane.at(light.position) : -plane.gradient.dot(light.direction);
     if (!(side * height > 0)) continue;
     found.clear();
-    if (light.shadows && !state_->collect_occluders(light, around, front, kMost, found))
+    if (light.shadows &&
+        !state_->collect_occluders(light, around, shadow_offset, front, kMost, found))
       return std::nullopt;
     const bool is_hidden = std::any_of(found.begin(), found.end(), [&](TriangleId other) {
       const auto occluder = state_->make_occluder(other, light, point);

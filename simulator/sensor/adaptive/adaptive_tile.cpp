@@ -255,8 +255,12 @@ bool AdaptiveTile::settle_lights(std::size_t i, ViewSample& from, ViewSample& to
   if ((lights & ~(from.settled & to.settled)) == 0 || sampler_.rays_per_pixel() > 1 ||
       to.t_s - from.t_s > kSettled * step_s_ || from.triangles != to.triangles)
     return false;
-  if (!sampler_.settle_lights(i, lights, to)) return false;
-  from.settled |= lights;  // what has been sensed stands
+  // What has been sensed stands: where double precision sees it otherwise, rays go on.
+  ViewSample known = from;
+  if (!sampler_.settle_lights(i, lights, known) || known.lights_of_ray != from.lights_of_ray ||
+      !sampler_.settle_lights(i, lights, to))
+    return false;
+  from.settled |= lights;
   return true;
 }
 

@@ -42,6 +42,20 @@ TEST_F(EvaluateEvents, APartIsCutFromBoth) {
   EXPECT_EQ(scores.get("events.recall_10us"), 1);
 }
 
+TEST_F(EvaluateEvents, ADurationBeginsAtTheFirstEventOfBoth) {
+  const fs::path truth = write_events(folder_.path() / "truth.h5", truth_);
+  const fs::path found = write_events(folder_.path() / "found.h5", {truth_[1], truth_[2]});
+  const Metrics scores = evaluate_events({found, truth, {std::nullopt, 0.0025}});
+  EXPECT_EQ(scores.get("events.true_count"), 2);
+  EXPECT_EQ(scores.get("events.precision_10us"), 1) << "the last event is in neither part";
+}
+
+TEST_F(EvaluateEvents, AnEventBeyondAnySensorIsAnError) {
+  const fs::path truth = write_events(folder_.path() / "truth.h5", truth_);
+  const fs::path far = folder_.write("far.txt", "0.0001 65535 65535 1\n");
+  EXPECT_THROW(static_cast<void>(evaluate_events({far, truth, {}})), InputError);
+}
+
 TEST_F(EvaluateEvents, RefusesWhatCannotBeCompared) {
   const fs::path truth = write_events(folder_.path() / "truth.h5", truth_);
   EXPECT_THROW(static_cast<void>(evaluate_events({folder_.path() / "no.h5", truth, {}})),

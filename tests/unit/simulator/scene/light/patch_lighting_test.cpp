@@ -111,6 +111,44 @@ TEST_P(PatchLightOf, ProvesWhatNothingCanHide) {
   EXPECT_EQ(light->lights_at({0.7, 0.2, 0}), 1U);
 }
 
+TEST(PatchLighting, FindsSmallThingsUnderTheSunOfALargeScene) {
+  // A card of 4 mm upon a ground of 1.4 km, in light that grazes the ground.
+  Mesh mesh;
+  mesh.materials.emplace_back();
+  mesh.vertices = {{-500, -500, 0},    {500, -500, 0},    {500, 500, 0},     {-500, 500, 0},
+                   {0, -0.002, 0.020}, {0, 0.002, 0.020}, {0, 0.002, 0.024}, {0, -0.002, 0.024}};
+  mesh.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}, {{4, 5, 6}, 0}, {{4, 6, 7}, 0}};
+  SceneBuilder builder;
+  builder.add(mesh, Eigen::Affine3d::Identity());
+  LightOptions sun;
+  sun.type = LightType::kDirectional;
+  sun.direction = Eigen::Vector3d(1, 0.05, -0.15).normalized();
+  builder.light(0.1, {sun});
+  const Scene scene = std::move(builder).build(Background(0.5));
+  // Paths to the sun begin a millionth of the scene above the ground.
+  const double lift = 1e-3;
+  for (const double height : {0.0205, 0.022, 0.0235}) {
+    const double way = height - lift;
+    const Eigen::Vector2d shadow(way / 0.15, way / 0.15 * 0.05);
+    for (const double half : {0.01, 0.05}) {
+      Frustum sight{{shadow.x(), shadow.y(), 0.5}, {}, 0};
+      const std::array<Eigen::Vector2d, 4> corners{
+          {{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
+      for (std::size_t k = 0; k < corners.size(); ++k) sight.corners[k] << corners[k], -0.5;
+      PatchLighting buffer;
+      for (const TriangleId ground : {0U, 1U}) {
+        const PatchLighting* light = scene.find_lighting(ground, {&sight, 1}, 100, buffer);
+        if (light == nullptr) continue;
+        EXPECT_EQ(light->partly_occluded.size(), 1U) << half;
+      }
+    }
+    const Eigen::Vector3d eye(shadow.x(), shadow.y(), 0.5);
+    const TriangleId ground = shadow.y() < shadow.x() ? 0 : 1;
+    EXPECT_EQ(scene.lights_at({eye, {0, 0, -0.5}}, ground, 1, 1), 0U) << height;
+    EXPECT_EQ(scene.lights_at({eye, {0, 0.02, -0.5}}, ground, 1, 1), 1U) << height;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PatchLightOf,
                          ::testing::Values(LightType::kPoint, LightType::kDirectional));
 
