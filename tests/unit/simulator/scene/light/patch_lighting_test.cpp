@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "simulator/scene/mesh/mesh.h"
@@ -112,12 +113,21 @@ TEST_P(PatchLightOf, ProvesWhatNothingCanHide) {
 }
 
 TEST(PatchLighting, FindsSmallThingsUnderTheSunOfALargeScene) {
-  // A card of 4 mm upon a ground of 1.4 km, in light that grazes the ground.
+  // Cards of 4 mm upon a ground of 1.4 km, in light that grazes the ground.
   Mesh mesh;
   mesh.materials.emplace_back();
-  mesh.vertices = {{-500, -500, 0},    {500, -500, 0},    {500, 500, 0},     {-500, 500, 0},
-                   {0, -0.002, 0.020}, {0, 0.002, 0.020}, {0, 0.002, 0.024}, {0, -0.002, 0.024}};
-  mesh.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}, {{4, 5, 6}, 0}, {{4, 6, 7}, 0}};
+  mesh.vertices = {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}};
+  mesh.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
+  for (int k = -40; k <= 40; ++k) {  // so many that they are searched for patch by patch
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const double y = 0.01 * k;
+    mesh.vertices.insert(mesh.vertices.end(), {{0, y - 0.002, 0.020},
+                                               {0, y + 0.002, 0.020},
+                                               {0, y + 0.002, 0.024},
+                                               {0, y - 0.002, 0.024}});
+    mesh.triangles.push_back({{first, first + 1, first + 2}, 0});
+    mesh.triangles.push_back({{first, first + 2, first + 3}, 0});
+  }
   SceneBuilder builder;
   builder.add(mesh, Eigen::Affine3d::Identity());
   LightOptions sun;
@@ -130,22 +140,26 @@ TEST(PatchLighting, FindsSmallThingsUnderTheSunOfALargeScene) {
   for (const double height : {0.0205, 0.022, 0.0235}) {
     const double way = height - lift;
     const Eigen::Vector2d shadow(way / 0.15, way / 0.15 * 0.05);
-    for (const double half : {0.01, 0.05}) {
-      Frustum sight{{shadow.x(), shadow.y(), 0.5}, {}, 0};
+    for (int k = 0; k < 200; ++k) {
+      const double half = 0.004 + 0.0005 * k;
+      const double turn = 0.1 * k;  // of the patch around the shadow
+      const Eigen::Vector2d across(half * std::cos(turn), half * std::sin(turn));
+      const Eigen::Vector2d along(-across.y(), across.x());
+      Frustum sight{{shadow.x() + 0.3, shadow.y() - 0.2, 0.5}, {}, 0};
       const std::array<Eigen::Vector2d, 4> corners{
-          {{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
-      for (std::size_t k = 0; k < corners.size(); ++k) sight.corners[k] << corners[k], -0.5;
+          {-across - along, across - along, across + along, along - across}};
+      for (std::size_t m = 0; m < corners.size(); ++m)
+        sight.corners[m] << corners[m] + Eigen::Vector2d(-0.3, 0.2), -0.5;
       PatchLighting buffer;
-      for (const TriangleId ground : {0U, 1U}) {
-        const PatchLighting* light = scene.find_lighting(ground, {&sight, 1}, 100, buffer);
-        if (light == nullptr) continue;
-        EXPECT_EQ(light->partly_occluded.size(), 1U) << half;
-      }
+      const TriangleId ground = shadow.y() < shadow.x() ? 0 : 1;
+      const PatchLighting* light = scene.find_lighting(ground, {&sight, 1}, 100, buffer);
+      ASSERT_NE(light, nullptr);
+      EXPECT_EQ(light->lights_at({shadow.x(), shadow.y(), 0}), 0U) << half;
     }
     const Eigen::Vector3d eye(shadow.x(), shadow.y(), 0.5);
     const TriangleId ground = shadow.y() < shadow.x() ? 0 : 1;
     EXPECT_EQ(scene.lights_at({eye, {0, 0, -0.5}}, ground, 1, 1), 0U) << height;
-    EXPECT_EQ(scene.lights_at({eye, {0, 0.02, -0.5}}, ground, 1, 1), 1U) << height;
+    EXPECT_EQ(scene.lights_at({eye, {0, 0.005, -0.5}}, ground, 1, 1), 1U) << height;
   }
 }
 
