@@ -21,8 +21,9 @@ namespace saccade {
 /// exactly that threshold, and the time is that of the crossing of the continuous signal.
 ///
 /// Time advances in slices of at most 30 ms and 8 px of image motion. Within a slice
-/// a tile of 4 x 4 pixels can see only what is in the tile itself or in the two rings of 24 tiles
-/// around it; the inverse depths there bound the image motion. Every tile divides the slice as far
+/// a tile of 8 x 8 pixels (4 x 4 with several rays a pixel, or where only some tiles sense) can see
+/// only what is in the tile itself or within 8 px around it; the inverse depths there bound the
+/// image motion. Every tile divides the slice as far
 /// as its pixels need, down to equal steps of `max_step_px`. Tiles run in parallel and depend on
 /// one another only through the state at the slice's start, so the stream is the same for any
 /// number of threads.

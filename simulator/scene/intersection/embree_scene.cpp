@@ -44,6 +44,20 @@ struct Context {
   }
 };
 
+/// Hands a geometry that is complete to the scene. `filter`: nullptr, or judges each hit, with
+/// `user`.
+void attach(RTCScene scene, RTCGeometry geometry, unsigned geometry_id, RTCFilterFunctionN filter,
+            void* user) {
+  if (filter != nullptr) {
+    rtcSetGeometryUserData(geometry, user);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, geometry_id);
+  rtcReleaseGeometry(geometry);
+}
+
 void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> corners,
                    unsigned geometry_id, RTCFilterFunctionN filter, void* user) {
   if (corners.empty()) return;
@@ -58,14 +72,7 @@ void add_triangles(RTCDevice device, RTCScene scene, std::span<const Corners> co
     for (const Eigen::Vector3f& corner : triangle)
       vertices = std::copy_n(corner.data(), 3, vertices);
   for (unsigned i = 0; i < 3 * corners.size(); ++i) indices[i] = i;
-  if (filter != nullptr) {
-    rtcSetGeometryUserData(geometry, user);
-    rtcSetGeometryIntersectFilterFunction(geometry, filter);
-    rtcSetGeometryOccludedFilterFunction(geometry, filter);
-  }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, geometry_id);
-  rtcReleaseGeometry(geometry);
+  attach(scene, geometry, geometry_id, filter, user);
 }
 
 /// Poses of one geometry, which is as many as Embree takes, and so the poses from one piece of an
@@ -88,14 +95,7 @@ void add_animated_triangles(RTCDevice device, RTCScene scene, const VertexAnimat
                                animation.vertex_count());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, corners.data(),
                              0, sizeof(CornerIndices), corners.size());
-  if (filter != nullptr) {
-    rtcSetGeometryUserData(geometry, user);
-    rtcSetGeometryIntersectFilterFunction(geometry, filter);
-    rtcSetGeometryOccludedFilterFunction(geometry, filter);
-  }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, geometry_id);
-  rtcReleaseGeometry(geometry);
+  attach(scene, geometry, geometry_id, filter, user);
 }
 
 RTCRayHit16 make_empty_packet() {
