@@ -183,8 +183,11 @@ bool kill_process(const std::string& first, const std::string& second) {
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream stream(entry.path() / "cmdline", std::ios::binary);
-    const std::string line(std::istreambuf_iterator<char>(stream), {});
+    // A process may end between being listed and being read. Its file then fails to be read, which an iterator over the
+    // stream's buffer would throw; the insertion leaves the text empty.
+    std::ostringstream text;
+    text << std::ifstream(entry.path() / "cmdline", std::ios::binary).rdbuf();
+    const std::string line = text.str();
     if (line.find(first) == std::string::npos || line.find(second) == std::string::npos) continue;
     return kill(std::stoi(name), SIGKILL) == 0;
   }
