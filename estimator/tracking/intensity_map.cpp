@@ -1,6 +1,7 @@
 #include "estimator/tracking/intensity_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -93,6 +94,76 @@ ImageF smoothed(const ImageF& image, double blur_px) {
   return pass(pass(image, 1, 0), 0, 1);
 }
 
+/// Variance of the picture within half a pixel of each of its pixels, times 4: of bilinear values
+/// under a Gaussian of sigma 0.5 px, per px^2. On a ramp it is the slope squared. What is unknown
+/// counts for nothing.
+ImageF local_variance(const ImageF& image) {
+  // Weights of a 3 x 3 stencil with variance 0.25 px^2 along each axis.
+  constexpr std::array<double, 3> kKernel{0.125, 0.75, 0.125};
+  constexpr double kPerPixel = 4;
+  ImageF variance(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      double weight = 0, sum = 0, squares = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int u = x + dx, v = y + dy;
+          if (u < 0 || v < 0 || u >= image.width() || v >= image.height()) continue;
+          if (!std::isfinite(image(u, v))) continue;
+          const double k = kKernel[static_cast<std::size_t>(dx + 1)] *
+                           kKernel[static_cast<std::size_t>(dy + 1)];
+          const auto value = static_cast<double>(image(u, v));
+          weight += k;
+          sum += k * value;
+          squares += k * value * value;
+        }
+      if (weight > 0) {
+        const double mean = sum / weight;
+        variance(x, y) = static_cast<float>(kPerPixel * std::max(0.0, squares / weight - mean * mean));
+      }
+    }
+  return variance;
+}
+
+/// The least and the greatest value of a pixel and its eight neighbours.
+struct Extremes {
+  ImageF least, greatest;
+};
+Extremes local_extremes(const ImageF& image) {
+  Extremes found{image, image};
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      for (int v = std::max(0, y - 1); v <= std::min(image.height() - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(image.width() - 1, x + 1); ++u) {
+          // Comparisons with what is unknown are false.
+          if (image(u, v) < found.least(x, y)) found.least(x, y) = image(u, v);
+          if (image(u, v) > found.greatest(x, y)) found.greatest(x, y) = image(u, v);
+        }
+  return found;
+}
+
+/// Adds up, over the differences between neighbours that are an edge, which fraction they are of the
+/// change that goes on to the next neighbours.
+struct EdgeSharpness {
+  double sum = 0;
+  std::size_t edges = 0;
+
+  void add(const ImageF& image, int dx, int dy) {
+    for (int y = dy; y + 2 * dy < image.height(); ++y)
+      for (int x = dx; x + 2 * dx < image.width(); ++x) {
+        const float step = image(x + dx, y + dy) - image(x, y);
+        if (!(std::abs(step) > kEdgeContrast)) continue;
+        const float sign = step > 0 ? 1.0F : -1.0F;
+        const float before = sign * (image(x, y) - image(x - dx, y - dy));
+        const float after = sign * (image(x + 2 * dx, y + 2 * dy) - image(x + dx, y + dy));
+        const float all = sign * step + std::max(before, 0.0F) + std::max(after, 0.0F);
+        if (!std::isfinite(all)) continue;
+        sum += static_cast<double>(sign * step / all);
+        ++edges;
+      }
+  }
+};
+
 /// The largest difference between neighbours within two pixels.
 ImageF steepness(const ImageF& image) {
   constexpr int kReach = 2;
@@ -137,13 +208,27 @@ IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const Referenc
   const int step = camera.height + 1;
   atlas_ = ImageF(camera.width, step * static_cast<int>(views.size()) - 1,
                   std::numeric_limits<float>::quiet_NaN());
+  variance_ = ImageF(atlas_.width(), atlas_.height());
+  least_ = greatest_ = atlas_;
+  EdgeSharpness sharpness;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const int first_row = step * static_cast<int>(i);
     const ImageF picture = smoothed_at_edges(views[i].log_intensity, edge_blur_px);
     std::copy(picture.pixels().begin(), picture.pixels().end(), &atlas_(0, first_row));
+    const ImageF variance = local_variance(views[i].log_intensity);
+    std::copy(variance.pixels().begin(), variance.pixels().end(), &variance_(0, first_row));
+    const Extremes extremes = local_extremes(views[i].log_intensity);
+    std::copy(extremes.least.pixels().begin(), extremes.least.pixels().end(), &least_(0, first_row));
+    std::copy(extremes.greatest.pixels().begin(), extremes.greatest.pixels().end(),
+              &greatest_(0, first_row));
+    sharpness.add(views[i].log_intensity, 1, 0);
+    sharpness.add(views[i].log_intensity, 0, 1);
     views_.push_back(lift(camera, views[i],
                           world_from_map_.inverse() * views[i].world_from_reference, first_row));
   }
+  constexpr std::size_t kEnough = 30;
+  if (sharpness.edges >= kEnough)
+    edge_sharpness_ = sharpness.sum / static_cast<double>(sharpness.edges);
 }
 
 }  // namespace saccade

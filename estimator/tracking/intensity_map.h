@@ -44,11 +44,21 @@ class IntensityMap {
   /// Log intensities, NaN where the lens shows nothing and in a row between two pictures, so that
   /// none goes on into the next.
   [[nodiscard]] const ImageF& atlas() const { return atlas_; }
+  /// By how much the log intensity may be off, per px^2 of the variance of a position: what the
+  /// pictures' pixels differ by around each of them, squared [1/px^2]. Of the same size.
+  [[nodiscard]] const ImageF& variance() const { return variance_; }
+  /// The least and the greatest value of each pixel and its neighbours. Of the same size.
+  [[nodiscard]] const ImageF& least() const { return least_; }
+  [[nodiscard]] const ImageF& greatest() const { return greatest_; }
+  /// The mean fraction of an edge's contrast that lies between two neighbouring pixels: about 0.75
+  /// where pixels average over their area, 1 where they are point samples; 0 without edges.
+  [[nodiscard]] double edge_sharpness() const { return edge_sharpness_; }
 
  private:
   PinholeCamera camera_;
   Rigid3 world_from_map_;
-  ImageF atlas_;
+  ImageF atlas_, variance_, least_, greatest_;
+  double edge_sharpness_ = 0;
   std::vector<View> views_;
 };
 

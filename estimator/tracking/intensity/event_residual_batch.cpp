@@ -16,19 +16,19 @@ constexpr float kNearest_m = 1e-6F;
 
 }  // namespace
 
-void EventResidualBatch::add(const LogIntensityObservation& event, const MapSample& at) {
+void EventResidualBatch::add(const LogIntensityObservation& observation, const MapSample& at) {
   SACCADE_CHECK(count_ < kCapacity);
   const auto i = static_cast<std::size_t>(count_++);
-  // What fills the lanes behind the last event weighs nothing.
-  if (i % kLanes == 0) std::fill_n(&confidence_[i], kLanes, 0.0F);
+  // What fills the lanes behind the last observation weighs nothing.
+  if (i % kLanes == 0) std::fill_n(&variance_[i], kLanes, std::numeric_limits<float>::infinity());
   point_x_[i] = at.point.x();
   point_y_[i] = at.point.y();
   point_z_[i] = at.point.z();
-  pixel_x_[i] = event.pixel.x();
-  pixel_y_[i] = event.pixel.y();
-  time_s_[i] = event.time_s;
-  log_intensity_[i] = event.log_intensity;
-  confidence_[i] = event.confidence;
+  pixel_x_[i] = observation.pixel.x();
+  pixel_y_[i] = observation.pixel.y();
+  time_s_[i] = observation.time_s;
+  log_intensity_[i] = observation.log_intensity;
+  variance_[i] = observation.variance;
   atlas_x_[i] = at.atlas_px.x();
   atlas_y_[i] = at.atlas_px.y();
   scale_xx_[i] = at.atlas_per_pixel(0, 0);
@@ -37,8 +37,9 @@ void EventResidualBatch::add(const LogIntensityObservation& event, const MapSamp
   scale_yy_[i] = at.atlas_per_pixel(1, 1);
 }
 
-void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atlas,
+void EventResidualBatch::evaluate(const PinholeCamera& camera, const IntensityMap& map,
                                   const Motion& motion) {
+  const ImageF& atlas = map.atlas();
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
@@ -84,7 +85,7 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atl
     ray_y_[i] = y;
     inverse_depth_[i] = inverse;
   }
-  read(atlas);
+  read(map);
   for (std::size_t i = 0; i < padded(); ++i) {
     const float a = fx * (slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i]);
     const float b = fy * (slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i]);
@@ -101,9 +102,10 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atl
   }
 }
 
-void EventResidualBatch::read(const ImageF& atlas) {
-  const float* texels = atlas.data();
-  const int width = atlas.width();
+void EventResidualBatch::read(const IntensityMap& map) {
+  const float* texels = map.atlas().data();
+  const float* variations = map.variance().data();
+  const int width = map.atlas().width();
   for (std::size_t i = 0; i < padded(); ++i) {
     const float* cell = texels + cell_[i];
     const float a = cell[0];
@@ -115,6 +117,10 @@ void EventResidualBatch::read(const ImageF& atlas) {
     const float value = top + at_y_[i] * (low - top);
     slope_x_[i] = (b - a) + at_y_[i] * ((d - c) - (b - a));
     slope_y_[i] = low - top;
+    const float* v = variations + cell_[i];
+    const float upper = v[0] + at_x_[i] * (v[1] - v[0]);
+    const float lower = v[width] + at_x_[i] * (v[width + 1] - v[width]);
+    variation_[i] = upper + at_y_[i] * (lower - upper);
     const bool is_known = visible_[i] > 0 && value == value;
     visible_[i] = is_known ? 1.0F : 0.0F;
     residual_[i] = is_known ? log_intensity_[i] - value : 0;
@@ -123,36 +129,33 @@ void EventResidualBatch::read(const ImageF& atlas) {
   }
 }
 
-void EventResidualBatch::weigh(float sigma, float position_sigma_px) {
-  const float variance = sigma * sigma;
-  const float position = position_sigma_px * position_sigma_px;
+void EventResidualBatch::weigh(const MapNoise& noise) {
+  const float variance = noise.sigma * noise.sigma;
+  const float position = noise.position_sigma_px * noise.position_sigma_px;
   constexpr auto kTail = static_cast<float>(kCauchyScale);
   constexpr float kScale = 1 / (kTail * kTail);
   for (std::size_t i = 0; i < padded(); ++i) {
-    const float gx = slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i];
-    const float gy = slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i];
-    const float precision = 1 / (variance + position * (gx * gx + gy * gy));
+    map_variance_[i] = variance + position * variation_[i];
+    const float precision = 1 / (variance_[i] + map_variance_[i]);
     relative_[i] = residual_[i] * residual_[i] * precision * kScale;
-    weight_[i] = visible_[i] * confidence_[i] * variance * precision / (1 + relative_[i]);
+    weight_[i] = visible_[i] * variance * precision / (1 + relative_[i]);
+    known_[i] = visible_[i] * variance / (variance + variance_[i]);
   }
 }
 
 void EventResidualBatch::add_to(Sums& sums) {
-  LaneSums visible{}, inliers{}, confidence{}, weight{}, squares{};
+  LaneSums known{}, inliers{}, weight{}, squares{};
   for (std::size_t first = 0; first < padded(); first += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t i = first + lane;
-      const float seen = visible_[i] * confidence_[i];
-      const float cauchy = seen / (1 + relative_[i]);
-      visible[lane] += seen;
-      inliers[lane] += relative_[i] < 1 ? seen : 0;
-      confidence[lane] += confidence_[i];
+      const float cauchy = known_[i] / (1 + relative_[i]);
+      known[lane] += known_[i];
+      inliers[lane] += relative_[i] < 1 ? known_[i] : 0;
       weight[lane] += cauchy;
       squares[lane] += cauchy * residual_[i] * residual_[i];
     }
-  sums.visible += total(visible);
+  sums.known += total(known);
   sums.inliers += total(inliers);
-  sums.confidence += total(confidence);
   sums.weight += total(weight);
   sums.squares += total(squares);
   for (std::size_t c = 0; c < 6; ++c) {
@@ -168,6 +171,14 @@ void EventResidualBatch::add_to(Sums& sums) {
 float EventResidualBatch::residual(int i) const {
   const auto k = static_cast<std::size_t>(i);
   return visible_[k] > 0 ? residual_[k] : std::numeric_limits<float>::quiet_NaN();
+}
+
+float EventResidualBatch::map_variance(int i) const {
+  return map_variance_[static_cast<std::size_t>(i)];
+}
+
+float EventResidualBatch::variance_per_px2(int i) const {
+  return variation_[static_cast<std::size_t>(i)];
 }
 
 }  // namespace saccade

@@ -10,20 +10,21 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/lanes.h"
+#include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/map_view.h"
 #include "estimator/tracking/pose_solver.h"
 
 namespace saccade {
 
-/// At the instant of an event its pixel saw this log intensity.
+/// A pixel saw this log intensity at some instant.
 struct LogIntensityObservation {
   Eigen::Vector2f pixel;  ///< undistorted [px]
   float time_s;           ///< after the instant of the pose that is sought
   float log_intensity;
-  float confidence;  ///< weight, 0..1
+  float variance;  ///< of the log intensity [log units^2]
 };
 
-/// Up to kCapacity events in an iteration of the intensity tracker, structure of
+/// Up to kCapacity observations in an iteration of the intensity tracker, structure of
 /// arrays in single precision, so that all of it is vector code.
 class EventResidualBatch {
  public:
@@ -32,7 +33,7 @@ class EventResidualBatch {
   [[nodiscard]] int size() const { return count_; }
   void clear() { count_ = 0; }
   /// `at`: the map near the pixel's reprojection at the sought pose.
-  void add(const LogIntensityObservation& event, const MapSample& at);
+  void add(const LogIntensityObservation& observation, const MapSample& at);
 
   /// Pose of the map, and how the camera moves while the events happen: its velocity (v, w) in
   /// its own frame [m/s, rad/s].
@@ -49,40 +50,48 @@ class EventResidualBatch {
   /// map's slope in the image:
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
   /// where the rotation w t within the events' time is left out.
-  void evaluate(const PinholeCamera& camera, const ImageF& atlas, const Motion& motion);
+  void evaluate(const PinholeCamera& camera, const IntensityMap& map, const Motion& motion);
 
-  /// Weights confidence (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
-  ///   sigma^2 = n^2 + (s |grad L|)^2,
-  /// n = `sigma` [log units] and s = `position_sigma_px` of a map of point samples: at most 1, where
-  /// the map is flat; 0 where it is not visible.
-  void weigh(float sigma, float position_sigma_px);
+  /// What the map does not say of an observation.
+  struct MapNoise {
+    float sigma;              ///< n: texture between the map's point samples [log units]
+    float position_sigma_px;  ///< s: where between two samples an edge is
+  };
+
+  /// Weights (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
+  ///   sigma^2 = P + R,   R = n^2 + s^2 IntensityMap::variance()
+  /// and P the observation's own variance: at most 1, where the map is flat and the pixel's log
+  /// intensity is exact; 0 where the map is not visible.
+  void weigh(const MapNoise& noise);
 
   struct Sums : PoseEquations {
-    double weight = 0;   ///< confidence / (1 + (r / (2.4 sigma))^2)
+    double known = 0;    ///< n^2 / (n^2 + P) of the observations where the map is visible
+    double inliers = 0;  ///< the same of those within 2.4 sigma
+    double weight = 0;   ///< the same by 1 / (1 + (r / (2.4 sigma))^2)
     double squares = 0;  ///< r^2 by this weight
-    double visible = 0;  ///< events where the map is visible, by confidence
-    double inliers = 0;  ///< of them those within 2.4 sigma
-    double confidence = 0;
   };
   void add_to(Sums& sums);
 
-  /// Of event `i`, after evaluate(); NaN where the map is not visible.
+  /// Of observation `i`, after weigh(): the residual, NaN where the map is not visible; the variance
+  /// R of the map; and what it holds per px^2 of a position's.
   [[nodiscard]] float residual(int i) const;
+  [[nodiscard]] float map_variance(int i) const;
+  [[nodiscard]] float variance_per_px2(int i) const;
 
  private:
   using Floats = std::array<float, kCapacity>;
   [[nodiscard]] std::size_t padded() const {
     return padded_to_lanes(static_cast<std::size_t>(count_));
   }
-  void read(const ImageF& atlas);
+  void read(const IntensityMap& map);
 
   int count_ = 0;
   alignas(64) Floats point_x_{}, point_y_{}, point_z_{};
-  alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, log_intensity_{}, confidence_{};
+  alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, log_intensity_{}, variance_{};
   alignas(64) Floats atlas_x_{}, atlas_y_{}, scale_xx_{}, scale_xy_{}, scale_yx_{}, scale_yy_{};
   alignas(64) Floats ray_x_{}, ray_y_{}, inverse_depth_{};
-  alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, relative_{}, weight_{};
-  alignas(64) Floats slope_x_{}, slope_y_{};
+  alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, relative_{}, weight_{}, known_{};
+  alignas(64) Floats slope_x_{}, slope_y_{}, variation_{}, map_variance_{};
   alignas(64) std::array<std::int32_t, kCapacity> cell_{};
   alignas(64) std::array<Floats, 6> columns_{}, weighted_{};
 };

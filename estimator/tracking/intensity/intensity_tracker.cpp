@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 
@@ -14,8 +15,9 @@ namespace {
 
 /// Fewer do not make a pose before a gap in the events.
 constexpr std::size_t kMinEventsBeforeGap = 100;
-/// Pixels are said to be known as well at the start as after this many corrections.
-constexpr float kKnownCorrections = 10;
+/// Standard deviations of the pixels read from the map: at the start, and where the camera is found again [log units].
+constexpr float kKnownSigma = 0.02F;
+constexpr float kFoundSigma = 0.3F;
 /// Gauss-Newton steps of a pose, always all of them: from the prediction they suffice.
 constexpr int kIterations = 4;
 /// Neighbouring residuals err alike: their information counts by this fraction.
@@ -61,7 +63,9 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options,
       options_(options),
       camera_(camera.undistorted()),
       residuals_(options, contrast, camera, map),
-      fallback_(std::move(edges)) {}
+      fallback_(std::move(edges)),
+      last_batch_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {
+}
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);
@@ -74,25 +78,26 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   candidates_tried_ = 0;
   is_lost_ = false;
   residuals_.reset_views_drawn();
-  restart_pixels(kKnownCorrections);
+  restart_pixels(kKnownSigma);
 }
 
-void IntensityTracker::restart_pixels(float corrections) {
+void IntensityTracker::restart_pixels(float sigma) {
   const ScopedTimer clock(timing_.view_s);
-  residuals_.restart(motion_.pose(), corrections);
+  residuals_.restart(motion_.pose(), sigma);
 }
 
 std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
                                                  const TrackProgress& progress) {
   Poses poses;
   std::span<const Event> events = recording.events;
-  const std::size_t count = events_per_pose();
-  while (events.size() >= count) {
+  while (!events.empty()) {
     std::size_t done = 0;
     if (is_lost_) {
       done = relocate(events, poses);
       if (done == 0) break;  // too few events are left
     } else {
+      const std::size_t count = next_batch(events);
+      if (count == 0) break;
       done = events_before_gap(events.first(count));
       if (done == count || done >= kMinEventsBeforeGap)
         poses.push_back(track_batch(events.first(done)));
@@ -105,15 +110,29 @@ std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
   return poses;
 }
 
-std::size_t IntensityTracker::events_per_pose() const {
-  if (options_.events) return static_cast<std::size_t>(*options_.events);
-  constexpr double kEvents = 1000;
+std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
+  if (options_.events)
+    return events.size() >= static_cast<std::size_t>(*options_.events)
+               ? static_cast<std::size_t>(*options_.events)
+               : 0;
+  static const double kPixels = getenv("N") ? atof(getenv("N")) : 1000;
   constexpr double kWidth = 240;
   // Of the same motion an edge's length gives proportionally more events and its passage over more
   // pixels as many again; but more pixels also tell more of the pose.
   constexpr double kPower = 1.5;
   const double wider = std::max(1.0, camera_.width / kWidth);
-  return static_cast<std::size_t>(std::lround(kEvents * std::pow(wider, kPower)));
+  const auto enough = static_cast<std::size_t>(std::lround(kPixels * std::pow(wider, kPower)));
+  ++batch_;
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    std::uint32_t& last = last_batch_[static_cast<std::size_t>(events[i].y) *
+                                          static_cast<std::size_t>(camera_.width) +
+                                      events[i].x];
+    if (last == batch_) continue;
+    last = batch_;
+    if (++pixels == enough) return i + 1;
+  }
+  return 0;
 }
 
 std::size_t IntensityTracker::events_before_gap(std::span<const Event> events) const {
@@ -133,14 +152,14 @@ bool IntensityTracker::fits_worse(const Sums& sums, std::size_t events) {
   // Few events say little: those of several poses are judged together.
   constexpr std::size_t kEnough = 1000;
   constexpr double kUnknowns = 6;
-  pending_sums_.visible += sums.visible;
+  pending_sums_.known += sums.known;
   pending_sums_.inliers += sums.inliers;
   pending_events_ += events;
   if (pending_events_ < kEnough) return false;
   pending_events_ = 0;
   const Sums evidence = std::exchange(pending_sums_, {});
-  if (evidence.visible < kUnknowns) return true;  // the map is not in view
-  const double inlier_ratio = evidence.inliers / evidence.visible;
+  if (evidence.known < kUnknowns) return true;  // the map is not in view
+  const double inlier_ratio = evidence.inliers / evidence.known;
   constexpr int kPatience = 5;
   constexpr double kLearningRate = 0.01;
   // While the pixels are still uncertain fewer residuals fit.
@@ -190,7 +209,7 @@ std::size_t IntensityTracker::relocate(std::span<const Event> events, Poses& pos
   is_lost_ = false;
   good_batches_ = 0;
   motion_ = fallback_.motion();
-  restart_pixels(1);
+  restart_pixels(kFoundSigma);
   return done;
 }
 
@@ -211,10 +230,12 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
     const ScopedTimer clock(timing_.align_s);
-    residuals_.correct();
+    static const double T = getenv("T") ? atof(getenv("T")) : 0;
+    residuals_.correct(T * motion_.speed_px(residuals_.typical_depth_m()));
+    if (!getenv("NOREFRESH")) residuals_.read_silent_pixels(motion_at(estimate.map_from_camera));
   }
   pose.iterations = kIterations;
-  pose.inlier_ratio = estimate.sums.visible > 0 ? estimate.sums.inliers / estimate.sums.visible : 0;
+  pose.inlier_ratio = estimate.sums.known > 0 ? estimate.sums.inliers / estimate.sums.known : 0;
   if (fits_worse(estimate.sums, events.size())) {
     lose();
     pose.status = TrackStatus::kLost;
@@ -232,7 +253,11 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
     residuals_.prepare_view(map_from_camera);
   }
   const ScopedTimer clock(timing_.load_s);
-  residuals_.load(events, t_ns, motion_at(map_from_camera));
+  static const double kJump_px = getenv("J") ? atof(getenv("J")) : 0.05;
+  constexpr double kLongestJump_s = 2e-4;
+  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
+  residuals_.load(events, t_ns, std::min(kLongestJump_s, kJump_px / std::max(1.0, speed_px)),
+                  motion_at(map_from_camera));
 }
 
 auto IntensityTracker::align(const PosePrediction& predicted) -> PoseEstimate<Sums> {

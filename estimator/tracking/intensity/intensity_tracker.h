@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -44,10 +45,11 @@ class IntensityTracker : public Tracker {
   std::size_t relocate(std::span<const Event> events, Poses& poses);
   void lose();
   [[nodiscard]] Rigid3 candidate_pose(TimeNs t_ns) const;
-  void restart_pixels(float corrections);
+  void restart_pixels(float sigma);
   void load(std::span<const Event> events, TimeNs t_ns, const Rigid3& map_from_camera);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
-  [[nodiscard]] std::size_t events_per_pose() const;
+  /// So many of the next events are a batch; 0: there are too few.
+  [[nodiscard]] std::size_t next_batch(std::span<const Event> events);
   [[nodiscard]] PoseEstimate<Sums> align(const PosePrediction& predicted);
   [[nodiscard]] EventResidualBatch::Motion motion_at(const Rigid3& map_from_camera) const;
 
@@ -60,6 +62,8 @@ class IntensityTracker : public Tracker {
   Sums pending_sums_;             ///< since the inlier ratio was last compared with its mean
   std::size_t pending_events_ = 0;
   int low_inlier_batches_ = 0;  ///< comparisons in a row with a ratio well below the mean
+  std::vector<std::uint32_t> last_batch_;  ///< of each pixel, with an event of it
+  std::uint32_t batch_ = 0;
   bool is_lost_ = false;
   int candidates_tried_ = 0;  ///< poses from which it was searched, since it was tracked for long
   int good_batches_ = 0;      ///< comparisons with a normal ratio since it was found again

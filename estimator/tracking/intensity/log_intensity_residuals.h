@@ -29,21 +29,27 @@ class LogIntensityResiduals {
   LogIntensityResiduals(const IntensityOptions& options, const EventContrast& contrast,
                         const PinholeCamera& camera, const IntensityMap& map);
 
-  /// Reads all pixels from the map at a pose, with the confidence of so many corrections.
-  void restart(const Rigid3& map_from_camera, float corrections);
+  /// Reads all pixels from the map at a pose, with this standard deviation.
+  void restart(const Rigid3& map_from_camera, float sigma);
 
   /// Renders the map anew if the view has moved too far since.
   void prepare_view(const Rigid3& map_from_camera);
 
   /// Takes a batch of events in, in order of time. `t_ns` is the time of the pose that is sought,
-  /// `motion` the expected one.
-  void load(std::span<const Event> events, TimeNs t_ns, const EventResidualBatch::Motion& motion);
+  /// `motion` the expected one; events of a pixel within `jump_s` are a jump.
+  void load(std::span<const Event> events, TimeNs t_ns, double jump_s,
+            const EventResidualBatch::Motion& motion);
 
   /// Residuals and their normal equations at a pose, over all that was loaded.
   [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
 
   /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate().
-  void correct();
+  /// After each of its events a pixel misses what happens while the image moves by `blind_px`.
+  void correct(double blind_px);
+
+  /// Pixels of which little is known are read from the map at a pose: between its events a pixel is
+  /// within a threshold of its last value.
+  void read_silent_pixels(const EventResidualBatch::Motion& motion);
 
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
@@ -52,12 +58,22 @@ class LogIntensityResiduals {
  private:
   void draw_view(const Rigid3& map_from_camera);
   void list_steep_pixels();
-  void read_pixels_from_map(float corrections);
+  void read_pixels_from_map(float sigma);
+  /// The events of one pixel in a batch: one observation.
+  struct Burst {
+    std::uint16_t x = 0, y = 0;
+    int events = 0;
+    float before = 0;  ///< what it saw before, most likely
+    float sum = 0;     ///< of the log intensities at its events
+    float sum_s = 0, first_s = 0, last_s = 0;
+  };
+  void add_to_burst(const Event& event, float time_s);
+  void add_burst(const Burst& burst, float jump_s, const EventResidualBatch::Motion& motion);
   /// Some `count` no-event constraints, at the time of the pose.
   void load_no_event_constraints(std::size_t count, const EventResidualBatch::Motion& motion);
   /// `pixel`: the one that correct() will correct.
   void add(const LogIntensityObservation& observation, const MapSample& at, std::uint32_t pixel);
-  void prefetch(const Event& event, bool is_aligned) const;
+  void prefetch(const Event& event) const;
   /// The map's sample at a node of the view; nullptr where it is not visible.
   [[nodiscard]] const MapSample* sample_at(const Eigen::Vector2f& pixel) const;
   /// The map's sample under a pixel at a time; nullptr where it is not visible.
@@ -70,12 +86,14 @@ class LogIntensityResiduals {
   const IntensityMap& map_;
   MapView view_;
   PixelLogIntensity pixels_;
-  float no_event_weight_;  ///< of a no-event constraint, relative to an event
+  float no_event_variance_;
+  std::vector<Burst> bursts_;
   std::vector<EventResidualBatch> batches_;
   std::size_t batch_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of all in the batches, in order
   std::vector<std::uint32_t> steep_pixels_;   ///< where the rendered map is steep
   std::size_t first_steep_pixel_ = 0;         ///< of them that was loaded
+  std::size_t first_silent_pixel_ = 0;
   std::size_t views_drawn_ = 0;
 };
 

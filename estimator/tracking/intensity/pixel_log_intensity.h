@@ -2,26 +2,26 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/event.h"
 
 namespace saccade {
 
-/// The log intensity at which each pixel of an event camera fired last: its first value plus the
-/// thresholds of its events. At the instant of an event it is exact for an ideal pixel; that of a
-/// real one drifts (thresholds that differ, leak, noise), so it is corrected towards the map: the
-/// first times fully, then ever less, down to a constant fraction (a running mean that forgets).
+/// What is known of a pixel of an event camera: the log intensity at which it fired last, which is
+/// its first value plus the thresholds of its events, and the variance of that. It is exact for an
+/// ideal pixel. That of a real one drifts, because its thresholds differ from those of the sensor,
+/// so that every event adds to the variance; measurements of the log intensity bring it down (a
+/// Kalman filter of a random walk for each pixel).
 class PixelLogIntensity {
  public:
-  /// Thresholds of an ON and an OFF event [log units], and the least fraction of a correction,
-  /// 0..1.
-  PixelLogIntensity(int width, int height, double contrast_on, double contrast_off,
-                    double correction)
+  /// Thresholds of an ON and an OFF event [log units], and the variance that an event adds.
+  PixelLogIntensity(int width, int height, double contrast_on, double contrast_off)
       : width_(width),
         on_(static_cast<float>(contrast_on)),
         off_(static_cast<float>(contrast_off)),
-        correction_(static_cast<float>(correction)),
         pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   [[nodiscard]] std::size_t index(const Event& event) const {
@@ -30,10 +30,10 @@ class PixelLogIntensity {
 
   /// No pixel is known.
   void reset() { std::fill(pixels_.begin(), pixels_.end(), Pixel{}); }
-  /// Sets a pixel, with the confidence of so many corrections.
-  void set(std::size_t i, float log_intensity, float corrections) {
-    pixels_[i] = {log_intensity, corrections, 0, 0};
+  void set(std::size_t i, float log_intensity, float variance) {
+    pixels_[i] = {log_intensity, variance, 0, kNoSlot};
   }
+  void set_event_variance(float variance) { event_variance_ = variance; }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&pixels_[i]); }
   /// Takes an event in; returns the log intensity that its pixel has reached.
@@ -41,6 +41,7 @@ class PixelLogIntensity {
     Pixel& pixel = pixels_[i];
     pixel.half_threshold = 0.5F * (polarity > 0 ? on_ : -off_);
     pixel.log_intensity += 2 * pixel.half_threshold;
+    pixel.variance += event_variance_;
     return pixel.log_intensity;
   }
 
@@ -51,35 +52,37 @@ class PixelLogIntensity {
   [[nodiscard]] float between_events(std::size_t i) const {
     return pixels_[i].log_intensity + pixels_[i].half_threshold;
   }
+  /// Infinite for an unknown pixel.
+  [[nodiscard]] float variance(std::size_t i) const { return pixels_[i].variance; }
 
-  /// 0 for an unknown pixel, towards 1 for one that has been corrected often.
-  [[nodiscard]] float confidence(std::size_t i) const {
-    return pixels_[i].corrections / (pixels_[i].corrections + 1);
-  }
-
-  /// The value of add_event() was `excess` above the map. Corrections of the same pixel since the
-  /// last end_batch() count together.
-  void correct(std::size_t i, float excess) {
+  /// A measurement of variance `noise` > 0 says that the pixel's value is `excess` too high.
+  void correct(std::size_t i, float excess, float noise) {
     Pixel& pixel = pixels_[i];
-    const float fraction = std::max(correction_, 1 / (pixel.corrections + 1));
-    const float change = fraction * (excess - pixel.corrected);
-    pixel.log_intensity -= change;
-    pixel.corrected += change;
-    pixel.corrections += 1;
+    const bool is_known = pixel.variance < kUnknown;
+    const float gain = is_known ? pixel.variance / (pixel.variance + noise) : 1;
+    pixel.log_intensity -= gain * excess;
+    pixel.variance = is_known ? (1 - gain) * pixel.variance : noise;
   }
-  void end_batch(std::size_t i) { pixels_[i].corrected = 0; }
+
+  void add_variance(std::size_t i, float variance) { pixels_[i].variance += variance; }
+
+  /// A number that is kept with each pixel; kNoSlot at first.
+  static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
+  [[nodiscard]] std::uint32_t slot(std::size_t i) const { return pixels_[i].slot; }
+  void set_slot(std::size_t i, std::uint32_t slot) { pixels_[i].slot = slot; }
 
  private:
+  static constexpr float kUnknown = std::numeric_limits<float>::infinity();
   struct Pixel {
     float log_intensity = 0;
-    float corrections = 0;
-    float corrected = 0;
+    float variance = kUnknown;
     float half_threshold = 0;  ///< of the last event; 0 before the first
+    std::uint32_t slot = kNoSlot;
   };
 
   int width_;
   float on_, off_;
-  float correction_;
+  float event_variance_ = 0;
   std::vector<Pixel> pixels_;
 };
 
