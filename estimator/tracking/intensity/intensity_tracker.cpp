@@ -115,13 +115,19 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
     return events.size() >= static_cast<std::size_t>(*options_.events)
                ? static_cast<std::size_t>(*options_.events)
                : 0;
-  static const double kPixels = getenv("N") ? atof(getenv("N")) : 1000;
+  // Enough pixels for a pose; more of them, until the image has moved by a fraction of a pixel, are as
+  // good as simultaneous.
+  static const double kLeastPixels = getenv("N1") ? atof(getenv("N1")) : 1000;
+  static const double kMostPixels = getenv("N2") ? atof(getenv("N2")) : 3000;
+  static const double kMotion_px = getenv("M") ? atof(getenv("M")) : 0.5;
   constexpr double kWidth = 240;
   // Of the same motion an edge's length gives proportionally more events and its passage over more
   // pixels as many again; but more pixels also tell more of the pose.
   constexpr double kPower = 1.5;
-  const double wider = std::max(1.0, camera_.width / kWidth);
-  const auto enough = static_cast<std::size_t>(std::lround(kPixels * std::pow(wider, kPower)));
+  const double wider = std::pow(std::max(1.0, camera_.width / kWidth), kPower);
+  const auto least = static_cast<std::size_t>(std::lround(kLeastPixels * wider));
+  const auto most = static_cast<std::size_t>(std::lround(kMostPixels * wider));
+  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
   ++batch_;
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -130,7 +136,9 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
                                       events[i].x];
     if (last == batch_) continue;
     last = batch_;
-    if (++pixels == enough) return i + 1;
+    if (++pixels < least) continue;
+    const double moved_px = speed_px * seconds_from_ns(events[i].t_ns - events.front().t_ns);
+    if (pixels >= most || moved_px >= kMotion_px) return i + 1;
   }
   return 0;
 }
@@ -230,8 +238,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
     const ScopedTimer clock(timing_.align_s);
-    static const double T = getenv("T") ? atof(getenv("T")) : 0;
-    residuals_.correct(T * motion_.speed_px(residuals_.typical_depth_m()));
+    residuals_.correct(residuals_.blind_s() * motion_.speed_px(residuals_.typical_depth_m()));
     if (!getenv("NOREFRESH")) residuals_.read_silent_pixels(motion_at(estimate.map_from_camera));
   }
   pose.iterations = kIterations;

@@ -1,6 +1,7 @@
 #include "estimator/tracking/intensity/log_intensity_residuals.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -37,11 +38,18 @@ int margin_of(const IntensityOptions& options, const PinholeCamera& camera) {
   return static_cast<int>(std::ceil(redraw_px(options, camera) / spacing_of(camera))) + kSpareNodes;
 }
 
-/// sigma^2 of an event over that of a no-event constraint, which is uniform within a threshold.
-float no_event_weight(const EventContrast& contrast) {
-  constexpr double kVariance = LogIntensityResiduals::kSigma * LogIntensityResiduals::kSigma;
+/// Of a no-event constraint, which is uniform within a threshold.
+float no_event_variance(const EventContrast& contrast) {
   const double threshold = 0.5 * (contrast.on + contrast.off);
-  return static_cast<float>(kVariance / (kVariance + threshold * threshold / 12));
+  return static_cast<float>(threshold * threshold / 12);
+}
+
+/// 0 where the edges of a picture are as sharp as those of pixels that average over their area, 1 where
+/// they are those of point samples.
+float sharp_fraction(double sharpness) {
+  static const double kArea = getenv("SA") ? atof(getenv("SA")) : 0.85;
+  constexpr double kPoint = 0.93;
+  return static_cast<float>(std::clamp((sharpness - kArea) / (kPoint - kArea), 0.0, 1.0));
 }
 
 }  // namespace
@@ -54,13 +62,17 @@ LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
       undistortion_(camera),
       map_(map),
       view_(map, margin_of(options, camera), spacing_of(camera)),
-      pixels_(camera.width, camera.height, contrast.on, contrast.off, options.correction_fraction),
-      no_event_weight_(no_event_weight(contrast)) {}
+      pixels_(camera.width, camera.height, contrast.on, contrast.off),
+      no_event_variance_(no_event_variance(contrast)),
+      threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {
+  const double q = getenv("Q") ? atof(getenv("Q")) : 0.02;
+  pixels_.set_event_variance(float(q * q * contrast.on * contrast.off));
+}
 
-void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float corrections) {
+void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
   first_steep_pixel_ = 0;
   draw_view(map_from_camera);
-  read_pixels_from_map(corrections);
+  read_pixels_from_map(sigma);
 }
 
 void LogIntensityResiduals::prepare_view(const Rigid3& map_from_camera) {
@@ -73,7 +85,7 @@ void LogIntensityResiduals::draw_view(const Rigid3& map_from_camera) {
   ++views_drawn_;
 }
 
-void LogIntensityResiduals::read_pixels_from_map(float corrections) {
+void LogIntensityResiduals::read_pixels_from_map(float sigma) {
   pixels_.reset();
   for (int y = 0; y < camera_.height; ++y)
     for (int x = 0; x < camera_.width; ++x) {
@@ -86,43 +98,108 @@ void LogIntensityResiduals::read_pixels_from_map(float corrections) {
       if (!is_inside(map_.atlas(), atlas_px.x(), atlas_px.y())) continue;
       const float value = sample(map_.atlas(), atlas_px.x(), atlas_px.y());
       if (!std::isfinite(value)) continue;
-      pixels_.set(static_cast<std::size_t>(y * camera_.width + x), value, corrections);
+      pixels_.set(static_cast<std::size_t>(y * camera_.width + x), value, sigma * sigma);
     }
 }
 
-void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns,
+void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, double jump_s,
                                  const EventResidualBatch::Motion& motion) {
   batch_count_ = 0;
   loaded_pixels_.clear();
-  const auto samples = static_cast<std::size_t>(options_.samples);
-  // One in `every` events is aligned, the others only count for their pixels.
-  const std::size_t every = (events.size() + samples - 1) / samples;
-  const auto constraints = static_cast<std::size_t>(std::lround(
-      options_.no_event_ratio * static_cast<double>(events.size()) / static_cast<double>(every)));
-  bool has_constraints = constraints == 0;
+  bursts_.clear();
+  edge_weight_ = map_.edge_sharpness() > 0 ? sharp_fraction(map_.edge_sharpness()) * intervals_.pile_up() : 0;
+  bool has_constraints = !(options_.no_event_ratio > 0);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     // When the pose is sought, half of the events have happened.
     if (!has_constraints && event.t_ns >= t_ns) {
-      load_no_event_constraints(constraints, motion);
+      const double pixels = 2 * static_cast<double>(bursts_.size());
+      load_no_event_constraints(
+          static_cast<std::size_t>(std::lround(options_.no_event_ratio * pixels)), motion);
       has_constraints = true;
     }
-    const std::size_t ahead = std::min(i + kPixelsAhead, events.size() - 1);
-    prefetch(events[ahead], ahead % every == 0);
-    const std::size_t pixel = pixels_.index(event);
-    LogIntensityObservation observation;
-    observation.log_intensity = pixels_.add_event(pixel, event.polarity);
-    if (i % every != 0) continue;
-    observation.pixel = undistortion_(event.x, event.y);
-    observation.time_s = static_cast<float>(seconds_from_ns(event.t_ns - t_ns));
-    observation.confidence = pixels_.confidence(pixel);
-    if (const MapSample* at = find_sample(observation.pixel, observation.time_s, motion))
-      add(observation, *at, static_cast<std::uint32_t>(pixel));
+    prefetch(events[std::min(i + kPixelsAhead, events.size() - 1)]);
+    add_to_burst(event, static_cast<float>(seconds_from_ns(event.t_ns - t_ns)));
   }
+  for (const Burst& burst : bursts_) add_burst(burst, static_cast<float>(jump_s), motion);
+}
+
+void LogIntensityResiduals::add_to_burst(const Event& event, float time_s) {
+  const std::size_t pixel = pixels_.index(event);
+  if (const TimeNs before = pixels_.last_event_ns(pixel); before != PixelLogIntensity::kNoEvent)
+    intervals_.add(event.t_ns - before);
+  std::uint32_t slot = pixels_.slot(pixel);
+  if (slot == PixelLogIntensity::kNoSlot) {
+    slot = static_cast<std::uint32_t>(bursts_.size());
+    pixels_.set_slot(pixel, slot);
+    Burst burst;
+    burst.x = event.x;
+    burst.y = event.y;
+    burst.before = pixels_.between_events(pixel);
+    burst.first_s = time_s;
+    bursts_.push_back(burst);
+  }
+  Burst& burst = bursts_[slot];
+  burst.sum += pixels_.add_event(pixel, event.polarity, event.t_ns);
+  burst.sum_s += time_s;
+  burst.last_s = time_s;
+  burst.polarity = event.polarity;
+  ++burst.events;
+}
+
+void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
+                                      const EventResidualBatch::Motion& motion) {
+  const std::size_t pixel =
+      static_cast<std::size_t>(burst.y) * static_cast<std::size_t>(camera_.width) + burst.x;
+  pixels_.set_slot(pixel, PixelLogIntensity::kNoSlot);
+  const auto count = static_cast<float>(burst.events);
+  LogIntensityObservation observation;
+  observation.pixel = undistortion_(burst.x, burst.y);
+  observation.time_s = burst.sum_s / count;
+  observation.variance = pixels_.variance(pixel);
+  // A jump passes all its levels at once: what is known is the middle between what the pixel saw
+  // before and what it sees after it.
+  const bool is_jump = burst.events > 1 && burst.last_s - burst.first_s < jump_s;
+  observation.log_intensity =
+      is_jump ? 0.5F * (burst.before + pixels_.between_events(pixel)) : burst.sum / count;
+  const MapSample* at = find_sample(observation.pixel, observation.time_s, motion);
+  if (at == nullptr) return;
+  std::uint32_t corrected = static_cast<std::uint32_t>(pixel);
+  if (edge_weight_ > 0) {
+    const Eigen::Vector2f atlas = reprojection(observation, *at, motion);
+    const int u = static_cast<int>(std::lround(atlas.x()));
+    const int v = static_cast<int>(std::lround(atlas.y()));
+    if (u < 0 || v < 0 || u >= map_.atlas().width() || v >= map_.atlas().height()) return;
+    const float least = map_.least()(u, v), greatest = map_.greatest()(u, v);
+    const float steps = (greatest - least) / threshold_;
+    const float weight = edge_weight_ * std::clamp(0.5F * (steps - 2), 0.0F, 1.0F);
+    if (weight > 0) {
+      observation.log_intensity += weight * (0.5F * (least + greatest) - observation.log_intensity);
+      observation.variance *= (1 - weight) * (1 - weight);
+      const float after = burst.polarity > 0 ? greatest : least;
+      const float level = pixels_.at_last_event(pixel);
+      pixels_.move(pixel, weight * (after - level), 0.25F * weight * (greatest - least) * (greatest - least));
+      corrected = kNotCorrected;
+    }
+  }
+  add(observation, *at, corrected);
+}
+
+Eigen::Vector2f LogIntensityResiduals::reprojection(
+    const LogIntensityObservation& observation, const MapSample& at,
+    const EventResidualBatch::Motion& motion) const {
+  const Eigen::Vector3f p = motion.rotation * at.point + motion.translation;
+  const Eigen::Vector3f moved =
+      p - observation.time_s * (motion.velocity.head<3>() + motion.velocity.tail<3>().cross(p));
+  const Eigen::Vector2f projected(
+      static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
+      static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy));
+  return at.atlas_px + at.atlas_per_pixel * (observation.pixel - projected);
 }
 
 void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
                                                       const EventResidualBatch::Motion& motion) {
+  if (count == 0) return;
   // Every n-th of the steep pixels, others each time.
   const std::size_t every = std::max<std::size_t>(1, steep_pixels_.size() / count);
   constexpr std::size_t kNext = 7919;
@@ -136,7 +213,7 @@ void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
         options_.half_threshold ? pixels_.between_events(pixel) : pixels_.at_last_event(pixel);
     observation.pixel = undistortion_(x, y);
     observation.time_s = 0;
-    observation.confidence = no_event_weight_ * pixels_.confidence(pixel);
+    observation.variance = pixels_.variance(pixel) + no_event_variance_;
     if (const MapSample* at = find_sample(observation.pixel, 0, motion))
       add(observation, *at, kNotCorrected);
   }
@@ -171,9 +248,8 @@ void LogIntensityResiduals::add(const LogIntensityObservation& observation, cons
   batches_[batch_count_ - 1].add(observation, at);
 }
 
-void LogIntensityResiduals::prefetch(const Event& event, bool is_aligned) const {
+void LogIntensityResiduals::prefetch(const Event& event) const {
   pixels_.prefetch(pixels_.index(event));
-  if (!is_aligned) return;
   const Eigen::Vector2i node = view_.node_at(undistortion_(event.x, event.y));
   if (view_.contains(node.x(), node.y())) __builtin_prefetch(&view_(node.x(), node.y()));
 }
@@ -206,23 +282,52 @@ const MapSample* LogIntensityResiduals::find_sample(
 EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatch::Motion& motion) {
   EventResidualBatch::Sums sums;
   for (std::size_t k = 0; k < batch_count_; ++k) {
-    batches_[k].evaluate(camera_, map_.atlas(), motion);
-    batches_[k].weigh(static_cast<float>(kSigma), kPositionSigma_px);
+    batches_[k].evaluate(camera_, map_, motion);
+    batches_[k].weigh({static_cast<float>(kSigma), kPositionSigma_px});
     batches_[k].add_to(sums);
   }
   return sums;
 }
 
-void LogIntensityResiduals::correct() {
+void LogIntensityResiduals::correct(double blind_px) {
+  const auto blind = static_cast<float>(std::min(1.0, blind_px * blind_px));
   std::size_t i = 0;
   for (std::size_t k = 0; k < batch_count_; ++k)
     for (int j = 0; j < batches_[k].size(); ++j, ++i) {
       if (loaded_pixels_[i] == kNotCorrected) continue;
       const float excess = batches_[k].residual(j);
-      if (std::isfinite(excess)) pixels_.correct(loaded_pixels_[i], excess);
+      if (!std::isfinite(excess)) continue;
+      pixels_.correct(loaded_pixels_[i], excess, batches_[k].map_variance(j));
+      pixels_.move(loaded_pixels_[i], 0, blind * batches_[k].variance_per_px2(j));
     }
-  for (const std::uint32_t pixel : loaded_pixels_)
-    if (pixel != kNotCorrected) pixels_.end_batch(pixel);
+}
+
+void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion& motion) {
+  constexpr std::size_t kTurns = 8;
+  constexpr float kVariances = 2;
+  const float noise = kVariances * no_event_variance_;
+  batch_count_ = 0;
+  loaded_pixels_.clear();
+  const std::size_t count =
+      static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  first_silent_pixel_ = (first_silent_pixel_ + 1) % kTurns;
+  for (std::size_t i = first_silent_pixel_; i < count; i += kTurns) {
+    if (!(pixels_.variance(i) > noise)) continue;
+    const int x = static_cast<int>(i % static_cast<std::size_t>(camera_.width));
+    const int y = static_cast<int>(i / static_cast<std::size_t>(camera_.width));
+    const LogIntensityObservation observation{undistortion_(x, y), 0, pixels_.between_events(i),
+                                              pixels_.variance(i)};
+    if (const MapSample* at = find_sample(observation.pixel, 0, motion))
+      add(observation, *at, static_cast<std::uint32_t>(i));
+  }
+  (void)evaluate(motion);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < batch_count_; ++k)
+    for (int j = 0; j < batches_[k].size(); ++j, ++i) {
+      const float excess = batches_[k].residual(j);
+      if (std::isfinite(excess))
+        pixels_.correct(loaded_pixels_[i], excess, noise + batches_[k].map_variance(j));
+    }
 }
 
 }  // namespace saccade

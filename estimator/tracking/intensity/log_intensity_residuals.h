@@ -7,6 +7,7 @@
 
 #include "core/camera.h"
 #include "core/event.h"
+#include "estimator/tracking/intensity/event_intervals.h"
 #include "estimator/tracking/intensity/event_residual_batch.h"
 #include "estimator/tracking/intensity/intensity_options.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
@@ -51,6 +52,9 @@ class LogIntensityResiduals {
   /// within a threshold of its last value.
   void read_silent_pixels(const EventResidualBatch::Motion& motion);
 
+  /// For so long a pixel is blind after an event [s]; 0 where that does not matter.
+  [[nodiscard]] double blind_s() const { return intervals_.pile_up() > 0 ? intervals_.shortest_s() : 0; }
+
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
   void reset_views_drawn() { views_drawn_ = 0; }
@@ -63,10 +67,15 @@ class LogIntensityResiduals {
   struct Burst {
     std::uint16_t x = 0, y = 0;
     int events = 0;
+    int polarity = 0;
     float before = 0;  ///< what it saw before, most likely
     float sum = 0;     ///< of the log intensities at its events
     float sum_s = 0, first_s = 0, last_s = 0;
   };
+  /// Where an observation reprojects to in the map's atlas.
+  [[nodiscard]] Eigen::Vector2f reprojection(const LogIntensityObservation& observation,
+                                             const MapSample& at,
+                                             const EventResidualBatch::Motion& motion) const;
   void add_to_burst(const Event& event, float time_s);
   void add_burst(const Burst& burst, float jump_s, const EventResidualBatch::Motion& motion);
   /// Some `count` no-event constraints, at the time of the pose.
@@ -87,6 +96,9 @@ class LogIntensityResiduals {
   MapView view_;
   PixelLogIntensity pixels_;
   float no_event_variance_;
+  float threshold_;
+  EventIntervals intervals_;
+  float edge_weight_ = 0;
   std::vector<Burst> bursts_;
   std::vector<EventResidualBatch> batches_;
   std::size_t batch_count_ = 0;

@@ -31,14 +31,15 @@ class PixelLogIntensity {
   /// No pixel is known.
   void reset() { std::fill(pixels_.begin(), pixels_.end(), Pixel{}); }
   void set(std::size_t i, float log_intensity, float variance) {
-    pixels_[i] = {log_intensity, variance, 0, kNoSlot};
+    pixels_[i] = {log_intensity, variance, 0, kNoSlot, pixels_[i].last_ns};
   }
   void set_event_variance(float variance) { event_variance_ = variance; }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&pixels_[i]); }
   /// Takes an event in; returns the log intensity that its pixel has reached.
-  float add_event(std::size_t i, int polarity) {
+  float add_event(std::size_t i, int polarity, TimeNs t_ns) {
     Pixel& pixel = pixels_[i];
+    pixel.last_ns = t_ns;
     pixel.half_threshold = 0.5F * (polarity > 0 ? on_ : -off_);
     pixel.log_intensity += 2 * pixel.half_threshold;
     pixel.variance += event_variance_;
@@ -64,7 +65,14 @@ class PixelLogIntensity {
     pixel.variance = is_known ? (1 - gain) * pixel.variance : noise;
   }
 
-  void add_variance(std::size_t i, float variance) { pixels_[i].variance += variance; }
+  /// The pixel's value has changed by `change`, and is less certain by `variance`.
+  void move(std::size_t i, float change, float variance) {
+    pixels_[i].log_intensity += change;
+    pixels_[i].variance += variance;
+  }
+  /// kNoEvent before the first.
+  [[nodiscard]] TimeNs last_event_ns(std::size_t i) const { return pixels_[i].last_ns; }
+  static constexpr TimeNs kNoEvent = std::numeric_limits<TimeNs>::min();
 
   /// A number that is kept with each pixel; kNoSlot at first.
   static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
@@ -78,6 +86,7 @@ class PixelLogIntensity {
     float variance = kUnknown;
     float half_threshold = 0;  ///< of the last event; 0 before the first
     std::uint32_t slot = kNoSlot;
+    TimeNs last_ns = kNoEvent;
   };
 
   int width_;
