@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <utility>
 
@@ -32,26 +31,25 @@ constexpr double kMaxMotionWithoutEvents_px = 2;
 void describe(config::Fields& fields, IntensityOptions& options) {
   fields
       .value("events", options.events,
-             "Events per pose; ~ takes 1000, times (width / 240 px)^1.5 on a wider sensor. More of "
+             "Events per pose; ~ takes as many as come from 1000 pixels, times (width / 240 px)^1.5 "
+             "on a wider sensor, or from up to 3000 while the image moves by half a pixel. More of "
              "them cost less time per second of recording and follow the motion more coarsely.")
       .range(1, 1e6);
   fields
-      .value(
-          "no_event_ratio", options.no_event_ratio,
-          "No-event constraints per aligned event: pixels between their events, which are within "
-          "a threshold of their last value. 0 disables them, which helps in dark scenes.")
+      .value("no_event_ratio", options.no_event_ratio,
+             "No-event constraints per pixel with events: pixels between their events, which are "
+             "within a threshold of their last value. 0 disables them.")
       .range(0, 1000);
   fields
-      .value(
-          "correction_fraction", options.correction_fraction,
-          "Least fraction of its residual by which a pixel is corrected at each of its events. A "
-          "larger one forgets drift sooner and believes wrong poses more; 0 is a plain mean.")
+      .value("mismatch_sigma", options.mismatch_sigma,
+             "Standard deviation of a pixel's threshold, relative to it. ~ takes 0.02 where pixels "
+             "fire several times at once, as only ideal ones do, and else 0.15. A larger one trusts "
+             "the map more and the pixels less.")
       .range(0, 1);
   fields
-      .value(
-          "map_blur_px", options.map_blur_px,
-          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
-          "0 disables it.")
+      .value("map_blur_px", options.map_blur_px,
+             "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
+             "0 disables it.")
       .range(0, 10);
 }
 
@@ -117,9 +115,9 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
                : 0;
   // Enough pixels for a pose; more of them, until the image has moved by a fraction of a pixel, are as
   // good as simultaneous.
-  static const double kLeastPixels = getenv("N1") ? atof(getenv("N1")) : 1000;
-  static const double kMostPixels = getenv("N2") ? atof(getenv("N2")) : 3000;
-  static const double kMotion_px = getenv("M") ? atof(getenv("M")) : 0.5;
+  constexpr double kLeastPixels = 1000;
+  constexpr double kMostPixels = 3000;
+  constexpr double kMotion_px = 0.5;
   constexpr double kWidth = 240;
   // Of the same motion an edge's length gives proportionally more events and its passage over more
   // pixels as many again; but more pixels also tell more of the pose.
@@ -127,7 +125,7 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
   const double wider = std::pow(std::max(1.0, camera_.width / kWidth), kPower);
   const auto least = static_cast<std::size_t>(std::lround(kLeastPixels * wider));
   const auto most = static_cast<std::size_t>(std::lround(kMostPixels * wider));
-  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
+  const double speed_px = image_speed_px();
   ++batch_;
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -146,7 +144,7 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
 std::size_t IntensityTracker::events_before_gap(std::span<const Event> events) const {
   // However fast the camera seems to move: a velocity from few events may be anything.
   constexpr double kShortest_s = 0.005;
-  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
+  const double speed_px = image_speed_px();
   TimeNs before_ns = last_event_ns_;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const double gap_s = seconds_from_ns(events[i].t_ns - before_ns);
@@ -238,8 +236,8 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
   if (estimate.is_valid) {
     motion_.update(estimate.map_from_camera, estimate.information);
     const ScopedTimer clock(timing_.align_s);
-    residuals_.correct(residuals_.blind_s() * motion_.speed_px(residuals_.typical_depth_m()));
-    if (!getenv("NOREFRESH")) residuals_.read_silent_pixels(motion_at(estimate.map_from_camera));
+    residuals_.correct(image_speed_px());
+    residuals_.read_silent_pixels(motion_at(estimate.map_from_camera));
   }
   pose.iterations = kIterations;
   pose.inlier_ratio = estimate.sums.known > 0 ? estimate.sums.inliers / estimate.sums.known : 0;
@@ -260,11 +258,11 @@ void IntensityTracker::load(std::span<const Event> events, TimeNs t_ns,
     residuals_.prepare_view(map_from_camera);
   }
   const ScopedTimer clock(timing_.load_s);
-  static const double kJump_px = getenv("J") ? atof(getenv("J")) : 0.05;
-  constexpr double kLongestJump_s = 2e-4;
-  const double speed_px = motion_.speed_px(residuals_.typical_depth_m());
-  residuals_.load(events, t_ns, std::min(kLongestJump_s, kJump_px / std::max(1.0, speed_px)),
-                  motion_at(map_from_camera));
+  // An edge of area samples takes a whole pixel to pass.
+  constexpr double kJump_px = 0.05;
+  constexpr double kLongestJump_s = 2e-4;  // however slowly the camera seems to move
+  const double jump_s = std::min(kLongestJump_s, kJump_px / std::max(1.0, image_speed_px()));
+  residuals_.load(events, t_ns, jump_s, motion_at(map_from_camera));
 }
 
 auto IntensityTracker::align(const PosePrediction& predicted) -> PoseEstimate<Sums> {

@@ -18,11 +18,11 @@ namespace saccade {
 /// pixel's log intensity is known: the first value plus the thresholds of all its events. The pose
 /// is sought at which the map shows the same there:
 ///   r_k = l_k - L(W(u_k; pose at t_k)),   pose(t) = pose exp((t - t_0) velocity)
-/// and beside the events no-event constraints of some pixels between theirs, which are known to
-/// within a threshold, by Gauss-Newton with Cauchy weights and the prediction's precision as a
-/// prior. It is lost where fewer residuals than on average are inliers, or no event came although
-/// the camera moves: the pixels' state is worthless then, the edges of the map are sought around
-/// the expected pose until they fit, and the pixels start anew there.
+/// with one observation of each pixel that fired, and no-event constraints of some others, by
+/// Gauss-Newton with Cauchy weights over the variances of pixel and map, and the prediction's
+/// precision as a prior. It is lost where fewer residuals than on average are inliers, or no event
+/// came although the camera moves: the pixels' state is worthless then, the edges of the map are
+/// sought around the expected pose until they fit, and the pixels start anew there.
 class IntensityTracker : public Tracker {
  public:
   /// `camera` may be distorted; `map` outlives the tracker, `edges` finds the pose again.
@@ -48,6 +48,10 @@ class IntensityTracker : public Tracker {
   void restart_pixels(float sigma);
   void load(std::span<const Event> events, TimeNs t_ns, const Rigid3& map_from_camera);
   [[nodiscard]] TrackedPose track_batch(std::span<const Event> events);
+  /// Of the camera's motion at the typical depth [px/s].
+  [[nodiscard]] double image_speed_px() const {
+    return motion_.speed_px(residuals_.typical_depth_m());
+  }
   /// So many of the next events are a batch; 0: there are too few.
   [[nodiscard]] std::size_t next_batch(std::span<const Event> events);
   [[nodiscard]] PoseEstimate<Sums> align(const PosePrediction& predicted);

@@ -1,7 +1,6 @@
 #include "estimator/tracking/intensity/log_intensity_residuals.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,6 +19,9 @@ constexpr float kMinSlope = 0.1F;
 
 /// Events go to random pixels: those of a later one are fetched that many events before.
 constexpr std::size_t kPixelsAhead = 16;
+
+/// Silent pixels are read in so many passes, one with each pose.
+constexpr std::size_t kSilentPasses = 8;
 
 /// Marks an observation whose pixel is not corrected.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
@@ -44,12 +46,11 @@ float no_event_variance(const EventContrast& contrast) {
   return static_cast<float>(threshold * threshold / 12);
 }
 
-/// 0 where the edges of a picture are as sharp as those of pixels that average over their area, 1 where
-/// they are those of point samples.
-float sharp_fraction(double sharpness) {
-  static const double kArea = getenv("SA") ? atof(getenv("SA")) : 0.85;
-  constexpr double kPoint = 0.93;
-  return static_cast<float>(std::clamp((sharpness - kArea) / (kPoint - kArea), 0.0, 1.0));
+/// 0 where the edges of a picture are those of pixels that average over their area (0.64 measured, on
+/// rectangles, photographs and print), 1 where they are those of point samples (0.84 to 0.95).
+float sharp_fraction(double edge_sharpness) {
+  constexpr double kArea = 0.72, kPoint = 0.84;
+  return static_cast<float>(std::clamp((edge_sharpness - kArea) / (kPoint - kArea), 0.0, 1.0));
 }
 
 }  // namespace
@@ -65,8 +66,6 @@ LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
       pixels_(camera.width, camera.height, contrast.on, contrast.off),
       no_event_variance_(no_event_variance(contrast)),
       threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {
-  const double q = getenv("Q") ? atof(getenv("Q")) : 0.02;
-  pixels_.set_event_variance(float(q * q * contrast.on * contrast.off));
 }
 
 void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
@@ -107,7 +106,7 @@ void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, dou
   batch_count_ = 0;
   loaded_pixels_.clear();
   bursts_.clear();
-  edge_weight_ = map_.edge_sharpness() > 0 ? sharp_fraction(map_.edge_sharpness()) * intervals_.pile_up() : 0;
+  learn_sensor();
   bool has_constraints = !(options_.no_event_ratio > 0);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
@@ -122,6 +121,17 @@ void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, dou
     add_to_burst(event, static_cast<float>(seconds_from_ns(event.t_ns - t_ns)));
   }
   for (const Burst& burst : bursts_) add_burst(burst, static_cast<float>(jump_s), motion);
+}
+
+void LogIntensityResiduals::learn_sensor() {
+  // Thresholds of real pixels differ by 15 to 20 % (docs/noise_models.md); those of ideal ones do
+  // not, but for what the tolerance of a simulator and a pixel misread at the start add up to.
+  constexpr double kReal = 0.15, kIdeal = 0.02;
+  const double mismatch =
+      options_.mismatch_sigma.value_or(intervals_.has_bursts() ? kIdeal : kReal);
+  pixels_.set_event_variance(
+      static_cast<float>(mismatch * mismatch) * threshold_ * threshold_);
+  step_weight_ = sharp_fraction(map_.edge_sharpness()) * intervals_.pile_up();
 }
 
 void LogIntensityResiduals::add_to_burst(const Event& event, float time_s) {
@@ -164,37 +174,58 @@ void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
       is_jump ? 0.5F * (burst.before + pixels_.between_events(pixel)) : burst.sum / count;
   const MapSample* at = find_sample(observation.pixel, observation.time_s, motion);
   if (at == nullptr) return;
-  std::uint32_t corrected = static_cast<std::uint32_t>(pixel);
-  if (edge_weight_ > 0) {
-    const Eigen::Vector2f atlas = reprojection(observation, *at, motion);
-    const int u = static_cast<int>(std::lround(atlas.x()));
-    const int v = static_cast<int>(std::lround(atlas.y()));
-    if (u < 0 || v < 0 || u >= map_.atlas().width() || v >= map_.atlas().height()) return;
-    const float least = map_.least()(u, v), greatest = map_.greatest()(u, v);
-    const float steps = (greatest - least) / threshold_;
-    const float weight = edge_weight_ * std::clamp(0.5F * (steps - 2), 0.0F, 1.0F);
-    if (weight > 0) {
-      observation.log_intensity += weight * (0.5F * (least + greatest) - observation.log_intensity);
-      observation.variance *= (1 - weight) * (1 - weight);
-      const float after = burst.polarity > 0 ? greatest : least;
-      const float level = pixels_.at_last_event(pixel);
-      pixels_.move(pixel, weight * (after - level), 0.25F * weight * (greatest - least) * (greatest - least));
-      corrected = kNotCorrected;
-    }
-  }
-  add(observation, *at, corrected);
+  const bool is_step = observe_step(burst.polarity, pixel, *at, motion, observation);
+  add(observation, *at, is_step ? kNotCorrected : static_cast<std::uint32_t>(pixel));
 }
 
-Eigen::Vector2f LogIntensityResiduals::reprojection(
+bool LogIntensityResiduals::observe_step(int polarity, std::size_t pixel, const MapSample& at,
+                                         const EventResidualBatch::Motion& motion,
+                                         LogIntensityObservation& observation) {
+  if (!(step_weight_ > 0)) return false;
+  const std::optional<Eigen::Vector2i> texel = texel_of(observation, at, motion);
+  if (!texel) return false;
+  const float least = map_.least()(texel->x(), texel->y());
+  const float greatest = map_.greatest()(texel->x(), texel->y());
+  const float range = greatest - least;
+  // An edge of two thresholds may yield a single event anyway; one of four would yield several.
+  constexpr float kSmallest = 2, kCertain = 4;
+  const float certainty =
+      std::clamp((range / threshold_ - kSmallest) / (kCertain - kSmallest), 0.0F, 1.0F);
+  const float weight = step_weight_ * certainty;
+  if (!(weight > 0)) return false;  // nor where the map is unknown
+  const float middle = 0.5F * (least + greatest);
+  observation.log_intensity += weight * (middle - observation.log_intensity);
+  // Of a pixel of which nothing is known the variance is infinite.
+  observation.variance = weight < 1 ? (1 - weight) * (1 - weight) * observation.variance : 0;
+  const float after = polarity > 0 ? greatest : least;
+  constexpr float kVariance = 0.25F;  // anything between both is as likely
+  pixels_.move(pixel, weight * (after - pixels_.at_last_event(pixel)),
+               kVariance * weight * range * range);
+  return true;
+}
+
+std::optional<Eigen::Vector2i> LogIntensityResiduals::texel_of(
     const LogIntensityObservation& observation, const MapSample& at,
     const EventResidualBatch::Motion& motion) const {
-  const Eigen::Vector3f p = motion.rotation * at.point + motion.translation;
-  const Eigen::Vector3f moved =
-      p - observation.time_s * (motion.velocity.head<3>() + motion.velocity.tail<3>().cross(p));
-  const Eigen::Vector2f projected(
-      static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
-      static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy));
-  return at.atlas_px + at.atlas_per_pixel * (observation.pixel - projected);
+  const Eigen::Vector2f atlas_px =
+      at.atlas_px +
+      at.atlas_per_pixel * (observation.pixel - project(at.point, observation.time_s, motion));
+  const Eigen::Vector2f nearest = atlas_px.array().round();
+  const ImageF& atlas = map_.atlas();
+  if (!(nearest.x() >= 0 && nearest.y() >= 0 && nearest.x() < static_cast<float>(atlas.width()) &&
+        nearest.y() < static_cast<float>(atlas.height())))
+    return std::nullopt;
+  return nearest.cast<int>();
+}
+
+Eigen::Vector2f LogIntensityResiduals::project(const Eigen::Vector3f& point, float time_s,
+                                               const EventResidualBatch::Motion& motion) const {
+  const Eigen::Vector3f at = motion.rotation * point + motion.translation;
+  const Eigen::Vector3f v = motion.velocity.head<3>();
+  const Eigen::Vector3f w = motion.velocity.tail<3>();
+  const Eigen::Vector3f moved = at - time_s * (v + w.cross(at));
+  return {static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
+          static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy)};
 }
 
 void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
@@ -214,9 +245,20 @@ void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
     observation.pixel = undistortion_(x, y);
     observation.time_s = 0;
     observation.variance = pixels_.variance(pixel) + no_event_variance_;
-    if (const MapSample* at = find_sample(observation.pixel, 0, motion))
+    const MapSample* at = find_sample(observation.pixel, 0, motion);
+    if (at != nullptr && is_known_within_threshold(observation, *at, motion))
       add(observation, *at, kNotCorrected);
   }
+}
+
+bool LogIntensityResiduals::is_known_within_threshold(
+    const LogIntensityObservation& observation, const MapSample& at,
+    const EventResidualBatch::Motion& motion) const {
+  if (intervals_.has_bursts()) return true;
+  constexpr float kThresholds = 4;
+  const std::optional<Eigen::Vector2i> texel = texel_of(observation, at, motion);
+  return texel && map_.greatest()(texel->x(), texel->y()) - map_.least()(texel->x(), texel->y()) <
+                      kThresholds * threshold_;
 }
 
 void LogIntensityResiduals::list_steep_pixels() {
@@ -263,19 +305,10 @@ const MapSample* LogIntensityResiduals::sample_at(const Eigen::Vector2f& pixel) 
 
 const MapSample* LogIntensityResiduals::find_sample(
     const Eigen::Vector2f& pixel, float time_s, const EventResidualBatch::Motion& motion) const {
-  const auto project = [&](const Eigen::Vector3f& point) -> Eigen::Vector2f {
-    const Eigen::Vector3f at = motion.rotation * point + motion.translation;
-    const Eigen::Vector3f v = motion.velocity.head<3>();
-    const Eigen::Vector3f w = motion.velocity.tail<3>();
-    const Eigen::Vector3f moved = at - time_s * (v + w.cross(at));
-    return {
-        static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
-        static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy)};
-  };
   // What is visible there now was elsewhere in the view that was drawn: one step of a fixed point.
   const MapSample* here = sample_at(pixel);
   if (here == nullptr) return nullptr;
-  const Eigen::Vector2f before = pixel + (pixel - project(here->point));
+  const Eigen::Vector2f before = pixel + (pixel - project(here->point, time_s, motion));
   return before.allFinite() ? sample_at(before) : nullptr;
 }
 
@@ -289,29 +322,26 @@ EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatc
   return sums;
 }
 
-void LogIntensityResiduals::correct(double blind_px) {
-  const auto blind = static_cast<float>(std::min(1.0, blind_px * blind_px));
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < batch_count_; ++k)
-    for (int j = 0; j < batches_[k].size(); ++j, ++i) {
-      if (loaded_pixels_[i] == kNotCorrected) continue;
-      const float excess = batches_[k].residual(j);
-      if (!std::isfinite(excess)) continue;
-      pixels_.correct(loaded_pixels_[i], excess, batches_[k].map_variance(j));
-      pixels_.move(loaded_pixels_[i], 0, blind * batches_[k].variance_per_px2(j));
-    }
+void LogIntensityResiduals::correct(double image_speed_px) {
+  const double blind_px = blind_s() * image_speed_px;
+  const auto blind_px2 = static_cast<float>(std::min(1.0, blind_px * blind_px));
+  for_each_measured_pixel([&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
+    pixels_.correct(pixel, excess, batch.map_variance(j));
+    pixels_.move(pixel, 0, blind_px2 * batch.variance_per_px2(j));
+  });
 }
 
 void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion& motion) {
-  constexpr std::size_t kTurns = 8;
+  // Of the half threshold on either side of where a pixel most likely is it knows the variance, and
+  // that as much again is possible.
   constexpr float kVariances = 2;
   const float noise = kVariances * no_event_variance_;
   batch_count_ = 0;
   loaded_pixels_.clear();
+  first_silent_pixel_ = (first_silent_pixel_ + 1) % kSilentPasses;
   const std::size_t count =
       static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-  first_silent_pixel_ = (first_silent_pixel_ + 1) % kTurns;
-  for (std::size_t i = first_silent_pixel_; i < count; i += kTurns) {
+  for (std::size_t i = first_silent_pixel_; i < count; i += kSilentPasses) {
     if (!(pixels_.variance(i) > noise)) continue;
     const int x = static_cast<int>(i % static_cast<std::size_t>(camera_.width));
     const int y = static_cast<int>(i / static_cast<std::size_t>(camera_.width));
@@ -320,13 +350,20 @@ void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion&
     if (const MapSample* at = find_sample(observation.pixel, 0, motion))
       add(observation, *at, static_cast<std::uint32_t>(i));
   }
-  (void)evaluate(motion);
+  static_cast<void>(evaluate(motion));
+  for_each_measured_pixel([&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
+    pixels_.correct(pixel, excess, noise + batch.map_variance(j));
+  });
+}
+
+template <class Use>
+void LogIntensityResiduals::for_each_measured_pixel(const Use& use) {
   std::size_t i = 0;
   for (std::size_t k = 0; k < batch_count_; ++k)
     for (int j = 0; j < batches_[k].size(); ++j, ++i) {
       const float excess = batches_[k].residual(j);
-      if (std::isfinite(excess))
-        pixels_.correct(loaded_pixels_[i], excess, noise + batches_[k].map_variance(j));
+      if (loaded_pixels_[i] != kNotCorrected && std::isfinite(excess))
+        use(loaded_pixels_[i], excess, batches_[k], j);
     }
 }
 

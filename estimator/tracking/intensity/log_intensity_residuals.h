@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,11 +17,15 @@
 
 namespace saccade {
 
-/// The residuals of the intensity tracker. Two kinds of observations say what log intensity a pixel
-/// sees: each event, at its instant, and beside them no-event constraints of pixels between their
-/// events, which are known to within a threshold C: l + p C/2 with p the polarity of the last
-/// event, with the uniform standard deviation C / sqrt(12) around it. Holds the pixels' state and
-/// the view of the map.
+/// The residuals of the intensity tracker. Observations of two kinds say what log intensity a pixel
+/// sees: its events of a batch, at their mean time, and beside them no-event constraints of pixels
+/// between their events, which are known to within a threshold C: l + p C/2 with p the polarity of
+/// the last event, with the uniform standard deviation C / sqrt(12) around it.
+///
+/// An event says less where an edge passes too fast. Several events of a pixel at once say only that
+/// it jumped from one level to another, and that the middle between both is there. Where pixels are
+/// blind for a while after an event (EventIntervals) a single event may be all that a jump leaves:
+/// then the map tells both levels. Holds the pixels' state and the view of the map.
 class LogIntensityResiduals {
  public:
   /// sigma of an observation [log units]: texture between the map's point samples, noise.
@@ -44,16 +49,14 @@ class LogIntensityResiduals {
   /// Residuals and their normal equations at a pose, over all that was loaded.
   [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
 
-  /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate().
-  /// After each of its events a pixel misses what happens while the image moves by `blind_px`.
-  void correct(double blind_px);
+  /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate(),
+  /// each by what it is less certain than the map. After an event a pixel misses what happens while
+  /// it is blind and the image moves at `image_speed_px` per second.
+  void correct(double image_speed_px);
 
   /// Pixels of which little is known are read from the map at a pose: between its events a pixel is
   /// within a threshold of its last value.
   void read_silent_pixels(const EventResidualBatch::Motion& motion);
-
-  /// For so long a pixel is blind after an event [s]; 0 where that does not matter.
-  [[nodiscard]] double blind_s() const { return intervals_.pile_up() > 0 ? intervals_.shortest_s() : 0; }
 
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
@@ -67,17 +70,39 @@ class LogIntensityResiduals {
   struct Burst {
     std::uint16_t x = 0, y = 0;
     int events = 0;
-    int polarity = 0;
+    int polarity = 0;  ///< of the last
     float before = 0;  ///< what it saw before, most likely
     float sum = 0;     ///< of the log intensities at its events
     float sum_s = 0, first_s = 0, last_s = 0;
   };
-  /// Where an observation reprojects to in the map's atlas.
-  [[nodiscard]] Eigen::Vector2f reprojection(const LogIntensityObservation& observation,
-                                             const MapSample& at,
-                                             const EventResidualBatch::Motion& motion) const;
   void add_to_burst(const Event& event, float time_s);
   void add_burst(const Burst& burst, float jump_s, const EventResidualBatch::Motion& motion);
+  /// Makes an observation that of a step of the map's, by so much as a single event may be one, and
+  /// the pixel's value what it is behind it. False where it is none.
+  [[nodiscard]] bool observe_step(int polarity, std::size_t pixel, const MapSample& at,
+                                  const EventResidualBatch::Motion& motion,
+                                  LogIntensityObservation& observation);
+  /// Whether a pixel without an event is within a threshold of its value: a blind one may have missed
+  /// the edge beside it.
+  [[nodiscard]] bool is_known_within_threshold(const LogIntensityObservation& observation,
+                                               const MapSample& at,
+                                               const EventResidualBatch::Motion& motion) const;
+  /// Of the sensor, from its events so far.
+  void learn_sensor();
+  /// For so long a pixel is blind after an event [s]; 0 where that hides little.
+  [[nodiscard]] double blind_s() const {
+    return intervals_.pile_up() > 0 ? intervals_.shortest_s() : 0;
+  }
+  /// Where a point of the map is at a time.
+  [[nodiscard]] Eigen::Vector2f project(const Eigen::Vector3f& point, float time_s,
+                                        const EventResidualBatch::Motion& motion) const;
+  /// The map's pixel nearest to an observation's reprojection, if there is one.
+  [[nodiscard]] std::optional<Eigen::Vector2i> texel_of(
+      const LogIntensityObservation& observation, const MapSample& at,
+      const EventResidualBatch::Motion& motion) const;
+  /// Calls use(pixel, residual, batch, index in it) for all loaded pixels that are to be corrected.
+  template <class Use>
+  void for_each_measured_pixel(const Use& use);
   /// Some `count` no-event constraints, at the time of the pose.
   void load_no_event_constraints(std::size_t count, const EventResidualBatch::Motion& motion);
   /// `pixel`: the one that correct() will correct.
@@ -96,9 +121,9 @@ class LogIntensityResiduals {
   MapView view_;
   PixelLogIntensity pixels_;
   float no_event_variance_;
-  float threshold_;
+  float threshold_;  ///< mean of ON and OFF
   EventIntervals intervals_;
-  float edge_weight_ = 0;
+  float step_weight_ = 0;  ///< 0..1: how much single events may be steps
   std::vector<Burst> bursts_;
   std::vector<EventResidualBatch> batches_;
   std::size_t batch_count_ = 0;
