@@ -142,6 +142,7 @@ constexpr FormerKey kFormerKeys[] = {
     {"intensity.blur_px", "intensity.map_blur_px", ""},
     {"intensity.contrast", "", "state intensity.contrast_on and intensity.contrast_off"},
     {"intensity.correction", "intensity.correction_fraction", ""},
+    {"intensity.correction_fraction", "intensity.mismatch_sigma", "the correction follows from how unequal the thresholds are"},
     {"intensity.edge_step", "", "it is always 0.9 (kEdgeContrast)"},
     {"intensity.half_step", "", "it is always on (IntensityOptions::half_threshold)"},
     {"intensity.information", "", "it is always 0.1 (kInformation)"},

@@ -37,9 +37,8 @@ void EventResidualBatch::add(const LogIntensityObservation& observation, const M
   scale_yy_[i] = at.atlas_per_pixel(1, 1);
 }
 
-void EventResidualBatch::evaluate(const PinholeCamera& camera, const IntensityMap& map,
-                                  const Motion& motion) {
-  const ImageF& atlas = map.atlas();
+void EventResidualBatch::evaluate(const PinholeCamera& camera, const ImageF& atlas,
+                                  const ImageF& variance, const Motion& motion) {
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
@@ -85,7 +84,7 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const IntensityMa
     ray_y_[i] = y;
     inverse_depth_[i] = inverse;
   }
-  read(map);
+  read(atlas, variance);
   for (std::size_t i = 0; i < padded(); ++i) {
     const float a = fx * (slope_x_[i] * scale_xx_[i] + slope_y_[i] * scale_yx_[i]);
     const float b = fy * (slope_x_[i] * scale_xy_[i] + slope_y_[i] * scale_yy_[i]);
@@ -102,10 +101,10 @@ void EventResidualBatch::evaluate(const PinholeCamera& camera, const IntensityMa
   }
 }
 
-void EventResidualBatch::read(const IntensityMap& map) {
-  const float* texels = map.atlas().data();
-  const float* variations = map.variance().data();
-  const int width = map.atlas().width();
+void EventResidualBatch::read(const ImageF& atlas, const ImageF& variance) {
+  const float* texels = atlas.data();
+  const float* variations = variance.data();
+  const int width = atlas.width();
   for (std::size_t i = 0; i < padded(); ++i) {
     const float* cell = texels + cell_[i];
     const float a = cell[0];

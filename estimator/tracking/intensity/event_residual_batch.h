@@ -10,7 +10,6 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/lanes.h"
-#include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/map_view.h"
 #include "estimator/tracking/pose_solver.h"
 
@@ -49,8 +48,10 @@ class EventResidualBatch {
   /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
   /// map's slope in the image:
   ///   J = (a/Z, b/Z, -(a x + b y)/Z, -y (a x + b y) - b, x (a x + b y) + a, b x - a y),
-  /// where the rotation w t within the events' time is left out.
-  void evaluate(const PinholeCamera& camera, const IntensityMap& map, const Motion& motion);
+  /// where the rotation w t within the events' time is left out. `variance` is that of the map's
+  /// positions (IntensityMap::variance()).
+  void evaluate(const PinholeCamera& camera, const ImageF& atlas, const ImageF& variance,
+                const Motion& motion);
 
   /// What the map does not say of an observation.
   struct MapNoise {
@@ -83,7 +84,7 @@ class EventResidualBatch {
   [[nodiscard]] std::size_t padded() const {
     return padded_to_lanes(static_cast<std::size_t>(count_));
   }
-  void read(const IntensityMap& map);
+  void read(const ImageF& atlas, const ImageF& variance);
 
   int count_ = 0;
   alignas(64) Floats point_x_{}, point_y_{}, point_z_{};

@@ -75,7 +75,7 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   pending_events_ = 0;
   candidates_tried_ = 0;
   is_lost_ = false;
-  residuals_.reset_views_drawn();
+  residuals_.reset();
   restart_pixels(kKnownSigma);
 }
 

@@ -68,8 +68,14 @@ LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
       threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {
 }
 
+void LogIntensityResiduals::reset() {
+  intervals_ = {};
+  views_drawn_ = 0;
+}
+
 void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
   first_steep_pixel_ = 0;
+  first_silent_pixel_ = 0;
   draw_view(map_from_camera);
   read_pixels_from_map(sigma);
 }
@@ -315,7 +321,7 @@ const MapSample* LogIntensityResiduals::find_sample(
 EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatch::Motion& motion) {
   EventResidualBatch::Sums sums;
   for (std::size_t k = 0; k < batch_count_; ++k) {
-    batches_[k].evaluate(camera_, map_, motion);
+    batches_[k].evaluate(camera_, map_.atlas(), map_.variance(), motion);
     batches_[k].weigh({static_cast<float>(kSigma), kPositionSigma_px});
     batches_[k].add_to(sums);
   }

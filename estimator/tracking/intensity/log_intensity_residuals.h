@@ -35,6 +35,9 @@ class LogIntensityResiduals {
   LogIntensityResiduals(const IntensityOptions& options, const EventContrast& contrast,
                         const PinholeCamera& camera, const IntensityMap& map);
 
+  /// Forgets what the events told of the sensor.
+  void reset();
+
   /// Reads all pixels from the map at a pose, with this standard deviation.
   void restart(const Rigid3& map_from_camera, float sigma);
 
@@ -60,7 +63,6 @@ class LogIntensityResiduals {
 
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
-  void reset_views_drawn() { views_drawn_ = 0; }
 
  private:
   void draw_view(const Rigid3& map_from_camera);

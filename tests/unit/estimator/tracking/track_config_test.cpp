@@ -41,7 +41,6 @@ TEST(TrackConfig, FilesOfTheSettingsAreValid) {
   const auto best = config::read<TrackConfig>(config::load(folder + "best.yaml"));
   EXPECT_EQ(best.method, "intensity");
   EXPECT_FALSE(best.intensity.events.has_value());
-  EXPECT_EQ(best.intensity.samples, 1000);
   EXPECT_EQ(best.motion.acceleration_sigma_px, 300);
   EXPECT_EQ(best.motion.acceleration_per_speed, 6);
   EXPECT_EQ(best.reference.new_view_deg, 15);
@@ -128,8 +127,8 @@ TEST(TrackConfig, FaultsNameTheirPlace) {
       {"{method: frames, intensity: {events: 100}}", "intensity"},
       {"{method: intensity, edges: {samples: 100}}", "edges"},
       {"{method: intensity, intensity: {events: 0}}", "intensity.events"},
-      {"{method: intensity, intensity: {correction_fraction: 1.5}}",
-       "intensity.correction_fraction"},
+      {"{method: intensity, intensity: {mismatch_sigma: 1.5}}", "intensity.mismatch_sigma"},
+      {"{method: intensity, intensity: {correction_fraction: 0.1}}", "intensity.mismatch_sigma"},
       {"{method: intensity, intensity: {contrast_on: 0}}", "intensity.contrast_on"},
       {"{method: intensity, intensity: {contrast_off: 0}}", "intensity.contrast_off"},
       {"{method: intensity, intensity: {contrast: 0.2}}", "intensity.contrast_on"},

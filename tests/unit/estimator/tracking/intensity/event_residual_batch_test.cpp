@@ -19,6 +19,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr float kEventSigma = 0.05F;
 constexpr float kTail = 2.4F;
+/// Of an observation itself: n^2 / (n^2 + P) = 0.8.
+constexpr float kVariance = 0.25F * kEventSigma * kEventSigma;
 
 /// Gentle slopes that differ from cell to cell.
 ImageF some_atlas() {
@@ -29,8 +31,14 @@ ImageF some_atlas() {
   return atlas;
 }
 
+/// Of a map's positions, the same all over it.
+constexpr float kPositionVariance = 0.07F;
+ImageF position_variance(const ImageF& atlas) {
+  return {atlas.width(), atlas.height(), kPositionVariance};
+}
+
 struct Sight {
-  LogIntensityObservation event;
+  LogIntensityObservation observation;
   MapSample seen;
 };
 
@@ -47,7 +55,7 @@ EventResidualBatch::Motion motion_at(const Rigid3& map_from_camera, const Vector
 Sight sight(const Eigen::Vector2d& pixel, double depth_m, float level, float time_s = 0) {
   const Eigen::Vector3d point = some_pose() * (depth_m * small_uneven_camera().ray(pixel));
   Sight sight;
-  sight.event = {pixel.cast<float>(), time_s, level, 0.8F};
+  sight.observation = {pixel.cast<float>(), time_s, level, kVariance};
   sight.seen.point = point.cast<float>();
   sight.seen.inverse_depth = static_cast<float>(1 / depth_m);
   sight.seen.atlas_px = {std::floor(static_cast<float>(pixel.x())) + 0.5F,
@@ -60,8 +68,8 @@ EventResidualBatch::Sums sums_of(EventResidualBatch& batch, float sigma, const I
                                  const Rigid3& pose = some_pose(),
                                  const Vector6& velocity = Vector6::Zero(),
                                  float position_sigma_px = 0) {
-  batch.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
-  batch.weigh(sigma, position_sigma_px);
+  batch.evaluate(small_uneven_camera(), atlas, position_variance(atlas), motion_at(pose, velocity));
+  batch.weigh({sigma, position_sigma_px});
   EventResidualBatch::Sums sums;
   batch.add_to(sums);
   return sums;
@@ -71,8 +79,8 @@ EventResidualBatch::Sums sums_of(EventResidualBatch& batch, float sigma, const I
 double residual_of(const Sight& sight, const Rigid3& pose, const Vector6& velocity,
                    const ImageF& atlas) {
   EventResidualBatch batch;
-  batch.add(sight.event, sight.seen);
-  batch.evaluate(small_uneven_camera(), atlas, motion_at(pose, velocity));
+  batch.add(sight.observation, sight.seen);
+  batch.evaluate(small_uneven_camera(), atlas, position_variance(atlas), motion_at(pose, velocity));
   return static_cast<double>(batch.residual(0));
 }
 
@@ -81,7 +89,7 @@ double residual_of(const Sight& sight, const Rigid3& pose, const Vector6& veloci
 void expect_row(const Sight& sight, const Vector6& velocity, double tolerance) {
   const ImageF atlas = some_atlas();
   EventResidualBatch batch;
-  batch.add(sight.event, sight.seen);
+  batch.add(sight.observation, sight.seen);
   const EventResidualBatch::Sums sums = sums_of(batch, kEventSigma, atlas, some_pose(), velocity);
   const auto residual = [&](const Vector6& twist) {
     return Eigen::Matrix<double, 1, 1>(
@@ -93,12 +101,16 @@ void expect_row(const Sight& sight, const Vector6& velocity, double tolerance) {
   ASSERT_TRUE(numeric.allFinite());
   const double r = residual(Vector6::Zero())(0);
   ASSERT_GT(std::abs(r), 0.01) << "the test needs a residual";
-  const Vector6 row = sums.rhs / (sums.weight * r);
+  // The weight over all variances in place of that over the pixel's.
+  const double n2 = static_cast<double>(kEventSigma * kEventSigma);
+  const double x = r / (static_cast<double>(kTail) * std::sqrt(n2 + static_cast<double>(kVariance)));
+  const double weight = n2 / (n2 + static_cast<double>(kVariance)) / (1 + x * x);
+  const Vector6 row = sums.rhs / (weight * r);
   const double scale = numeric.cwiseAbs().maxCoeff();
   EXPECT_LT((row - numeric).cwiseAbs().maxCoeff(), tolerance * scale)
       << row.transpose() << "\nnumeric " << numeric.transpose();
   const Matrix6 squared = sums.normal.selfadjointView<Eigen::Upper>();
-  EXPECT_LT((squared / sums.weight - numeric * numeric.transpose()).cwiseAbs().maxCoeff(),
+  EXPECT_LT((squared / weight - numeric * numeric.transpose()).cwiseAbs().maxCoeff(),
             3 * tolerance * scale * scale);
 }
 
@@ -140,44 +152,49 @@ TEST(EventResidualBatch, VelocityMovesThePlaceWithTime) {
   }
 }
 
-TEST(EventResidualBatch, WeightsAreCauchysTimesTrust) {
+TEST(EventResidualBatch, WeightsAreCauchysOverTheVariancesOfMapAndPixel) {
   const ImageF atlas = some_atlas();
   for (const float level : {-0.8F, -0.5F, 2.0F})
-    for (const float scale : {0.5F, 1.0F, 2.0F}) {
-      EventResidualBatch batch;
-      const Sight here = sight({20, 30}, 2, level);
-      batch.add(here.event, here.seen);
-      const float sigma = 0.05F * scale;
-      const EventResidualBatch::Sums sums = sums_of(batch, sigma, atlas);
-      const double x = static_cast<double>(batch.residual(0) / (kTail * sigma));
-      EXPECT_NEAR(sums.weight, 0.8 / (1 + x * x), 1e-5);
-      const double r = static_cast<double>(batch.residual(0));
-      EXPECT_NEAR(sums.squares, sums.weight * r * r, 1e-5 * (1 + r * r));
-      EXPECT_NEAR(sums.visible, 0.8, 1e-6);
-      EXPECT_NEAR(sums.inliers, std::abs(x) < 1 ? 0.8 : 0, 1e-6);
-      EXPECT_NEAR(sums.confidence, 0.8, 1e-6);
-    }
+    for (const float sigma : {0.025F, 0.05F, 0.1F})
+      for (const float position_sigma_px : {0.0F, 0.3F}) {
+        EventResidualBatch batch;
+        const Sight here = sight({20, 30}, 2, level);
+        batch.add(here.observation, here.seen);
+        const EventResidualBatch::Sums sums =
+            sums_of(batch, sigma, atlas, some_pose(), Vector6::Zero(), position_sigma_px);
+        const double map = static_cast<double>(
+            sigma * sigma + position_sigma_px * position_sigma_px * kPositionVariance);
+        EXPECT_NEAR(batch.map_variance(0), map, 1e-6);
+        EXPECT_NEAR(batch.variance_per_px2(0), kPositionVariance, 1e-6);
+        const double known = static_cast<double>(sigma * sigma / (sigma * sigma + kVariance));
+        const double r = static_cast<double>(batch.residual(0));
+        const double x = r / (static_cast<double>(kTail) * std::sqrt(map + static_cast<double>(kVariance)));
+        EXPECT_NEAR(sums.weight, known / (1 + x * x), 1e-5);
+        EXPECT_NEAR(sums.squares, sums.weight * r * r, 1e-5 * (1 + r * r));
+        EXPECT_NEAR(sums.known, known, 1e-6);
+        EXPECT_NEAR(sums.inliers, std::abs(x) < 1 ? known : 0, 1e-6);
+      }
 }
 
-TEST(EventResidualBatch, SteepPixelsWeighLess) {
-  // L = 0.3 x: the slope in the image is 0.3 times the first row of the scale.
-  ImageF atlas(64, 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) atlas(x, y) = 0.3F * static_cast<float>(x);
-  const Sight here = sight({20, 30}, 2, 6.2F);
-  EventResidualBatch batch;
-  batch.add(here.event, here.seen);
-  const Matrix6 plain = sums_of(batch, 0.05F, atlas).normal;
-  const double r = static_cast<double>(batch.residual(0));
-  const double plain_x = r / (2.4 * 0.05);
-  const double row_squared = plain(0, 0) * (1 + plain_x * plain_x) / 0.8;
-  const double slope_squared = 0.09 * (0.9 * 0.9 + 0.1 * 0.1);
-  const double precision = 1 / (0.05 * 0.05 + 0.3 * 0.3 * slope_squared);
-  const double x = r * std::sqrt(precision) / 2.4;
-  const EventResidualBatch::Sums sums =
-      sums_of(batch, 0.05F, atlas, some_pose(), Vector6::Zero(), 0.3F);
-  const double weight = 0.8 * 0.05 * 0.05 * precision / (1 + x * x);
-  EXPECT_NEAR(sums.normal(0, 0) / (weight * row_squared), 1, 1e-3);
+TEST(EventResidualBatch, WhatIsUncertainWeighsLess) {
+  const ImageF atlas = some_atlas();
+  const auto normal_of = [&](float variance, float position_sigma_px) {
+    Sight here = sight({20, 30}, 2, 0);
+    here.observation.variance = variance;
+    // Without a residual there is no Cauchy weight.
+    here.observation.log_intensity =
+        sample(atlas, here.seen.atlas_px.x(), here.seen.atlas_px.y());
+    EventResidualBatch batch;
+    batch.add(here.observation, here.seen);
+    return sums_of(batch, kEventSigma, atlas, some_pose(), Vector6::Zero(), position_sigma_px)
+        .normal(0, 0);
+  };
+  const double certain = normal_of(0, 0);
+  const double n2 = static_cast<double>(kEventSigma * kEventSigma);
+  EXPECT_NEAR(normal_of(0.01F, 0) / certain, n2 / (n2 + 0.01), 1e-4);
+  EXPECT_NEAR(normal_of(0.01F, 0.3F) / certain,
+              n2 / (n2 + 0.01 + 0.09 * static_cast<double>(kPositionVariance)), 1e-4);
+  EXPECT_EQ(normal_of(std::numeric_limits<float>::infinity(), 0), 0) << "of an unknown pixel";
 }
 
 void expect_nothing(EventResidualBatch& batch, const ImageF& atlas,
@@ -187,9 +204,8 @@ void expect_nothing(EventResidualBatch& batch, const ImageF& atlas,
   EXPECT_EQ(sums.rhs, Vector6(Vector6::Zero()));
   EXPECT_EQ(sums.normal, Matrix6(Matrix6::Zero()));
   EXPECT_EQ(sums.weight, 0);
-  EXPECT_EQ(sums.visible, 0);
+  EXPECT_EQ(sums.known, 0);
   EXPECT_EQ(sums.inliers, 0);
-  EXPECT_NEAR(sums.confidence, 0.8, 1e-6) << "it was there all the same";
 }
 
 TEST(EventResidualBatch, WhatSeesNothingOfTheMapWeighsNothing) {
@@ -198,7 +214,7 @@ TEST(EventResidualBatch, WhatSeesNothingOfTheMapWeighsNothing) {
     Sight outside = sight({20, 30}, 2, 0);
     outside.seen.atlas_px = place;
     EventResidualBatch batch;
-    batch.add(outside.event, outside.seen);
+    batch.add(outside.observation, outside.seen);
     expect_nothing(batch, atlas);
   };
   nothing_at({-0.1F, 20});
@@ -210,9 +226,9 @@ TEST(EventResidualBatch, WhatSeesNothingOfTheMapWeighsNothing) {
 TEST(EventResidualBatch, FarFromWhereItWasLookedUpTheMapIsUnknown) {
   const ImageF atlas = some_atlas();
   Sight far = sight({20, 30}, 2, 0);
-  far.event.pixel.x() += 3.1F;
+  far.observation.pixel.x() += 3.1F;
   EventResidualBatch batch;
-  batch.add(far.event, far.seen);
+  batch.add(far.observation, far.seen);
   expect_nothing(batch, atlas);
 }
 
@@ -221,7 +237,7 @@ TEST(EventResidualBatch, UnknownTexelsWeighNothing) {
   const Sight here = sight({20, 30}, 2, 0);
   atlas(21, 31) = std::numeric_limits<float>::quiet_NaN();
   EventResidualBatch batch;
-  batch.add(here.event, here.seen);
+  batch.add(here.observation, here.seen);
   expect_nothing(batch, atlas);
 }
 
@@ -229,12 +245,12 @@ TEST(EventResidualBatch, PointsBehindOrInTheCameraWeighNothing) {
   const ImageF atlas = some_atlas();
   const Sight here = sight({20, 30}, 2, 0);
   EventResidualBatch batch;
-  batch.add(here.event, here.seen);
+  batch.add(here.observation, here.seen);
   expect_nothing(batch, atlas, some_pose() * Rigid3({1, 0, 0, 0}, {0, 0, 5}));
   EventResidualBatch inside;
   Sight centre = here;
   centre.seen.point.setZero();
-  inside.add(centre.event, centre.seen);
+  inside.add(centre.observation, centre.seen);
   expect_nothing(inside, atlas, Rigid3());
 }
 
@@ -255,7 +271,7 @@ EventResidualBatch chunk_of(const std::vector<Sight>& sights, int first, int cou
   EventResidualBatch batch;
   for (int i = first; i < first + count; ++i) {
     const Sight& sight = sights[static_cast<std::size_t>(i)];
-    batch.add(sight.event, sight.seen);
+    batch.add(sight.observation, sight.seen);
   }
   return batch;
 }
@@ -270,12 +286,12 @@ TEST(EventResidualBatch, LanesBehindTheLastEventWeighNothing) {
     EventResidualBatch::Sums singly;
     for (int i = 0; i < count; ++i) {
       const Sight& sight = sights[static_cast<std::size_t>(i)];
-      used.add(sight.event, sight.seen);
+      used.add(sight.observation, sight.seen);
       EventResidualBatch alone = chunk_of(sights, i, 1);
       const EventResidualBatch::Sums sums = sums_of(alone, kEventSigma, atlas);
       singly.rhs += sums.rhs;
       singly.normal += sums.normal;
-      singly.confidence += sums.confidence;
+      singly.known += sums.known;
       singly.weight += sums.weight;
     }
     EventResidualBatch fresh = chunk_of(sights, 0, count);
@@ -284,7 +300,7 @@ TEST(EventResidualBatch, LanesBehindTheLastEventWeighNothing) {
       const EventResidualBatch::Sums sums = sums_of(*batch, kEventSigma, atlas);
       EXPECT_LT((sums.rhs - singly.rhs).norm(), 1e-5 * (1 + singly.rhs.norm()));
       EXPECT_LT((sums.normal - singly.normal).norm(), 1e-5 * singly.normal.norm());
-      EXPECT_NEAR(sums.confidence, singly.confidence, 1e-4);
+      EXPECT_NEAR(sums.known, singly.known, 1e-4);
       EXPECT_NEAR(sums.weight, singly.weight, 1e-4);
     }
   }
@@ -296,7 +312,7 @@ TEST(EventResidualBatch, LanesBehindTheLastEventWeighNothingWhereTheMapBegins) {
   Sight here = sight({20, 30}, 2, -0.7F);
   here.seen.point = (2 * small_uneven_camera().ray({20, 30})).cast<float>();
   EventResidualBatch batch;
-  batch.add(here.event, here.seen);
+  batch.add(here.observation, here.seen);
   const EventResidualBatch::Sums sums = sums_of(batch, kEventSigma, atlas, Rigid3());
   EXPECT_TRUE(sums.rhs.allFinite());
   EXPECT_TRUE(sums.normal.allFinite());
@@ -311,8 +327,9 @@ TEST(EventResidualBatch, OrderOfChunksIsRoundingOnly) {
   const auto sum = [&](std::vector<EventResidualBatch*> batches) {
     EventResidualBatch::Sums sums;
     for (EventResidualBatch* batch : batches) {
-      batch->evaluate(small_uneven_camera(), atlas, motion_at(some_pose(), Vector6::Zero()));
-      batch->weigh(kEventSigma, 0);
+      batch->evaluate(small_uneven_camera(), atlas, position_variance(atlas),
+                      motion_at(some_pose(), Vector6::Zero()));
+      batch->weigh({kEventSigma, 0});
       batch->add_to(sums);
     }
     return sums;
