@@ -29,7 +29,7 @@ TextureOptions mixed_shapes(std::array<double, 2> albedo) {
   TextureOptions options;
   options.albedo = albedo;
   options.edge_texels = 1;
-  options.shapes = {.diameter_m = {0.012, 0.7}, .coverage = 3, .opacity = {0.6, 1}, .leaves = 0.1};
+  options.shapes = {.diameter_m = {0.02, 0.8}, .coverage = 3, .opacity = {0.6, 1}, .leaves = 0.1};
   options.lines = {.per_m2 = 5, .length_m = {0.1, 0.8}, .width_m = 0.005};
   options.text = {.per_m2 = 1.5, .height_m = 0.03, .lines = {1, 5}, .letters = {4, 16}};
   options.noise = {.wavelength_m = {0.02, 0.5}, .strength = 0.03};
@@ -86,9 +86,9 @@ std::vector<WorldSheet> make_print(WorldTextureRequest& request) {
   TextureOptions options;
   options.albedo = {0.05, 0.85};
   options.edge_texels = 1;
-  options.shapes = {.diameter_m = {0.15, 0.9}, .coverage = 1.5, .opacity = {0.9, 1}, .leaves = 0};
+  options.shapes = {.diameter_m = {0.2, 0.9}, .coverage = 0.8, .opacity = {0.9, 1}, .leaves = 0};
   options.lines = {.per_m2 = 12, .length_m = {0.1, 0.8}, .width_m = 0.002};
-  options.text = {.per_m2 = 45, .height_m = 0.013, .lines = {3, 14}, .letters = {10, 40}};
+  options.text = {.per_m2 = 45, .height_m = 0.016, .lines = {3, 12}, .letters = {8, 30}};
   options.noise = {.wavelength_m = {0.05, 0.5}, .strength = 0.03};
   return generated(request, options, 800);
 }
@@ -108,7 +108,7 @@ std::vector<WorldSheet> make_leaves(WorldTextureRequest& request) {
   TextureOptions options;
   options.albedo = {0.04, 0.9};
   options.edge_texels = 1.2;
-  options.shapes = {.diameter_m = {0.02, 0.6}, .coverage = 3, .opacity = {0.8, 1}, .leaves = 1};
+  options.shapes = {.diameter_m = {0.05, 0.9}, .coverage = 2.2, .opacity = {0.8, 1}, .leaves = 1};
   options.lines.per_m2 = 0;
   options.text.per_m2 = 0;
   options.noise = {.wavelength_m = {0.02, 0.4}, .strength = 0.1};

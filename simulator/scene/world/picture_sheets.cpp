@@ -1,8 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,11 +19,9 @@ namespace {
 constexpr float kInk = 0.03F, kPaper = 0.9F;
 
 Picture read_picture(const WorldPicture& picture, WorldTextureRequest& request) {
+  const std::string problem = missing_picture_problem(picture);
   const std::optional<Bytes> bytes = FileSource().read(picture.file);
-  if (!bytes)
-    throw InputError("scene.world.texture",
-                     fmt::format("{} is missing: it is in the Debian package {}; apt-get install {}",
-                                 picture.file.string(), picture.package, picture.package));
+  if (!problem.empty() || !bytes) throw InputError("scene.world.texture", problem);
   return decode_picture(*bytes, picture.file.string(), request.remarks, {1, 1, 1},
                         request.channel);
 }
@@ -56,14 +52,22 @@ ImageF shrunk(const ImageF& image, int factor) {
   return small;
 }
 
-/// As a print shows it: the lightest hundredth is paper, black is ink.
+/// As a print shows it: black is ink, the lightest hundredth at most paper, and the mean about that
+/// of a middle grey.
 void print_as_poster(ImageF& image) {
   std::vector<float> some;
-  for (std::size_t i = 0; i < image.size(); i += 97) some.push_back(image.data()[i]);
+  double sum = 0;
+  for (std::size_t i = 0; i < image.size(); i += 97) {
+    some.push_back(image.data()[i]);
+    sum += static_cast<double>(some.back());
+  }
   const auto high = some.begin() + static_cast<std::ptrdiff_t>(some.size() * 99 / 100);
   std::nth_element(some.begin(), high, some.end());
   constexpr float kDarkest = 0.05F;  // of a picture that is dark all over
-  const float gain = 1 / std::max(*high, kDarkest);
+  constexpr double kGrey = 0.22;
+  const auto mean = static_cast<float>(sum / static_cast<double>(some.size()));
+  const float gain =
+      std::min(1 / std::max(*high, kDarkest), static_cast<float>(kGrey) / std::max(mean, kDarkest));
   for (float& value : image.pixels())
     value = kInk + (kPaper - kInk) * std::min(1.0F, gain * value);
 }

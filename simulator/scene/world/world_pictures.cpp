@@ -1,5 +1,7 @@
 #include "simulator/scene/world/world_pictures.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -112,6 +114,12 @@ std::vector<WorldPicture> pictures_of(const Packages& packages) {
 }
 
 }  // namespace
+
+std::string missing_picture_problem(const WorldPicture& picture) {
+  if (std::filesystem::is_regular_file(picture.file)) return {};
+  return fmt::format("{} is missing: it is in the Debian package {}; apt-get install {}",
+                     picture.file.string(), picture.package, picture.package);
+}
 
 std::span<const WorldPicture> world_photographs() {
   static const std::vector<WorldPicture> pictures = pictures_of(kPhotographs);

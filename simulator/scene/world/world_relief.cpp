@@ -46,8 +46,8 @@ void add_patch(Mesh& mesh, const Relief& relief, const Eigen::Vector2d& corner,
     for (std::uint32_t i = 0; i < kCells; ++i) {
       const std::uint32_t at = first + j * (kCells + 1) + i;
       const std::uint32_t above = at + kCells + 1;
-      mesh.triangles.push_back({{at, at + 1, above + 1}, cut.sheet});
-      mesh.triangles.push_back({{at, above + 1, above}, cut.sheet});
+      mesh.triangles.push_back({{at, at + 1, above + 1}, cut.material});
+      mesh.triangles.push_back({{at, above + 1, above}, cut.material});
     }
 }
 

@@ -36,7 +36,7 @@ void add_disc(Mesh& mesh, double radius, double z, double up, int sides, SheetCu
   }
   const auto count = static_cast<std::uint32_t>(sides);
   for (std::uint32_t i = 0; i < count; ++i)
-    mesh.triangles.push_back({{centre, centre + 1 + i, centre + 1 + (i + 1) % count}, cut.sheet});
+    mesh.triangles.push_back({{centre, centre + 1 + i, centre + 1 + (i + 1) % count}, cut.material});
 }
 
 /// One of the six faces of a cube that is blown up to a sphere: (a, b) in [-1, 1]^2 on the face
@@ -61,8 +61,8 @@ void add_sphere_face(Mesh& mesh, double radius, const Vector3d& out, const Vecto
     for (std::uint32_t i = 0; i < kCells; ++i) {
       const std::uint32_t corner = first + j * (kCells + 1) + i;
       const std::uint32_t above = corner + kCells + 1;
-      mesh.triangles.push_back({{corner, corner + 1, above + 1}, cut.sheet});
-      mesh.triangles.push_back({{corner, above + 1, above}, cut.sheet});
+      mesh.triangles.push_back({{corner, corner + 1, above + 1}, cut.material});
+      mesh.triangles.push_back({{corner, above + 1, above}, cut.material});
     }
 }
 
@@ -77,8 +77,8 @@ void add_face(Mesh& mesh, const Vector3d& corner, const Vector3d& x_edge, const 
   const std::uint32_t b = add_vertex(mesh, corner + x_edge, normal, cut.uv(width, 0));
   const std::uint32_t c = add_vertex(mesh, corner + x_edge + y_edge, normal, cut.uv(width, height));
   const std::uint32_t d = add_vertex(mesh, corner + y_edge, normal, cut.uv(0, height));
-  mesh.triangles.push_back({{a, b, c}, cut.sheet});
-  mesh.triangles.push_back({{a, c, d}, cut.sheet});
+  mesh.triangles.push_back({{a, b, c}, cut.material});
+  mesh.triangles.push_back({{a, c, d}, cut.material});
 }
 
 Mesh box_mesh(const Vector3d& size, SheetCutter& cutter) {
@@ -106,8 +106,8 @@ Mesh cylinder_mesh(double radius, double height, int sides, SheetCutter& cutter)
     add_vertex(mesh, radius * normal + half, normal, cut.uv(around * turns, height));
   }
   for (std::uint32_t i = 0; i < 2 * static_cast<std::uint32_t>(sides); i += 2) {
-    mesh.triangles.push_back({{i, i + 2, i + 3}, cut.sheet});
-    mesh.triangles.push_back({{i, i + 3, i + 1}, cut.sheet});
+    mesh.triangles.push_back({{i, i + 2, i + 3}, cut.material});
+    mesh.triangles.push_back({{i, i + 3, i + 1}, cut.material});
   }
   add_disc(mesh, radius, -0.5 * height, -1, sides, cutter);
   add_disc(mesh, radius, 0.5 * height, 1, sides, cutter);
@@ -133,7 +133,7 @@ Mesh cone_mesh(double radius, double height, int sides, SheetCutter& cutter) {
     const std::uint32_t tip =
         add_vertex(mesh, {0, 0, 0.5 * height},
                    on_circle(height, 0.5 * (from + to), radius).normalized(), cut.uv(slant, slant));
-    mesh.triangles.push_back({{a, b, tip}, cut.sheet});
+    mesh.triangles.push_back({{a, b, tip}, cut.material});
   }
   add_disc(mesh, radius, -0.5 * height, -1, sides, cutter);
   return mesh;
@@ -167,7 +167,7 @@ Mesh leaf_mesh(double length, double width, double fold, SheetCutter& cutter) {
         add_vertex(mesh, {-0.5 * length, 0, 0}, normal, cut.uv(0, 0.5 * width));
     add_vertex(mesh, {0.5 * length, 0, 0}, normal, cut.uv(length, 0.5 * width));
     add_vertex(mesh, rim, normal, cut.uv(0.5 * length, y));
-    mesh.triangles.push_back({{base, base + 1, base + 2}, cut.sheet});
+    mesh.triangles.push_back({{base, base + 1, base + 2}, cut.material});
   }
   return mesh;
 }

@@ -8,8 +8,8 @@
 namespace saccade {
 
 // Primitive surfaces around the origin with texture coordinates that neither stretch nor shear what
-// they show, but for spheres, where they stretch it by at most 1.8. The material of a triangle is
-// the texture that its cut names; the materials themselves come later (World). Lengths are in metres.
+// they show, but for spheres, where they stretch it by at most 1.8. The materials that their
+// triangles name come later (World). Lengths are in metres.
 
 /// `size`: along x, y and z.
 [[nodiscard]] Mesh box_mesh(const Eigen::Vector3d& size, SheetCutter& cutter);

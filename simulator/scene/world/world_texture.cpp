@@ -12,20 +12,20 @@ constexpr std::array kTextures{
     WorldTextureKind{WorldTexture::kPhotographs, "photographs",
                      "photographs of the Debian packages mate-backgrounds and "
                      "lomiri-wallpapers-16.04",
-                     make_photographs},
+                     make_photographs, true},
     WorldTextureKind{WorldTexture::kDrawings, "drawings",
                      "drawings of the Debian package openclipart-png pasted on paper",
-                     make_drawings},
+                     make_drawings, true},
     WorldTextureKind{WorldTexture::kRectangles, "rectangles",
-                     "rectangles of many sizes along the axes, with hard edges", make_rectangles},
-    WorldTextureKind{WorldTexture::kPrint, "print", "fine print and lines", make_print},
+                     "rectangles of many sizes along the axes, with hard edges", make_rectangles, true},
+    WorldTextureKind{WorldTexture::kPrint, "print", "fine print and lines", make_print, true},
     WorldTextureKind{WorldTexture::kFaint, "faint", "shapes whose albedo is within 15 % of 0.5",
-                     make_faint},
+                     make_faint, false},
     WorldTextureKind{WorldTexture::kContrast, "contrast",
                      "shapes whose albedo differs by up to 10:1 from that of their neighbours",
-                     make_contrast},
+                     make_contrast, false},
     WorldTextureKind{WorldTexture::kLeaves, "leaves", "leaves of many sizes that cover one another",
-                     make_leaves},
+                     make_leaves, true},
 };
 
 }  // namespace

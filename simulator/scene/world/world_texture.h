@@ -37,6 +37,7 @@ struct WorldTextureKind {
   const char* name;
   const char* help;  ///< part of a sentence
   std::vector<WorldSheet> (*make)(WorldTextureRequest&);
+  bool varies_tone;  ///< whether surfaces show it lighter or darker
 };
 
 /// All of them: a new one is a function and a row.
