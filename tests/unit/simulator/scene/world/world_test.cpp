@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <tuple>
@@ -17,6 +18,7 @@
 #include "simulator/scene/world/world_geometry.h"
 #include "simulator/scene/world/world_pictures.h"
 #include "simulator/scene/world/world_texture.h"
+#include "tests/support/source_path.h"
 
 namespace saccade {
 namespace {
@@ -264,7 +266,8 @@ TEST(World, StandsBesideMeshes) {
     return found.size();
   };
   const std::string world = "world: {geometry: corridor, texture: rectangles, seed: 2}\n";
-  EXPECT_EQ(objects(world + "meshes: [{file: " SACCADE_SOURCE_DIR "/scenes/planes/planes.obj}]\n"), objects(world) + 1);
+  const std::string mesh = testing::source_path("scenes/planes/planes.obj");
+  EXPECT_EQ(objects(world + "meshes: [{file: " + mesh + "}]\n"), objects(world) + 1);
 }
 
 std::string problem_of(const std::string& yaml) {
