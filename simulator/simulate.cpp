@@ -127,8 +127,8 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   for (const RigCamera& camera : cameras)
     static_cast<void>(chosen_sampling(camera.events.sampling, scene));  // or an error, at once
   const EventOptions& events = cameras.front().events;
-  if (const std::string warning = aliasing_warning(
-          texels_per_ray(scene, motion, cameras.front().camera, events), events);
+  if (const std::string warning =
+          aliasing_warning(texels_per_ray(scene, motion, cameras.front().camera, events), events);
       !warning.empty())
     show_warning(warning);
   const std::optional<ColourScenes> colours = colour_scenes(config, cameras);

@@ -198,9 +198,9 @@ std::string describe_scene(const SceneOptions& options) {
     const World world = make_world(*options.world, importer.remarks());
     std::size_t generated = 0;
     for (const WorldPart& part : world.parts) generated += part.mesh.triangles.size();
-    text += fmt::format("  {}: {} objects of {} triangles, and {} meshes of files\n",
-                        world_title(*options.world), world.parts.size(), generated,
-                        world.files.size());
+    text +=
+        fmt::format("  {}: {} objects of {} triangles, and {} meshes of files\n",
+                    world_title(*options.world), world.parts.size(), generated, world.files.size());
     triangles += generated;
   }
   return fmt::format("scene of {} meshes from {} files, {} triangles\n", options.meshes.size(),

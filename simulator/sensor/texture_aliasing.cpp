@@ -49,8 +49,10 @@ double texels_per_ray(const Scene& scene, const Spline& world_from_camera,
 std::string aliasing_warning(double texels_per_ray, const EventOptions& options) {
   if (options.texture_filter == TextureFilter::kMipmap || texels_per_ray < kManyTexels) return {};
   return fmt::format(
-      "textures are finer than the pixels ({:.2g} texels per ray, median) and are sampled at points: "
-      "some events are of aliasing, which no sensor would see; state events.texture_filter: mipmap{}",
+      "textures are finer than the pixels ({:.2g} texels per ray, median) and are sampled at "
+      "points: "
+      "some events are of aliasing, which no sensor would see; state events.texture_filter: "
+      "mipmap{}",
       texels_per_ray, options.samples_per_pixel == 1 ? " and events.samples_per_pixel: 4" : "");
 }
 

@@ -205,8 +205,8 @@ GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t
   append(generate.set);
   if (dataset.part != nullptr) append(dataset.part->set);
   append(dataset.scene->set);
-  const Node sampled = sample_values(parameters_of(generate, dataset.part, *dataset.scene),
-                                     generate.seed, index);
+  const Node sampled =
+      sample_values(parameters_of(generate, dataset.part, *dataset.scene), generate.seed, index);
   for (const config::Entry& entry : sampled.entries) {
     dataset.settings.push_back({entry.key, config::to_flow_yaml(entry.value)});
     flatten(entry.value, entry.key, dataset.sampled);

@@ -31,9 +31,9 @@ struct GenerateScene {
 
 /// Overrides and distributions that belong together, such as a motion and the camera that it suits.
 struct GenerateCase {
-  std::string name;      ///< in the manifest
-  int weight = 1;        ///< relative probability
-  Settings set;          ///< overrides, applied after those of all scenes
+  std::string name;        ///< in the manifest
+  int weight = 1;          ///< relative probability
+  Settings set;            ///< overrides, applied after those of all scenes
   SampledParameters draw;  ///< replace those of all scenes that have the same key
 };
 
@@ -64,8 +64,8 @@ struct GeneratedDataset {
   std::string name;
   const GenerateScene* scene = nullptr;
   const GenerateCase* part = nullptr;  ///< nullptr: there are no cases
-  std::uint64_t seed = 0;  ///< of its simulation
-  std::string split;       ///< train, val or test
+  std::uint64_t seed = 0;              ///< of its simulation
+  std::string split;                   ///< train, val or test
   int shard = 0;
   Settings settings;  ///< in the order in which they are applied
   /// The sampled values by path: "trajectory.position.0" -> "0.12".

@@ -32,8 +32,7 @@ void add_legs(Mesh& mesh, double x, double y, double thickness, double height,
               SheetCutter& cutter) {
   for (const double side : {-1.0, 1.0})
     for (const double end : {-1.0, 1.0})
-      add_block(mesh,
-                {side * x - 0.5 * thickness, end * y - 0.5 * thickness, -kFootDepth_m},
+      add_block(mesh, {side * x - 0.5 * thickness, end * y - 0.5 * thickness, -kFootDepth_m},
                 {thickness, thickness, height + kFootDepth_m}, cutter);
 }
 
@@ -81,8 +80,8 @@ Cabinet shelf(WorldDice& dice, SheetCutter& cutter) {
       const double front = dice.between(-0.45, -0.2) * size.y();
       const double height = dice.between(0.5, 0.9) * (gap - kBoard_m);
       if (dice.chance(0.85))
-        add_block(made.mesh, {x, front, z + kBoard_m - kJoint_m},
-                  {width, 0.5 * size.y(), height}, cutter);
+        add_block(made.mesh, {x, front, z + kBoard_m - kJoint_m}, {width, 0.5 * size.y(), height},
+                  cutter);
       x += width + dice.between(0.002, 0.02);
     }
   }
@@ -103,8 +102,7 @@ Cabinet chair(WorldDice& dice, SheetCutter& cutter) {
 }  // namespace
 
 void add_block(Mesh& mesh, const Vector3d& low, const Vector3d& size, SheetCutter& cutter) {
-  add_moved(mesh, box_mesh(size, cutter),
-            placed_at(low + 0.5 * size, Eigen::Matrix3d::Identity()));
+  add_moved(mesh, box_mesh(size, cutter), placed_at(low + 0.5 * size, Eigen::Matrix3d::Identity()));
 }
 
 Cabinet draw_cabinet(WorldDice& dice, SheetCutter& cutter) {

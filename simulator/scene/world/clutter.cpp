@@ -35,8 +35,7 @@ void build_clutter(WorldLayout& layout) {
     Vector3d centre = draw_place_in_view(dice, 1.3, 0.95 * shell.front);
     const double radius = draw_radius(dice, centre.y());
     const bool stands = dice.chance(0.35);
-    const Eigen::Matrix3d rotation =
-        stands ? turn_by_slope(dice.between(-3, 3)) : dice.rotation();
+    const Eigen::Matrix3d rotation = stands ? turn_by_slope(dice.between(-3, 3)) : dice.rotation();
     if (stands) centre.z() = radius - shell.down;
     if (!layout.is_inside(centre, 0.99 * radius) || !layout.is_clear(centre, radius) ||
         !layout.take(centre, radius))

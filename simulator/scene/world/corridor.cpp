@@ -48,9 +48,9 @@ void line_wall(WorldLayout& layout, WorldDice& dice, double side) {
     const double width = kind == 0 ? dice.between(0.1, 0.35) : dice.between(0.4, 0.95);
     const Vector3d draw = dice.vector({0, 0, 0}, {1, 1, 1});
     if (kind == 0)
-      add_if_clear(layout, "pilaster",
-                   at_wall_box(y, width, 0.05 + 0.2 * draw.x(), -shell.down - kSunk_m,
-                               shell.up + kSunk_m));
+      add_if_clear(
+          layout, "pilaster",
+          at_wall_box(y, width, 0.05 + 0.2 * draw.x(), -shell.down - kSunk_m, shell.up + kSunk_m));
     else if (kind == 1)
       add_if_clear(layout, "door",
                    at_wall_box(y, width, 0.04, -shell.down - kSunk_m,

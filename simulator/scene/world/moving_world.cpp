@@ -45,8 +45,8 @@ void build_moving(WorldLayout& layout) {
   const Vector3d centre =
       dice.vector({-0.25, kObjectDistance_m, -0.1}, {0.25, kObjectDistance_m, 0.15});
   layout.keep_out(centre, kAmplitude_m.norm() + kObjectRadius_m);
-  const auto build = kStill[static_cast<std::size_t>(
-      dice.integer(0, static_cast<int>(kStill.size()) - 1))];
+  const auto build =
+      kStill[static_cast<std::size_t>(dice.integer(0, static_cast<int>(kStill.size()) - 1))];
   build(layout);
   Mesh object = draw_solid(dice, dice.between(0.7, 1) * kObjectRadius_m, layout.cutter());
   layout.add_moving("moving object", std::move(object), draw_object_motion(dice, centre));

@@ -22,8 +22,7 @@ Picture read_picture(const WorldPicture& picture, WorldTextureRequest& request) 
   const std::string problem = missing_picture_problem(picture);
   const std::optional<Bytes> bytes = FileSource().read(picture.file);
   if (!problem.empty() || !bytes) throw InputError("scene.world.texture", problem);
-  return decode_picture(*bytes, picture.file.string(), request.remarks, {1, 1, 1},
-                        request.channel);
+  return decode_picture(*bytes, picture.file.string(), request.remarks, {1, 1, 1}, request.channel);
 }
 
 /// `count` different ones of so many, in an order by chance.
@@ -31,8 +30,9 @@ std::vector<std::size_t> draw_some(WorldDice& dice, std::size_t count, std::size
   std::vector<std::size_t> all(of);
   for (std::size_t i = 0; i < of; ++i) all[i] = i;
   for (std::size_t i = 0; i < count; ++i)
-    std::swap(all[i], all[static_cast<std::size_t>(
-                          dice.integer(static_cast<int>(i), static_cast<int>(of) - 1))]);
+    std::swap(
+        all[i],
+        all[static_cast<std::size_t>(dice.integer(static_cast<int>(i), static_cast<int>(of) - 1))]);
   all.resize(count);
   return all;
 }
@@ -68,8 +68,7 @@ void print_as_poster(ImageF& image) {
   const auto mean = static_cast<float>(sum / static_cast<double>(some.size()));
   const float gain =
       std::min(1 / std::max(*high, kDarkest), static_cast<float>(kGrey) / std::max(mean, kDarkest));
-  for (float& value : image.pixels())
-    value = kInk + (kPaper - kInk) * std::min(1.0F, gain * value);
+  for (float& value : image.pixels()) value = kInk + (kPaper - kInk) * std::min(1.0F, gain * value);
 }
 
 /// What covers and how much, both of one size; light times opacity.
@@ -87,7 +86,8 @@ Cutting read_cutting(const WorldPicture& file, WorldTextureRequest& request) {
   for (std::size_t i = 0; i < picture.grey.size(); ++i)
     picture.grey.data()[i] =
         picture.opacity.data()[i] * (kInk + (kPaper - kInk) * picture.grey.data()[i]);
-  const int factor = (std::max(picture.grey.width(), picture.grey.height()) + kLargest - 1) / kLargest;
+  const int factor =
+      (std::max(picture.grey.width(), picture.grey.height()) + kLargest - 1) / kLargest;
   return {shrunk(picture.grey, factor), shrunk(picture.opacity, factor)};
 }
 
@@ -137,7 +137,8 @@ std::vector<WorldSheet> make_drawings(WorldTextureRequest& request) {
     ImageF sheet(kSide, kSide);
     sheet.fill(static_cast<float>(dice.between(0.4, 0.85)));
     for (int i = 0; i < kPasted; ++i) {
-      const auto which = static_cast<std::size_t>(dice.integer(0, static_cast<int>(cuttings.size()) - 1));
+      const auto which =
+          static_cast<std::size_t>(dice.integer(0, static_cast<int>(cuttings.size()) - 1));
       const int x = dice.integer(-300, kSide - 100), y = dice.integer(-300, kSide - 100);
       paste(sheet, cuttings[which], x, y, dice.chance(0.5));
     }

@@ -43,7 +43,8 @@ class SheetCutter {
     const bool is_turned = dice_.chance(0.5);
     const Eigen::Vector2d size =
         is_turned ? Eigen::Vector2d(height_m, width_m) : Eigen::Vector2d(width_m, height_m);
-    const double enlarged = dice_.log_between(1, std::min(width_m, height_m) > kLarge_m ? 2.5 : 1.3);
+    const double enlarged =
+        dice_.log_between(1, std::min(width_m, height_m) > kLarge_m ? 2.5 : 1.3);
     const double scale = std::min(1 / enlarged, sheet.cwiseQuotient(size).minCoeff());
     Eigen::Vector2d per_u = scale * Eigen::Vector2d::UnitX() / sheet.x();
     Eigen::Vector2d per_v = scale * Eigen::Vector2d::UnitY() / sheet.y();

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array kGeometries{
     WorldGeometryKind{WorldGeometry::kRoom, "room",
-                      "a room with cupboards, tables, shelves and frames made of boxes", build_room},
+                      "a room with cupboards, tables, shelves and frames made of boxes",
+                      build_room},
     WorldGeometryKind{WorldGeometry::kCorridor, "corridor",
                       "a narrow corridor with doors, pilasters and beams", build_corridor},
     WorldGeometryKind{WorldGeometry::kLayers, "layers",
@@ -74,8 +75,7 @@ Mesh draw_solid(WorldDice& dice, double radius, SheetCutter& cutter) {
   }
   const double other = dice.between(0.35, 0.85);
   const Eigen::Vector3d size =
-      2 * radius *
-      Eigen::Vector3d(part, rest * other, rest * std::sqrt(1 - other * other));
+      2 * radius * Eigen::Vector3d(part, rest * other, rest * std::sqrt(1 - other * other));
   return box_mesh(size, cutter);
 }
 

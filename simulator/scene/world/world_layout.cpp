@@ -51,7 +51,8 @@ void WorldLayout::close(const WorldShell& shell) {
   shell_ = shell;
   world_from_shell_ = placed_at(Vector3d::Zero(), turn_by_slope(shell.turn));
   WorldDice dice = this->dice(kPanelStream);
-  const Vector3d low(-shell.left, -shell.back, -shell.down), high(shell.right, shell.front, shell.up);
+  const Vector3d low(-shell.left, -shell.back, -shell.down),
+      high(shell.right, shell.front, shell.up);
   const Vector3d size = high - low;
   const auto wall = [&](const char* name, int normal, double at, int x, int y) {
     Vector3d corner = low - Vector3d::Constant(kOverlap_m);
@@ -110,8 +111,8 @@ void WorldLayout::add(std::string name, Mesh mesh, const Eigen::Isometry3d& worl
 }
 
 void WorldLayout::add_moving(std::string name, Mesh mesh, MotionOptions trajectory) {
-  parts_.push_back({std::move(name), std::move(mesh), Eigen::Isometry3d::Identity(),
-                    std::move(trajectory)});
+  parts_.push_back(
+      {std::move(name), std::move(mesh), Eigen::Isometry3d::Identity(), std::move(trajectory)});
 }
 
 }  // namespace saccade

@@ -67,8 +67,7 @@ void build_relief(WorldLayout& layout) {
   Mesh mesh;
   for (int j = 0; j < kRows; ++j)
     for (int i = 0; i < kColumns; ++i)
-      add_patch(mesh, relief,
-                {(i - 0.5 * kColumns) * size.x(), (j - 0.5 * kRows) * size.y()}, size,
+      add_patch(mesh, relief, {(i - 0.5 * kColumns) * size.x(), (j - 0.5 * kRows) * size.y()}, size,
                 layout.cutter());
   // From a ground that rises to a wall that leans back.
   const double turn = dice.between(-0.3, 0.3), tilt = dice.between(0.5, 1.45);

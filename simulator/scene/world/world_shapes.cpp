@@ -36,7 +36,8 @@ void add_disc(Mesh& mesh, double radius, double z, double up, int sides, SheetCu
   }
   const auto count = static_cast<std::uint32_t>(sides);
   for (std::uint32_t i = 0; i < count; ++i)
-    mesh.triangles.push_back({{centre, centre + 1 + i, centre + 1 + (i + 1) % count}, cut.material});
+    mesh.triangles.push_back(
+        {{centre, centre + 1 + i, centre + 1 + (i + 1) % count}, cut.material});
 }
 
 /// One of the six faces of a cube that is blown up to a sphere: (a, b) in [-1, 1]^2 on the face

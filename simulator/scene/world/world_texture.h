@@ -17,7 +17,7 @@ namespace saccade {
 
 /// One of the few textures that the surfaces of a world are cut out of.
 struct WorldSheet {
-  ImageF albedo;     ///< linear light
+  ImageF albedo;       ///< linear light
   double width_m = 0;  ///< of the surface that it covers; its texels are squares
 
   [[nodiscard]] Eigen::Vector2d size_m() const {

@@ -23,9 +23,9 @@
 namespace saccade {
 namespace {
 
+using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using Eigen::Vector3d;
 
 WorldOptions world_of(WorldGeometry geometry, std::uint64_t seed,
                       WorldTexture texture = WorldTexture::kRectangles) {
@@ -133,8 +133,10 @@ bool is_same(const World& a, const World& b) {
 }
 
 TEST_P(EveryGeometry, DependsOnItsSeedAlone) {
-  EXPECT_TRUE(is_same(made(world_of(GetParam().geometry, 8)), made(world_of(GetParam().geometry, 8))));
-  EXPECT_FALSE(is_same(made(world_of(GetParam().geometry, 8)), made(world_of(GetParam().geometry, 9))));
+  EXPECT_TRUE(
+      is_same(made(world_of(GetParam().geometry, 8)), made(world_of(GetParam().geometry, 8))));
+  EXPECT_FALSE(
+      is_same(made(world_of(GetParam().geometry, 8)), made(world_of(GetParam().geometry, 9))));
 }
 
 TEST_P(EveryGeometry, HasTextureCoordinatesThatNeitherStretchNorCollapse) {
@@ -157,7 +159,8 @@ TEST_P(EveryGeometry, HasTextureCoordinatesThatNeitherStretchNorCollapse) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, EveryGeometry, ::testing::ValuesIn(world_geometries().begin(), world_geometries().end()),
+INSTANTIATE_TEST_SUITE_P(, EveryGeometry,
+                         ::testing::ValuesIn(world_geometries().begin(), world_geometries().end()),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 class EveryTexture : public ::testing::TestWithParam<WorldTextureKind> {
@@ -195,7 +198,8 @@ TEST_P(EveryTexture, IsTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(std::ranges::equal(one[0].albedo.pixels(), other[0].albedo.pixels()));
 }
 
-INSTANTIATE_TEST_SUITE_P(, EveryTexture, ::testing::ValuesIn(world_textures().begin(), world_textures().end()),
+INSTANTIATE_TEST_SUITE_P(, EveryTexture,
+                         ::testing::ValuesIn(world_textures().begin(), world_textures().end()),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 std::pair<float, float> albedo_range(WorldTexture texture) {
