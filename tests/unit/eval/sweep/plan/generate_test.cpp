@@ -212,8 +212,8 @@ TEST(Generate, SaysWhatIsWrongAndWhere) {
               HasSubstr("sweep.yaml:1: generate.count"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + ", draw: {seed: 3}}\n"),
               HasSubstr("must not hold 'seed'"));
-  EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\nconfigurations: [{name: a}]\n"),
-              HasSubstr("runs nothing"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + ", cases: [{name: a}, {name: a}]}\n"),
+              HasSubstr("cases hold a name twice"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\ndatasets: [{path: recorded}]\n"),
               HasSubstr("takes the place of 'datasets'"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + ",\n draw: {a: {uniform: [2, 1]}}}\n"),
