@@ -42,8 +42,10 @@ void push_apart(ImageF& albedo, double dark, double light) {
   const double middle = 0.5 * (std::log(dark) + std::log(light));
   const double half = 0.5 * (std::log(light) - std::log(dark));
   for (float& value : albedo.pixels()) {
-    const double x = (std::log(static_cast<double>(value)) - middle) / half;
-    value = static_cast<float>(std::exp(middle + half * x * (1.9 - 0.9 * x * x)));
+    double x = (std::log(static_cast<double>(value)) - middle) / half;
+    // Rises from -1 to 1 with level ends: the range stays as it is.
+    for (int i = 0; i < 2; ++i) x = std::clamp(0.5 * x * (3 - x * x), -1.0, 1.0);
+    value = static_cast<float>(std::exp(middle + half * x));
   }
 }
 

@@ -152,10 +152,11 @@ TEST_P(EveryGeometry, HasTextureCoordinatesThatNeitherStretchNorCollapse) {
       const Eigen::Vector2d q = (uv[c] - uv[a]).cwiseProduct(texels);
       const double area_m2 = (v[b] - v[a]).cross(v[c] - v[a]).norm();
       const double per_m = std::sqrt(std::abs(p.x() * q.y() - p.y() * q.x()) / area_m2);
-      // 640 texels per metre, enlarged 2.5 times; on what is larger than a texture, and on spheres
-      // and steep reliefs, fewer.
+      // 640 texels per metre, enlarged 2.5 times; on what is larger than a texture and on steep
+      // reliefs, fewer. On the rim of a sphere's faces an area is 0.7 of what it is in their middle,
+      // and the sides of a rod of eight are 2.6 % shorter than its circumference.
       EXPECT_GT(per_m, 100) << part.name;
-      EXPECT_LT(per_m, 640 * 1.01) << part.name;
+      EXPECT_LT(per_m, 640 * std::sqrt(1 / 0.7 * 1.026)) << part.name;
     }
 }
 
@@ -290,7 +291,6 @@ TEST(World, RejectsWhatItDoesNotKnow) {
               AllOf(HasSubstr("texture"), HasSubstr("photographs")));
   EXPECT_THAT(problem_of("world: {seed: -1}"), HasSubstr("seed"));
   EXPECT_THAT(problem_of("world: {sead: 1}"), HasSubstr("seed"));
-  EXPECT_THAT(problem_of("background: 0.5"), HasSubstr("meshes"));
 }
 
 TEST(World, NamesThePackageOfAPictureThatIsMissing) {
