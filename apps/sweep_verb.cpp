@@ -67,7 +67,7 @@ void sweep(const SweepVerbOptions& options) {
   const SweepSummary summary = run_sweep(config, options.output, *launcher, options.jobs);
   if (summary.interrupted)
     throw std::runtime_error("interrupted; the same command goes on from here");
-  if (!options.quiet) show(options, summary, config.generate.has_value());
+  if (!options.quiet) show(options, summary, config.generate && config.configurations.empty());
   if (summary.failed > 0)
     throw std::runtime_error(fmt::format("{} {} failed; what they printed is in {}/NAME/log.txt",
                                          summary.failed, summary.failed == 1 ? "job" : "jobs",

@@ -8,6 +8,7 @@
 
 #include "core/config/config.h"
 #include "core/io/dataset/dataset_writer.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "simulator/motion/motion.h"
 #include "simulator/record_events.h"
@@ -18,6 +19,7 @@
 #include "simulator/rig.h"
 #include "simulator/scene/scene_builder.h"
 #include "simulator/sensor/adaptive/audit.h"
+#include "simulator/sensor/texture_aliasing.h"
 
 namespace saccade {
 namespace {
@@ -124,6 +126,11 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
   const Scene scene = build_scene(config.scene);
   for (const RigCamera& camera : cameras)
     static_cast<void>(chosen_sampling(camera.events.sampling, scene));  // or an error, at once
+  const EventOptions& events = cameras.front().events;
+  if (const std::string warning =
+          aliasing_warning(texels_per_ray(scene, motion, cameras.front().camera, events), events);
+      !warning.empty())
+    show_warning(warning);
   const std::optional<ColourScenes> colours = colour_scenes(config, cameras);
   report.load_s = watch.seconds();
 

@@ -241,9 +241,8 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   }
   SweepSummary summary{count(plan, JobState::kDone), count(plan, JobState::kSkipped),
                        count(plan, JobState::kFailed), 0, !complete};
-  if (sweep.generate)
-    write_manifest(sweep, plan, folder);
-  else if (complete)
+  if (sweep.generate) write_manifest(sweep, plan, folder);
+  if (complete && (!sweep.generate || !plan.runs.empty()))
     summary.missed = write_sweep_results(sweep, plan, folder);
   return summary;
 }
@@ -258,6 +257,7 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
   std::string text =
       fmt::format("{} datasets: {} to simulate, {} done already\n", plan.simulations.size(),
                   due.size(), plan.simulations.size() - due.size());
+  if (!plan.runs.empty()) text += fmt::format("and {} runs over them\n", plan.runs.size());
   if (due.empty()) return text;
   text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
   const std::unique_ptr<Launcher> here = make_launcher("local");

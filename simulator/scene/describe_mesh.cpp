@@ -18,6 +18,7 @@
 #include "simulator/scene/animation/model_motion.h"
 #include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/mesh_import.h"
+#include "simulator/scene/world/world.h"
 
 namespace saccade {
 namespace {
@@ -192,6 +193,15 @@ std::string describe_scene(const SceneOptions& options) {
     triangles += mesh.triangles.size() * static_cast<std::size_t>(count);
     text += fmt::format("  {} x {}: {}; textures {}\n", count, file.string(), counts_of(mesh),
                         texture_sizes(mesh));
+  }
+  if (options.world) {
+    const World world = make_world(*options.world, importer.remarks());
+    std::size_t generated = 0;
+    for (const WorldPart& part : world.parts) generated += part.mesh.triangles.size();
+    text +=
+        fmt::format("  {}: {} objects of {} triangles, and {} meshes of files\n",
+                    world_title(*options.world), world.parts.size(), generated, world.files.size());
+    triangles += generated;
   }
   return fmt::format("scene of {} meshes from {} files, {} triangles\n", options.meshes.size(),
                      uses.size(), triangles) +

@@ -23,6 +23,7 @@
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/texture/picture.h"
 #include "simulator/scene/triangle_setup.h"
+#include "simulator/scene/world/world.h"
 
 namespace saccade {
 namespace {
@@ -255,6 +256,19 @@ void add_lights(const Mesh& mesh, const Eigen::Affine3d& world_from_mesh, double
                                  count, kMaxLights));
 }
 
+/// The generated objects of a world, after the meshes of files.
+void add_world_parts(const World& world, SceneBuilder& builder) {
+  for (const WorldPart& part : world.parts) {
+    const Eigen::Affine3d transform(part.world_from_mesh);
+    const InstanceLabel label{part.name, "", 0, false};
+    if (part.trajectory)
+      builder.add_moving(part.mesh, transform,
+                         build_motion(*part.trajectory, "scene.world.trajectory"), label);
+    else
+      builder.add(part.mesh, transform, label);
+  }
+}
+
 }  // namespace
 
 Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh) {
@@ -457,13 +471,17 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian,
                          channel, takes_lights(options), options.normal_maps});
+  World world;
+  if (options.world) world = make_world(*options.world, importer.remarks(), channel);
+  std::vector<MeshOptions> items = options.meshes;
+  items.insert(items.end(), world.files.begin(), world.files.end());
   MeshUses uses;
-  importer.prefetch(still_files(options.meshes, uses));
+  importer.prefetch(still_files(items, uses));
   std::map<MeshKey, Mesh> meshes;
   const std::vector<std::string> classes = class_names(options);
   std::vector<LightOptions> lights = options.lights;
-  for (std::size_t i = 0; i < options.meshes.size(); ++i) {
-    const MeshOptions& item = options.meshes[i];
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const MeshOptions& item = items[i];
     const MeshKey key = key_of(item);
     auto known = meshes.find(key);
     if (known == meshes.end())
@@ -491,7 +509,8 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
           item.file.string(), i));
     if (--uses[key] == 0) meshes.erase(known);
   }
-  if (options.meshes.empty()) throw InputError("scene.meshes", "names no mesh");
+  add_world_parts(world, builder);
+  if (items.empty() && world.parts.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian) {
     builder.light(options.ambient, std::move(lights), options.ambient_flicker);
     if (options.environment_light)

@@ -109,7 +109,11 @@ void describe(config::Fields& fields, MeshOptions& options) {
 }
 
 void describe(config::Fields& fields, SceneOptions& options) {
-  fields.list("meshes", options.meshes, "Meshes of the scene.").length(1, 1'000'000);
+  fields.section("world", options.world,
+                 "A generated scene, beside which no meshes are needed: a room or things of some "
+                 "kind around a free ball of 0.8 m at the origin, to be seen along +y.");
+  fields.list("meshes", options.meshes, "Meshes of the scene; of a world, further ones.")
+      .length(options.world ? 0 : 1, 1'000'000);
   fields.list("more_meshes", options.more_meshes,
               "Meshes that follow those of 'meshes': for overrides that add to a scene. Printed "
               "configurations list them there.");

@@ -15,6 +15,7 @@
 #include "simulator/scene/light/flicker.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture_library.h"
+#include "simulator/scene/world/world_options.h"
 
 namespace saccade {
 
@@ -52,6 +53,7 @@ enum class Lighting { kNone, kLambertian };
 struct SceneOptions {
   std::vector<MeshOptions> meshes;
   std::vector<MeshOptions> more_meshes;  ///< empty once read: then `meshes` has them, too
+  std::optional<WorldOptions> world;     ///< generated, beside the meshes
   std::vector<std::string> classes;      ///< class k is item k - 1; empty: as the meshes name them
   double background = 0.5;
   std::filesystem::path background_picture;

@@ -18,17 +18,24 @@ using config::Node;
 /// Simulation seeds fit 31 bits, which every program can read.
 constexpr std::uint64_t kSeeds = 1ULL << 31;
 
-const GenerateScene& sample_scene(const GenerateConfig& generate, std::uint64_t index) {
+/// One of the items, by their weights.
+template <class Weighted>
+const Weighted& sample_by_weight(const std::vector<Weighted>& items, const char* path,
+                                 std::uint64_t seed, std::uint64_t index) {
   std::uint64_t all = 0;
-  for (const GenerateScene& scene : generate.scenes)
-    all += static_cast<std::uint64_t>(scene.weight);
-  std::uint64_t left = sample_below(all, "generate.scenes", generate.seed, index);
-  for (const GenerateScene& scene : generate.scenes) {
-    const auto weight = static_cast<std::uint64_t>(scene.weight);
-    if (left < weight) return scene;
+  for (const Weighted& item : items) all += static_cast<std::uint64_t>(item.weight);
+  std::uint64_t left = sample_below(all, path, seed, index);
+  for (const Weighted& item : items) {
+    const auto weight = static_cast<std::uint64_t>(item.weight);
+    if (left < weight) return item;
     left -= weight;
   }
-  return generate.scenes.back();
+  return items.back();
+}
+
+const GenerateScene& scene_of(const GenerateConfig& generate, std::uint64_t index) {
+  if (generate.scenes_in_turn) return generate.scenes[index % generate.scenes.size()];
+  return sample_by_weight(generate.scenes, "generate.scenes", generate.seed, index);
 }
 
 /// Datasets come in blocks of train + val + test; in each block the parts are shuffled (Fisher and
@@ -51,15 +58,22 @@ std::string split_of(const GenerateConfig& generate, std::uint64_t index) {
   return parts[index % parts.size()];
 }
 
-/// The parameters of all scenes, replaced by the scene's own where the key is the same.
-SampledParameters parameters_of(const GenerateConfig& generate, const GenerateScene& scene) {
-  SampledParameters parameters = generate.draw;
-  for (const config::Entry& entry : scene.draw.keys.entries) {
+void replace(SampledParameters& parameters, const SampledParameters& by) {
+  for (const config::Entry& entry : by.keys.entries) {
     if (config::Entry* general = parameters.keys.find(entry.key))
       general->value = entry.value;
     else
       parameters.keys.entries.push_back(entry);
   }
+}
+
+/// The parameters of all scenes, replaced by those of the case and then by the scene's own where
+/// the key is the same.
+SampledParameters parameters_of(const GenerateConfig& generate, const GenerateCase* part,
+                                const GenerateScene& scene) {
+  SampledParameters parameters = generate.draw;
+  if (part != nullptr) replace(parameters, part->draw);
+  replace(parameters, scene.draw);
   return parameters;
 }
 
@@ -124,6 +138,15 @@ void describe(config::Fields& fields, GenerateScene& scene) {
   if (fields.reading() && scene.name.empty()) scene.name = scene.simulate.stem();
 }
 
+void describe(config::Fields& fields, GenerateCase& part) {
+  fields.value("name", part.name, "Name of the case in the manifest.").required();
+  fields
+      .value("weight", part.weight,
+             "Relative probability of this case; 2 is chosen twice as often as 1.")
+      .range(1, 1e6);
+  describe_overrides(fields, part, "of this case");
+}
+
 void describe(config::Fields& fields, GenerateConfig& generate) {
   fields.value("name", generate.name, "Name of the datasets: NAME-000417 is dataset 417.");
   fields.value("first", generate.first, "Index of the first dataset.").range(0, 999999);
@@ -147,27 +170,43 @@ void describe(config::Fields& fields, GenerateConfig& generate) {
             "them.")
       .required()
       .length(1, config::Rule::kAnyLength);
+  fields.value("scenes_in_turn", generate.scenes_in_turn,
+               "Whether the scenes take turns, so that each has as many datasets as the others, "
+               "instead of being sampled by their weights.");
+  fields.list("cases", generate.cases,
+              "Overrides and distributions that belong together, each {name, weight, set, draw}: "
+              "every dataset samples one of them beside its scene. By default there are none.");
   describe_overrides(fields, generate, "of all scenes");
   fields.expect(!generate.name.empty(), "name", "must not be empty");
   std::set<std::string> names;
   for (const GenerateScene& scene : generate.scenes) names.insert(scene.name);
   fields.expect(names.size() == generate.scenes.size(), "scenes", "hold a name twice");
+  std::set<std::string> cases;
+  for (const GenerateCase& part : generate.cases) cases.insert(part.name);
+  fields.expect(cases.size() == generate.cases.size(), "cases", "hold a name twice");
 }
 
 GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t index) {
   GeneratedDataset dataset;
   dataset.index = index;
   dataset.name = fmt::format("{}-{:06}", generate.name, index);
-  dataset.scene = &sample_scene(generate, index);
+  dataset.scene = &scene_of(generate, index);
+  if (!generate.cases.empty())
+    dataset.part = &sample_by_weight(generate.cases, "generate.cases", generate.seed, index);
   dataset.seed = sample_below(kSeeds, "seed", generate.seed, index);
   dataset.split = dataset.scene->split == "any" ? split_of(generate, index) : dataset.scene->split;
   dataset.shard = static_cast<int>(index % static_cast<std::uint64_t>(generate.shards));
   if (!generate.classes.empty())
     dataset.settings.push_back(
         {"scene.classes", config::to_flow_yaml(config::to_node(generate.classes))});
-  for (const Settings* settings : {&generate.set, &dataset.scene->set})
-    dataset.settings.insert(dataset.settings.end(), settings->begin(), settings->end());
-  const Node sampled = sample_values(parameters_of(generate, *dataset.scene), generate.seed, index);
+  const auto append = [&dataset](const Settings& settings) {
+    dataset.settings.insert(dataset.settings.end(), settings.begin(), settings.end());
+  };
+  append(generate.set);
+  if (dataset.part != nullptr) append(dataset.part->set);
+  append(dataset.scene->set);
+  const Node sampled =
+      sample_values(parameters_of(generate, dataset.part, *dataset.scene), generate.seed, index);
   for (const config::Entry& entry : sampled.entries) {
     dataset.settings.push_back({entry.key, config::to_flow_yaml(entry.value)});
     flatten(entry.value, entry.key, dataset.sampled);

@@ -29,6 +29,14 @@ struct GenerateScene {
   SampledParameters draw;          ///< replace those of all scenes that have the same key
 };
 
+/// Overrides and distributions that belong together, such as a motion and the camera that it suits.
+struct GenerateCase {
+  std::string name;        ///< in the manifest
+  int weight = 1;          ///< relative probability
+  Settings set;            ///< overrides, applied after those of all scenes
+  SampledParameters draw;  ///< replace those of all scenes that have the same key
+};
+
 /// Many datasets with sampled parameters; each has its own scene, overrides and seed.
 struct GenerateConfig {
   std::string name = "dataset";  ///< before the index in the folder name: dataset-000417
@@ -39,12 +47,15 @@ struct GenerateConfig {
   int shards = 1;                    ///< folders that the datasets are divided among
   std::vector<std::string> classes;  ///< of all scenes; empty: as they state them
   std::vector<GenerateScene> scenes;
-  Settings set;  ///< overrides of every scene
+  bool scenes_in_turn = false;      ///< dataset k shows scene k modulo their number
+  std::vector<GenerateCase> cases;  ///< each dataset samples one of them, too; empty: none
+  Settings set;                     ///< overrides of every scene
   SampledParameters draw;
 };
 
 void describe(config::Fields& fields, GenerateSplit& split);
 void describe(config::Fields& fields, GenerateScene& scene);
+void describe(config::Fields& fields, GenerateCase& part);
 void describe(config::Fields& fields, GenerateConfig& generate);
 
 /// The sampled parameters of one dataset.
@@ -52,8 +63,9 @@ struct GeneratedDataset {
   std::uint64_t index = 0;
   std::string name;
   const GenerateScene* scene = nullptr;
-  std::uint64_t seed = 0;  ///< of its simulation
-  std::string split;       ///< train, val or test
+  const GenerateCase* part = nullptr;  ///< nullptr: there are no cases
+  std::uint64_t seed = 0;              ///< of its simulation
+  std::string split;                   ///< train, val or test
   int shard = 0;
   Settings settings;  ///< in the order in which they are applied
   /// The sampled values by path: "trajectory.position.0" -> "0.12".

@@ -111,7 +111,7 @@ class Planner {
     for (const SweepDataset& dataset : sweep_.datasets)
       for (const auto& seed : seeds_or_default(dataset.seeds)) {
         SweepJob base = dataset_job(dataset, seed);
-        if (!sweep_.configurations.empty()) add_runs(base);
+        if (!sweep_.configurations.empty()) add_runs(base, 0);
       }
     return std::move(plan_);
   }
@@ -168,15 +168,26 @@ class Planner {
       append(call, "--threads", std::to_string(sweep_.threads));
       append(call, settings);
       job.commands = {call};
+      SweepJob base;
+      base.name = job.name;
+      base.point = job.point;
+      base.point.dataset = dataset.scene->name;
+      base.point.is_generated = true;
+      base.dataset = job.output;
+      base.made_by = plan_.simulations.size();
       plan_.simulations.push_back(std::move(job));
+      if (!sweep_.configurations.empty()) add_runs(base, dataset.index);
     }
   }
 
-  void add_runs(const SweepJob& base) {
+  /// `index`: of a generated dataset.
+  void add_runs(const SweepJob& base, std::uint64_t index) {
     std::vector<SweepVariant> variants = sweep_.variants;
     if (variants.empty()) variants.emplace_back();
     for (const SweepConfiguration& configuration : sweep_.configurations) {
-      if (!configuration.runs_over(base.point.dataset)) continue;
+      if (!configuration.runs_over(base.point.dataset) ||
+          index % static_cast<std::uint64_t>(configuration.every) != 0)
+        continue;
       for (const SweepVariant& variant : variants)
         for (const std::vector<std::string>& values : combinations(sweep_.grid))
           for (const auto& seed : seeds_or_default(sweep_.seeds_of(configuration))) {
@@ -201,8 +212,7 @@ class Planner {
                   Words& call) {
     if (configuration.empty()) return;
     const auto is_source = [&](const SweepJob& run) {
-      return run.point.configuration == configuration && run.point.dataset == job.point.dataset &&
-             run.point.dataset_seed == job.point.dataset_seed &&
+      return run.point.configuration == configuration && run.dataset == job.dataset &&
              run.point.variant == job.point.variant && run.point.grid == job.point.grid &&
              run.point.seed == job.point.seed;
     };

@@ -13,13 +13,14 @@ namespace saccade {
 
 /// The coordinates of a job in the sweep: the leading cells of its table row.
 struct SweepPoint {
-  std::string dataset;
+  std::string dataset;  ///< of runs over generated datasets, their scene
   std::optional<std::uint64_t> dataset_seed;
   std::string module;             ///< empty: a simulation
   std::string configuration;      ///< empty: a simulation
   std::string variant;            ///< empty: the sweep has none
   std::vector<std::string> grid;  ///< a value for each axis; empty: a simulation
   std::optional<std::uint64_t> seed;
+  bool is_generated = false;  ///< then results are summarised by medians and quartiles
 
   /// Whether both differ at most in their seeds, over which results are averaged.
   [[nodiscard]] bool differs_in_seed_only(const SweepPoint& other) const;

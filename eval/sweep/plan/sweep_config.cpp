@@ -63,17 +63,19 @@ void expect_source(config::Fields& fields, const SweepConfig& sweep, std::size_t
     fields.expect(std::find(given.begin(), given.end(), seed) != given.end(), "configurations",
                   fmt::format("'{}' has the seed {}, but '{}', which it starts from, does not",
                               user.name, seed, from));
-  for (const SweepDataset& dataset : sweep.datasets)
-    fields.expect(!user.runs_over(dataset.name) || source->runs_over(dataset.name),
-                  "configurations",
+  for (const std::string& dataset : sweep.dataset_names())
+    fields.expect(!user.runs_over(dataset) || source->runs_over(dataset), "configurations",
                   fmt::format("'{}' runs over {}, but '{}', which it starts from, does not",
-                              user.name, dataset.name, from));
+                              user.name, dataset, from));
+  fields.expect(user.every % source->every == 0, "configurations",
+                fmt::format("'{}' runs over datasets that '{}', which it starts from, leaves out: "
+                            "'every' must be a multiple of {}",
+                            user.name, from, source->every));
 }
 
 void expect_datasets(config::Fields& fields, const char* key, const SweepConfig& sweep,
                      const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const SweepDataset& dataset : sweep.datasets) known.push_back(dataset.name);
+  const std::vector<std::string> known = sweep.dataset_names();
   for (const std::string& name : names)
     fields.expect(std::find(known.begin(), known.end(), name) != known.end(), key,
                   fmt::format("'{}' is not a dataset of the sweep; {}", name,
@@ -106,6 +108,14 @@ void check_expected(config::Fields& fields, const SweepConfig& sweep) {
 }
 
 }  // namespace
+
+std::vector<std::string> SweepConfig::dataset_names() const {
+  std::vector<std::string> names;
+  for (const SweepDataset& dataset : datasets) names.push_back(dataset.name);
+  if (generate)
+    for (const GenerateScene& scene : generate->scenes) names.push_back(scene.name);
+  return names;
+}
 
 bool SweepConfiguration::runs_over(const std::string& dataset) const {
   return datasets.empty() || std::find(datasets.begin(), datasets.end(), dataset) != datasets.end();
@@ -151,7 +161,12 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
                 "must not be stated beside 'adapter'");
   expect_no_seed(fields, "set", configuration.set);
   fields.value("datasets", configuration.datasets,
-               "Names of the datasets that it runs over. Default: all.");
+               "Names of the datasets that it runs over, or scenes of generated ones. Default: "
+               "all.");
+  fields
+      .value("every", configuration.every,
+             "Runs over each of so many generated datasets alone, those whose index it divides.")
+      .range(1, 1e6);
   fields.value("seeds", configuration.seeds, "Seeds of the runs. Default: those of the sweep.");
   fields
       .value("repeat", configuration.repeat,
@@ -200,14 +215,15 @@ namespace {
 void describe_axes(config::Fields& fields, SweepConfig& sweep) {
   fields.value("module", sweep.module, "Module of `saccade run`.");
   fields.section("generate", sweep.generate,
-                 "Simulates many datasets with sampled parameters, in place of 'datasets'.");
+                 "Simulates many datasets with sampled parameters, in place of 'datasets'. "
+                 "Results over them are grouped by their scenes.");
   config::Rule datasets = fields.list(
       "datasets", sweep.datasets, "Datasets, each {name, path} or {name, simulate, set, seeds}.");
   if (!sweep.generate) datasets.required().length(1, config::Rule::kAnyLength);
   fields.list(
       "configurations", sweep.configurations,
       "Configurations that run over the datasets, each {name, module, file or adapter, set, "
-      "datasets, seeds, repeat, from, poses_from, depth_from}. None: simulate only.");
+      "datasets, every, seeds, repeat, from, poses_from, depth_from}. None: simulate only.");
   fields.list("variants", sweep.variants,
               "Named overrides, each {name, set}. Every configuration runs with each of them.");
   fields.value("grid", sweep.grid,
@@ -256,8 +272,9 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.expect(!sweep.timing || sweep.threads == 1, "threads", "must be 1 where 'timing' is true");
   const bool generates = sweep.generate.has_value();
   fields.expect(!generates || sweep.datasets.empty(), "generate", "takes the place of 'datasets'");
-  fields.expect(!generates || sweep.configurations.empty(), "generate",
-                "makes datasets and runs nothing over them; name them by 'path' in another sweep");
+  for (const SweepConfiguration& configuration : sweep.configurations)
+    fields.expect(generates || configuration.every == 1, "configurations",
+                  fmt::format("'every' of '{}' is for generated datasets", configuration.name));
   const bool has_adapters =
       std::any_of(sweep.configurations.begin(), sweep.configurations.end(),
                   [](const SweepConfiguration& c) { return c.adapter.has_value(); });

@@ -28,7 +28,8 @@ struct SweepConfiguration {
   std::optional<std::filesystem::path> file;  ///< nullopt: the module's default values
   std::optional<std::filesystem::path> adapter;
   Settings set;
-  std::vector<std::string> datasets;  ///< empty: all
+  std::vector<std::string> datasets;  ///< or scenes of generated ones; empty: all
+  int every = 1;                      ///< of generated datasets, those whose index it divides
   std::vector<std::uint64_t> seeds;   ///< empty: the sweep's
   std::optional<int> repeat;          ///< nullopt: the sweep's
   /// Earlier configurations whose run at the same dataset, variant, grid point and seed is passed
@@ -71,6 +72,8 @@ struct SweepConfig {
   std::vector<std::string> metrics;  ///< empty: the usual ones
   std::vector<ExpectedMetric> expected;
 
+  /// What configurations and expected metrics name: datasets, or scenes of generated ones.
+  [[nodiscard]] std::vector<std::string> dataset_names() const;
   [[nodiscard]] const std::vector<std::uint64_t>& seeds_of(
       const SweepConfiguration& configuration) const {
     return configuration.seeds.empty() ? seeds : configuration.seeds;

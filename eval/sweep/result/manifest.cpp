@@ -74,6 +74,7 @@ Json manifest_row(const GeneratedDataset& dataset, const SweepJob& job, const fs
   row["path"] = job.output.lexically_relative(fs::absolute(folder).lexically_normal()).string();
   row["status"] = status_text(job.state);
   row["scene"] = dataset.scene->name;
+  if (dataset.part != nullptr) row["case"] = dataset.part->name;
   row["split"] = dataset.split;
   row["seed"] = dataset.seed;
   row[kSampledKey] = Json::object();

@@ -31,8 +31,8 @@ struct SweepGroup {
 
 /// A metric over the rows of a group that have it and no problem.
 struct MetricSummary {
-  double value = 0;  ///< mean; of a speed the median
-  double low = 0;
+  double value = 0;  ///< mean; of a speed, and over generated datasets, the median
+  double low = 0;    ///< least value; over generated datasets the lower quartile
   double high = 0;
   std::size_t count = 0;
 };

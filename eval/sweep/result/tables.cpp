@@ -34,7 +34,7 @@ std::vector<Table::Column> header(const SweepResults& results, bool with_dataset
   if (results.sweep.configurations.size() > 1) columns.push_back({"configuration"});
   if (!results.sweep.variants.empty()) columns.push_back({"variant"});
   for (const std::string& axis : results.plan.axes) columns.push_back({"`" + axis + "`"});
-  if (has_seeds(results)) columns.push_back({"seeds"});
+  if (has_seeds(results)) columns.push_back({results.sweep.generate ? "datasets" : "seeds"});
   for (const std::string& metric : metrics) columns.push_back({metric_info(metric).label, true});
   return columns;
 }
@@ -173,7 +173,9 @@ std::string expected_table(std::span<const ExpectationResult> expectations) {
 
 std::string method_text(const SweepResults& results) {
   std::string text;
-  if (has_seeds(results))
+  if (results.sweep.generate)
+    text += "Values are medians over the datasets of a scene, with the quartiles in brackets. ";
+  else if (has_seeds(results))
     text += "Errors are means over the seeds, with the minimum and maximum in brackets. ";
   if (results.plan.runs.empty()) return text + "\n\n";
   text += results.sweep.repeat > 1

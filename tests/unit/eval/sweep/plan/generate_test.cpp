@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -46,6 +47,86 @@ TEST(Generate, PlansADatasetForEachIndex) {
   const GeneratedDataset dataset = generated_dataset(*sweep.generate, 417);
   EXPECT_THAT(dataset.sampled,
               ElementsAre(std::pair("a", "8"), std::pair("c.0", "5"), std::pair("d", "e")));
+}
+
+const std::string kInTurn =
+    "generate:\n"
+    "  count: 12\n"
+    "  scenes_in_turn: true\n"
+    "  draw: {a: {uniform: [0, 1]}}\n"
+    "  cases:\n"
+    "    - {name: slow, set: {c: 1}, draw: {a: {integer: [5, 5]}}}\n"
+    "    - {name: fast, weight: 2, set: {c: 2}, draw: {a: {integer: [9, 9]}}}\n"
+    "  scenes:\n"
+    "    - {name: first, simulate: walls.yaml}\n"
+    "    - {name: second, simulate: walls.yaml, draw: {b: {integer: [3, 3]}}}\n"
+    "    - {name: third, simulate: walls.yaml}\n";
+
+TEST(Generate, ScenesMayTakeTurns) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(folder, kInTurn);
+  for (std::uint64_t i = 0; i < 12; ++i)
+    EXPECT_EQ(generated_dataset(*sweep.generate, i).scene, &sweep.generate->scenes[i % 3]);
+}
+
+TEST(Generate, ACaseIsSampledAsAWholeByItsWeight) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(folder, kInTurn);
+  int fast = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    const GeneratedDataset dataset = generated_dataset(*sweep.generate, i);
+    const bool is_fast = dataset.part->name == "fast";
+    fast += is_fast ? 1 : 0;
+    const auto value = [&](const std::string& key) {
+      const auto has_key = [&](const Setting& setting) { return setting.key == key; };
+      return std::find_if(dataset.settings.begin(), dataset.settings.end(), has_key)->value;
+    };
+    ASSERT_EQ(value("a"), is_fast ? "9" : "5");
+    ASSERT_EQ(value("c"), is_fast ? "2" : "1");
+  }
+  // Binomial with p = 2/3: sigma is 26.
+  EXPECT_NEAR(fast, 2000, 4 * 26);
+}
+
+TEST(Generate, ConfigurationsRunOverGeneratedDatasets) {
+  const TemporaryFolder folder;
+  const SweepConfig sweep = read_sweep(folder, kInTurn +
+                                                   "configurations:\n"
+                                                   "  - {name: all}\n"
+                                                   "  - {name: some, datasets: [second]}\n"
+                                                   "  - {name: even, every: 2, poses_from: all}\n");
+  const SweepPlan plan = plan_sweep(sweep, "/out");
+  ASSERT_EQ(plan.runs.size(), 12U + 4U + 6U);
+  EXPECT_EQ(plan.runs[0].name, "dataset-000000_all");
+  EXPECT_EQ(plan.runs[0].dataset, "/out/data/dataset-000000");
+  EXPECT_EQ(plan.runs[0].made_by, 0U);
+  // Dataset 4 shows the second scene, and reads the run of the same dataset.
+  const auto even = std::find_if(plan.runs.begin(), plan.runs.end(), [](const SweepJob& job) {
+    return job.name == "dataset-000004_even";
+  });
+  ASSERT_NE(even, plan.runs.end());
+  EXPECT_EQ(even->point.dataset, "second");
+  EXPECT_EQ(plan.runs[even->sources.at(0)].name, "dataset-000004_all");
+  EXPECT_TRUE(even->point.differs_in_seed_only(
+      std::find_if(plan.runs.begin(), plan.runs.end(), [](const SweepJob& job) {
+        return job.name == "dataset-000010_even";
+      })->point));
+}
+
+TEST(Generate, ARunThatStartsFromAnotherNeedsItForEachDataset) {
+  const TemporaryFolder folder;
+  const auto problem = [&](const std::string& configurations) {
+    return error_of([&] { (void)read_sweep(folder, kInTurn + configurations); });
+  };
+  EXPECT_THAT(problem("configurations: [{name: a, every: 2}, {name: b, poses_from: a}]\n"),
+              HasSubstr("'every' must be a multiple of 2"));
+  EXPECT_THAT(problem("configurations: [{name: a, datasets: [secnod]}]\n"), HasSubstr("'second'"));
+  EXPECT_THAT(error_of([&] {
+                (void)read_sweep(folder,
+                                 "datasets: [{simulate: walls.yaml}]\n"
+                                 "configurations: [{name: a, every: 2}]\n");
+              }),
+              HasSubstr("for generated datasets"));
 }
 
 TEST(Generate, ADatasetIsTheSameInEverySubset) {
@@ -131,8 +212,8 @@ TEST(Generate, SaysWhatIsWrongAndWhere) {
               HasSubstr("sweep.yaml:1: generate.count"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + ", draw: {seed: 3}}\n"),
               HasSubstr("must not hold 'seed'"));
-  EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\nconfigurations: [{name: a}]\n"),
-              HasSubstr("runs nothing"));
+  EXPECT_THAT(error("generate: {count: 1, " + scenes + ", cases: [{name: a}, {name: a}]}\n"),
+              HasSubstr("cases hold a name twice"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + "}\ndatasets: [{path: recorded}]\n"),
               HasSubstr("takes the place of 'datasets'"));
   EXPECT_THAT(error("generate: {count: 1, " + scenes + ",\n draw: {a: {uniform: [2, 1]}}}\n"),
