@@ -14,6 +14,8 @@ namespace saccade {
 struct PoseStatus {
   double t_s = 0;
   bool is_lost = false;
+  /// That the pose is within the limits of a loss (truly_lost()); nullopt: not stated.
+  std::optional<double> probability = {};
 };
 
 struct TrajectoryScoreInput {
@@ -40,7 +42,7 @@ struct ErrorSeries {
 /// Errors without alignment; empty where there is no estimate or nothing to score against.
 [[nodiscard]] ErrorSeries errors_over_time(const TrajectoryScoreInput& input);
 
-/// Every key below "trajectory." except reprojection_px (see docs/metrics.md for the definitions);
+/// Every key below "trajectory." except reprojection_px, nees and loss (see docs/metrics.md for the definitions);
 /// what cannot be computed is null. The set of keys never depends on the input.
 [[nodiscard]] Metrics score_trajectory(const TrajectoryScoreInput& input);
 
