@@ -69,7 +69,8 @@ struct ProportionInterval {
   const double middle = (p + kZ * kZ / (2 * trials)) / (1 + kZ * kZ / trials);
   const double half = kZ / (1 + kZ * kZ / trials) *
                       std::sqrt(p * (1 - p) / trials + kZ * kZ / (4 * trials * trials));
-  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+  // Rounding would leave a little at the ends.
+  return {successes == 0 ? 0 : middle - half, successes == trials ? 1 : middle + half};
 }
 
 /// Sets `key`.{mean,sigma,max,rmse}; all null where `samples` is empty.

@@ -132,6 +132,7 @@ std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows
 }
 
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
+  if (key == kSuccess) return success_share(group.rows);
   std::vector<double> values;
   for (const SweepRow* row : group.rows) {
     if (!row->problem.empty()) continue;  // the time until a crash is not a speed
