@@ -19,6 +19,7 @@
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
 #include "estimator/odometry/start/first_map.h"
+#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
@@ -72,6 +73,7 @@ struct OdometryResult {
   double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
   double tracking_s = 0;      ///< seconds of work
   double mapping_s = 0;
+  double check_s = 0;
   // Of adjust().
   double batch_s = 0;
   std::vector<StampedCovariance> covariances;  ///< of all poses; none where not determined
@@ -130,6 +132,7 @@ class Odometry {
   };
 
   void start_from(FirstMap first, OdometryResult& result);
+  void take_map();
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void add_pose(TrackedPose pose, OdometryResult& result);
   void discard_diverged_poses(const TrackedPose& found, OdometryResult& result);
@@ -148,6 +151,7 @@ class Odometry {
   Mapper mapper_;
   EdgeMap map_;
   EdgeTracker tracker_;
+  std::optional<PoseMonitor> monitor_;
   std::vector<StampedPose> path_;  ///< the start, then what was tracked, as last adjusted
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;

@@ -16,6 +16,7 @@
 #include "estimator/odometry/odometry_output.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
+#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/motion_model.h"
 #include "estimator/tracking/pose_output.h"
 
@@ -169,6 +170,7 @@ void take_timing(const OdometryFound& found, const Start& start, bool is_online,
   timing.stages_s = {{"start", start.seconds},
                      {"tracking", result.tracking_s},
                      {"mapping", result.mapping_s},
+                     {"check", result.check_s},
                      {"refinement", result.batch_s},
                      {"images", found.images_s}};
   timing.poses = result.poses.size();
@@ -189,6 +191,7 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
     text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);
   RunSummary summary = summary_of(timing, text);
   summary.lost_poses = lost;
+  summary.lost_since_s = lost_since_s(found.result.poses);
   return summary;
 }
 
@@ -219,6 +222,7 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
 
   OdometryFound found = run_stages(input, start, config, request.repeat, timing.wall_s);
   if (config.align_imu) align(found, input, !start.found);
+  report_gaps(events.back().t_ns, found.result.poses);
   take_timing(found, start, config.odometry.mode == OdometryMode::kOnline, timing);
 
   io.emplace(timing.io_s);
