@@ -35,9 +35,9 @@ class PoseCheck {
   /// Of a pose at the measurement's time.
   [[nodiscard]] PoseEvidence look(const Rigid3& map_from_camera);
 
-  /// Events that a measurement should have: they cover enough of the edges in view, while these
-  /// move by about a pixel.
-  static constexpr std::size_t kEvents = 1000;
+  /// Events that a measurement should have: they cover enough of the edges in view while these move
+  /// by a pixel or two. 1000 of 240 x 180 pixels.
+  [[nodiscard]] std::size_t events() const { return has_edge_.size() / 11; }
 
  private:
   static constexpr std::int32_t kNowhere = -1;

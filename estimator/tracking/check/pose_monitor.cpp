@@ -73,8 +73,8 @@ void PoseMonitor::measure(const TrackedPose& pose) {
   // Around the time of the pose, but none after its last event.
   const std::size_t middle = count_until(recording_.events, pose.t_ns);
   const std::size_t last = count_until(recording_.events, pose.last_ns);
-  const std::size_t end = std::max(middle, std::min(last, middle + PoseCheck::kEvents / 2));
-  const std::size_t begin = end - std::min(end, PoseCheck::kEvents);
+  const std::size_t end = std::max(middle, std::min(last, middle + check_.events() / 2));
+  const std::size_t begin = end - std::min(end, check_.events());
   check_.measure(recording_.events.subspan(begin, end - begin));
 }
 
