@@ -29,10 +29,9 @@ def read_yaml_number(file, key):
 
 
 def dataset_of(run):
-    for line in (run / "run.yaml").read_text().splitlines():
-        if line.startswith("dataset:"):
-            return Path(line.split(":", 1)[1].strip().strip('"'))
-    raise SystemExit(f"{run}/run.yaml names no dataset")
+    lines = (run / "run.yaml").read_text().splitlines()
+    inside = lines[lines.index("dataset:") + 1:]
+    return Path(next(line for line in inside if line.strip().startswith("path:")).split(":", 1)[1].strip().strip('"'))
 
 
 def interpolate(table, t):

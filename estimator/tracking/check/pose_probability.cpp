@@ -9,12 +9,12 @@ namespace {
 /// The regression: log odds = constant + sum of weight * feature. Fitted by
 /// tests/calibration/fit_probability.py, which says how, to runs over the worlds of
 /// tests/calibration/loss_worlds.yaml.
-constexpr double kConstant = -4;
-constexpr double kExplainedWeight = 30;
-constexpr double kSeenWeight = 10;
-constexpr double kSigmaWeight = -0.5;
-constexpr double kInMapWeight = 1;
-constexpr double kTrackerLostWeight = -2;
+constexpr double kConstant = -5.68;
+constexpr double kExplainedWeight = 16;
+constexpr double kSeenWeight = 21.5;
+constexpr double kSigmaWeight = -1.24;
+constexpr double kInMapWeight = 1.99;
+constexpr double kTrackerLostWeight = -1;
 
 /// Beyond these a feature says no more: what is explained well is not explained twice.
 constexpr double kMostExplained = 0.3;
