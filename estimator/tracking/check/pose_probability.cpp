@@ -9,17 +9,18 @@ namespace {
 /// The regression: log odds = constant + sum of weight * feature. Fitted by
 /// tests/calibration/fit_probability.py, which says how, to runs over the worlds of
 /// tests/calibration/loss_worlds.yaml.
-constexpr double kConstant = -5.68;
-constexpr double kExplainedWeight = 16;
-constexpr double kSeenWeight = 21.5;
-constexpr double kSigmaWeight = -1.24;
-constexpr double kInMapWeight = 1.99;
+constexpr double kConstant = -2.2;
+constexpr double kExplainedWeight = 2.45;
+constexpr double kSeenWeight = 24.8;
+constexpr double kSigmaWeight = -5.11;
+constexpr double kInMapWeight = 0.95;
 constexpr double kTrackerLostWeight = -1;
 
-/// Beyond these a feature says no more: what is explained well is not explained twice.
-constexpr double kMostExplained = 0.3;
+/// Beyond these a feature says no more: what is explained well is not explained twice, and a pose of
+/// small sigmas may be consistently wrong.
+constexpr double kLeastExplained = 0.03, kMostExplained = 0.4;
 constexpr double kMostSeen = 0.1;
-constexpr double kLeastLogSigma = -4, kMostLogSigma = 1;
+constexpr double kLeastLogSigma = -1.5, kMostLogSigma = 1;
 
 /// How far a fraction lies above what a wrong pose would give, relative to what is left: 0 for no
 /// better, 1 for all (Cohen's kappa).
@@ -40,8 +41,8 @@ double log_sigma(const TrackedPose& pose) {
 
 double log_odds_of(const TrackedPose& pose) {
   const PoseEvidence& evidence = pose.evidence;
-  const double explained = std::min(above_chance(evidence.explained, evidence.chance),
-                                    kMostExplained);
+  const double explained = std::log(std::clamp(above_chance(evidence.explained, evidence.chance),
+                                               kLeastExplained, kMostExplained));
   const double seen =
       std::clamp(above_chance(evidence.edges_seen, evidence.seen_if_wrong), -kMostSeen, kMostSeen);
   const double sigma = std::clamp(log_sigma(pose), kLeastLogSigma, kMostLogSigma);

@@ -41,15 +41,20 @@ double kappa(const PoseEvidence& evidence) {
 }
 
 TEST(PoseCheck, EventsLieOnTheMapUnderTheTruePose) {
+  double seen = 0, seen_if_wrong = 0;
   for (const double t_s : {0.05, 0.12, 0.2}) {
     Glance glance(t_s);
     const PoseEvidence evidence = glance.check.look(glance.map_from_camera);
-    // A third of what chance leaves: the map holds the steepest edges alone, events come from all.
-    EXPECT_GT(kappa(evidence), 1.0 / 3) << t_s;
-    EXPECT_GT(evidence.edges_seen, evidence.seen_if_wrong) << t_s;
+    // Of some 900 events a fifth lies on the map by chance: kappa has a standard deviation of 0.017
+    // if they are independent, and of 0.05 if one in nine is. Four of the latter.
+    EXPECT_GT(kappa(evidence), 0.2) << t_s;
     EXPECT_GT(evidence.in_map, 0.7) << t_s;
     EXPECT_NEAR(evidence.depth_m, testing::kCornerDepth_m, 0.5) << t_s;
+    seen += evidence.edges_seen;
+    seen_if_wrong += evidence.seen_if_wrong;
   }
+  // Even against the best of twelve wrong ones.
+  EXPECT_GT(seen, seen_if_wrong);
 }
 
 TEST(PoseCheck, AtTheLimitsOfALossTheyLieThereByChance) {
