@@ -7,8 +7,10 @@
 namespace saccade {
 namespace {
 
-/// Cells across the image.
-constexpr int kColumns = 120;
+/// Cells across the image, but none smaller than so many pixels, within which trackers err and maps
+/// are sampled.
+constexpr float kColumns = 120;
+constexpr float kLeastCell_px = 2;
 /// Where a block of so many cells holds no edge, the map says nothing of what is measured there.
 constexpr int kBlock = 10;
 /// Points of the map that are drawn, at most, and of those in view that displaced poses are tried
@@ -46,7 +48,7 @@ std::array<Twist, 12> displacements(double depth_m) {
 
 PoseCheck::PoseCheck(const PinholeCamera& camera)
     : camera_(camera.undistorted()),
-      cells_per_px_(std::min(1.0F, static_cast<float>(kColumns) / static_cast<float>(camera.width))),
+      cells_per_px_(std::min(1 / kLeastCell_px, kColumns / static_cast<float>(camera.width))),
       columns_(static_cast<int>(std::ceil(static_cast<float>(camera.width) * cells_per_px_)) + 1),
       rows_(static_cast<int>(std::ceil(static_cast<float>(camera.height) * cells_per_px_)) + 1),
       has_measurement_(static_cast<std::size_t>(columns_ * rows_)),

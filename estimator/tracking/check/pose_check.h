@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,7 +16,7 @@
 namespace saccade {
 
 /// Tells from what was just measured whether a pose can be right, whatever method found it. Map and
-/// measurement are drawn into cells of a hundredth or so of the image's width; that is coarser than
+/// measurement are drawn into cells of 1/120 of the image's width; that is coarser than
 /// any tracker errs, and finer than the poses are displaced that count as lost. What lies on the
 /// map's edges by chance, and what a displaced pose explains as well, says nothing. Some ten
 /// microseconds a pose.
@@ -36,8 +37,10 @@ class PoseCheck {
   [[nodiscard]] PoseEvidence look(const Rigid3& map_from_camera);
 
   /// Events that a measurement should have: they cover enough of the edges in view while these move
-  /// by a pixel or two. 1000 of 240 x 180 pixels.
-  [[nodiscard]] std::size_t events() const { return has_edge_.size() / 11; }
+  /// by a pixel or two; fewer than 300 would say little. 1000 of 240 x 180 pixels.
+  [[nodiscard]] std::size_t events() const {
+    return std::max<std::size_t>(300, has_edge_.size() / 11);
+  }
 
  private:
   static constexpr std::int32_t kNowhere = -1;

@@ -12,6 +12,7 @@ namespace {
 /// Poses are checked so often, and share the evidence in between: several times within the 50 ms in
 /// which a loss should be known, and not for every pose of a fast tracker.
 constexpr TimeNs kInterval_ns = 8'000'000;
+constexpr TimeNs kMemory_ns = 30'000'000;
 /// Fraction by which a check moves the running mean of the log odds, and their bound: the sooner a
 /// change is believed, the more often by mistake.
 constexpr double kBelief = 0.5;
@@ -80,13 +81,15 @@ void PoseMonitor::measure(const TrackedPose& pose) {
 
 void PoseMonitor::judge(TrackedPose& pose) {
   if (!log_odds_ || pose.t_ns >= checked_ns_ + kInterval_ns) {
+    // What was known before a gap says nothing of the pose after it.
+    const bool is_continued = log_odds_ && pose.t_ns < checked_ns_ + kMemory_ns;
     checked_ns_ = pose.t_ns;
     measure(pose);
     evidence_ = check_.look(map_from_world_ * pose.world_from_camera);
     evidence_.tracker_lost = pose.status == TrackStatus::kLost;
     pose.evidence = evidence_;
     const double log_odds = std::clamp(log_odds_of(pose), -kMostLogOdds, kMostLogOdds);
-    log_odds_ = log_odds_ ? std::lerp(*log_odds_, log_odds, kBelief) : log_odds;
+    log_odds_ = is_continued ? std::lerp(*log_odds_, log_odds, kBelief) : log_odds;
   }
   pose.evidence = evidence_;
   pose.probability = probability_of(*log_odds_);

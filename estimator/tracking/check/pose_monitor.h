@@ -28,7 +28,10 @@ class PoseMonitor {
   void judge(TrackedPose& pose);
 
   /// Forgets the poses before, after the camera was found anew.
-  void restart() { log_odds_.reset(); }
+  void restart() {
+    log_odds_.reset();
+    is_lost_ = false;
+  }
 
  private:
   void measure(const TrackedPose& pose);
