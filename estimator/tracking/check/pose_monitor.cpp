@@ -62,7 +62,7 @@ PoseMonitor::PoseMonitor(const PinholeCamera& camera, const Recording& recording
 void PoseMonitor::set_map(const MapPoints& map, const Rigid3& world_from_map) {
   check_.set_map(map);
   map_from_world_ = world_from_map.inverse();
-  checked_ns_ = std::numeric_limits<TimeNs>::min();
+  is_map_new_ = true;
 }
 
 void PoseMonitor::measure(const TrackedPose& pose) {
@@ -80,10 +80,11 @@ void PoseMonitor::measure(const TrackedPose& pose) {
 }
 
 void PoseMonitor::judge(TrackedPose& pose) {
-  if (!log_odds_ || pose.t_ns >= checked_ns_ + kInterval_ns) {
+  if (is_map_new_ || !log_odds_ || pose.t_ns >= checked_ns_ + kInterval_ns) {
     // What was known before a gap says nothing of the pose after it.
     const bool is_continued = log_odds_ && pose.t_ns < checked_ns_ + kMemory_ns;
     checked_ns_ = pose.t_ns;
+    is_map_new_ = false;
     measure(pose);
     evidence_ = check_.look(map_from_world_ * pose.world_from_camera);
     evidence_.tracker_lost = pose.status == TrackStatus::kLost;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,7 +39,8 @@ class PoseMonitor {
   Recording recording_;
   Rigid3 map_from_world_;
   PoseEvidence evidence_;
-  TimeNs checked_ns_ = std::numeric_limits<TimeNs>::min();
+  TimeNs checked_ns_ = 0;
+  bool is_map_new_ = true;
   std::optional<double> log_odds_;  ///< running mean; nullopt: nothing was judged yet
   bool is_lost_ = false;
 };
