@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 LIMIT_DEPTH, LIMIT_DEG = 0.05, 5.0
-LEAST_EXPLAINED, MOST_EXPLAINED, MOST_SEEN, LEAST_LOG_SIGMA, MOST_LOG_SIGMA = 0.03, 0.4, 0.1, -1.0, 1.0
+LEAST_EXPLAINED, MOST_EXPLAINED, MOST_SEEN, LEAST_LOG_SIGMA, MOST_LOG_SIGMA = 0.03, 0.4, 0.1, 0.0, 1.0
 # A pose that is still right although its recording shows nothing of the map is right by accident.
 ACCIDENTS = "-noise", "-other"
 RIDGE = 1e-3

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace saccade {
 namespace {
@@ -53,10 +54,13 @@ PoseCheck::PoseCheck(const PinholeCamera& camera)
       rows_(static_cast<int>(std::ceil(static_cast<float>(camera.height) * cells_per_px_)) + 1),
       has_measurement_(static_cast<std::size_t>(columns_ * rows_)),
       has_edge_(has_measurement_.size()) {
-  const UndistortionTable table(camera);
+  std::optional<UndistortionTable> table;
+  if (camera.is_distorted()) table.emplace(camera);
+  cell_of_pixel_.reserve(static_cast<std::size_t>(camera.width * camera.height));
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
-      const Eigen::Vector2f at = table(x, y);
+      const Eigen::Vector2f at =
+          table ? (*table)(x, y) : Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y));
       cell_of_pixel_.push_back(cell_at(at.x(), at.y()));
     }
   const int block_columns = (columns_ + kBlock - 1) / kBlock;

@@ -9,18 +9,18 @@ namespace {
 /// The regression: log odds = constant + sum of weight * feature. Fitted by
 /// tests/calibration/fit_probability.py, which says how, to runs over the worlds of
 /// tests/calibration/loss_worlds.yaml.
-constexpr double kConstant = -0.36;
+constexpr double kConstant = 4.95;
 constexpr double kExplainedWeight = 2.53;
-constexpr double kSeenWeight = 19.7;
-constexpr double kSigmaWeight = -5.79;
-constexpr double kInMapWeight = 1.40;
-constexpr double kTrackerLostWeight = -2.94;
+constexpr double kSeenWeight = 19.6;
+constexpr double kSigmaWeight = -10.8;
+constexpr double kInMapWeight = 1.94;
+constexpr double kTrackerLostWeight = -3.16;
 
 /// Beyond these a feature says no more: what is explained well is not explained twice, and a pose of
-/// small sigmas may be consistently wrong.
+/// sigmas below the limits may be consistently wrong: methods state them too small, or too large.
 constexpr double kLeastExplained = 0.03, kMostExplained = 0.4;
 constexpr double kMostSeen = 0.1;
-constexpr double kLeastLogSigma = -1, kMostLogSigma = 1;
+constexpr double kLeastLogSigma = 0, kMostLogSigma = 1;
 
 /// How far a fraction lies above what a wrong pose would give, relative to what is left: 0 for no
 /// better, 1 for all (Cohen's kappa).
