@@ -189,12 +189,9 @@ void write(const std::filesystem::path& folder, const OdometryInput& input, cons
 void take_timing(const OdometryFound& found, const Start& start, bool is_online,
                  RunTiming& timing) {
   const OdometryResult& result = found.result;
-  timing.stages_s = {{"start", start.seconds},
-                     {"tracking", result.tracking_s},
-                     {"mapping", result.mapping_s},
-                     {"check", result.check_s},
-                     {"refinement", result.batch_s},
-                     {"images", found.images_s}};
+  timing.stages_s = {{"start", start.seconds},       {"tracking", result.tracking_s},
+                     {"mapping", result.mapping_s},  {"check", result.check_s},
+                     {"refinement", result.batch_s}, {"images", found.images_s}};
   timing.poses = result.poses.size();
   timing.latency_ms = result.latency_ms;
   if (is_online) timing.dropped_events = result.dropped_events;

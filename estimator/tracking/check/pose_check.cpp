@@ -64,8 +64,7 @@ PoseCheck::PoseCheck(const PinholeCamera& camera)
       cell_of_pixel_.push_back(cell_at(at.x(), at.y()));
     }
   const int block_columns = (columns_ + kBlock - 1) / kBlock;
-  cells_of_block_.resize(
-      static_cast<std::size_t>(block_columns * ((rows_ + kBlock - 1) / kBlock)));
+  cells_of_block_.resize(static_cast<std::size_t>(block_columns * ((rows_ + kBlock - 1) / kBlock)));
   is_mapped_.resize(cells_of_block_.size());
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
@@ -117,13 +116,13 @@ void PoseCheck::measure(const ImageF& log_intensity) {
   if (steepness.empty()) return;
   const auto rank = static_cast<std::size_t>((1 - kSteep) * static_cast<double>(steepness.size()));
   std::vector<float> sorted = steepness;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(rank), sorted.end());
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(rank),
+                   sorted.end());
   const float least = sorted[rank];
   std::size_t i = 0;
   for (int y = 1; y + 1 < log_intensity.height(); ++y)
     for (int x = 1; x + 1 < log_intensity.width(); ++x, ++i)
-      if (steepness[i] > least)
-        add_measured(cell_at(static_cast<float>(x), static_cast<float>(y)));
+      if (steepness[i] > least) add_measured(cell_at(static_cast<float>(x), static_cast<float>(y)));
 }
 
 PoseEvidence PoseCheck::look(const Rigid3& map_from_camera) {
@@ -179,8 +178,7 @@ void PoseCheck::compare(PoseEvidence& evidence) const {
   evidence.chance /= area;
   const auto measured = static_cast<double>(evidence.measured);
   evidence.explained = measured > 0 ? explained / measured : evidence.chance;
-  evidence.in_map =
-      measured_.empty() ? 0 : measured / static_cast<double>(measured_.size());
+  evidence.in_map = measured_.empty() ? 0 : measured / static_cast<double>(measured_.size());
 }
 
 double PoseCheck::seen_edges(const Rigid3& camera_from_map) const {

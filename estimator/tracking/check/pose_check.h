@@ -57,13 +57,13 @@ class PoseCheck {
   int columns_, rows_;
   std::vector<std::int32_t> cell_of_pixel_;  ///< of the sensor, kNowhere beyond the undistorted one
   std::vector<Eigen::Vector3f> map_;
-  std::vector<std::int32_t> measured_;        ///< cell of every event or pixel
+  std::vector<std::int32_t> measured_;         ///< cell of every event or pixel
   std::vector<std::uint8_t> has_measurement_;  ///< by cell
   std::vector<std::uint8_t> has_edge_;         ///< by cell, at the pose that is looked at
   std::vector<std::uint16_t> block_of_cell_;
-  std::vector<int> cells_of_block_;      ///< number of them
-  std::vector<std::uint8_t> is_mapped_;  ///< by block: whether it shows an edge
-  std::vector<Eigen::Vector3f> visible_;       ///< some of the map's points in view
+  std::vector<int> cells_of_block_;       ///< number of them
+  std::vector<std::uint8_t> is_mapped_;   ///< by block: whether it shows an edge
+  std::vector<Eigen::Vector3f> visible_;  ///< some of the map's points in view
 };
 
 }  // namespace saccade

@@ -115,7 +115,8 @@ void report_gaps(TimeNs end_ns, std::vector<TrackedPose>& poses) {
     const TimeNs next_ns = i + 1 < poses.size() ? poses[i + 1].t_ns : end_ns;
     const double gap_s = seconds_from_ns(next_ns - poses[i].t_ns);
     const double depth_m = poses[i].evidence.depth_m;
-    if (poses[i].status == TrackStatus::kLost || gap_s <= kShortestGap_s || !(depth_m > 0)) continue;
+    if (poses[i].status == TrackStatus::kLost || gap_s <= kShortestGap_s || !(depth_m > 0))
+      continue;
     const double rate = rate_before(poses, i, depth_m);
     const double lost_after_s = std::max(kShortestGap_s, kGapMotion / rate);
     if (!(lost_after_s < gap_s)) continue;

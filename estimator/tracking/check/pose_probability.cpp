@@ -47,8 +47,7 @@ double log_odds_of(const TrackedPose& pose) {
       std::clamp(above_chance(evidence.edges_seen, evidence.seen_if_wrong), -kMostSeen, kMostSeen);
   const double sigma = std::clamp(log_sigma(pose), kLeastLogSigma, kMostLogSigma);
   return kConstant + kExplainedWeight * explained + kSeenWeight * seen + kSigmaWeight * sigma +
-         kInMapWeight * evidence.in_map +
-         (evidence.tracker_lost ? kTrackerLostWeight : 0);
+         kInMapWeight * evidence.in_map + (evidence.tracker_lost ? kTrackerLostWeight : 0);
 }
 
 double probability_of(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }

@@ -54,8 +54,8 @@ std::string spread_cell(const PooledRows& pool, const std::string& metric) {
     if (row->problem.empty())
       if (const auto value = speed_value(row->metrics, metric)) values.push_back(*value);
   if (values.empty()) return rounded(std::nullopt);
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) /
-                      static_cast<double>(values.size());
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   return fmt::format("{} / {} / {}", rounded(mean), rounded(median(values)),
                      rounded(percentile_90(values)));
 }

@@ -33,7 +33,7 @@ struct SweepGroup {
 /// A metric over the rows of a group that have it and no problem.
 struct MetricSummary {
   double value = 0;  ///< mean; of a speed the median
-  double low = 0;  ///< minimum; of `success` Wilson's 95 % interval
+  double low = 0;    ///< minimum; of `success` Wilson's 95 % interval
   double high = 0;
   std::size_t count = 0;
 };

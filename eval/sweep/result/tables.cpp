@@ -177,8 +177,9 @@ std::string expected_table(std::span<const ExpectationResult> expectations) {
 std::string method_text(const SweepResults& results) {
   std::string text;
   if (has_seeds(results))
-    text += "Errors are means over the seeds, with the minimum and maximum in brackets; success is the "
-            "share of runs with Wilson's 95 % interval. ";
+    text +=
+        "Errors are means over the seeds, with the minimum and maximum in brackets; success is the "
+        "share of runs with Wilson's 95 % interval. ";
   if (results.plan.runs.empty()) return text + "\n\n";
   text += results.sweep.repeat > 1
               ? fmt::format("Speeds are medians of {} repetitions", results.sweep.repeat)

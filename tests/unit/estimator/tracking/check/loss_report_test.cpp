@@ -66,7 +66,8 @@ LosingRecording cover() {
     const double t_s = seconds_from_ns(t_ns);
     return t_s >= kBreak_s && t_s < kBreak_s + 0.15;
   };
-  LosingRecording recording{corner_glide, world.simulate(corner_glide, 0, kLast_s, kStep_s, kContrast),
+  LosingRecording recording{corner_glide,
+                            world.simulate(corner_glide, 0, kLast_s, kStep_s, kContrast),
                             frames_of(world, corner_glide)};
   std::erase_if(recording.events, [&](const Event& event) { return is_covered(event.t_ns); });
   for (GreyFrame& frame : recording.frames)
@@ -158,13 +159,14 @@ TEST_P(LossReport, ComesWithin50Ms) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, LossReport,
-    ::testing::Combine(::testing::ValuesIn(track_methods().begin(), track_methods().end()),
-                       ::testing::Values("jump", "cover", "blank")),
-    [](const auto& test) {
-      return std::string(std::get<0>(test.param).name) + "_" + std::get<1>(test.param);
-    });
+INSTANTIATE_TEST_SUITE_P(All, LossReport,
+                         ::testing::Combine(::testing::ValuesIn(track_methods().begin(),
+                                                                track_methods().end()),
+                                            ::testing::Values("jump", "cover", "blank")),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param).name) + "_" +
+                                  std::get<1>(test.param);
+                         });
 
 class PoseProbability : public ::testing::TestWithParam<TrackMethod> {
  protected:

@@ -33,7 +33,8 @@ TEST(ReportGaps, ACameraThatMovesAndSeesNothingIsLost) {
   EXPECT_NEAR(seconds_from_ns(lost.t_ns), 0.18, 1e-6);
   EXPECT_LT(lost.probability, 0.5);
   EXPECT_GT(lost.probability, 0);
-  EXPECT_EQ(lost.world_from_camera.translation(), poses[before - 1].world_from_camera.translation());
+  EXPECT_EQ(lost.world_from_camera.translation(),
+            poses[before - 1].world_from_camera.translation());
   EXPECT_NEAR(lost_since_s(poses).value(), 0.18, 1e-6);
 }
 
