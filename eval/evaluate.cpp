@@ -39,7 +39,7 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
 void score_path(const TrajectoryScoreInput& input, Metrics& metrics) {
   merge(metrics, score_trajectory(input), "");
   merge(metrics, score_loss(input), "");
-  metrics.set("success", success_of(metrics));
+  metrics.set("success", input.has_own_world ? std::nullopt : success_of(metrics));
 }
 
 /// The orientations that `run` estimated, and the events that it stabilized.

@@ -81,6 +81,7 @@ TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
   input.truth = dataset.groundtruth();
   input.mean_depth_m = dataset.facts().mean_depth_m;
   input.window = run.record.window;
+  input.has_own_world = std::filesystem::exists(run.folder / "start.yaml");
   if (run.poses) {
     input.reported.emplace();
     for (const PoseRow& row : *run.poses) {

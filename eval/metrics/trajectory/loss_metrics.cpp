@@ -71,7 +71,7 @@ std::optional<std::size_t> row_in_force(std::span<const PoseStatus> rows, double
 Metrics score_loss(const TrajectoryScoreInput& input) {
   const ErrorSeries series = errors_over_time(input);
   std::optional<double> precision, recall, delay_ms, unreported_s, reported_s, losses;
-  if (input.reported && !series.dt_rel_percent.empty()) {
+  if (input.reported && !input.has_own_world && !series.dt_rel_percent.empty()) {
     const LossCounts counts =
         count_losses(truly_lost(series), reported_lost(series, *input.reported));
     const auto interval = scored_interval(input.truth, input.window);

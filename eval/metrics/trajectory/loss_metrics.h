@@ -26,7 +26,7 @@ namespace saccade {
 ///   reported_s = w |R|,  count = losses, the runs of consecutive instants of L,
 ///   delay_ms = mean over the losses of the time from their begin to the first report in them, the
 /// whole length of a loss that is never reported. What has no denominator is null; all of them are
-/// where the run reports no status, or no error is known.
+/// where the run reports no status, no error is known, or the estimate has a world of its own.
 [[nodiscard]] Metrics score_loss(const TrajectoryScoreInput& input);
 
 /// 1 where the run succeeded: its positions err by less than 1 % of the mean depth (RMSE, without

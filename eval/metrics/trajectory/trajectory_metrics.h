@@ -26,6 +26,9 @@ struct TrajectoryScoreInput {
   std::optional<double> mean_depth_m;  ///< d of dt_rel (thesis 8.1), > 0
   /// In order of time; nullopt: the estimator reports no status.
   std::optional<std::vector<PoseStatus>> reported;
+  /// The estimate's world is not the truth's, as its start was found without any pose given: without
+  /// an alignment the two cannot be compared.
+  bool has_own_world = false;
 };
 
 /// Errors over time on the 1 ms grid of the scored interval.
