@@ -5,7 +5,7 @@
 
 SACCADE is the command. Of the datasets, in turn: `jump` leaves 0.18 s out and joins what is before and after; `cover`
 drops all events for 0.2 s; `noise` puts events of noise in their place; `other` takes frame and depth, and with them
-the map, from the next dataset but one. The result of DATASET is the folder OUT/NAME-KIND.
+the map, from the next dataset but one. Recordings of more than 1.5 M events are passed over. The result of DATASET is the folder OUT/NAME-KIND.
 """
 import os
 import subprocess
@@ -17,6 +17,7 @@ import numpy as np
 
 GAP = 0.15, 0.35
 JUMP = 0.2, 0.38
+MOST_EVENTS = 1500000  # of a recording that is broken: text takes long
 MAP_FILES = "images", "images.txt", "depth", "depth.txt"
 
 
@@ -59,6 +60,8 @@ def main(saccade, out, datasets):
         if folder.exists():
             continue
         events, truth = read_events(saccade, dataset), np.loadtxt(dataset / "groundtruth.txt")
+        if len(events) > MOST_EVENTS:
+            continue
         size = events[:, 1].max() + 1, events[:, 2].max() + 1
         map_of = dataset
         if kind == "jump":

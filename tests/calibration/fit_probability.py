@@ -6,7 +6,7 @@
 RUN are run folders of track and odometry over simulated datasets, good runs and lost ones (README.md beside this
 file says how they are made). Each row of poses.csv at which the evidence was taken is one observation: its features
 are those of pose_probability.cpp, and it is good where the pose is within 5 % of the mean scene depth and 5 degrees
-of the truth; good ones of recordings named *-noise and *-other are left out. Newton's method with a small ridge; every run counts alike. Prints the constants, and for the runs
+of the truth; good ones of recordings named *-noise and *-other are left out. Newton's method with a small ridge; every run counts alike, but for the observations that are left out. Prints the constants, and for the runs
 behind --test, or else those it was fitted to, the log loss and how many of the observations are judged rightly.
 """
 import csv
@@ -67,7 +67,7 @@ def features(rows):
 
 
 def observations(run):
-    """Features and labels of the rows with evidence of their own."""
+    """Features and labels of the rows with evidence of their own, and the weight of each."""
     rows = list(csv.DictReader((run / "poses.csv").open()))
     evidence = ["explained", "chance", "edges_seen", "seen_if_wrong", "depth_m"]
     rows = [row for i, row in enumerate(rows) if i == 0 or any(row[k] != rows[i - 1][k] for k in evidence)]
@@ -81,14 +81,14 @@ def observations(run):
     angle = 2 * np.degrees(np.arccos(np.clip(np.abs((rotation * true_rotation).sum(1)), 0, 1)))
     x, y = features(rows), (error <= LIMIT_DEPTH) & (angle <= LIMIT_DEG)
     kept = ~y if dataset.name.endswith(ACCIDENTS) else np.full(len(y), True)
-    return x[kept], y[kept]
+    return x[kept], y[kept], 1 / len(y)
 
 
 def gather(runs):
     x, y, w = [], [], []
     for run in runs:
-        xi, yi = observations(run)
-        x.append(xi), y.append(yi), w.append(np.full(len(yi), 1 / max(len(yi), 1)))
+        xi, yi, weight = observations(run)
+        x.append(xi), y.append(yi), w.append(np.full(len(yi), weight))
     weights = np.concatenate(w)
     return np.concatenate(x), np.concatenate(y).astype(float), weights / weights.mean()
 
