@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <memory>
 #include <string>
@@ -41,6 +42,17 @@ void show(const std::filesystem::path& output, const RunSummary& summary) {
   fmt::print("{}\n", line);
 }
 
+/// Quiet or not: a run that is lost at its end has poses that nobody should use.
+void warn_of_loss(const RunSummary& summary) {
+  if (!summary.lost_since_s) return;
+  const std::string line = fmt::format(
+      "lost since {:.3f} s, up to the end: the poses from then on are probably off by more than "
+      "5 % of the depth or 5 degrees",
+      *summary.lost_since_s);
+  const bool has_colour = isatty(STDERR_FILENO) != 0;
+  fmt::print(stderr, "{}{}{}\n", has_colour ? "\033[31m" : "", line, has_colour ? "\033[0m" : "");
+}
+
 void run(RunVerbOptions options) {
   options.common.apply();
   const Module& module = find_module(options.module);
@@ -60,6 +72,7 @@ void run(RunVerbOptions options) {
   options.request.threads = thread_count();
   const RunSummary summary = run_module(options.module, options.request);
   if (!options.common.quiet) show(options.request.output, summary);
+  warn_of_loss(summary);
 }
 
 }  // namespace

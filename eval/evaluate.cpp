@@ -17,6 +17,7 @@
 #include "eval/metrics/sharpness.h"
 #include "eval/metrics/trajectory/consistency.h"
 #include "eval/metrics/trajectory/keyframe_metrics.h"
+#include "eval/metrics/trajectory/loss_metrics.h"
 #include "eval/metrics/trajectory/reprojection.h"
 #include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/mosaic_view.h"
@@ -32,6 +33,13 @@ void check_depth(const std::optional<double>& mean_depth_m) {
 
 void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
   for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
+}
+
+/// What a trajectory alone tells.
+void score_path(const TrajectoryScoreInput& input, Metrics& metrics) {
+  merge(metrics, score_trajectory(input), "");
+  merge(metrics, score_loss(input), "");
+  metrics.set("success", input.has_own_world ? std::nullopt : success_of(metrics));
 }
 
 /// The orientations that `run` estimated, and the events that it stabilized.
@@ -69,7 +77,7 @@ Metrics score(const RunFolder& run, const Dataset& dataset,
   if (!run.trajectory) return metrics;
   TrajectoryScoreInput input = score_input(run, dataset);
   input.mean_depth_m = mean_depth_m;
-  merge(metrics, score_trajectory(input), "");
+  score_path(input, metrics);
   metrics.set("trajectory.nees", nees(run.load_covariances(), input));
   if (const auto keyframes = run.folder / "keyframes.yaml"; std::filesystem::exists(keyframes))
     merge(metrics, score_keyframes(read_keyframe_list(keyframes), input), "");
@@ -128,7 +136,9 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
   input.estimate = read_estimate(estimate_file);
   input.truth = dataset.groundtruth();
   input.mean_depth_m = mean_depth_m ? mean_depth_m : dataset.facts().mean_depth_m;
-  const Metrics metrics = catalogued(score_trajectory(input));
+  Metrics metrics;
+  score_path(input, metrics);
+  metrics = catalogued(std::move(metrics));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }

@@ -72,9 +72,14 @@ void add_alignments(std::string& text, const Metrics& metrics) {
 
 void add_tracking(std::string& text, const Metrics& metrics) {
   const Shown of(metrics, "trajectory.");
-  text += fmt::format("  {} poses over {} s, coverage {} %, lost {} s (reported {} s)\n",
-                      of.grouped("poses"), of.fixed("duration_s", 3), of.fixed("coverage", 2),
-                      of.fixed("lost_s", 3), of.fixed("reported_lost_s", 3));
+  text += fmt::format("  {} poses over {} s, coverage {} %\n", of.grouped("poses"),
+                      of.fixed("duration_s", 3), of.fixed("coverage", 2));
+  text += fmt::format("  lost {} s, reported {} s, unreported {} s\n", of.fixed("lost_s", 3),
+                      of.fixed("reported_lost_s", 3), of.fixed("loss.unreported_s", 3));
+  if (of.has("loss.recall"))
+    text += fmt::format("  losses {}, recall {} %, precision {} %, delay {} ms\n",
+                        of.grouped("loss.count"), of.fixed("loss.recall", 1),
+                        of.fixed("loss.precision", 1), of.fixed("loss.delay_ms", 1));
   text += fmt::format("  path {} m, end drift {} %, per second {} m and {} deg\n",
                       of.fixed("path_length_m", 3), of.fixed("drift_percent", 3),
                       of.fixed("rpe.per_second.trans_rmse_m", 4),

@@ -1,5 +1,6 @@
 #include "eval/run_folder.h"
 
+#include <cmath>
 #include <limits>
 
 #include "core/error.h"
@@ -20,13 +21,14 @@ std::vector<PoseRow> read_pose_rows(const std::filesystem::path& file) {
   const auto inliers = csv.find("inlier_ratio");
   const auto iterations = csv.find("iterations");
   const auto residual = csv.find("residual");
+  const auto probability = csv.find("probability");
   std::vector<PoseRow> rows;
   for (std::size_t i = 0; i < csv.rows(); ++i) {
     const auto number = [&](const std::optional<std::size_t>& column) {
       return column ? csv.number(i, *column) : std::numeric_limits<double>::quiet_NaN();
     };
     rows.push_back({csv.number(i, t), number(first), number(last), csv.text(i, status),
-                    number(inliers), number(iterations), number(residual)});
+                    number(inliers), number(iterations), number(residual), number(probability)});
   }
   return rows;
 }
@@ -79,10 +81,14 @@ TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
   input.truth = dataset.groundtruth();
   input.mean_depth_m = dataset.facts().mean_depth_m;
   input.window = run.record.window;
+  input.has_own_world = std::filesystem::exists(run.folder / "start.yaml");
   if (run.poses) {
     input.reported.emplace();
-    for (const PoseRow& row : *run.poses)
-      input.reported->push_back({row.t_s, row.status == "lost"});
+    for (const PoseRow& row : *run.poses) {
+      PoseStatus status{row.t_s, row.status == "lost"};
+      if (std::isfinite(row.probability)) status.probability = row.probability;
+      input.reported->push_back(status);
+    }
   }
   return input;
 }

@@ -24,6 +24,7 @@ struct PoseRow {
   double inlier_ratio = 0;
   double iterations = 0;
   double residual = 0;
+  double probability = 0;  ///< that the pose is right
 };
 
 /// A run folder, by whatever estimator. Opening reads run.yaml and, where they exist,

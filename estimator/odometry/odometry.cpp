@@ -70,6 +70,7 @@ void Odometry::set_gyroscope(Gyroscope gyroscope) {
 OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& start,
                              const std::function<void(std::size_t)>& progress) {
   OdometryResult result;
+  monitor_.emplace(camera_, Recording{.events = events});
   {
     const ScopedTimer clock(result.mapping_s);
     start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
@@ -126,8 +127,13 @@ void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
     pose = relocate().value_or(pose);
   }
   if (pose.status == TrackStatus::kRelocalised) discard_diverged_poses(pose, result);
-  result.poses.push_back(pose);
   is_lost_ = pose.status == TrackStatus::kLost;
+  if (is_lost_) lost_ns_.push_back(pose.t_ns);
+  {
+    const ScopedTimer clock(result.check_s);
+    monitor_->judge(pose);
+  }
+  result.poses.push_back(pose);
   if (is_lost_) return;
   if (const double t_s = seconds_from_ns(pose.t_ns); t_s > path_.back().t_s)
     path_.push_back({t_s, pose.world_from_camera});
@@ -137,8 +143,10 @@ void Odometry::discard_diverged_poses(const TrackedPose& found, OdometryResult& 
   const double t_s = seconds_from_ns(found.t_ns);
   // The keyframe in the making rests on diverged poses, and so do poses at the same time.
   job_.reset();
+  monitor_->restart();
   while (!result.poses.empty() && result.poses.back().t_ns >= found.t_ns) result.poses.pop_back();
   while (path_.size() > 1 && path_.back().t_s >= t_s) path_.pop_back();
+  while (!lost_ns_.empty() && lost_ns_.back() >= found.t_ns) lost_ns_.pop_back();
   mapped_from_s_ = seconds_from_ns(found.last_ns);
   fixed_until_s_ = std::max(fixed_until_s_, t_s);
 }
@@ -154,12 +162,17 @@ std::optional<TrackedPose> Odometry::relocate() {
   for (std::size_t i = map_.keyframes().size(); i-- > 0;) {
     const Rigid3 world_from_camera = map_.keyframes()[i].world_from_camera;
     map_.activate_around(i, world_from_camera);
-    tracker_.set_map(map_.points());
+    take_map();
     if (auto pose = tracker_.relocate({&world_from_camera, 1})) return pose;
   }
   map_.activate(active);
-  tracker_.set_map(map_.points());
+  take_map();
   return std::nullopt;
+}
+
+void Odometry::take_map() {
+  tracker_.set_map(map_.points());
+  monitor_->set_map(map_.points(), Rigid3());
 }
 
 bool Odometry::is_due(double now_s) const {
@@ -183,7 +196,9 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
   last_keyframe_ = path_.back();
   map_.add(std::move(keyframe), last_keyframe_.world_from_camera);
-  tracker_.set_map(map_.points());
+  take_map();
+  output(result);
+  for (TrackedPose& pose : result.poses) monitor_->judge(pose);
   tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
 }
 
@@ -223,7 +238,7 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);
   map_.add(std::move(keyframe), path_.back().world_from_camera);
-  tracker_.set_map(map_.points());
+  take_map();
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
 
@@ -238,9 +253,9 @@ void Odometry::apply_adjusted_poses(const Mapping& mapping) {
   tracker_.correct(mapping.world_from_before);
 }
 
-bool Odometry::wants_batch_adjustment(const OdometryResult& result) const {
+bool Odometry::wants_batch_adjustment() const {
   return options_.batch_adjustment != BatchMode::kNone && options_.mode == OdometryMode::kOffline &&
-         count_lost(result.poses) == 0;
+         lost_ns_.empty();
 }
 
 void Odometry::adjust(std::span<const Event> events, const PathEstimate& start,

@@ -19,6 +19,7 @@
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
 #include "estimator/odometry/start/first_map.h"
+#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/edges/edge_tracker.h"
 
 namespace saccade {
@@ -72,6 +73,7 @@ struct OdometryResult {
   double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
   double tracking_s = 0;      ///< seconds of work
   double mapping_s = 0;
+  double check_s = 0;
   // Of adjust().
   double batch_s = 0;
   std::vector<StampedCovariance> covariances;  ///< of all poses; none where not determined
@@ -106,7 +108,7 @@ class Odometry {
   [[nodiscard]] const EdgeMap& map() const { return map_; }
 
   /// Whether adjust() is to follow on what run() found.
-  [[nodiscard]] bool wants_batch_adjustment(const OdometryResult& result) const;
+  [[nodiscard]] bool wants_batch_adjustment() const;
 
   /// The batch adjustment (batch_adjustment.h) of what run() found of the same events and start:
   /// poses with their sigmas and covariances, and keyframes on the adjusted path. `progress`: as of
@@ -130,6 +132,7 @@ class Odometry {
   };
 
   void start_from(FirstMap first, OdometryResult& result);
+  void take_map();
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void add_pose(TrackedPose pose, OdometryResult& result);
   void discard_diverged_poses(const TrackedPose& found, OdometryResult& result);
@@ -148,11 +151,13 @@ class Odometry {
   Mapper mapper_;
   EdgeMap map_;
   EdgeTracker tracker_;
+  std::optional<PoseMonitor> monitor_;
   std::vector<StampedPose> path_;  ///< the start, then what was tracked, as last adjusted
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
+  std::vector<TimeNs> lost_ns_;  ///< times of the poses that the tracker, not their check, says are lost
   double last_search_s_ = -std::numeric_limits<double>::infinity();
   Gyroscope gyroscope_;
   std::optional<MountedImu> imu_;

@@ -16,6 +16,7 @@
 #include "estimator/odometry/odometry_output.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
+#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/motion_model.h"
 #include "estimator/tracking/pose_output.h"
 
@@ -144,6 +145,28 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
   return found;
 }
 
+/// A start that was found on wrong evidence makes a map on which the next events do not lie. Throws
+/// InputError where the poses of the first tenth of a second after it are more likely wrong.
+void check_start(const OdometryInput& input, const Start& start, const OdometryFound& found) {
+  if (!start.found) return;
+  constexpr double kTrial_s = 0.1;
+  const double from_s = start.found->path.end_s();
+  double sum = 0, count = 0;
+  for (const TrackedPose& pose : found.result.poses) {
+    const double t_s = seconds_from_ns(pose.t_ns);
+    if (t_s <= from_s || t_s > from_s + kTrial_s) continue;
+    sum += pose.probability;
+    ++count;
+  }
+  if (count > 0 && sum < 0.5 * count)
+    throw InputError(
+        input.dataset.folder().string(),
+        fmt::format("the start that was found at {:.3f} s does not explain the events after it "
+                    "(probability {:.2f}): begin elsewhere (--start-s), or give poses "
+                    "(start.truth_s)",
+                    start.found->path.start_s(), sum / count));
+}
+
 /// Scale and gravity by the samples. Given poses have a world and metres of their own.
 void align(OdometryFound& found, const OdometryInput& input, bool has_given_poses) {
   OdometryResult& result = found.result;
@@ -166,11 +189,9 @@ void write(const std::filesystem::path& folder, const OdometryInput& input, cons
 void take_timing(const OdometryFound& found, const Start& start, bool is_online,
                  RunTiming& timing) {
   const OdometryResult& result = found.result;
-  timing.stages_s = {{"start", start.seconds},
-                     {"tracking", result.tracking_s},
-                     {"mapping", result.mapping_s},
-                     {"refinement", result.batch_s},
-                     {"images", found.images_s}};
+  timing.stages_s = {{"start", start.seconds},       {"tracking", result.tracking_s},
+                     {"mapping", result.mapping_s},  {"check", result.check_s},
+                     {"refinement", result.batch_s}, {"images", found.images_s}};
   timing.poses = result.poses.size();
   timing.latency_ms = result.latency_ms;
   if (is_online) timing.dropped_events = result.dropped_events;
@@ -189,6 +210,7 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
     text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);
   RunSummary summary = summary_of(timing, text);
   summary.lost_poses = lost;
+  summary.lost_since_s = lost_since_s(found.result.poses);
   return summary;
 }
 
@@ -218,7 +240,9 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
   OdometryFound found = run_stages(input, start, config, request.repeat, timing.wall_s);
+  check_start(input, start, found);
   if (config.align_imu) align(found, input, !start.found);
+  report_gaps(events.back().t_ns, found.result.poses);
   take_timing(found, start, config.odometry.mode == OdometryMode::kOnline, timing);
 
   io.emplace(timing.io_s);

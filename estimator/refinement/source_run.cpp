@@ -64,6 +64,7 @@ std::vector<TrackedPose> SourceRun::poses() const {
   const CsvColumns rows(folder / "poses.csv");
   const std::size_t t = rows.require("t_s"), status = rows.require("status");
   const std::size_t first = rows.require("first_event_s"), last = rows.require("last_event_s");
+  const auto probability = rows.find("probability");
   std::vector<TrackedPose> poses;
   for (std::size_t i = 0; i < rows.rows(); ++i) {
     TrackedPose pose;
@@ -76,6 +77,7 @@ std::vector<TrackedPose> SourceRun::poses() const {
     pose.first_ns = ns_from_seconds(rows.number(i, first));
     pose.last_ns = ns_from_seconds(rows.number(i, last));
     if (rows.text(i, status) == "lost") pose.status = TrackStatus::kLost;
+    if (probability) pose.probability = rows.number(i, *probability);
     poses.push_back(pose);
   }
   if (poses.size() < kFewestPoses) fail_few(folder.string());

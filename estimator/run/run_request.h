@@ -36,6 +36,8 @@ struct RunSummary {
   std::size_t events = 0;  ///< given to the estimator
   std::size_t poses = 0;   ///< found, of modules that find poses
   std::size_t lost_poses = 0;
+  /// Since when all poses are lost; nullopt where the last one is not.
+  std::optional<double> lost_since_s = {};
   double wall_s = 0;  ///< median over the repetitions, without reading and writing
 };
 

@@ -14,6 +14,7 @@
 #include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
+#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/frames/grey_frames.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/track_config.h"
@@ -117,23 +118,31 @@ TrackWorld world_of(const TrackConfig& config, const TrackInput& input) {
           input.gyroscope};
 }
 
-/// The tracker over the whole recording, `repeat` times.
-std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, int repeat,
-                               RunTiming& timing) {
+/// The tracker over the whole recording, its poses judged, `repeat` times.
+std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, const TrackWorld& world,
+                               int repeat, RunTiming& timing) {
   const Recording recording{input.events, input.frames};
   const bool has_frames = !input.frames.empty();
   const std::size_t count = has_frames ? input.frames.size() : input.events.size();
   const TimeNs start_ns = has_frames ? input.frames.front().t_ns : input.events.front().t_ns;
   Progress progress("track", count * static_cast<std::size_t>(repeat),
                     has_frames ? "frames" : "events");
+  const TimeNs end_ns = has_frames ? input.frames.back().t_ns : input.events.back().t_ns;
   std::vector<TrackedPose> poses;
+  double check_s = 0;
   repeat_timed(repeat, timing.wall_s, [&] {
     tracker.reset(start_ns, input.initial_world_from_camera);
     poses = tracker.track(recording, [&](std::size_t n) { progress.add(n); });
+    check_s = 0;
+    const ScopedTimer clock(check_s);
+    judge_poses(input.camera, recording, world.edge_points, world.intensity_map.world_from_map(),
+                poses);
+    report_gaps(end_ns, poses);
   });
   timing.stages_s.insert(timing.stages_s.end(), {{"template", tracker.timing().view_s},
                                                  {"event_frame", tracker.timing().load_s},
-                                                 {"align", tracker.timing().align_s}});
+                                                 {"align", tracker.timing().align_s},
+                                                 {"check", check_s}});
   timing.events = input.events.size();
   timing.poses = poses.size();
   timing.sequence_s = input.window.end_s - input.window.start_s;
@@ -156,7 +165,7 @@ RunSummary run_track(const RunRequest& request) {
   const TrackWorld world = world_of(config, input);
   timing.stages_s = {{"map", mapping.seconds()}};
   const std::unique_ptr<Tracker> tracker = method_of(config).make(config, world);
-  const std::vector<TrackedPose> poses = track(*tracker, input, request.repeat, timing);
+  const std::vector<TrackedPose> poses = track(*tracker, input, world, request.repeat, timing);
 
   {
     const ScopedTimer writing(timing.io_s);
@@ -169,6 +178,7 @@ RunSummary run_track(const RunRequest& request) {
   const std::size_t lost = count_lost(poses);
   RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));
   summary.lost_poses = lost;
+  summary.lost_since_s = lost_since_s(poses);
   return summary;
 }
 

@@ -11,6 +11,7 @@
 #include "core/event.h"
 #include "core/image.h"
 #include "core/rigid3.h"
+#include "estimator/tracking/check/pose_evidence.h"
 #include "estimator/tracking/motion_model.h"
 
 namespace saccade {
@@ -31,6 +32,10 @@ struct TrackedPose {
   double residual = 0;      ///< root mean square, in the method's unit
   double position_sigma_m = 0;
   double rotation_sigma_rad = 0;
+  /// That it is within 5 % of the depth and 5 degrees of the truth, and what says so; of a
+  /// PoseMonitor. NaN: not judged.
+  double probability = std::numeric_limits<double>::quiet_NaN();
+  PoseEvidence evidence;
 
   /// Takes both standard deviations from a covariance (v, w) [m, rad].
   void set_sigmas(const Matrix6& covariance) {

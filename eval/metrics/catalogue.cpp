@@ -14,6 +14,7 @@ constexpr auto kHigher = MetricInfo::Better::kHigher;
 
 constexpr const char* kTruePath = "trajectory, ground truth";
 constexpr const char* kTruePathAndDepth = "trajectory, ground truth, mean scene depth";
+constexpr const char* kReport = "trajectory, ground truth, mean scene depth, poses.csv";
 constexpr const char* kTrueDepth = "depth maps, true depth";
 constexpr const char* kTrueFrames = "images, true frames";
 constexpr const char* kTruePanorama = "mosaic, true panorama";
@@ -56,6 +57,18 @@ std::vector<MetricInfo> trajectory_rows() {
       {.key = "trajectory.lost_s", .label = "lost [s]", .unit = "s", .needs = kTruePathAndDepth,
        .floor = 0.1, .in_tables = true},
       {.key = "trajectory.reported_lost_s", .unit = "s", .needs = "trajectory, poses.csv"},
+      {.key = "trajectory.loss.precision", .label = "loss precision", .scale = 100,
+       .better = kHigher, .needs = kReport},
+      {.key = "trajectory.loss.recall", .label = "loss recall", .scale = 100, .better = kHigher,
+       .needs = kReport},
+      {.key = "trajectory.loss.delay_ms", .label = "loss delay [ms]", .unit = "ms",
+       .needs = kReport},
+      {.key = "trajectory.loss.unreported_s", .label = "unreported [s]", .unit = "s",
+       .needs = kReport, .in_tables = true},
+      {.key = "trajectory.loss.reported_s", .unit = "s", .better = kNeither, .needs = kReport},
+      {.key = "trajectory.loss.count", .needs = kReport},
+      {.key = "success", .label = "success", .scale = 100, .better = kHigher,
+       .needs = kTruePathAndDepth, .in_tables = true},
       {.key = "trajectory.drift_percent", .unit = "%", .needs = kTruePath},
       {.key = "trajectory.rpe.*.trans_percent", .unit = "%", .needs = kTruePath},
       {.key = "trajectory.rpe.*.trans_rmse_m", .unit = "m", .needs = kTruePath},

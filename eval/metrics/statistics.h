@@ -55,6 +55,24 @@ struct Statistics {
   return 1.960 + 2.372 / n + 2.823 / (n * n);
 }
 
+/// Wilson's 95 % interval of a probability of which `successes` of `trials` >= 1 independent trials
+/// tell (Wilson, JASA 22, 1927): the p for which |successes / trials - p| is at most 1.96 standard
+/// deviations sqrt(p (1 - p) / trials). Unlike mean +- deviation it is honest at 0 and 1.
+struct ProportionInterval {
+  double low = 0;
+  double high = 1;
+};
+[[nodiscard]] inline ProportionInterval wilson_95(double successes, double trials) {
+  SACCADE_CHECK(trials >= 1 && successes >= 0 && successes <= trials);
+  constexpr double kZ = 1.959964;
+  const double p = successes / trials;
+  const double middle = (p + kZ * kZ / (2 * trials)) / (1 + kZ * kZ / trials);
+  const double half = kZ / (1 + kZ * kZ / trials) *
+                      std::sqrt(p * (1 - p) / trials + kZ * kZ / (4 * trials * trials));
+  // Rounding would leave a little at the ends.
+  return {successes == 0 ? 0 : middle - half, successes == trials ? 1 : middle + half};
+}
+
 /// Sets `key`.{mean,sigma,max,rmse}; all null where `samples` is empty.
 inline void set_statistics(Metrics& metrics, const std::string& key,
                            std::span<const double> samples) {

@@ -65,6 +65,7 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
   for (const auto& [id, name] : {std::pair{"against", "A against B"},
                                  {"leaderboard", "Leaderboard"},
                                  {"compared", "Compared"},
+                                 {"reliability", "Reliability"},
                                  {"accuracy", "Accuracy"},
                                  {"depth", "Depth"},
                                  {"datasets", "Datasets"},
@@ -149,6 +150,7 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   if (runs.size() > 1)
     parts.push_back(leaderboard_section(std::span(exported).first(boards.size())));
   parts.push_back(compared_section(runs, boards, charts));
+  parts.push_back(reliability_section(runs, charts));
   for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
     parts.push_back(table(runs));
   const std::string tables = with_repeat(parts, options.command);

@@ -3,14 +3,11 @@
 #include <algorithm>
 
 #include "eval/metrics/statistics.h"
+#include "eval/metrics/trajectory/loss_metrics.h"
 #include "eval/metrics/trajectory/relative_error.h"
 
 namespace saccade {
 namespace {
-
-/// True error from which tracking counts as lost.
-constexpr double kLostDepthPercent = 5;
-constexpr double kLostDeg = 5;
 
 ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>& mean_depth_m) {
   ErrorSeries series;
@@ -68,11 +65,10 @@ std::optional<double> error_after_begin_percent(const TrajectoryScoreInput& inpu
 }
 
 std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
-  if (series.dt_rel_percent.empty()) return std::nullopt;
-  std::size_t lost = 0;
-  for (std::size_t i = 0; i < series.t_s.size(); ++i)
-    if (series.dt_rel_percent[i] > kLostDepthPercent || series.dtheta_deg[i] > kLostDeg) ++lost;
-  return duration_s * static_cast<double>(lost) / static_cast<double>(series.t_s.size());
+  const std::vector<bool> is_lost = truly_lost(series);
+  if (is_lost.empty()) return std::nullopt;
+  const auto lost = std::count(is_lost.begin(), is_lost.end(), true);
+  return duration_s * static_cast<double>(lost) / static_cast<double>(is_lost.size());
 }
 
 }  // namespace

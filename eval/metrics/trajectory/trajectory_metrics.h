@@ -14,6 +14,8 @@ namespace saccade {
 struct PoseStatus {
   double t_s = 0;
   bool is_lost = false;
+  /// That the pose is within the limits of a loss (truly_lost()); nullopt: not stated.
+  std::optional<double> probability = {};
 };
 
 struct TrajectoryScoreInput {
@@ -24,6 +26,9 @@ struct TrajectoryScoreInput {
   std::optional<double> mean_depth_m;  ///< d of dt_rel (thesis 8.1), > 0
   /// In order of time; nullopt: the estimator reports no status.
   std::optional<std::vector<PoseStatus>> reported;
+  /// The estimate's world is not the truth's, as its start was found without any pose given: without
+  /// an alignment the two cannot be compared.
+  bool has_own_world = false;
 };
 
 /// Errors over time on the 1 ms grid of the scored interval.
@@ -40,7 +45,7 @@ struct ErrorSeries {
 /// Errors without alignment; empty where there is no estimate or nothing to score against.
 [[nodiscard]] ErrorSeries errors_over_time(const TrajectoryScoreInput& input);
 
-/// Every key below "trajectory." except reprojection_px (see docs/metrics.md for the definitions);
+/// Every key below "trajectory." except reprojection_px, nees and loss (see docs/metrics.md for the definitions);
 /// what cannot be computed is null. The set of keys never depends on the input.
 [[nodiscard]] Metrics score_trajectory(const TrajectoryScoreInput& input);
 

@@ -31,6 +31,11 @@ namespace saccade {
                                            std::span<const Leaderboard> boards,
                                            std::vector<PageChart>& page);
 
+/// Stated probabilities against the truth, a curve for each method in one chart, which is appended
+/// to those of the page; empty where no run states any.
+[[nodiscard]] std::string reliability_section(std::span<const RunData> runs,
+                                              std::vector<PageChart>& page);
+
 /// Every comparison of the gate: the metric on A and on B, the difference [%] with its interval,
 /// and whether B is better, worse or equal.
 [[nodiscard]] Table against_table(const RunSetComparison& comparison);

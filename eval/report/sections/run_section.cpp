@@ -163,10 +163,12 @@ std::string accuracy_details(const RunData& data) {
   return "<div class=\"grid\"><div>" + alignment_table(data) +
          fmt::format(
              "<p class=\"note\">Drift at the end {} % of the path. Lost for {} s by the truth, "
-             "{} s by its own report. Worst instant of the map in the image: {} px RMS.</p>",
+             "{} s by its own report, {} s of the loss unreported. Worst instant of the map in the "
+             "image: {} px RMS.</p>",
              significant(m.get("trajectory.drift_percent")),
              significant(m.get("trajectory.lost_s")),
              significant(m.get("trajectory.reported_lost_s")),
+             significant(m.get("trajectory.loss.unreported_s")),
              significant(m.get("trajectory.reprojection_px.rms_max"))) +
          "</div><div>" + relative_table(data) + "</div></div>\n";
 }

@@ -11,12 +11,15 @@
 #include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/metrics/statistics.h"
 #include "eval/run_folder.h"
 #include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/tables.h"
 
 namespace saccade {
 namespace {
+
+constexpr const char* kSuccess = "success";
 
 Metrics dataset_metrics(const std::filesystem::path& folder) {
   const DatasetRecord record = read_dataset_record(folder / "dataset.yaml");
@@ -114,7 +117,22 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
   return groups;
 }
 
+std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows) {
+  double successes = 0;
+  bool is_known = false;
+  for (const SweepRow* row : rows) {
+    const std::optional<double> success = row->metrics.get(kSuccess);
+    is_known = is_known || success;
+    if (row->problem.empty()) successes += success.value_or(0);
+  }
+  if (!is_known) return std::nullopt;
+  const auto count = static_cast<double>(rows.size());
+  const ProportionInterval interval = wilson_95(successes, count);
+  return MetricSummary{successes / count, interval.low, interval.high, rows.size()};
+}
+
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
+  if (key == kSuccess) return success_share(group.rows);
   std::vector<double> values;
   for (const SweepRow* row : group.rows) {
     if (!row->problem.empty()) continue;  // the time until a crash is not a speed

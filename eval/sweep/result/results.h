@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,19 @@ struct SweepGroup {
 /// A metric over the rows of a group that have it and no problem.
 struct MetricSummary {
   double value = 0;  ///< mean; of a speed, and over generated datasets, the median
-  double low = 0;    ///< least value; over generated datasets the lower quartile
+  double low = 0;    ///< minimum; over generated datasets the lower quartile; of `success` Wilson's
+                     ///< 95 % interval
   double high = 0;
   std::size_t count = 0;
 };
-/// nullopt where no row has the metric. A `key` without a value stands for key.median.
+/// nullopt where no row has the metric. `success` is the share of all rows: one that failed did not
+/// succeed. A `key` without a value stands for key.median.
 [[nodiscard]] std::optional<MetricSummary> summarise(const SweepGroup& group,
                                                      const std::string& key);
+
+/// The share of the rows that succeeded, a failed row among those that did not; nullopt where no row
+/// tells. Contract: at least one row.
+[[nodiscard]] std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows);
 
 /// The input of the tables and charts of a sweep.
 struct SweepResults {

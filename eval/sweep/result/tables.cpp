@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/metrics/catalogue.h"
+#include "eval/sweep/result/pooled_table.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
@@ -67,7 +68,9 @@ std::string value_cell(const SweepGroup& group, const std::string& metric,
   if (!summary) return rounded(std::nullopt);
   std::string text = rounded(summary->value);
   if (best && summary->value == *best) text = "**" + text + "**";
-  if (summary->low < summary->high && !metric_info(metric).is_speed)
+  // Of a single run the interval of its success says nothing.
+  const bool has_spread = summary->low < summary->high && summary->count > 1;
+  if (has_spread && !metric_info(metric).is_speed)
     text += fmt::format(" ({}–{})", rounded(summary->low), rounded(summary->high));
   return text;
 }
@@ -173,10 +176,12 @@ std::string expected_table(std::span<const ExpectationResult> expectations) {
 
 std::string method_text(const SweepResults& results) {
   std::string text;
+  const std::string success =
+      "; success is the share of runs with Wilson's 95 % interval. ";
   if (results.sweep.generate)
-    text += "Values are medians over the datasets of a scene, with the quartiles in brackets. ";
+    text += "Values are medians over the datasets of a scene, with the quartiles in brackets" + success;
   else if (has_seeds(results))
-    text += "Errors are means over the seeds, with the minimum and maximum in brackets. ";
+    text += "Errors are means over the seeds, with the minimum and maximum in brackets" + success;
   if (results.plan.runs.empty()) return text + "\n\n";
   text += results.sweep.repeat > 1
               ? fmt::format("Speeds are medians of {} repetitions", results.sweep.repeat)
@@ -250,7 +255,7 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
   } else {
     for (const Groups& groups : parts) text += tables_of(results, groups);
   }
-  text += expected_table(expectations);
+  text += pooled_table(results) + expected_table(expectations);
   for (const std::string& chart : charts) text += chart + "\n\n";
   return text + failures(results);
 }

@@ -17,6 +17,7 @@
 #include "core/io/tables/csv_reader.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/parallel.h"
+#include "core/random.h"
 #include "estimator/odometry/odometry_config.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -320,6 +321,32 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
         << file;
   const Trajectory found = read_trajectory(folder_.path() / "with" / "trajectory.txt");
   EXPECT_LT(found.poses().front().world_from_camera.log().norm(), 0.01);
+}
+
+TEST_F(OdometryModule, RefusesAStartThatTheNextEventsDoNotLieOn) {
+  // A start is found in the quarter of a second from 0.1 s on. What follows it is noise, at the rate
+  // of the events before.
+  constexpr double kNoiseFrom_s = 0.37;
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  Events events = world.simulate(glide, 0, kNoiseFrom_s, 1e-3, 0.12);
+  const double interval_s = kNoiseFrom_s / static_cast<double>(events.size());
+  const Random random(7);
+  for (std::uint64_t i = 1; kNoiseFrom_s + static_cast<double>(i) * interval_s < kEnd_s; ++i)
+    events.push_back({ns_from_seconds(kNoiseFrom_s + static_cast<double>(i) * interval_s),
+                      static_cast<std::uint16_t>(160 * random.uniform(i, 0)),
+                      static_cast<std::uint16_t>(120 * random.uniform(i, 1)),
+                      static_cast<std::int8_t>(random.uniform(i, 2) < 0.5 ? 1 : -1)});
+  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
+  std::string yaml = adjusted();
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
+               "truth_s: 0, initial_depth_m: 2.2");
+  RunRequest run = request("noise", yaml);
+  run.dataset = folder_.path() / "noisy";
+  testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
+                           poses_until(kEnd_s));
+  EXPECT_THAT(error_of([&] { return run_odometry(run); }),
+              HasSubstr("does not explain the events after it"));
+  EXPECT_FALSE(fs::exists(run.output));
 }
 
 TEST_F(OdometryModule, TheMethodSetsTheDefaults) {

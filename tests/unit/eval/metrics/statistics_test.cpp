@@ -35,6 +35,17 @@ TEST(Statistics, NothingIsNull) {
   EXPECT_EQ(metrics.get("k.mean"), std::nullopt);
 }
 
+TEST(Statistics, WilsonsIntervalIsThatOfTheTables) {
+  // 8 of 10 (Agresti & Coull, 1998): 0.490 to 0.943.
+  EXPECT_NEAR(wilson_95(8, 10).low, 0.4902, 1e-4);
+  EXPECT_NEAR(wilson_95(8, 10).high, 0.9433, 1e-4);
+  // At the ends z^2 / (n + z^2) remains: 3.8415 / 8.8415.
+  EXPECT_NEAR(wilson_95(5, 5).low, 1 - 0.43448, 1e-4);
+  EXPECT_EQ(wilson_95(5, 5).high, 1);
+  EXPECT_EQ(wilson_95(0, 5).low, 0);
+  EXPECT_NEAR(wilson_95(0, 5).high, 0.43448, 1e-4);
+}
+
 TEST(Statistics, StudentsQuantileIsThatOfTheTables) {
   EXPECT_NEAR(student_95(1), 12.7062, 1e-3);
   EXPECT_NEAR(student_95(9), 2.2622, 1e-3);

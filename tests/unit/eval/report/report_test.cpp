@@ -72,6 +72,17 @@ void expect_links_lead_somewhere(const std::string& page) {
 
 TEST_F(Report, EveryLinkLeadsToASection) { expect_links_lead_somewhere(written({run(), twin()})); }
 
+TEST_F(Report, HasAReliabilityDiagramWhereProbabilitiesAreStated) {
+  EXPECT_EQ(count(written({run()}), "id=\"reliability\""), 0U);
+  const fs::path stated = folder.path() / "stated";
+  fs::copy(run(), stated, fs::copy_options::recursive);
+  std::ofstream(stated / "poses.csv") << "t_s,status,probability\n0.0,ok,0.97\n0.5,ok,0.4\n";
+  const std::string page = written({stated});
+  EXPECT_EQ(count(page, "id=\"reliability\""), 1U);
+  EXPECT_EQ(count(page, "data-chart=\"reliability\""), 1U);
+  expect_links_lead_somewhere(page);
+}
+
 TEST_F(Report, ShowsTheAngularVelocityOfARunThatFoundOne) {
   EXPECT_EQ(count(written({run()}), "Angular velocity</h4>"), 0U);
   const fs::path with_rates = folder.path() / "with_rates";
