@@ -132,7 +132,7 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
     wall_s.push_back(start.seconds);
     const ScopedTimer clock(wall_s.back());
     found.result = odometry->run(input.events, start.path, [&](std::size_t n) { progress.add(n); });
-    if (!odometry->wants_batch_adjustment(found.result)) continue;
+    if (!odometry->wants_batch_adjustment()) continue;
     Progress steps("batch", BatchAdjustmentOptions().steps(), "steps");
     odometry->adjust(input.events, start.path, found.result, [&](std::size_t n) { steps.add(n); });
   }
