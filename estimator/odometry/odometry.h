@@ -157,7 +157,8 @@ class Odometry {
   double given_until_s_ = kNoGivenPoses;
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
-  std::vector<TimeNs> lost_ns_;  ///< times of the poses that the tracker, not their check, says are lost
+  std::vector<TimeNs>
+      lost_ns_;  ///< times of the poses that the tracker, not their check, says are lost
   double last_search_s_ = -std::numeric_limits<double>::infinity();
   Gyroscope gyroscope_;
   std::optional<MountedImu> imu_;

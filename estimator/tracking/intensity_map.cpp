@@ -110,8 +110,8 @@ ImageF local_variance(const ImageF& image) {
           const int u = x + dx, v = y + dy;
           if (u < 0 || v < 0 || u >= image.width() || v >= image.height()) continue;
           if (!std::isfinite(image(u, v))) continue;
-          const double k = kKernel[static_cast<std::size_t>(dx + 1)] *
-                           kKernel[static_cast<std::size_t>(dy + 1)];
+          const double k =
+              kKernel[static_cast<std::size_t>(dx + 1)] * kKernel[static_cast<std::size_t>(dy + 1)];
           const auto value = static_cast<double>(image(u, v));
           weight += k;
           sum += k * value;
@@ -119,7 +119,8 @@ ImageF local_variance(const ImageF& image) {
         }
       if (weight > 0) {
         const double mean = sum / weight;
-        variance(x, y) = static_cast<float>(kPerPixel * std::max(0.0, squares / weight - mean * mean));
+        variance(x, y) =
+            static_cast<float>(kPerPixel * std::max(0.0, squares / weight - mean * mean));
       }
     }
   return variance;
@@ -218,7 +219,8 @@ IntensityMap::IntensityMap(const PinholeCamera& camera, std::span<const Referenc
     const ImageF variance = local_variance(views[i].log_intensity);
     std::copy(variance.pixels().begin(), variance.pixels().end(), &variance_(0, first_row));
     const Extremes extremes = local_extremes(views[i].log_intensity);
-    std::copy(extremes.least.pixels().begin(), extremes.least.pixels().end(), &least_(0, first_row));
+    std::copy(extremes.least.pixels().begin(), extremes.least.pixels().end(),
+              &least_(0, first_row));
     std::copy(extremes.greatest.pixels().begin(), extremes.greatest.pixels().end(),
               &greatest_(0, first_row));
     sharpness.add(views[i].log_intensity, 1, 0);

@@ -59,7 +59,8 @@ class EventIntervals {
     if (count_ < kEnough) return 0;
     double below = 0;
     std::size_t bin = 0;
-    while (bin + 1 < kBins && below + static_cast<double>(counts_[bin]) <= 0.01 * static_cast<double>(count_))
+    while (bin + 1 < kBins &&
+           below + static_cast<double>(counts_[bin]) <= 0.01 * static_cast<double>(count_))
       below += static_cast<double>(counts_[bin++]);
     return bin;
   }

@@ -17,7 +17,8 @@ struct IntensityOptions {
   /// A pixel between its events is taken to have gone on by half a threshold: it may be anywhere
   /// within one, and mostly keeps its direction.
   bool half_threshold = true;
-  std::optional<double> mismatch_sigma;  ///< of the thresholds, relative; by default from the events
+  std::optional<double>
+      mismatch_sigma;  ///< of the thresholds, relative; by default from the events
   double redraw_deg =
       1.15;  ///< the map is rendered anew when image points have moved by fx times this
 };

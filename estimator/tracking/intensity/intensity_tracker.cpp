@@ -30,10 +30,11 @@ constexpr double kMaxMotionWithoutEvents_px = 2;
 
 void describe(config::Fields& fields, IntensityOptions& options) {
   fields
-      .value("events", options.events,
-             "Events per pose; ~ takes as many as come from 1000 pixels, times (width / 240 px)^1.5 "
-             "on a wider sensor, or from up to 3000 while the image moves by half a pixel. More of "
-             "them cost less time per second of recording and follow the motion more coarsely.")
+      .value(
+          "events", options.events,
+          "Events per pose; ~ takes as many as come from 1000 pixels, times (width / 240 px)^1.5 "
+          "on a wider sensor, or from up to 3000 while the image moves by half a pixel. More of "
+          "them cost less time per second of recording and follow the motion more coarsely.")
       .range(1, 1e6);
   fields
       .value("no_event_ratio", options.no_event_ratio,
@@ -41,15 +42,17 @@ void describe(config::Fields& fields, IntensityOptions& options) {
              "within a threshold of their last value. 0 disables them.")
       .range(0, 1000);
   fields
-      .value("mismatch_sigma", options.mismatch_sigma,
-             "Standard deviation of a pixel's threshold, relative to it. ~ takes 0.02 where pixels "
-             "fire several times at once, as only ideal ones do, and else 0.15. A larger one trusts "
-             "the map more and the pixels less.")
+      .value(
+          "mismatch_sigma", options.mismatch_sigma,
+          "Standard deviation of a pixel's threshold, relative to it. ~ takes 0.02 where pixels "
+          "fire several times at once, as only ideal ones do, and else 0.15. A larger one trusts "
+          "the map more and the pixels less.")
       .range(0, 1);
   fields
-      .value("map_blur_px", options.map_blur_px,
-             "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
-             "0 disables it.")
+      .value(
+          "map_blur_px", options.map_blur_px,
+          "Standard deviation in pixels of the Gaussian that smooths the map at its strong edges; "
+          "0 disables it.")
       .range(0, 10);
 }
 
@@ -62,8 +65,8 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options,
       camera_(camera.undistorted()),
       residuals_(options, contrast, camera, map),
       fallback_(std::move(edges)),
-      last_batch_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {
-}
+      last_batch_(static_cast<std::size_t>(camera.width) *
+                  static_cast<std::size_t>(camera.height)) {}
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);

@@ -65,8 +65,7 @@ LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
       view_(map, margin_of(options, camera), spacing_of(camera)),
       pixels_(camera.width, camera.height, contrast.on, contrast.off),
       no_event_variance_(no_event_variance(contrast)),
-      threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {
-}
+      threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {}
 
 void LogIntensityResiduals::reset() {
   intervals_ = {};
@@ -135,8 +134,7 @@ void LogIntensityResiduals::learn_sensor() {
   constexpr double kReal = 0.15, kIdeal = 0.02;
   const double mismatch =
       options_.mismatch_sigma.value_or(intervals_.has_bursts() ? kIdeal : kReal);
-  pixels_.set_event_variance(
-      static_cast<float>(mismatch * mismatch) * threshold_ * threshold_);
+  pixels_.set_event_variance(static_cast<float>(mismatch * mismatch) * threshold_ * threshold_);
   step_weight_ = sharp_fraction(map_.edge_sharpness()) * intervals_.pile_up();
 }
 
@@ -331,10 +329,11 @@ EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatc
 void LogIntensityResiduals::correct(double image_speed_px) {
   const double blind_px = blind_s() * image_speed_px;
   const auto blind_px2 = static_cast<float>(std::min(1.0, blind_px * blind_px));
-  for_each_measured_pixel([&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
-    pixels_.correct(pixel, excess, batch.map_variance(j));
-    pixels_.move(pixel, 0, blind_px2 * batch.variance_per_px2(j));
-  });
+  for_each_measured_pixel(
+      [&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
+        pixels_.correct(pixel, excess, batch.map_variance(j));
+        pixels_.move(pixel, 0, blind_px2 * batch.variance_per_px2(j));
+      });
 }
 
 void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion& motion) {
@@ -357,9 +356,10 @@ void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion&
       add(observation, *at, static_cast<std::uint32_t>(i));
   }
   static_cast<void>(evaluate(motion));
-  for_each_measured_pixel([&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
-    pixels_.correct(pixel, excess, noise + batch.map_variance(j));
-  });
+  for_each_measured_pixel(
+      [&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
+        pixels_.correct(pixel, excess, noise + batch.map_variance(j));
+      });
 }
 
 template <class Use>

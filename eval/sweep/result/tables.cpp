@@ -176,10 +176,10 @@ std::string expected_table(std::span<const ExpectationResult> expectations) {
 
 std::string method_text(const SweepResults& results) {
   std::string text;
-  const std::string success =
-      "; success is the share of runs with Wilson's 95 % interval. ";
+  const std::string success = "; success is the share of runs with Wilson's 95 % interval. ";
   if (results.sweep.generate)
-    text += "Values are medians over the datasets of a scene, with the quartiles in brackets" + success;
+    text +=
+        "Values are medians over the datasets of a scene, with the quartiles in brackets" + success;
   else if (has_seeds(results))
     text += "Errors are means over the seeds, with the minimum and maximum in brackets" + success;
   if (results.plan.runs.empty()) return text + "\n\n";

@@ -103,7 +103,8 @@ void expect_row(const Sight& sight, const Vector6& velocity, double tolerance) {
   ASSERT_GT(std::abs(r), 0.01) << "the test needs a residual";
   // The weight over all variances in place of that over the pixel's.
   const double n2 = static_cast<double>(kEventSigma * kEventSigma);
-  const double x = r / (static_cast<double>(kTail) * std::sqrt(n2 + static_cast<double>(kVariance)));
+  const double x =
+      r / (static_cast<double>(kTail) * std::sqrt(n2 + static_cast<double>(kVariance)));
   const double weight = n2 / (n2 + static_cast<double>(kVariance)) / (1 + x * x);
   const Vector6 row = sums.rhs / (weight * r);
   const double scale = numeric.cwiseAbs().maxCoeff();
@@ -168,7 +169,8 @@ TEST(EventResidualBatch, WeightsAreCauchysOverTheVariancesOfMapAndPixel) {
         EXPECT_NEAR(batch.variance_per_px2(0), kPositionVariance, 1e-6);
         const double known = static_cast<double>(sigma * sigma / (sigma * sigma + kVariance));
         const double r = static_cast<double>(batch.residual(0));
-        const double x = r / (static_cast<double>(kTail) * std::sqrt(map + static_cast<double>(kVariance)));
+        const double x =
+            r / (static_cast<double>(kTail) * std::sqrt(map + static_cast<double>(kVariance)));
         EXPECT_NEAR(sums.weight, known / (1 + x * x), 1e-5);
         EXPECT_NEAR(sums.squares, sums.weight * r * r, 1e-5 * (1 + r * r));
         EXPECT_NEAR(sums.known, known, 1e-6);
@@ -182,8 +184,7 @@ TEST(EventResidualBatch, WhatIsUncertainWeighsLess) {
     Sight here = sight({20, 30}, 2, 0);
     here.observation.variance = variance;
     // Without a residual there is no Cauchy weight.
-    here.observation.log_intensity =
-        sample(atlas, here.seen.atlas_px.x(), here.seen.atlas_px.y());
+    here.observation.log_intensity = sample(atlas, here.seen.atlas_px.x(), here.seen.atlas_px.y());
     EventResidualBatch batch;
     batch.add(here.observation, here.seen);
     return sums_of(batch, kEventSigma, atlas, some_pose(), Vector6::Zero(), position_sigma_px)
