@@ -154,7 +154,7 @@ constexpr FormerKey kFormerKeys[] = {
     {"intensity.place_px", "", "it is always 0.2 px (kPositionSigma_px)"},
     {"intensity.redraw_deg", "", "it is always 1.15 degrees (IntensityOptions::redraw_deg)"},
     {"intensity.samples", "", "all pixels with events are aligned"},
-    {"intensity.silence_px", "", "it is always 2 px (kSilence_px)"},
+    {"intensity.silence_px", "", "it is always 2 px (kMaxMotionWithoutEvents_px)"},
     {"joint.again_events", "", "it is always 10 (BatchAdjustmentOptions::reobserved_events)"},
     {"joint.again_keyframes", "joint.reobserved_keyframes", ""},
     {"joint.bend_px", "", "it is always 30 px (BatchAdjustmentOptions::slope_walk_px)"},

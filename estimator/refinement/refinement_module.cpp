@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/config/config.h"
 #include "core/error.h"
@@ -42,6 +43,9 @@ RunSummary run_refinement(const RunRequest& request) {
   config.method = method.name;
   if (config.method != "depth" && request.poses_from)
     throw InputError("--poses-from", "poses are refined here; it is of a run of depth");
+  // A run that found its own start has a world of its own, and so has this one.
+  if (const auto start = run.folder / "start.yaml"; std::filesystem::exists(start))
+    std::filesystem::copy_file(start, writer.path() / "start.yaml");
   return method.run(request, config, dataset, run, writer);
 }
 

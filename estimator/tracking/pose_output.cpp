@@ -17,6 +17,7 @@ std::vector<StampedPose> stamped_poses(std::span<const TrackedPose> poses) {
   std::vector<StampedPose> stamped;
   for (const TrackedPose& pose : poses) {
     const double t_s = seconds_from_ns(pose.t_ns);
+    if (pose.is_gap) continue;
     if (stamped.empty() || t_s > stamped.back().t_s)
       stamped.push_back({t_s, pose.world_from_camera});
   }

@@ -144,7 +144,8 @@ std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, const 
                                                  {"align", tracker.timing().align_s},
                                                  {"check", check_s}});
   timing.events = input.events.size();
-  timing.poses = poses.size();
+  timing.poses = static_cast<std::size_t>(
+      std::count_if(poses.begin(), poses.end(), [](const TrackedPose& p) { return !p.is_gap; }));
   timing.sequence_s = input.window.end_s - input.window.start_s;
   return poses;
 }
@@ -178,7 +179,7 @@ RunSummary run_track(const RunRequest& request) {
   const std::size_t lost = count_lost(poses);
   RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));
   summary.lost_poses = lost;
-  summary.lost_since_s = lost_since_s(poses);
+  summary.lost_since_s = poses.empty() ? std::optional(input.window.start_s) : lost_since_s(poses);
   return summary;
 }
 

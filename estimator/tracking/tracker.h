@@ -27,6 +27,8 @@ struct TrackedPose {
   TimeNs last_ns = 0;   ///< its last event
   Rigid3 world_from_camera;
   TrackStatus status = TrackStatus::kOk;
+  bool is_gap =
+      false;  ///< no pose: from then on the last one does not hold any more (report_gaps())
   int iterations = 0;
   double inlier_ratio = 0;  ///< measurements that agree with the map, 0..1
   double residual = 0;      ///< root mean square, in the method's unit

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/error.h"
 #include "core/io/covariance_file.h"
@@ -82,6 +83,8 @@ std::vector<StampedCovariance> replace_poses(const BatchAdjustment& result,
     pose.iterations = static_cast<int>(result.costs.steps().size());
     pose.inlier_ratio = 1;
     pose.residual = result.residual_px;
+    // What the run said of its own pose does not hold of this one.
+    pose.probability = std::numeric_limits<double>::quiet_NaN();
   }
   if (result.covariance.size() == 0) return {};
   return set_sigmas(poses, [&](double t_s) { return result.covariance_at(t_s); });

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <limits>
+
 #include "core/error.h"
 #include "core/io/covariance_file.h"
 #include "core/process/progress.h"
@@ -49,6 +51,8 @@ std::vector<StampedCovariance> replace_poses(const RefinedPath& path, const Rigi
     pose.iterations = static_cast<int>(path.costs.steps().size());
     pose.inlier_ratio = static_cast<double>(path.inliers) / observations;
     pose.residual = path.residual;
+    // What the run said of its own pose does not hold of this one.
+    pose.probability = std::numeric_limits<double>::quiet_NaN();
   }
   if (path.covariance.size() == 0) return {};
   return set_sigmas(poses, [&](double t_s) { return path.covariance_at(t_s); });

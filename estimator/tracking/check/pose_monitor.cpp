@@ -80,6 +80,7 @@ void PoseMonitor::measure(const TrackedPose& pose) {
 }
 
 void PoseMonitor::judge(TrackedPose& pose) {
+  const bool tracker_lost = pose.status == TrackStatus::kLost;
   if (is_map_new_ || !log_odds_ || pose.t_ns >= checked_ns_ + kInterval_ns) {
     // What was known before a gap says nothing of the pose after it.
     const bool is_continued = log_odds_ && pose.t_ns < checked_ns_ + kMemory_ns;
@@ -87,12 +88,13 @@ void PoseMonitor::judge(TrackedPose& pose) {
     is_map_new_ = false;
     measure(pose);
     evidence_ = check_.look(map_from_world_ * pose.world_from_camera);
-    evidence_.tracker_lost = pose.status == TrackStatus::kLost;
     pose.evidence = evidence_;
+    pose.evidence.tracker_lost = tracker_lost;
     const double log_odds = std::clamp(log_odds_of(pose), -kMostLogOdds, kMostLogOdds);
     log_odds_ = is_continued ? std::lerp(*log_odds_, log_odds, kBelief) : log_odds;
   }
   pose.evidence = evidence_;
+  pose.evidence.tracker_lost = tracker_lost;
   pose.probability = probability_of(*log_odds_);
   is_lost_ = pose.probability < (is_lost_ ? kFoundProbability : 0.5);
   if (is_lost_)
@@ -123,6 +125,7 @@ void report_gaps(TimeNs end_ns, std::vector<TrackedPose>& poses) {
     TrackedPose lost = poses[i];
     lost.t_ns = lost.first_ns = lost.last_ns = poses[i].t_ns + ns_from_seconds(lost_after_s);
     lost.status = TrackStatus::kLost;
+    lost.is_gap = true;
     lost.probability = std::min(lost.probability, probability_after(lost_after_s * rate));
     all.push_back(lost);
   }

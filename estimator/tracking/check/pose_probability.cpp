@@ -34,7 +34,8 @@ double log_sigma(const TrackedPose& pose) {
   const double depth_m = pose.evidence.depth_m;
   double sigma = pose.rotation_sigma_rad / kLossAngle_rad;
   if (depth_m > 0) sigma = std::max(sigma, pose.position_sigma_m / (kLossDepthRatio * depth_m));
-  return std::isfinite(sigma) && sigma > 0 ? std::log(sigma) : kLeastLogSigma;
+  if (!std::isfinite(sigma)) return kMostLogSigma;
+  return sigma > 0 ? std::log(sigma) : kLeastLogSigma;  // 0: the method states none
 }
 
 }  // namespace

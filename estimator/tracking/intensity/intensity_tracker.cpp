@@ -128,6 +128,12 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
   const double wider = std::pow(std::max(1.0, camera_.width / kWidth), kPower);
   const auto least = static_cast<std::size_t>(std::lround(kLeastPixels * wider));
   const auto most = static_cast<std::size_t>(std::lround(kMostPixels * wider));
+  // Where few pixels see edges a pose may not wait for so many: what is linear in a batch is so over a
+  // pixel or two, and before anything is known of the motion, over few events.
+  constexpr std::size_t kFewestPixels = 100;
+  constexpr double kMostMotion_px = 1.5;
+  constexpr double kLongest_s = 0.015;
+  const std::size_t most_events = 2 * least;
   const double speed_px = image_speed_px();
   ++batch_;
   std::size_t pixels = 0;
@@ -135,11 +141,15 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
     std::uint32_t& last = last_batch_[static_cast<std::size_t>(events[i].y) *
                                           static_cast<std::size_t>(camera_.width) +
                                       events[i].x];
-    if (last == batch_) continue;
+    if (last != batch_) ++pixels;
     last = batch_;
-    if (++pixels < least) continue;
-    const double moved_px = speed_px * seconds_from_ns(events[i].t_ns - events.front().t_ns);
-    if (pixels >= most || moved_px >= kMotion_px) return i + 1;
+    if (pixels < kFewestPixels && i < most_events) continue;
+    const double time_s = seconds_from_ns(events[i].t_ns - events.front().t_ns);
+    const double moved_px = speed_px * time_s;
+    const bool is_enough = pixels >= most || (pixels >= least && moved_px >= kMotion_px);
+    const bool is_long =
+        moved_px >= kMostMotion_px || time_s >= kLongest_s || (speed_px == 0 && i >= most_events);
+    if (is_enough || is_long) return i + 1;
   }
   return 0;
 }

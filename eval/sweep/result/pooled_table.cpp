@@ -160,8 +160,9 @@ std::string table_of_pools(const SweepResults& results, const std::vector<Pooled
 }  // namespace
 
 std::string pooled_table(const SweepResults& results) {
+  // Of generated ones a row's point names the scene alone.
   std::set<std::string> datasets;
-  for (const SweepRow& row : results.rows) datasets.insert(row.job->point.dataset);
+  for (const SweepRow& row : results.rows) datasets.insert(row.job->dataset);
   if (datasets.size() < 2 || results.plan.runs.empty()) return "";
   std::vector<std::vector<PooledRows>> modules;
   for (PooledRows& pool : pool_over_datasets(results.rows)) {

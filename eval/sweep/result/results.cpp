@@ -119,16 +119,18 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
 
 std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows) {
   double successes = 0;
+  std::size_t count = 0;
   bool is_known = false;
   for (const SweepRow* row : rows) {
     const std::optional<double> success = row->metrics.get(kSuccess);
     is_known = is_known || success;
+    // A run that failed is no success; of one that cannot be scored nothing is known.
+    if (!row->problem.empty() || success) ++count;
     if (row->problem.empty()) successes += success.value_or(0);
   }
   if (!is_known) return std::nullopt;
-  const auto count = static_cast<double>(rows.size());
-  const ProportionInterval interval = wilson_95(successes, count);
-  return MetricSummary{successes / count, interval.low, interval.high, rows.size()};
+  const ProportionInterval interval = wilson_95(successes, static_cast<double>(count));
+  return MetricSummary{successes / static_cast<double>(count), interval.low, interval.high, count};
 }
 
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {

@@ -21,7 +21,8 @@ constexpr float kInk = 0.03F, kPaper = 0.9F;
 Picture read_picture(const WorldPicture& picture, WorldTextureRequest& request) {
   const std::string problem = missing_picture_problem(picture);
   const std::optional<Bytes> bytes = FileSource().read(picture.file);
-  if (!problem.empty() || !bytes) throw InputError("scene.world.texture", problem);
+  if (!problem.empty()) throw InputError("scene.world.texture", problem);
+  if (!bytes) throw InputError(picture.file.string(), "cannot be read");
   return decode_picture(*bytes, picture.file.string(), request.remarks, {1, 1, 1}, request.channel);
 }
 

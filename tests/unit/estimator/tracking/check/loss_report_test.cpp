@@ -50,7 +50,7 @@ LosingRecording jump() {
   const PlanarWorld world = resolved_world();
   const Motion motion = [](double t_s) {
     const Rigid3 pose = corner_glide(t_s);
-    return t_s < kBreak_s ? pose : pose * Rigid3(so3_exp({0, 0.25, 0}), {});
+    return t_s < kBreak_s ? pose : pose * Rigid3(so3_exp({0, 0.25, 0}), {0, 0, 0});
   };
   LosingRecording recording{motion, world.simulate(motion, 0, kBreak_s - 1e-6, kStep_s, kContrast),
                             frames_of(world, motion)};

@@ -98,7 +98,7 @@ TEST(PoseCheck, AFrameIsMeasuredByItsSteepPixels) {
 
 TEST(PoseCheck, WithoutAMapInViewOrAMeasurementThereIsNoEvidence) {
   Glance away(0.12);
-  const Rigid3 turned(so3_exp({0, 3.1, 0}), {});
+  const Rigid3 turned(so3_exp({0, 3.1, 0}), {0, 0, 0});
   EXPECT_EQ(away.check.look(turned), PoseEvidence{});
   PoseCheck blind(sensor());
   EXPECT_EQ(blind.look(Rigid3()), PoseEvidence{});
