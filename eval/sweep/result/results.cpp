@@ -125,8 +125,9 @@ std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows
     const std::optional<double> success = row->metrics.get(kSuccess);
     is_known = is_known || success;
     // A run that failed is no success; of one that cannot be scored nothing is known.
-    if (!row->problem.empty() || success) ++count;
-    if (row->problem.empty()) successes += success.value_or(0);
+    const bool has_failed = row->failed || !row->problem.empty();
+    if (has_failed || success) ++count;
+    if (!has_failed) successes += success.value_or(0);
   }
   if (!is_known) return std::nullopt;
   const ProportionInterval interval = wilson_95(successes, static_cast<double>(count));

@@ -219,6 +219,8 @@ TEST_F(PooledTables, ASuccessIsAShareOfAllRunsOfAGroup) {
   EXPECT_NEAR(second->low, 0.0945, 1e-4);
   EXPECT_NEAR(second->high, 0.9055, 1e-4);
   EXPECT_EQ(summarise(results_.groups[0], "success")->value, 0);
+  results_.rows[1].metrics = {};
+  EXPECT_EQ(summarise(results_.groups[0], "success")->count, 1U) << "nothing is known of the other";
 }
 
 TEST(MetricInfo, KnowsWhatIsBetter) {
