@@ -229,16 +229,16 @@ TEST(IntensityTracker, AFewEventsAPoseFollowAsWell) {
 }
 
 TEST(IntensityTracker, APoseDoesNotWaitForPixelsThatSeeNothing) {
-  // One pixel in eight is left: a thousand of them would take far longer than what a batch may last.
+  // One pixel in four is left: a thousand of them would take far longer than what a batch may last.
   Events few;
   for (const Event& event : resolved_recording().events)
-    if ((event.x + 3 * event.y) % 8 == 0) few.push_back(event);
+    if ((event.x + 3 * event.y) % 4 == 0) few.push_back(event);
   IntensityTracking tracking;
   const auto poses = tracking->track({few});
   ASSERT_GT(poses.size(), 15U);
   for (const TrackedPose& pose : poses)
     EXPECT_LT(seconds_from_ns(pose.last_ns - pose.first_ns), 0.05) << "a hundred pixels";
-  EXPECT_LT(resolved_errors(poses).mean, 0.8) << "pixels, with an eighth of the sensor";
+  EXPECT_LT(resolved_errors(poses).mean, 0.8) << "pixels, with a quarter of the sensor";
 }
 
 TEST(IntensityTracker, PixelsBetweenTheirEventsHoldThePose) {
