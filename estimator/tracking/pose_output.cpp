@@ -39,13 +39,14 @@ std::string name_of(TrackStatus status) {
 void write_poses_csv(const std::filesystem::path& file, std::span<const TrackedPose> poses) {
   CsvTable table({"t_s", "first_event_s", "last_event_s", "status", "inlier_ratio", "iterations",
                   "residual", "position_sigma_m", "rotation_sigma_deg", "probability", "explained",
-                  "chance", "in_map", "edges_seen", "seen_if_wrong", "depth_m", "tracker_lost"});
+                  "chance", "in_map", "edges_confirmed", "confirmed_if_wrong", "depth_m",
+                  "tracker_lost"});
   for (const TrackedPose& p : poses)
     table.add({seconds_from_ns(p.t_ns), seconds_from_ns(p.first_ns), seconds_from_ns(p.last_ns),
                name_of(p.status), p.inlier_ratio, static_cast<long long>(p.iterations), p.residual,
                p.position_sigma_m, p.rotation_sigma_rad * 180 / std::numbers::pi, p.probability,
-               p.evidence.explained, p.evidence.chance, p.evidence.in_map, p.evidence.edges_seen,
-               p.evidence.seen_if_wrong, p.evidence.depth_m,
+               p.evidence.explained, p.evidence.chance, p.evidence.in_map,
+               p.evidence.edges_confirmed, p.evidence.confirmed_if_wrong, p.evidence.depth_m,
                static_cast<long long>(p.evidence.tracker_lost)});
   table.save(file);
 }

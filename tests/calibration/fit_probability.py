@@ -59,7 +59,7 @@ def features(rows):
     return np.column_stack([
         np.ones(len(rows)),
         np.log(np.clip(above_chance(column("explained"), column("chance")), LEAST_EXPLAINED, MOST_EXPLAINED)),
-        np.clip(above_chance(column("edges_seen"), column("seen_if_wrong")), -MOST_SEEN, MOST_SEEN),
+        np.clip(above_chance(column("edges_confirmed"), column("confirmed_if_wrong")), -MOST_SEEN, MOST_SEEN),
         np.clip(log_sigma, LEAST_LOG_SIGMA, MOST_LOG_SIGMA),
         column("in_map"),
         column("tracker_lost"),
@@ -69,7 +69,7 @@ def features(rows):
 def observations(run):
     """Features and labels of the rows with evidence of their own, and the weight of each."""
     rows = list(csv.DictReader((run / "poses.csv").open()))
-    evidence = ["explained", "chance", "edges_seen", "seen_if_wrong", "depth_m"]
+    evidence = ["explained", "chance", "edges_confirmed", "confirmed_if_wrong", "depth_m"]
     rows = [row for i, row in enumerate(rows) if i == 0 or any(row[k] != rows[i - 1][k] for k in evidence)]
     estimate = np.loadtxt(run / "trajectory.txt", ndmin=2)
     dataset = dataset_of(run)

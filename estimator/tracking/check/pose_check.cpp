@@ -125,16 +125,16 @@ void PoseCheck::measure(const ImageF& log_intensity) {
       if (steepness[i] > least) add_measured(cell_at(static_cast<float>(x), static_cast<float>(y)));
 }
 
-PoseEvidence PoseCheck::look(const Rigid3& map_from_camera) {
+PoseEvidence PoseCheck::evaluate(const Rigid3& map_from_camera) {
   PoseEvidence evidence;
   const Rigid3 camera_from_map = map_from_camera.inverse();
   draw_map(camera_from_map, evidence);
   if (evidence.edges < kLeastEdges) return {};
   compare(evidence);
-  evidence.edges_seen = seen_edges(camera_from_map);
+  evidence.edges_confirmed = confirmed_edges(camera_from_map);
   for (const Twist& displacement : displacements(evidence.depth_m))
-    evidence.seen_if_wrong =
-        std::max(evidence.seen_if_wrong, seen_edges(Rigid3::exp(displacement) * camera_from_map));
+    evidence.confirmed_if_wrong = std::max(
+        evidence.confirmed_if_wrong, confirmed_edges(Rigid3::exp(displacement) * camera_from_map));
   return evidence;
 }
 
@@ -181,7 +181,7 @@ void PoseCheck::compare(PoseEvidence& evidence) const {
   evidence.in_map = measured_.empty() ? 0 : measured / static_cast<double>(measured_.size());
 }
 
-double PoseCheck::seen_edges(const Rigid3& camera_from_map) const {
+double PoseCheck::confirmed_edges(const Rigid3& camera_from_map) const {
   const Eigen::Matrix3f r = camera_from_map.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = camera_from_map.translation().cast<float>();
   const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);

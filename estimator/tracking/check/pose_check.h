@@ -34,7 +34,7 @@ class PoseCheck {
   void measure(const ImageF& log_intensity);
 
   /// Of a pose at the measurement's time.
-  [[nodiscard]] PoseEvidence look(const Rigid3& map_from_camera);
+  [[nodiscard]] PoseEvidence evaluate(const Rigid3& map_from_camera);
 
   /// Events that a measurement should have: they cover enough of the edges in view while these move
   /// by a pixel or two; fewer than 300 would say little. 1000 of 240 x 180 pixels.
@@ -50,7 +50,7 @@ class PoseCheck {
   void add_measured(std::int32_t cell);
   void draw_map(const Rigid3& camera_from_map, PoseEvidence& evidence);
   void compare(PoseEvidence& evidence) const;
-  [[nodiscard]] double seen_edges(const Rigid3& camera_from_map) const;
+  [[nodiscard]] double confirmed_edges(const Rigid3& camera_from_map) const;
 
   PinholeCamera camera_;  ///< undistorted
   float cells_per_px_;

@@ -87,7 +87,7 @@ void PoseMonitor::judge(TrackedPose& pose) {
     checked_ns_ = pose.t_ns;
     is_map_new_ = false;
     measure(pose);
-    evidence_ = check_.look(map_from_world_ * pose.world_from_camera);
+    evidence_ = check_.evaluate(map_from_world_ * pose.world_from_camera);
     pose.evidence = evidence_;
     pose.evidence.tracker_lost = tracker_lost;
     const double log_odds = std::clamp(log_odds_of(pose), -kMostLogOdds, kMostLogOdds);

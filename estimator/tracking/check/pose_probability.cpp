@@ -44,8 +44,8 @@ double log_odds_of(const TrackedPose& pose) {
   const PoseEvidence& evidence = pose.evidence;
   const double explained = std::log(std::clamp(above_chance(evidence.explained, evidence.chance),
                                                kLeastExplained, kMostExplained));
-  const double seen =
-      std::clamp(above_chance(evidence.edges_seen, evidence.seen_if_wrong), -kMostSeen, kMostSeen);
+  const double seen = std::clamp(
+      above_chance(evidence.edges_confirmed, evidence.confirmed_if_wrong), -kMostSeen, kMostSeen);
   const double sigma = std::clamp(log_sigma(pose), kLeastLogSigma, kMostLogSigma);
   return kConstant + kExplainedWeight * explained + kSeenWeight * seen + kSigmaWeight * sigma +
          kInMapWeight * evidence.in_map + (evidence.tracker_lost ? kTrackerLostWeight : 0);

@@ -250,7 +250,7 @@ TrackedPose IntensityTracker::track_batch(std::span<const Event> events) {
     motion_.update(estimate.map_from_camera, estimate.information);
     const ScopedTimer clock(timing_.align_s);
     residuals_.correct(image_speed_px());
-    residuals_.read_silent_pixels(motion_at(estimate.map_from_camera));
+    residuals_.update_pixels_without_events(motion_at(estimate.map_from_camera));
   }
   pose.iterations = kIterations;
   pose.inlier_ratio = estimate.sums.known > 0 ? estimate.sums.inliers / estimate.sums.known : 0;

@@ -20,8 +20,8 @@ constexpr float kMinSlope = 0.1F;
 /// Events go to random pixels: those of a later one are fetched that many events before.
 constexpr std::size_t kPixelsAhead = 16;
 
-/// Silent pixels are read in so many passes, one with each pose.
-constexpr std::size_t kSilentPasses = 8;
+/// Pixels without events are updated in so many passes, one with each pose.
+constexpr std::size_t kUpdatePasses = 8;
 
 /// Marks an observation whose pixel is not corrected.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
@@ -74,7 +74,7 @@ void LogIntensityResiduals::reset() {
 
 void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
   first_steep_pixel_ = 0;
-  first_silent_pixel_ = 0;
+  first_updated_pixel_ = 0;
   draw_view(map_from_camera);
   read_pixels_from_map(sigma);
 }
@@ -336,17 +336,17 @@ void LogIntensityResiduals::correct(double image_speed_px) {
       });
 }
 
-void LogIntensityResiduals::read_silent_pixels(const EventResidualBatch::Motion& motion) {
+void LogIntensityResiduals::update_pixels_without_events(const EventResidualBatch::Motion& motion) {
   // Of the half threshold on either side of where a pixel most likely is it knows the variance, and
   // that as much again is possible.
   constexpr float kVariances = 2;
   const float noise = kVariances * no_event_variance_;
   batch_count_ = 0;
   loaded_pixels_.clear();
-  first_silent_pixel_ = (first_silent_pixel_ + 1) % kSilentPasses;
+  first_updated_pixel_ = (first_updated_pixel_ + 1) % kUpdatePasses;
   const std::size_t count =
       static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-  for (std::size_t i = first_silent_pixel_; i < count; i += kSilentPasses) {
+  for (std::size_t i = first_updated_pixel_; i < count; i += kUpdatePasses) {
     if (!(pixels_.variance(i) > noise)) continue;
     const int x = static_cast<int>(i % static_cast<std::size_t>(camera_.width));
     const int y = static_cast<int>(i / static_cast<std::size_t>(camera_.width));

@@ -59,7 +59,7 @@ class LogIntensityResiduals {
 
   /// Pixels of which little is known are read from the map at a pose: between its events a pixel is
   /// within a threshold of its last value.
-  void read_silent_pixels(const EventResidualBatch::Motion& motion);
+  void update_pixels_without_events(const EventResidualBatch::Motion& motion);
 
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
@@ -132,7 +132,7 @@ class LogIntensityResiduals {
   std::vector<std::uint32_t> loaded_pixels_;  ///< of all in the batches, in order
   std::vector<std::uint32_t> steep_pixels_;   ///< where the rendered map is steep
   std::size_t first_steep_pixel_ = 0;         ///< of them that was loaded
-  std::size_t first_silent_pixel_ = 0;
+  std::size_t first_updated_pixel_ = 0;
   std::size_t views_drawn_ = 0;
 };
 

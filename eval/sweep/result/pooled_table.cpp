@@ -56,8 +56,12 @@ std::string spread_cell(const PooledRows& pool, const std::string& metric) {
   if (values.empty()) return rounded(std::nullopt);
   const double mean =
       std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  return fmt::format("{} / {} / {}", rounded(mean), rounded(median(values)),
-                     rounded(percentile_90(values)));
+  std::string cell = fmt::format("{} / {} / {}", rounded(mean), rounded(median(values)),
+                                 rounded(percentile_90(values)));
+  // A method that yields nothing where it is hard shall not look better for it.
+  if (values.size() < pool.rows.size())
+    cell += fmt::format(" ({} of {} runs)", values.size(), pool.rows.size());
+  return cell;
 }
 
 /// Seconds of being lost, summed over the runs that report a status.
@@ -101,7 +105,7 @@ std::vector<std::string> loss_cells(const PooledRows& pool) {
 }
 
 std::string success_cell(const PooledRows& pool) {
-  const std::optional<MetricSummary> share = success_share(pool.rows);
+  const std::optional<MetricSummary> share = success_fraction(pool.rows);
   if (!share) return rounded(std::nullopt);
   return fmt::format("{} ({}–{})", rounded(100 * share->value), rounded(100 * share->low),
                      rounded(100 * share->high));

@@ -117,7 +117,7 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
   return groups;
 }
 
-std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows) {
+std::optional<MetricSummary> success_fraction(std::span<const SweepRow* const> rows) {
   double successes = 0;
   std::size_t count = 0;
   bool is_known = false;
@@ -135,7 +135,7 @@ std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows
 }
 
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
-  if (key == kSuccess) return success_share(group.rows);
+  if (key == kSuccess) return success_fraction(group.rows);
   std::vector<double> values;
   for (const SweepRow* row : group.rows) {
     if (!row->problem.empty()) continue;  // the time until a crash is not a speed

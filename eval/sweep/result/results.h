@@ -45,7 +45,7 @@ struct MetricSummary {
 
 /// The share of the rows that succeeded, a failed row among those that did not; nullopt where no row
 /// tells. Contract: at least one row.
-[[nodiscard]] std::optional<MetricSummary> success_share(std::span<const SweepRow* const> rows);
+[[nodiscard]] std::optional<MetricSummary> success_fraction(std::span<const SweepRow* const> rows);
 
 /// The input of the tables and charts of a sweep.
 struct SweepResults {

@@ -41,25 +41,25 @@ double kappa(const PoseEvidence& evidence) {
 }
 
 TEST(PoseCheck, EventsLieOnTheMapUnderTheTruePose) {
-  double seen = 0, seen_if_wrong = 0;
+  double seen = 0, confirmed_if_wrong = 0;
   for (const double t_s : {0.05, 0.12, 0.2}) {
     Glance glance(t_s);
-    const PoseEvidence evidence = glance.check.look(glance.map_from_camera);
+    const PoseEvidence evidence = glance.check.evaluate(glance.map_from_camera);
     // Of some 900 events a fifth lies on the map by chance: kappa has a standard deviation of 0.017
     // if they are independent, and of 0.05 if one in nine is. Four of the latter.
     EXPECT_GT(kappa(evidence), 0.2) << t_s;
     EXPECT_GT(evidence.in_map, 0.7) << t_s;
     EXPECT_NEAR(evidence.depth_m, testing::kCornerDepth_m, 0.5) << t_s;
-    seen += evidence.edges_seen;
-    seen_if_wrong += evidence.seen_if_wrong;
+    seen += evidence.edges_confirmed;
+    confirmed_if_wrong += evidence.confirmed_if_wrong;
   }
   // Even against the best of twelve wrong ones.
-  EXPECT_GT(seen, seen_if_wrong);
+  EXPECT_GT(seen, confirmed_if_wrong);
 }
 
 TEST(PoseCheck, AtTheLimitsOfALossTheyLieThereByChance) {
   Glance glance(0.12);
-  const PoseEvidence right = glance.check.look(glance.map_from_camera);
+  const PoseEvidence right = glance.check.evaluate(glance.map_from_camera);
   for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {1.0, -1.0}) {
       // Twice the limits; forwards, which moves the middle of the image by little, four times: 20 %
@@ -69,7 +69,7 @@ TEST(PoseCheck, AtTheLimitsOfALossTheyLieThereByChance) {
       displacement[axis] =
           size * sign * (axis < 3 ? kLossDepthRatio * right.depth_m : kLossAngle_rad);
       const PoseEvidence wrong =
-          glance.check.look(glance.map_from_camera * Rigid3::exp(displacement));
+          glance.check.evaluate(glance.map_from_camera * Rigid3::exp(displacement));
       EXPECT_LT(kappa(wrong), 0.6 * kappa(right)) << axis;
     }
 }
@@ -81,7 +81,7 @@ TEST(PoseCheck, TheMapOfAnotherWorldExplainsNothing) {
     for (int x = 0; x < mirrored.width(); ++x)
       mirrored(x, y) = view.log_intensity(mirrored.width() - 1 - x, mirrored.height() - 1 - y);
   Glance glance(0.12, extract_map(mirrored, view.depth, sensor(), MapOptions()));
-  const PoseEvidence evidence = glance.check.look(glance.map_from_camera);
+  const PoseEvidence evidence = glance.check.evaluate(glance.map_from_camera);
   EXPECT_GT(evidence.edges, 500);
   EXPECT_LT(kappa(evidence), 0.1);
 }
@@ -89,28 +89,28 @@ TEST(PoseCheck, TheMapOfAnotherWorldExplainsNothing) {
 TEST(PoseCheck, AFrameIsMeasuredByItsSteepPixels) {
   Glance glance(0.12);
   glance.check.measure(resolved_recording().world.log_intensity(corner_motion(0.12)));
-  const PoseEvidence right = glance.check.look(glance.map_from_camera);
+  const PoseEvidence right = glance.check.evaluate(glance.map_from_camera);
   EXPECT_GT(kappa(right), 1.0 / 3);
   Twist turn = Twist::Zero();
   turn[4] = 2 * kLossAngle_rad;
-  EXPECT_LT(kappa(glance.check.look(glance.map_from_camera * Rigid3::exp(turn))), 0.1);
+  EXPECT_LT(kappa(glance.check.evaluate(glance.map_from_camera * Rigid3::exp(turn))), 0.1);
 }
 
 TEST(PoseCheck, WithoutAMapInViewOrAMeasurementThereIsNoEvidence) {
   Glance away(0.12);
   const Rigid3 turned(so3_exp({0, 3.1, 0}), {0, 0, 0});
-  EXPECT_EQ(away.check.look(turned), PoseEvidence{});
+  EXPECT_EQ(away.check.evaluate(turned), PoseEvidence{});
   PoseCheck blind(sensor());
-  EXPECT_EQ(blind.look(Rigid3()), PoseEvidence{});
+  EXPECT_EQ(blind.evaluate(Rigid3()), PoseEvidence{});
   blind.set_map(true_map());
   blind.measure(std::span<const Event>());
-  const PoseEvidence nothing = blind.look(Rigid3());
+  const PoseEvidence nothing = blind.evaluate(Rigid3());
   EXPECT_EQ(nothing.measured, 0);
   EXPECT_EQ(nothing.explained, nothing.chance);
-  EXPECT_EQ(nothing.edges_seen, 0);
+  EXPECT_EQ(nothing.edges_confirmed, 0);
   // A picture that shows one grey has no steep pixels.
   blind.measure(ImageF(sensor().width, sensor().height, -1.0F));
-  EXPECT_EQ(blind.look(Rigid3()).measured, 0);
+  EXPECT_EQ(blind.evaluate(Rigid3()).measured, 0);
 }
 
 TEST(PoseCheck, EventsAreMovedToTheUndistortedSensor) {
@@ -134,7 +134,7 @@ TEST(PoseCheck, EventsAreMovedToTheUndistortedSensor) {
   check.set_map(true_map());
   check.measure(distorted);
   const Rigid3 pose = corner_motion(0).inverse() * corner_motion(0.12);
-  EXPECT_GT(kappa(check.look(pose)), 0.3);
+  EXPECT_GT(kappa(check.evaluate(pose)), 0.3);
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ TEST_F(PooledTables, AddSecondsOfLossBeforeTheyDivide) {
                               "loss recall [%] | loss precision [%] | loss delay [ms] | "
                               "unreported [% of time] | dt_rel [%] mean / median / 90 % |\n"),
                     HasSubstr("| fast | 4 | 25.0 (4.56–69.9) | 16.0 | 92.5 | 74.7 | 35.0 | 1.20 | "
-                              "2.00 / 2.00 / 3.00 |\n")));
+                              "2.00 / 2.00 / 3.00 (3 of 4 runs) |\n")));
 }
 
 TEST_F(PooledTables, ASuccessIsAShareOfAllRunsOfAGroup) {
