@@ -68,6 +68,8 @@ std::vector<Event> of_some_pixels(std::span<const Event> events, std::size_t mos
   return kept;
 }
 
+constexpr double kMostRelaxed = 9;
+
 /// Edges of `factor` times the sigma count, too.
 MappingOptions relaxed(MappingOptions options, double factor) {
   options.max_sigma *= factor;
@@ -85,11 +87,21 @@ Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
 
 Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) const {
   Mapping mapping = map_once(events, path);
-  for (const double factor : {3.0, 9.0}) {
-    if (mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges)) break;
-    Mapping more = Mapper(relaxed(options_, factor), camera_).map_once(events, path);
+  const auto is_enough = [&] {
+    return mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges);
+  };
+  const auto replace = [&](const MappingOptions& options) {
+    Mapping more = Mapper(options, camera_).map_once(events, path);
     if (more.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(more);
+  };
+  for (const double factor : {3.0, kMostRelaxed}) {
+    if (is_enough()) return mapping;
+    replace(relaxed(options_, factor));
   }
+  if (is_enough() || !path.typical_depth_m) return mapping;
+  MappingOptions assuming = relaxed(options_, kMostRelaxed);
+  assuming.depth.rays.assumed_inverse_depth = 1 / *path.typical_depth_m;
+  replace(assuming);
   return mapping;
 }
 
@@ -125,13 +137,14 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
       edges ? rays().fuse(*edges)
             : make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
   keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
-  if (keyframe.depth.points.empty()) return mapping;
   if (options_.edges == MappingOptions::Edges::kGradient) {
+    if (keyframe.depth.points.empty()) return mapping;
     const ImageF depth = dense_depth(keyframe);
     reconstruct(window, depth, keyframe);
     add_steep_pixels(depth, keyframe);
   } else {
     add_points(keyframe);
+    if (edges) add_assumed_points(*edges, keyframe);
   }
   return mapping;
 }
@@ -231,6 +244,20 @@ void Mapper::add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const {
 void Mapper::add_points(Keyframe& keyframe) const {
   keyframe.edges = points_in_world(keyframe.depth, camera_.undistorted(),
                                    keyframe.world_from_camera, options_.max_sigma);
+}
+
+void Mapper::add_assumed_points(const WindowEdgels& edges, Keyframe& keyframe) const {
+  const PinholeCamera camera = camera_.undistorted();
+  for (const FittedEdgel& fitted : edges.edges) {
+    if (!options_.depth.rays.is_assumed(fitted)) continue;
+    const double depth_m = 1 / static_cast<double>(fitted.edge.inverse_depth);
+    const Eigen::Vector3f point =
+        (keyframe.world_from_camera * (depth_m * camera.ray(fitted.edge.pixel.cast<double>())))
+            .cast<float>();
+    keyframe.edges.x.push_back(point.x());
+    keyframe.edges.y.push_back(point.y());
+    keyframe.edges.z.push_back(point.z());
+  }
 }
 
 }  // namespace saccade

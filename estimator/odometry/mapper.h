@@ -27,7 +27,9 @@ struct MappingOptions {
   bool image = true;              ///< made after the last event, where the edges do not need it
   double max_sigma = 0.05;        ///< of a point's inverse depth that becomes an edge, relative
   /// Of kDepth: with fewer edges, those of 3 and 9 times the sigma are tracked, too: edges that
-  /// hardly move sideways need no better depth. Renewed depths are the certain ones alone.
+  /// hardly move sideways need no better depth. Where these are too few, edges whose depth cannot be
+  /// told are tracked at the typical depth, as where the camera only rotates. Renewed depths are the
+  /// certain ones alone.
   int min_edges = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// Rounds of finding edges and adjusting them together with the poses; 0: the poses are taken as
@@ -68,6 +70,8 @@ struct Mapping {
 /// and deterministic.
 class Mapper {
  public:
+  static constexpr std::size_t kMinEdges = 50;  ///< of a keyframe: fewer track nothing
+
   /// `camera` with its lens.
   Mapper(const MappingOptions& options, const PinholeCamera& camera);
 
@@ -96,6 +100,8 @@ class Mapper {
   void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;
   void add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const;
   void add_points(Keyframe& keyframe) const;
+  /// Those whose depth is assumed are tracked, but are no depth of the keyframe.
+  void add_assumed_points(const WindowEdgels& edges, Keyframe& keyframe) const;
 
   MappingOptions options_;
   PinholeCamera camera_;

@@ -15,7 +15,6 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kMinEdges = 50;  ///< of a keyframe: fewer track nothing
 /// The camera is searched for so often, in the events' time, and first where it was kLookBack_s
 /// before, ahead of the frames that diverged.
 constexpr double kSearchInterval_s = 0.01, kLookBack_s = 0.05;
@@ -183,7 +182,7 @@ bool Odometry::is_due(double now_s) const {
 
 void Odometry::start_from(FirstMap first, OdometryResult& result) {
   Keyframe& keyframe = first.mapping.keyframe;
-  if (keyframe.edges.size() < kMinEdges)
+  if (keyframe.edges.size() < Mapper::kMinEdges)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
@@ -233,7 +232,7 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   Keyframe& keyframe = mapping.keyframe;
   result.mapping_s += job->seconds;
   // Too few edges make no keyframe: the map of before goes on.
-  if (keyframe.edges.size() < kMinEdges) return;
+  if (keyframe.edges.size() < Mapper::kMinEdges) return;
   typical_depth_m_ = keyframe.typical_depth_m;
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace saccade {
 namespace {
@@ -118,6 +119,20 @@ std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,
   if (std::abs(result.change) * all / own > kMaxInconsistency * std::hypot(sigma, prediction.sigma))
     return std::nullopt;
   result.sigma = std::min(sigma, prediction.max_sigma);
+  return accepted(next, result, events);
+}
+
+std::optional<FittedEdgel> EdgelRefiner::assume(const EdgelSeed& seed, double relative_sigma,
+                                                EdgelEvents& events) {
+  constexpr float kAnyDepth = std::numeric_limits<float>::infinity();
+  const Edgel edge{seed.pixel, seed.normal, seed.inverse_depth};
+  if (found_.has_similar(edge, kAnyDepth)) return std::nullopt;
+  gatherer_.gather({seed.plane.first_slice, seed.plane.last_slice, 1}, edge, near_);
+  const RegressionResult result =
+      regress(near_, options_.regression, relative_sigma * static_cast<double>(edge.inverse_depth));
+  if (!result.ok || result.residual_px > kMaxResidual_px) return std::nullopt;
+  const Edgel next = moved(edge, result);
+  if (!is_plausible(next, edge.pixel) || found_.has_similar(next, kAnyDepth)) return std::nullopt;
   return accepted(next, result, events);
 }
 

@@ -51,6 +51,12 @@ class EdgelRefiner {
                                                    const NeighbourPrediction& prediction,
                                                    EdgelEvents& events);
 
+  /// An edgel of a seed whose depth its events do not tell, by the part of the window that voted for
+  /// it: the seed's inverse depth is assumed to be right within `relative_sigma` of it, and what the
+  /// events say is added to that. nullopt where there is an edgel already, at any depth.
+  [[nodiscard]] std::optional<FittedEdgel> assume(const EdgelSeed& seed, double relative_sigma,
+                                                  EdgelEvents& events);
+
   /// Whether there is such an edgel already, its inverse depth closer than `tolerance`.
   [[nodiscard]] bool has_similar(const Edgel& edge, float tolerance) const {
     return found_.has_similar(edge, tolerance);

@@ -49,6 +49,13 @@ double largest_parallax(const EventRays::TimeSlice& slice, const PinholeCamera& 
   return largest;
 }
 
+std::vector<double> parallax_of_slices(const EventRays& rays, const PinholeCamera& camera) {
+  std::vector<double> parallax;
+  for (const EventRays::TimeSlice& slice : rays.slices())
+    parallax.push_back(largest_parallax(slice, camera));
+  return parallax;
+}
+
 void blur(Image<Eigen::Vector2f>& votes, double sigma) {
   cv::Mat view(votes.height(), votes.width(), CV_32FC2, votes.data());
   const int side = 2 * static_cast<int>(std::ceil(2.5 * sigma)) + 1;
@@ -103,6 +110,14 @@ class RidgeFinder {
       std::swap(planes_[0], planes_[1]);
       std::swap(planes_[1], planes_[2]);
     }
+    return std::move(seeds_);
+  }
+
+  /// All ridges of one plane, whatever their parallax.
+  std::vector<EdgelSeed> find_on(const SweepPlane& plane) {
+    min_parallax_px_ = 0;
+    vote(plane, planes_[1]);
+    collect();
     return std::move(seeds_);
   }
 
@@ -166,13 +181,14 @@ class RidgeFinder {
         Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
         std::abs(offset) * (gradient.dot(normal) > 0 ? normal : Eigen::Vector2f(-normal));
     const float parallax_px = parallax_.across(pixel, normal) * planes_[1].at.inverse_depth;
-    if (parallax_px < static_cast<float>(kMinSeedParallax_px)) return;
+    if (parallax_px < min_parallax_px_) return;
     seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
                       parallax_px, planes_[1].at});
   }
 
   const EventRays& rays_;
   ParallaxSigma parallax_;
+  float min_parallax_px_ = static_cast<float>(kMinSeedParallax_px);
   std::array<Plane, 3> planes_;  ///< the last three planes
   ImageF best_;                  ///< over all planes
   std::vector<EdgelSeed> seeds_;
@@ -182,6 +198,17 @@ float value_near(const ImageF& image, const Eigen::Vector2f& pixel) {
   const int x = static_cast<int>(std::lround(pixel.x()));
   const int y = static_cast<int>(std::lround(pixel.y()));
   return image(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1));
+}
+
+/// The slices around the reference time in each of which a point moves by at most `allowed` [px m].
+SweepPlane plane_over(const EventRays& rays, std::span<const double> parallax, double inverse_depth,
+                      double allowed) {
+  const int middle = rays.reference_slice();
+  SweepPlane plane{static_cast<float>(inverse_depth), 0, 0, middle, middle + 1};
+  const auto fits = [&](int slice) { return parallax[static_cast<std::size_t>(slice)] <= allowed; };
+  while (plane.first_slice > 0 && fits(plane.first_slice - 1)) --plane.first_slice;
+  while (plane.last_slice < rays.slice_count() && fits(plane.last_slice)) ++plane.last_slice;
+  return plane;
 }
 
 /// Bounds of parts of a sweep of about equal cost: 0, ..., its size.
@@ -210,21 +237,11 @@ std::vector<std::size_t> cut(std::span<const SweepPlane> sweep, int parts) {
 
 std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera& camera,
                                      const DepthLimits& limits) {
-  const auto slices = rays.slices();
-  if (slices.empty()) return {};
-  std::vector<double> parallax;
-  for (const EventRays::TimeSlice& slice : slices)
-    parallax.push_back(largest_parallax(slice, camera));
-  const int middle = rays.reference_slice();
+  if (rays.slices().empty()) return {};
+  const std::vector<double> parallax = parallax_of_slices(rays, camera);
   std::vector<SweepPlane> planes;
   for (double rho = limits.min_inverse(); rho < limits.max_inverse();) {
-    const double allowed = kVotingMotion_px / (2 * rho);
-    const auto fits = [&](int slice) {
-      return parallax[static_cast<std::size_t>(slice)] <= allowed;
-    };
-    SweepPlane plane{static_cast<float>(rho), 0, 0, middle, middle + 1};
-    while (plane.first_slice > 0 && fits(plane.first_slice - 1)) --plane.first_slice;
-    while (plane.last_slice < rays.slice_count() && fits(plane.last_slice)) ++plane.last_slice;
+    SweepPlane plane = plane_over(rays, parallax, rho, kVotingMotion_px / (2 * rho));
     double widest = 1e-9;
     for (int k = plane.first_slice; k < plane.last_slice; ++k)
       widest = std::max(widest, parallax[static_cast<std::size_t>(k)]);
@@ -262,6 +279,16 @@ std::vector<EdgelSeed> find_seeds(const EventRays& rays, const PinholeCamera& ca
       if (seed.vote_ratio >= static_cast<float>(kMinSeedVoteRatio)) seeds.push_back(seed);
     }
   return seeds;
+}
+
+std::vector<EdgelSeed> find_seeds_at(const EventRays& rays, const PinholeCamera& camera,
+                                     double inverse_depth, double relative_sigma) {
+  if (rays.size() == 0) return {};
+  constexpr double kMaxError_px = 1;
+  const std::vector<double> parallax = parallax_of_slices(rays, camera);
+  const double allowed = kMaxError_px / (relative_sigma * inverse_depth);
+  if (parallax[static_cast<std::size_t>(rays.reference_slice())] > allowed) return {};
+  return RidgeFinder(rays, camera).find_on(plane_over(rays, parallax, inverse_depth, allowed));
 }
 
 }  // namespace saccade

@@ -47,4 +47,12 @@ struct EdgelSeed {
 [[nodiscard]] std::vector<EdgelSeed> find_seeds(const EventRays& rays, const PinholeCamera& camera,
                                                 const DepthLimits& limits);
 
+/// Candidates for edgels whose depth cannot be told: all ridges of |votes| in one plane, whatever
+/// their parallax, by the part of the window over which an error of the relative inverse depth of
+/// `relative_sigma` moves no point by more than a pixel. Empty where not even one slice of time
+/// is that short.
+[[nodiscard]] std::vector<EdgelSeed> find_seeds_at(const EventRays& rays,
+                                                   const PinholeCamera& camera,
+                                                   double inverse_depth, double relative_sigma);
+
 }  // namespace saccade

@@ -111,6 +111,7 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
   timed(assignment_s, assign);
   timed(propagation_s, [&] { propagate(rays, strips, found); });
   timed(assignment_s, assign);
+  if (options_.assumed_inverse_depth) timed(propagation_s, [&] { assume(rays, found); });
   for (std::uint32_t& event : found.events.event) event = rays.source[event];
   found.stages_s = {{"rays", rays_s},
                     {"seeds", seeds_s},
@@ -149,10 +150,30 @@ void RayDepth::refine_seeds(const EventRays& rays, const SeedStrips& strips,
   append(fitted, EdgelIndex(camera_, static_cast<float>(options_.refiner.spacing_px)), found);
 }
 
+void RayDepth::assume(const EventRays& rays, WindowEdgels& found) const {
+  EdgelIndex known(camera_, static_cast<float>(options_.refiner.spacing_px));
+  for (const FittedEdgel& fitted : found.edges) known.add(fitted.edge);
+  const SeedStrips strips = sorted_into_strips(
+      find_seeds_at(rays, camera_, *options_.assumed_inverse_depth, RayDepthOptions::kAssumedSigma),
+      camera_.height);
+  std::vector<WindowEdgels> assumed(strips.size());
+  parallel_for(strips.size(), [&](std::size_t k) {
+    EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
+    refiner.restart(known);
+    for (const EdgelSeed& seed : strips[k]) {
+      if (seed.strength < kMinStrength) continue;
+      if (const auto edge = refiner.assume(seed, RayDepthOptions::kAssumedSigma, assumed[k].events))
+        assumed[k].edges.push_back(*edge);
+    }
+  });
+  append(assumed, std::move(known), found);
+}
+
 std::vector<EdgePoint> RayDepth::points_of(const std::vector<FittedEdgel>& edgels) const {
   std::vector<EdgePoint> points;
   for (const FittedEdgel& e : edgels)
-    if (e.unobserved_px <= kMaxUnobserved_px && camera_.contains(e.edge.pixel.cast<double>()))
+    if (!options_.is_assumed(e) && e.unobserved_px <= kMaxUnobserved_px &&
+        camera_.contains(e.edge.pixel.cast<double>()))
       points.push_back(
           {e.edge.pixel.x(), e.edge.pixel.y(), e.edge.inverse_depth, e.sigma, e.edge.normal});
   return points;

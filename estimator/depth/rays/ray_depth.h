@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,17 @@ struct RayDepthOptions {
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;
   FusionOptions fusion;
+  /// Where set, edgels whose depth their events do not tell are found, too, at this inverse depth
+  /// [1/m] within kAssumedSigma of it: they say how the camera rotates.
+  std::optional<double> assumed_inverse_depth;
+  static constexpr double kAssumedSigma = 0.5;
+
+  /// Whether the depth of an edgel is rather assumed than found.
+  [[nodiscard]] bool is_assumed(const FittedEdgel& edgel) const {
+    return assumed_inverse_depth &&
+           static_cast<double>(edgel.sigma) > std::max(refiner.max_sigma, propagation_max_sigma) *
+                                                  static_cast<double>(edgel.edge.inverse_depth);
+  }
 };
 
 void describe(config::Fields& fields, RayDepthOptions& options);
@@ -60,6 +72,7 @@ class RayDepth : public DepthEstimator {
  private:
   void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
+  void assume(const EventRays& rays, WindowEdgels& found) const;
   [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, LocalPlanes& planes,
                                                    EdgelRefiner& refiner,
                                                    EdgelEvents& events) const;

@@ -49,6 +49,12 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};
   }
+  // Now the typical depth is known, at which edges of an unknown one are tracked.
+  if (is_enough() || first.mapping.keyframe.edges.size() < Mapper::kMinEdges) return first;
+  first.path.typical_depth_m = first.mapping.keyframe.typical_depth_m;
+  Mapping mapping = mapper.map(within(events, first.path.poses), first.path);
+  if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
+    first.mapping = std::move(mapping);
   return first;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <span>
 
 #include "tests/support/planar_world.h"
 
@@ -33,6 +34,72 @@ TEST(Mapper, WithFewEdgesLessCertainOnesWillDo) {
   const std::size_t some = edges_with(static_cast<int>(certain) + 1);
   EXPECT_GT(some, certain + certain / 4);
   EXPECT_GT(edges_with(1000000), some) << "as many as there are";
+}
+
+/// A turn to the side that moves the image by some 25 px in kMapped_s, from one place.
+Rigid3 turn(double t_s) {
+  return {Rigid3::exp((Twist() << 0, 0, 0, 0.3 * t_s, 1.6 * t_s, 0).finished()).rotation(),
+          {0, 0, 0}};
+}
+
+/// Of the events after `from_s` whose edge is in the map's view, the fraction within a pixel of a
+/// point of the map.
+double fraction_on_map(std::span<const Event> events, double from_s, const MapPoints& map,
+                       const PinholeCamera& camera) {
+  std::size_t near = 0, all = 0;
+  for (std::size_t i = 0; i < events.size(); i += 20) {
+    const double t_s = seconds_from_ns(events[i].t_ns);
+    if (t_s < from_s) continue;
+    ++all;
+    const Rigid3 camera_from_world = turn(t_s).inverse();
+    for (std::size_t k = 0; k < map.size(); ++k) {
+      const Eigen::Vector3d point =
+          camera_from_world * Eigen::Vector3d(map.x[k], map.y[k], map.z[k]);
+      if (point.z() <= 0) continue;
+      if ((camera.project(point) - Eigen::Vector2d(events[i].x, events[i].y)).norm() > 1) continue;
+      ++near;
+      break;
+    }
+  }
+  return static_cast<double>(near) / static_cast<double>(all);
+}
+
+TEST(Mapper, ATurningCameraMapsEdgesAtTheTypicalDepth) {
+  const testing::PlanarWorld corner = testing::corner_world(160, 120);
+  const Events events = corner.simulate(turn, 0, kMapped_s, 1e-3, 0.15);
+  MappingOptions options;
+  options.image = false;
+  options.min_edges = 300;
+  options.adjust_rounds = 1;
+  options.depth.method = DepthConfig::Method::kRays;
+  PathEstimate path;
+  path.poses = testing::trajectory_of(turn, kMapped_s);
+  path.fixed_until_s = kMapped_s;
+  path.typical_depth_m = testing::kCornerDepth_m;
+  const Keyframe keyframe = Mapper(options, corner.camera()).map(events, path).keyframe;
+  EXPECT_GT(keyframe.edges.size(), 300U);
+  EXPECT_TRUE(keyframe.depth.points.empty()) << "an assumed depth is no measured one";
+  const Rigid3 view_from_world = keyframe.world_from_camera.inverse();
+  for (std::size_t i = 0; i < keyframe.edges.size(); ++i) {
+    const Eigen::Vector3d point =
+        view_from_world *
+        Eigen::Vector3d(keyframe.edges.x[i], keyframe.edges.y[i], keyframe.edges.z[i]);
+    ASSERT_NEAR(point.z(), testing::kCornerDepth_m, 0.01 * testing::kCornerDepth_m);
+  }
+  // The view is in the middle: most of what is seen at the end was in it.
+  EXPECT_GT(fraction_on_map(events, 0.75 * kMapped_s, keyframe.edges, corner.camera()), 0.5);
+}
+
+TEST(Mapper, NoDepthIsAssumedWhereNoneIsTypical) {
+  const testing::PlanarWorld corner = testing::corner_world(160, 120);
+  const Events events = corner.simulate(turn, 0, kMapped_s, 1e-3, 0.15);
+  MappingOptions options;
+  options.image = false;
+  options.min_edges = 300;
+  options.depth.method = DepthConfig::Method::kRays;
+  PathEstimate path;
+  path.poses = testing::trajectory_of(turn, kMapped_s);
+  EXPECT_EQ(Mapper(options, corner.camera()).map(events, path).keyframe.edges.size(), 0U);
 }
 
 }  // namespace

@@ -84,6 +84,27 @@ TEST(EdgelRefiner, SeedsLeadToTheTrueDepth) {
   EXPECT_LT(median(edges), median(seeds) / 5);
 }
 
+TEST(EdgelRefiner, AnAssumedDepthIsKeptWithinItsSigma) {
+  const Refined refined(glide_recording().events);
+  const PinholeCamera& camera = glide_recording().world.camera();
+  const double inverse = 1 / testing::kCornerDepth_m;
+  const std::vector<EdgelSeed> seeds = find_seeds_at(refined.rays, camera, inverse, 0.5);
+  ASSERT_GT(seeds.size(), 300U);
+  // By so little of the window that half of the inverse depth moves nothing by more than a pixel:
+  // the glide moves points at the typical depth by 12 px in a tenth of a second.
+  EXPECT_LT(seeds[0].plane.last_slice - seeds[0].plane.first_slice, 6);
+  EdgelRefiner refiner(refined.rays, Refined::kOptions, {}, camera);
+  EdgelEvents events;
+  std::size_t count = 0;
+  for (const EdgelSeed& seed : seeds)
+    if (const auto edge = refiner.assume(seed, 0.5, events)) {
+      ++count;
+      EXPECT_LE(edge->sigma, 0.5F * seed.inverse_depth * 1.01F);
+      EXPECT_FALSE(refiner.assume(seed, 0.5, events)) << "there is one already";
+    }
+  EXPECT_GT(count, 150U);
+}
+
 TEST(EdgelRefiner, EdgesKeepTheirDistance) {
   RefinerOptions options;
   options.spacing_px = 3;
