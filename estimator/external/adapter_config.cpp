@@ -55,6 +55,16 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
                 "Time unit of h5 and csv.");
 }
 
+/// A class that leaves out what the adapter hands over.
+void check_class(config::Fields& fields, const AdapterConfig& config) {
+  if (!config.method_class) return;
+  const std::set<MethodInput>& inputs = config.method_class->inputs;
+  fields.expect(config.truth_s == 0 || inputs.contains(MethodInput::kStart), "class",
+                "must hold `start` among its inputs: start.truth_s gives poses");
+  fields.expect(!uses_placeholder(config.command, "imu") || inputs.contains(MethodInput::kImu),
+                "class", "must hold `imu` among its inputs: the command takes {imu}");
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, AdapterConfig& config) {
@@ -78,6 +88,10 @@ void describe(config::Fields& fields, AdapterConfig& config) {
             .range(0, 1e3);
       },
       "What the program is given at the start.");
+  fields.section("class", config.method_class,
+                 "What the program is given and how far it looks ahead: it is ranked among methods "
+                 "of the same class. `~`: not known.");
+  check_class(fields, config);
   fields.group(
       "output", [&](config::Fields& output) { describe_output(output, config.output); },
       "Results that the program leaves in {out}.");

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/config/fields.h"
+#include "core/io/run/method_class.h"
 
 namespace saccade {
 
@@ -39,7 +41,8 @@ struct AdapterConfig {
   std::map<std::string, std::filesystem::path> files;  ///< by placeholder
   std::string events = "txt";                          ///< ending of the file
   StampUnit event_unit = StampUnit::kMicroseconds;
-  double truth_s = 0;  ///< of the poses that are given at the start
+  double truth_s = 0;                       ///< of the poses that are given at the start
+  std::optional<MethodClass> method_class;  ///< nullopt: not known
   AdapterOutput output;
   double timeout_s = 3600;
   std::uint64_t seed = 1;

@@ -136,6 +136,7 @@ RunSummary run_external(const RunRequest& request) {
   timing.poses = take_output(run, config, external);
   fs::remove_all(run / "input");
   io.reset();
+  if (config.method_class) writer.set_class(*config.method_class);
   writer.finish("external", request, dataset, input.window, config.seed, config::print(config),
                 timing, external);
   RunSummary summary = summary_of(timing, fmt::format("{} poses", *timing.poses));
