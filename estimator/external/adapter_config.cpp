@@ -40,6 +40,9 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
                "PLY file with the tracked points. Empty: the program writes none.");
   fields.value("views", output.views,
                "Folder with views.yaml and depth maps. Empty: the program writes none.");
+  fields.value("events", output.events,
+               "File with the events that a simulator makes; its ending is that of the format. The "
+               "program then writes no trajectory. Empty: the program makes none.");
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {

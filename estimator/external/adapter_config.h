@@ -31,6 +31,7 @@ struct TrajectoryFormat {
 struct AdapterOutput {
   TrajectoryFormat trajectory;
   std::string covariance, map, views;
+  std::string events;  ///< of a simulator, which writes no trajectory
 };
 
 /// How to run an external estimator (docs/own_estimator.md).

@@ -67,6 +67,8 @@ std::vector<MetricInfo> trajectory_rows() {
        .needs = kReport, .in_tables = true},
       {.key = "trajectory.loss.reported_s", .unit = "s", .better = kNeither, .needs = kReport},
       {.key = "trajectory.loss.count", .needs = kReport},
+      {.key = "trajectory.loss.first_s", .unit = "s", .better = kHigher,
+       .needs = kTruePathAndDepth},
       {.key = "success", .label = "success", .scale = 100, .better = kHigher,
        .needs = kTruePathAndDepth, .in_tables = true},
       {.key = "trajectory.drift_percent", .unit = "%", .needs = kTruePath},
