@@ -25,8 +25,15 @@ PooledValue scaled(PooledValue value, double scale) {
   return value;
 }
 
+/// "refused" of "refused: start: the events show no parallax"; the rest stands below it.
+Table::Cell failure_cell(const std::string& problem) {
+  const std::size_t end = problem.find(':');
+  if (end == std::string::npos) return {problem};
+  return {problem.substr(0, end), {}, problem};
+}
+
 Table::Cell score_cell(const LeaderboardScore& score, double scale) {
-  if (!score.value) return {score.failed > 0 ? score.problem : "–", {}};
+  if (!score.value) return score.failed > 0 ? failure_cell(score.problem) : Table::Cell{"–"};
   const PooledValue shown = scaled(*score.value, scale);
   if (score.failed == 0) return {"", shown, score.note};
   return {
@@ -41,6 +48,7 @@ Table::Cell overall_cell(const LeaderboardRow& row, double scale) {
 }
 
 Table::Cell rank_cell(const LeaderboardRow& row, std::size_t sequences) {
+  if (row.rank == 0 && row.sequences == sequences) return {"–", {}};
   if (row.rank == 0) return {fmt::format("{} of {}", row.sequences, sequences), {}};
   return {std::to_string(row.rank), PooledValue{static_cast<double>(row.rank), {}, {}, 1}};
 }
@@ -75,7 +83,8 @@ std::vector<Table::Cell> method_cells(const LeaderboardRow& row, const Leaderboa
   return cells;
 }
 
-/// The best mean of a column within each class; of the overall scores only a ranked one counts.
+/// The best mean of a column within each class, of those without a failure; overall it is the first
+/// rank.
 void mark_best(Table& table, const Leaderboard& board, std::size_t first_column) {
   for (std::size_t column = first_column; column < table.columns.size(); ++column)
     for (std::size_t begin = 0, end = 0; begin < board.rows.size(); begin = end) {
@@ -84,8 +93,9 @@ void mark_best(Table& table, const Leaderboard& board, std::size_t first_column)
                         board.rows[end].method_class == board.rows[begin].method_class;
            ++end) {
         Table::Cell& cell = table.rows[end][column];
-        const bool counts = table.columns[column].title != "overall" || board.rows[end].rank > 0;
-        if (!cell.value || !counts) continue;
+        const LeaderboardRow& row = board.rows[end];
+        const bool is_overall = table.columns[column].title == "overall";
+        if (!cell.value || !cell.text.empty() || (is_overall && row.rank != 1)) continue;
         if (best == nullptr || (board.higher_is_better ? cell.value->mean > best->value->mean
                                                        : cell.value->mean < best->value->mean))
           best = &cell;

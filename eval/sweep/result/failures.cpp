@@ -12,11 +12,6 @@ namespace {
 /// A page is read from its top: more stand in sweep.csv.
 constexpr std::size_t kMostReasons = 40;
 
-bool was_lost(const SweepRow& row) {
-  return row.metrics.get("trajectory.lost_s").value_or(0) > 0 ||
-         (row.metrics.get("success") == 0.0 && row.metrics.get("trajectory.poses") == 0.0);
-}
-
 /// Of one configuration.
 struct FailureCounts {
   std::string configuration;
@@ -33,7 +28,7 @@ std::vector<FailureCounts> count_failures(const SweepResults& results) {
     if (known == counts.end()) known = counts.insert(counts.end(), {.configuration = name});
     ++known->runs;
     known->came_to_nothing += row.outcome().has_failed ? 1 : 0;
-    known->lost += !row.outcome().has_failed && was_lost(row) ? 1 : 0;
+    known->lost += !row.outcome().has_failed && was_lost(row.metrics) ? 1 : 0;
   }
   return counts;
 }
@@ -53,13 +48,13 @@ std::string counts_table(const std::vector<FailureCounts>& counts) {
 std::string status_of(const SweepRow& row) {
   if (row.failed && row.problem.empty()) return "failed";
   if (!row.problem.empty()) return row.problem.substr(0, row.problem.find(':'));
-  return was_lost(row) ? "lost" : "ok";
+  return was_lost(row.metrics) ? "lost" : "ok";
 }
 
 std::string reason_of(const SweepRow& row) {
-  if (!row.outcome().has_failed && !was_lost(row)) return "";
-  const std::string text = failure_text(row.metrics, row.problem);
-  return text.empty() ? status_of(row) : text;
+  if (row.failed && row.problem.empty()) return "failed";
+  const bool is_failure = row.outcome().has_failed || was_lost(row.metrics);
+  return is_failure ? failure_text(row.metrics, row.problem) : "";
 }
 
 std::string failures_section(const SweepResults& results) {
