@@ -101,8 +101,8 @@ TEST_F(External, WhatGoesWrongIsAStatusWithoutPoses) {
 }
 
 TEST_F(External, ASimulatorLeavesEvents) {
-  const RunRecord record =
-      run("printf '0.001 3 4 1\\n0.002 5 6 0\\n' > {out}/made.txt", "output: {events: made.txt}\n");
+  const RunRecord record = run("printf '0.001 3 4 1\\\\n0.002 5 6 0\\\\n' > {out}/made.txt",
+                               "output: {events: made.txt}\n");
   EXPECT_EQ(record.problem(), "");
   const Events events = read_events(output() / "events.h5", {});
   ASSERT_EQ(events.size(), 2U);
@@ -111,7 +111,7 @@ TEST_F(External, ASimulatorLeavesEvents) {
   EXPECT_THAT(read_file(output() / "timing.json"), Not(HasSubstr("\"poses\"")));
 
   EXPECT_THAT(
-      run("printf '0.001 60 4 1\\n' > {out}/made.txt", "output: {events: made.txt}\n").problem(),
+      run("printf '0.001 60 4 1\\\\n' > {out}/made.txt", "output: {events: made.txt}\n").problem(),
       StartsWith("bad output: made.txt"))
       << "beyond the sensor of 60 x 45 pixels";
   EXPECT_EQ(run("exit 3", "output: {events: made.txt}\n").problem(), "crashed: exit code 3");

@@ -154,7 +154,8 @@ TEST(SweepConfig, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error(data + "configurations: [{adapter: fast.yaml}]\ngrid: {a.b: [1]}\n"),
               HasSubstr("keys of the module"));
   EXPECT_THAT(error("datasets: [{}]\n"), HasSubstr("must be stated, or 'simulate'"));
-  EXPECT_THAT(error("datasets: [{path: recorded, simulate: walls.yaml}]\n"), HasSubstr("not both"));
+  EXPECT_THAT(error("datasets: [{path: recorded, simulate: walls.yaml}]\n"),
+              HasSubstr("one of them alone"));
   EXPECT_THAT(error("datasets: [{path: recorded, seeds: [1]}]\n"), HasSubstr("belong to"));
   EXPECT_THAT(error("datasets: [{path: nowhere}]\n"), HasSubstr("nowhere"));
   EXPECT_THAT(error("datasets: [{simulate: walls.yaml}, {simulate: walls.yaml}]\n"),
