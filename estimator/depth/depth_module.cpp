@@ -39,6 +39,7 @@ RunSummary run_depth(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write_depth(writer.path(), dataset.camera(), windows, results);
   }
+  writer.set_class(class_of_views(request));
   writer.finish("depth", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 

@@ -40,6 +40,9 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
                "PLY file with the tracked points. Empty: the program writes none.");
   fields.value("views", output.views,
                "Folder with views.yaml and depth maps. Empty: the program writes none.");
+  fields.value("events", output.events,
+               "File with the events that a simulator makes; its ending is that of the format. The "
+               "program then writes no trajectory. Empty: the program makes none.");
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
@@ -53,6 +56,16 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
   fields.choice("timestamp_unit", config.event_unit,
                 {{"us", StampUnit::kMicroseconds}, {"ns", StampUnit::kNanoseconds}},
                 "Time unit of h5 and csv.");
+}
+
+/// A class that leaves out what the adapter hands over.
+void check_class(config::Fields& fields, const AdapterConfig& config) {
+  if (!config.method_class) return;
+  const std::set<MethodInput>& inputs = config.method_class->inputs;
+  fields.expect(config.truth_s == 0 || inputs.contains(MethodInput::kStart), "class",
+                "must hold `start` among its inputs: start.truth_s gives poses");
+  fields.expect(!uses_placeholder(config.command, "imu") || inputs.contains(MethodInput::kImu),
+                "class", "must hold `imu` among its inputs: the command takes {imu}");
 }
 
 }  // namespace
@@ -78,6 +91,10 @@ void describe(config::Fields& fields, AdapterConfig& config) {
             .range(0, 1e3);
       },
       "What the program is given at the start.");
+  fields.section("class", config.method_class,
+                 "What the program is given and how far it looks ahead: it is ranked among methods "
+                 "of the same class. `~`: not known.");
+  check_class(fields, config);
   fields.group(
       "output", [&](config::Fields& output) { describe_output(output, config.output); },
       "Results that the program leaves in {out}.");

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/config/fields.h"
+#include "core/io/run/method_class.h"
 
 namespace saccade {
 
@@ -29,6 +31,7 @@ struct TrajectoryFormat {
 struct AdapterOutput {
   TrajectoryFormat trajectory;
   std::string covariance, map, views;
+  std::string events;  ///< of a simulator, which writes no trajectory
 };
 
 /// How to run an external estimator (docs/own_estimator.md).
@@ -39,7 +42,8 @@ struct AdapterConfig {
   std::map<std::string, std::filesystem::path> files;  ///< by placeholder
   std::string events = "txt";                          ///< ending of the file
   StampUnit event_unit = StampUnit::kMicroseconds;
-  double truth_s = 0;  ///< of the poses that are given at the start
+  double truth_s = 0;                       ///< of the poses that are given at the start
+  std::optional<MethodClass> method_class;  ///< nullopt: not known
   AdapterOutput output;
   double timeout_s = 3600;
   std::uint64_t seed = 1;

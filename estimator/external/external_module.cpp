@@ -9,7 +9,6 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/trajectory_file.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
 #include "core/stopwatch.h"
@@ -83,11 +82,11 @@ RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfi
   return external;
 }
 
-/// Takes its poses into the run, or states why there are none.
-std::size_t take_output(const fs::path& run, const AdapterConfig& config,
-                        RunRecord::External& external) {
+/// Takes its results into the run, or states why there are none.
+ExternalFound take_output(const fs::path& run, const AdapterConfig& config,
+                          const PinholeCamera& camera, RunRecord::External& external) {
   if (external.status == "ok") try {
-      return import_external_output(run / "output", config.output, run);
+      return import_external_output(run / "output", config.output, camera, run);
     } catch (const InputError& error) {
       external.status = "bad output";
       external.reason = error.what();
@@ -96,8 +95,7 @@ std::size_t take_output(const fs::path& run, const AdapterConfig& config,
       if (const auto at = external.reason.find(prefix); at != std::string::npos)
         external.reason.erase(at, prefix.size());
     }
-  write_tum_trajectory(run / "trajectory.txt", {});
-  return 0;
+  return write_no_output(config.output, camera, run);
 }
 
 /// Throws InputError where there is nothing to run.
@@ -133,12 +131,15 @@ RunSummary run_external(const RunRequest& request) {
                                                  config, request.repeat, timing);
   external.version = version;
   io.emplace(timing.io_s);
-  timing.poses = take_output(run, config, external);
+  const ExternalFound found = take_output(run, config, dataset.camera(), external);
+  timing.poses = found.poses;
   fs::remove_all(run / "input");
   io.reset();
+  if (config.method_class) writer.set_class(*config.method_class);
   writer.finish("external", request, dataset, input.window, config.seed, config::print(config),
                 timing, external);
-  RunSummary summary = summary_of(timing, fmt::format("{} poses", *timing.poses));
+  RunSummary summary = summary_of(timing, found.poses ? fmt::format("{} poses", *found.poses)
+                                                      : fmt::format("{} events", found.events));
   if (external.status != "ok")
     show_notice(fmt::format("{} {}: {}", config.name, external.status, external.reason));
   return summary;

@@ -3,6 +3,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -11,6 +13,7 @@
 #include "core/error.h"
 #include "core/event.h"
 #include "core/io/covariance_file.h"
+#include "core/io/events/event_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
 #include "core/io/tables/text_table.h"
@@ -72,6 +75,13 @@ fs::path expected_output(const fs::path& out, const std::string& name, const cha
   return out / name;
 }
 
+void write_events(const fs::path& run, const PinholeCamera& camera, std::span<const Event> events) {
+  const auto writer = make_event_writer(run / "events.h5", TimestampUnit::kNanoseconds,
+                                        {camera.width, camera.height});
+  writer->append(events);
+  writer->close();
+}
+
 }  // namespace
 
 std::vector<StampedPose> read_external_trajectory(const fs::path& file,
@@ -92,8 +102,14 @@ std::vector<StampedPose> read_external_trajectory(const fs::path& file,
   return poses;
 }
 
-std::size_t import_external_output(const fs::path& out, const AdapterOutput& output,
-                                   const fs::path& run) {
+ExternalFound import_external_output(const fs::path& out, const AdapterOutput& output,
+                                     const PinholeCamera& camera, const fs::path& run) {
+  if (!output.events.empty()) {
+    const Events events =
+        read_events(expected_output(out, output.events, "events"), {camera.width, camera.height});
+    write_events(run, camera, events);
+    return {std::nullopt, events.size()};
+  }
   const std::vector<StampedPose> poses = read_external_trajectory(
       expected_output(out, output.trajectory.file, "trajectory.file"), output.trajectory);
   if (!output.covariance.empty()) {
@@ -112,7 +128,17 @@ std::size_t import_external_output(const fs::path& out, const AdapterOutput& out
     fs::copy(views, run, fs::copy_options::recursive);
   }
   write_tum_trajectory(run / "trajectory.txt", poses);
-  return poses.size();
+  return {poses.size(), 0};
+}
+
+ExternalFound write_no_output(const AdapterOutput& output, const PinholeCamera& camera,
+                              const fs::path& run) {
+  if (!output.events.empty()) {
+    write_events(run, camera, {});
+    return {};
+  }
+  write_tum_trajectory(run / "trajectory.txt", {});
+  return {0, 0};
 }
 
 }  // namespace saccade

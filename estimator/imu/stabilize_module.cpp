@@ -159,6 +159,9 @@ RunSummary run_stabilization(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write(writer.path(), dataset, result, window);
   }
+  MethodClass method_class{{MethodInput::kEvents}};
+  if (imu) method_class.inputs.insert(MethodInput::kImu);
+  writer.set_class(method_class);
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
   return summary_of(timing, fmt::format("{} orientations, {} windows of events", poses.size(),

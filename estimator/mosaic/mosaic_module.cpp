@@ -165,6 +165,9 @@ RunSummary run_mosaic(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write(writer.path(), run, snapshots);
   }
+  MethodClass method_class{{MethodInput::kEvents}, Processing::kBatch};
+  if (source.imu) method_class.inputs.insert(MethodInput::kImu);
+  writer.set_class(method_class);
   writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);
 
   return summary_of(timing,

@@ -197,6 +197,19 @@ void take_timing(const OdometryFound& found, const Start& start, bool is_online,
   if (is_online) timing.dropped_events = result.dropped_events;
 }
 
+/// A keyframe that is adjusted revises the poses of its window.
+MethodClass class_of(const OdometryInput& input, const OdometryConfig& config) {
+  MethodClass method{{MethodInput::kEvents}};
+  if (config.start.truth_s > 0) method.inputs.insert(MethodInput::kStart);
+  if (!input.gyroscope.is_empty() || input.imu) method.inputs.insert(MethodInput::kImu);
+  const OdometryOptions& options = config.odometry;
+  if (options.mapping.adjust_rounds > 0 || options.mapping.smoothing_s > 0)
+    method.processing = Processing::kFixedLag;
+  if (options.batch_adjustment != BatchMode::kNone && options.mode == OdometryMode::kOffline)
+    method.processing = Processing::kBatch;
+  return method;
+}
+
 RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
                       const RunTiming& timing) {
   const std::size_t lost = count_lost(found.result.poses);
@@ -248,6 +261,7 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   io.emplace(timing.io_s);
   write(writer.path(), input, start, config, found);
   io.reset();
+  writer.set_class(class_of(input, config));
   writer.finish("odometry", request, input.dataset, window, config.seed, config::print(config),
                 timing);
   return summary_of(found, config, timing);

@@ -46,6 +46,10 @@ RunSummary run_refinement(const RunRequest& request) {
   // A run that found its own start has a world of its own, and so has this one.
   if (const auto start = run.folder / "start.yaml"; std::filesystem::exists(start))
     std::filesystem::copy_file(start, writer.path() / "start.yaml");
+  MethodClass method_class{{MethodInput::kEvents}, Processing::kBatch};
+  if (config.method == "joint" && config.joint.use_imu)
+    method_class.inputs.insert(MethodInput::kImu);
+  writer.set_class(method_class);
   return method.run(request, config, dataset, run, writer);
 }
 

@@ -122,6 +122,18 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
   return rates_of(events, camera, config, gyroscope, progress);
 }
 
+MethodClass class_of(const RotationConfig& config) {
+  switch (config.method) {
+    case Method::kEvents:
+      return {{MethodInput::kEvents}};
+    case Method::kImu:
+      return {{MethodInput::kImu}};
+    case Method::kBoth:
+      break;
+  }
+  return {{MethodInput::kEvents, MethodInput::kImu}};
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, RotationConfig& config) {
@@ -183,6 +195,7 @@ RunSummary run_rotation(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write_angular_velocities(writer.path() / "angular_velocity.txt", rates);
   }
+  writer.set_class(class_of(config));
   writer.finish("rotation", request, dataset, window_of(request, first_s, last_s), config.seed,
                 config::print(config), timing);
 

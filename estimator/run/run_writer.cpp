@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "core/check.h"
 #include "core/io/files/sha256.h"
 #include "core/median.h"
 #include "core/version.h"
@@ -52,6 +53,20 @@ std::string latency(std::vector<double> ms) {
   };
   return fmt::format("  \"latency_ms\": {{\"median\": {}, \"p99\": {}, \"max\": {}}},\n", at(0.5),
                      at(0.99), ms.back());
+}
+
+/// The class of a run with those of the runs that it starts from; nullopt where one is not known, as
+/// of a trajectory of another program.
+std::optional<MethodClass> class_with_sources(std::optional<MethodClass> own,
+                                              const RunRequest& request) {
+  for (const auto* source : {&request.poses_from, &request.depth_from, &request.from}) {
+    if (!*source || !own) continue;
+    const std::filesystem::path record = **source / "run.yaml";
+    const std::optional<MethodClass> given =
+        std::filesystem::exists(record) ? read_run_record(record).method_class : std::nullopt;
+    own = given ? std::optional(merged(*own, *given)) : std::nullopt;
+  }
+  return own;
 }
 
 }  // namespace
@@ -103,8 +118,10 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
                        const RunRecord::Window& window, std::uint64_t seed,
                        const std::string& config_yaml, const RunTiming& timing,
                        const std::optional<RunRecord::External>& external) {
+  SACCADE_CHECK(method_class_ || external);
   RunRecord record;
   record.module = module;
+  record.method_class = class_with_sources(method_class_, request);
   record.external = external;
   record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
   record.dataset_sha256 = dataset_hash(dataset);

@@ -9,6 +9,7 @@
 
 #include "core/io/dataset/dataset.h"
 #include "core/io/files/atomic_file.h"
+#include "core/io/run/method_class.h"
 #include "core/io/run/run_record.h"
 #include "estimator/run/run_request.h"
 
@@ -48,13 +49,19 @@ class RunWriter {
   /// Where the module writes its own files.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
-  /// Writes run.yaml and timing.json and gives the folder its name.
+  /// States what the module was given and how far it looks ahead. What the runs were given that the
+  /// request names is added by finish(); where one of them does not state it, neither does this.
+  void set_class(const MethodClass& method_class) { method_class_ = method_class; }
+
+  /// Writes run.yaml and timing.json and gives the folder its name. Contract: set_class() before,
+  /// but of an external program.
   void finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
               const RunRecord::Window& window, std::uint64_t seed, const std::string& config_yaml,
               const RunTiming& timing, const std::optional<RunRecord::External>& external = {});
 
  private:
   AtomicFolder folder_;
+  std::optional<MethodClass> method_class_;
 };
 
 }  // namespace saccade

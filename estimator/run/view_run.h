@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
+#include "core/io/run/method_class.h"
 #include "core/io/run/run_record.h"
 #include "core/process/parallel.h"
 #include "core/process/progress.h"
@@ -48,6 +49,13 @@ struct ViewInput {
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
   return input;
+}
+
+/// Of a module whose views depend on the events of their own window alone.
+[[nodiscard]] inline MethodClass class_of_views(const RunRequest& request) {
+  MethodClass method{{MethodInput::kEvents}};
+  if (!request.poses_from) method.inputs.insert(MethodInput::kPoses);
+  return method;
 }
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;

@@ -150,6 +150,14 @@ std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, const 
   return poses;
 }
 
+MethodClass class_of(const TrackConfig& config, const TrackInput& input) {
+  MethodClass method{{MethodInput::kMap}};
+  method.inputs.insert(method_of(config).takes_frames ? MethodInput::kFrames
+                                                      : MethodInput::kEvents);
+  if (!input.gyroscope.is_empty()) method.inputs.insert(MethodInput::kImu);
+  return method;
+}
+
 }  // namespace
 
 RunSummary run_track(const RunRequest& request) {
@@ -173,6 +181,7 @@ RunSummary run_track(const RunRequest& request) {
     write_poses(writer.path(), poses);
     write_map(writer.path() / "map.ply", world.edge_points, world.intensity_map.world_from_map());
   }
+  writer.set_class(class_of(config, input));
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 

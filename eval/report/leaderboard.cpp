@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "core/check.h"
 #include "eval/evaluate.h"
@@ -17,6 +19,10 @@ namespace saccade {
 namespace {
 
 constexpr const char* kNees = "trajectory.nees";
+constexpr const char* kSuccess = "success";
+
+using Entries = std::span<const LeaderboardEntry>;
+using Runs = std::vector<const LeaderboardEntry*>;  ///< at least one
 
 std::optional<double> score_of(const Metrics& metrics, const std::string& key) {
   if (key.starts_with("speed.")) return speed_value(metrics, key);
@@ -25,13 +31,49 @@ std::optional<double> score_of(const Metrics& metrics, const std::string& key) {
   return *value > 0 ? std::optional(nees_factor(*value)) : std::nullopt;
 }
 
+bool is_of_trajectories(const std::string& key) { return key.starts_with("trajectory."); }
+
+/// The speed of a run that was lost says nothing of its method.
+bool needs_success(const std::string& key) {
+  return is_of_trajectories(key) || key.starts_with("speed.");
+}
+
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// Whether an entry without the score is shown all the same.
-bool is_shown_failure(const LeaderboardEntry& entry, const std::string& key) {
-  return !entry.problem.empty() && key.starts_with("trajectory.");
+/// Without a score of any kind.
+bool came_to_nothing(const LeaderboardEntry& entry) {
+  return !entry.problem.empty() ||
+         (entry.metrics.get("trajectory.poses") == 0.0 && entry.metrics.get(kSuccess) == 0.0);
+}
+
+/// Whether a run counts as failed on the board of a metric.
+bool has_failed(const LeaderboardEntry& entry, const std::string& key) {
+  return !entry.problem.empty() || (needs_success(key) && entry.metrics.get(kSuccess) == 0.0);
+}
+
+/// Whether an entry that came to nothing would have had the metric.
+bool is_expected(const LeaderboardEntry& entry, const std::string& key, Entries entries) {
+  const auto is_of_module = [&](const LeaderboardEntry& other) {
+    return other.module == entry.module && !came_to_nothing(other);
+  };
+  if (std::none_of(entries.begin(), entries.end(), is_of_module)) return is_of_trajectories(key);
+  return std::any_of(entries.begin(), entries.end(), [&](const LeaderboardEntry& other) {
+    return is_of_module(other) && score_of(other.metrics, key);
+  });
+}
+
+/// Whether the metric depends on where the world's origin lies and on its scale.
+bool needs_true_world(const std::string& key) {
+  return (is_of_trajectories(key) && !key.starts_with("trajectory.sim3.")) ||
+         key.starts_with("depth.");
+}
+
+bool stands_on(const LeaderboardEntry& entry, const std::string& key, Entries entries) {
+  if (needs_true_world(key) && has_own_world(entry.metrics)) return false;
+  if (came_to_nothing(entry)) return is_expected(entry, key, entries);
+  return score_of(entry.metrics, key).has_value();
 }
 
 /// The NEES behind its factor: above 6 the estimator is surer than its errors allow.
@@ -62,81 +104,125 @@ std::optional<PooledValue> geometric_mean(const LeaderboardRow& row) {
                      mean.count};
 }
 
-LeaderboardRow board_row(const std::string& method, std::span<const LeaderboardEntry> entries,
-                         const Leaderboard& board) {
-  LeaderboardRow row{method, {}, {}, {}, 0, 0};
-  for (const std::string& sequence : board.sequences) {
-    LeaderboardScore score;
-    std::vector<double> values, nees;
-    for (const LeaderboardEntry& entry : entries) {
-      if (entry.method != method || entry.sequence != sequence) continue;
-      row.source = entry.source;
-      const std::optional<double> value = score_of(entry.metrics, board.key);
-      if (value) values.push_back(*value);
-      if (value && board.key == kNees) nees.push_back(*entry.metrics.get(kNees));
-      if (!value && is_shown_failure(entry, board.key) && ++score.failed == 1)
-        score.problem = entry.problem;
+/// The runs of a method on a sequence.
+LeaderboardScore score_on(const std::string& sequence, const Runs& runs, const std::string& key) {
+  LeaderboardScore score;
+  std::vector<double> values, nees;
+  for (const LeaderboardEntry* run : runs) {
+    if (run->sequence != sequence) continue;
+    ++score.runs;
+    if (has_failed(*run, key)) {
+      if (++score.failed == 1) score.problem = failure_text(run->metrics, run->problem);
+      continue;
     }
-    if (!values.empty()) score.value = pooled(values);
-    if (!nees.empty()) score.note = nees_note(nees);
-    row.complete += score.complete() ? 1 : 0;
-    row.scores.push_back(std::move(score));
+    values.push_back(*score_of(run->metrics, key));
+    if (key == kNees) nees.push_back(*run->metrics.get(kNees));
+  }
+  if (!values.empty()) score.value = pooled(values);
+  if (!nees.empty()) score.note = nees_note(nees);
+  return score;
+}
+
+std::optional<double> mean_realtime_factor(const Runs& runs, const std::string& key) {
+  double sum = 0, count = 0;
+  for (const LeaderboardEntry* run : runs) {
+    const auto factor = speed_value(run->metrics, "speed.realtime_factor");
+    if (!factor || !(*factor > 0) || has_failed(*run, key)) continue;
+    sum += std::log(*factor);
+    ++count;
+  }
+  return count > 0 ? std::optional(std::exp(sum / count)) : std::nullopt;
+}
+
+LeaderboardRow board_row(const Runs& runs, const Leaderboard& board) {
+  LeaderboardRow row;
+  row.method = runs.front()->method;
+  row.source = runs.front()->source;
+  row.method_class = runs.front()->method_class;
+  std::vector<RunOutcome> outcomes;
+  for (const LeaderboardEntry* run : runs) {
+    if (run->threads > 0) row.threads.insert(run->threads);
+    outcomes.push_back({run->metrics.get(kSuccess), !run->problem.empty()});
+  }
+  if (needs_success(board.key)) row.success = success_share(outcomes);
+  row.realtime_factor = mean_realtime_factor(runs, board.key);
+  for (const std::string& sequence : board.sequences) {
+    row.scores.push_back(score_on(sequence, runs, board.key));
+    row.runs += row.scores.back().runs;
+    row.failed += row.scores.back().failed;
+    row.sequences += row.scores.back().runs > 0 ? 1 : 0;
   }
   row.overall = geometric_mean(row);
   return row;
 }
 
-/// Complete rows first, then by the overall score.
-void sort_and_rank(Leaderboard& board) {
-  const auto before = [&](const LeaderboardRow& a, const LeaderboardRow& b) {
-    if (a.complete != b.complete) return a.complete > b.complete;
-    if (!a.overall || !b.overall) return a.overall.has_value() && !b.overall;
-    return board.higher_is_better ? a.overall->mean > b.overall->mean
-                                  : a.overall->mean < b.overall->mean;
-  };
-  std::stable_sort(board.rows.begin(), board.rows.end(), before);
-  int rank = 0;
-  for (LeaderboardRow& row : board.rows)
-    if (row.complete == board.sequences.size() && row.overall) row.rank = ++rank;
-}
-
-std::string board_caption(const Leaderboard& board) {
-  return fmt::format("{}: {} is better; 95 % intervals over seeds{}", board.label,
-                     board.higher_is_better ? "higher" : "lower",
-                     board.sequences.size() > 1 ? ", over sequences for the overall score" : "");
-}
-
-/// As people are shown it.
-std::optional<PooledValue> scaled(std::optional<PooledValue> value, double scale) {
-  if (!value) return value;
-  value->mean *= scale;
-  if (value->low) *value->low *= scale;
-  if (value->high) *value->high *= scale;
-  return value;
-}
-
-Table::Cell score_cell(const LeaderboardScore& score, double scale) {
-  if (!score.value) return {score.failed > 0 ? score.problem : "–", {}};
-  const std::optional<PooledValue> shown = scaled(score.value, scale);
-  if (score.failed == 0) return {"", shown, score.note};
-  return {"", shown,
-          fmt::format("{} of {} failed", score.failed, score.failed + score.value->count)};
-}
-
-/// The best mean of every column; of the overall scores only a ranked one counts.
-void mark_best(Table& table, const Leaderboard& board) {
-  for (std::size_t column = 2; column < table.columns.size(); ++column) {
-    Table::Cell* best = nullptr;
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      Table::Cell& cell = table.rows[i][column];
-      const bool counts = table.columns[column].title != "overall" || board.rows[i].rank > 0;
-      if (!cell.value || !counts) continue;
-      if (best == nullptr || (board.higher_is_better ? cell.value->mean > best->value->mean
-                                                     : cell.value->mean < best->value->mean))
-        best = &cell;
+/// The runs that stand on the board, method by method and class by class; one that came to nothing
+/// has the class of its method's other runs.
+std::vector<Runs> by_method(Entries entries, const Leaderboard& board) {
+  std::vector<Runs> methods;
+  for (const bool failures : {false, true})
+    for (const LeaderboardEntry& entry : entries) {
+      if (entry.problem.empty() == failures || !stands_on(entry, board.key, entries)) continue;
+      const auto known = std::find_if(methods.begin(), methods.end(), [&](const Runs& runs) {
+        return runs.front()->method == entry.method &&
+               (runs.front()->method_class == entry.method_class || failures);
+      });
+      (known == methods.end() ? methods.emplace_back() : *known).push_back(&entry);
     }
-    if (best != nullptr && table.rows.size() > 1) best->best = true;
+  return methods;
+}
+
+/// The number of sequences that any method of the row's class was run over.
+std::size_t sequences_of_class(const LeaderboardRow& row, const Leaderboard& board) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < board.sequences.size(); ++i)
+    if (std::any_of(board.rows.begin(), board.rows.end(), [&](const LeaderboardRow& other) {
+          return other.method_class == row.method_class && other.scores[i].runs > 0;
+        }))
+      ++count;
+  return count;
+}
+
+/// Inputs and processing in order, what is not known behind.
+auto order_of(const std::optional<MethodClass>& method_class) {
+  const MethodClass known = method_class.value_or(MethodClass{});
+  return std::tuple(!method_class, known.inputs, known.processing);
+}
+
+/// Class by class, those with all sequences first, then by the share that did not fail, then by the
+/// overall score.
+void sort_and_rank(Leaderboard& board) {
+  std::vector<std::pair<LeaderboardRow, bool>> rows;  // whether it has all sequences
+  for (const LeaderboardRow& row : board.rows)
+    rows.emplace_back(row, row.sequences == sequences_of_class(row, board));
+  const auto goodness = [&](const LeaderboardRow& row) {
+    if (!row.overall) return -std::numeric_limits<double>::infinity();
+    return board.higher_is_better ? row.overall->mean : -row.overall->mean;
+  };
+  std::stable_sort(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
+    const auto key = [&](const auto& row) {
+      return std::tuple(order_of(row.first.method_class), !row.second, -row.first.solved(),
+                        -goodness(row.first));
+    };
+    return key(a) < key(b);
+  });
+  int rank = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    LeaderboardRow& row = rows[i].first;
+    if (i == 0 || rows[i - 1].first.method_class != row.method_class) rank = 0;
+    if (rows[i].second && row.overall) row.rank = ++rank;
+    board.rows[i] = row;
   }
+}
+
+Leaderboard empty_board(const MetricInfo& metric) {
+  Leaderboard board;
+  board.key = metric.key;
+  board.label = metric.board;
+  if (const std::string unit = metric.shown_unit(); !unit.empty()) board.label += " [" + unit + "]";
+  board.scale = metric.scale;
+  board.higher_is_better = metric.higher_is_better();
+  return board;
 }
 
 }  // namespace
@@ -159,52 +245,22 @@ PooledValue pooled(std::span<const double> values) {
   return result;
 }
 
-std::vector<Leaderboard> leaderboards(std::span<const LeaderboardEntry> entries) {
+std::vector<Leaderboard> leaderboards(Entries entries) {
   std::vector<Leaderboard> boards;
   for (const MetricInfo& metric : metric_catalogue()) {
     if (metric.board.empty()) continue;
-    Leaderboard board;
-    board.key = metric.key;
-    board.label = metric.board;
-    if (const std::string unit = metric.shown_unit(); !unit.empty())
-      board.label += " [" + unit + "]";
-    board.scale = metric.scale;
-    board.higher_is_better = metric.higher_is_better();
-    std::vector<std::string> methods;
+    Leaderboard board = empty_board(metric);
+    bool is_scored = false;
     for (const LeaderboardEntry& entry : entries) {
-      const bool scored = score_of(entry.metrics, board.key).has_value();
-      if (scored) add_once(board.sequences, entry.sequence);
-      if (scored || is_shown_failure(entry, board.key)) add_once(methods, entry.method);
+      is_scored = is_scored || score_of(entry.metrics, board.key);
+      if (stands_on(entry, board.key, entries)) add_once(board.sequences, entry.sequence);
     }
-    if (board.sequences.empty()) continue;
-    for (const std::string& method : methods)
-      board.rows.push_back(board_row(method, entries, board));
+    if (!is_scored) continue;
+    for (const Runs& runs : by_method(entries, board)) board.rows.push_back(board_row(runs, board));
     sort_and_rank(board);
     boards.push_back(std::move(board));
   }
   return boards;
-}
-
-Table leaderboard_table(const Leaderboard& board) {
-  const bool several = board.sequences.size() > 1;
-  Table table{"leaderboard_" + board.key, board_caption(board), {{"method"}, {"rank", true}}};
-  std::replace(table.name.begin(), table.name.end(), '.', '_');
-  if (several) table.columns.push_back({"overall", true});
-  for (const std::string& sequence : board.sequences) table.columns.push_back({sequence, true});
-  for (const LeaderboardRow& row : board.rows) {
-    std::vector<Table::Cell> cells{{row.method, {}, row.source}};
-    if (row.rank > 0)
-      cells.push_back(
-          {std::to_string(row.rank), PooledValue{static_cast<double>(row.rank), {}, {}, 1}});
-    else
-      cells.push_back({fmt::format("{} of {}", row.complete, board.sequences.size()), {}});
-    if (several) cells.push_back({row.overall ? "" : "–", scaled(row.overall, board.scale)});
-    for (const LeaderboardScore& score : row.scores)
-      cells.push_back(score_cell(score, board.scale));
-    table.rows.push_back(std::move(cells));
-  }
-  mark_best(table, board);
-  return table;
 }
 
 }  // namespace saccade

@@ -51,6 +51,22 @@ std::string last_lines(const fs::path& file) {
   return text;
 }
 
+/// What the log of a failed job says, on one line; exit code 2 is that of bad input. Files below
+/// `folder` are relative to it.
+std::string failure_of(const LaunchResult& result, const fs::path& log, const fs::path& folder) {
+  constexpr std::string_view kProgram = "saccade: ", kFailed = "failed: ";
+  std::ifstream stream(log);
+  std::string message;
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with(kProgram)) message = line.substr(kProgram.size());
+  if (message.starts_with(kFailed)) message.erase(0, kFailed.size());
+  if (message.empty()) message = result.problem;
+  const std::string prefix = folder.string() + "/";
+  for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix))
+    message.erase(at, prefix.size());
+  return (result.problem == "exit code 2" ? "refused: " : "failed: ") + message;
+}
+
 /// A folder with other contents is left alone.
 void check_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
@@ -98,7 +114,7 @@ class Phase {
   Phase(std::vector<SweepJob>& jobs, int stage, const fs::path& folder)
       : jobs_(jobs), stage_(stage), folder_(folder) {}
 
-  /// A job fails whose dataset or source failed.
+  /// A job fails whose dataset or source failed. `simulations` may be these jobs.
   void fail_without_inputs(const std::vector<SweepJob>& simulations) {
     const auto has_failed = [](const SweepJob& job) { return job.state == JobState::kFailed; };
     for (SweepJob& job : jobs_) {
@@ -106,7 +122,10 @@ class Phase {
       const bool no_dataset = job.made_by && has_failed(simulations[*job.made_by]);
       const bool no_source = std::any_of(job.sources.begin(), job.sources.end(),
                                          [&](std::size_t run) { return has_failed(jobs_[run]); });
-      if (no_dataset || no_source) job.state = JobState::kFailed;
+      if (!no_dataset && !no_source) continue;
+      job.state = JobState::kFailed;
+      job.failure = no_dataset ? "failed: without its dataset, which failed"
+                               : "failed: without the run that it starts from, which failed";
     }
   }
 
@@ -154,6 +173,7 @@ class Phase {
       write_job_record(log.parent_path() / "job.yaml", jobs_[i], inputs_[launch], result.wall_s);
       return;
     }
+    jobs_[i].failure = failure_of(result, log, fs::absolute(folder_).lexically_normal());
     report(jobs_[i].name, result, log, progress);
   }
 
@@ -230,10 +250,14 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
   if (sweep.generate) check_generated(plan.simulations);
-  Phase simulations(plan.simulations, 0, folder);
-  bool complete =
-      simulations.run(launcher, limits_of_simulations(sweep, jobs, launcher), "simulating");
-  for (int stage = 0; complete && stage < plan.stages(); ++stage) {
+  bool complete = true;
+  for (int stage = 0; complete && stage < SweepPlan::stages(plan.simulations); ++stage) {
+    Phase simulations(plan.simulations, stage, folder);
+    simulations.fail_without_inputs(plan.simulations);
+    complete =
+        simulations.run(launcher, limits_of_simulations(sweep, jobs, launcher), "simulating");
+  }
+  for (int stage = 0; complete && stage < SweepPlan::stages(plan.runs); ++stage) {
     Phase runs(plan.runs, stage, folder);
     runs.fail_without_inputs(plan.simulations);
     complete = runs.run(launcher, limits_of_runs(sweep, jobs, launcher),

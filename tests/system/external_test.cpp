@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -54,7 +55,7 @@ TEST(ExternalEstimator, IsRankedBesideTheBuiltInOnesAndItsCrashIsARow) {
   ASSERT_EQ(csv.rows(), 3U);
   const std::size_t status = csv.require("status");
   EXPECT_EQ(csv.text(0, status), "ok");
-  EXPECT_EQ(csv.text(1, status), "ok");
+  EXPECT_EQ(csv.text(1, status), "lost");
   EXPECT_EQ(csv.text(2, status), "crashed");
   const std::size_t error = csv.require("trajectory.dt_rel_percent.mean");
   EXPECT_GT(csv.number(1, error), 0);
@@ -73,6 +74,41 @@ TEST(ExternalEstimator, IsRankedBesideTheBuiltInOnesAndItsCrashIsARow) {
   // Nothing is left to be done.
   EXPECT_THAT(saccade_ok({"sweep", folder.path() / "sweep.yaml", "-o", out}),
               HasSubstr("0 jobs done, 4 done before"));
+}
+
+TEST(ExternalSimulator, IsScoredAgainstExactSamplingAndItsCrashIsARow) {
+  if (!on_search_path("python3") || std::system("python3 -c 'import numpy' 2> /dev/null") != 0)
+    GTEST_SKIP() << "the example needs python3 with numpy";
+  const TemporaryFolder folder;
+  folder.write("broken.yaml", "command: sh -c \"exit 3\"\noutput: {events: events.txt}\n");
+  const std::string simulated = "simulate: " + shipped_config("simulation/walls.yaml");
+  const std::string camera = "camera: {width: 40, height: 30, fx: 33, fy: 33, cx: 19.5, cy: 14.5}";
+  const std::string file =
+      folder.write("sweep.yaml",
+                   "datasets:\n"
+                   "  - {name: exact, " +
+                       simulated + ", set: {duration_s: 0.1, " + camera +
+                       ", frames.rate_hz: 1000}}\n"
+                       "  - {name: same, " +
+                       simulated + ", set: {duration_s: 0.1, " + camera +
+                       "}, against: exact}\n"
+                       "  - {adapter: " +
+                       testing::source_path("examples/external/frame_difference.yaml") +
+                       ", against: exact}\n"
+                       "  - {adapter: broken.yaml, against: exact}\n");
+  const std::string out = folder.path() / "out";
+  EXPECT_THAT(saccade_ok({"sweep", file, "-o", out}), HasSubstr("4 jobs done, 0 done before"));
+  const CsvColumns csv(fs::path(out) / "sweep.csv");
+  ASSERT_EQ(csv.rows(), 4U);
+  const std::size_t recall = csv.require("events.recall_100us");
+  EXPECT_EQ(csv.number(1, csv.require("events.recall_1us")), 1);
+  EXPECT_GT(csv.number(2, recall), 0.3);
+  EXPECT_LT(csv.number(2, recall), 1);
+  EXPECT_GT(csv.number(2, csv.require("speed.wall_s.median")), 0);
+  EXPECT_EQ(csv.number(3, recall), 0);
+  EXPECT_EQ(csv.text(3, csv.require("status")), "crashed");
+  EXPECT_THAT(read_file(out + "/sweep.md"), HasSubstr("- broken: crashed: exit code 3"));
+  EXPECT_THAT(saccade_ok({"sweep", file, "-o", out}), HasSubstr("0 jobs done, 4 done before"));
 }
 
 }  // namespace

@@ -104,8 +104,12 @@ TEST(Sweep, AFailingJobIsReportedAndTheOthersGoOn) {
                     HasSubstr("saccade: --set edges.samples: -3 is below"),
                     HasSubstr("2 jobs done, 0 done before, 1 failed"), HasSubstr("1 job failed;")));
   EXPECT_THAT(read_file(out + "/sweep.csv"),
-              AllOf(HasSubstr(",20,1,ok,"), HasSubstr(",-3,1,failed,")));
-  EXPECT_THAT(read_file(out + "/sweep.md"), HasSubstr("## Failed jobs"));
+              AllOf(HasSubstr(",20,1,ok,"),
+                    HasSubstr(",-3,1,refused,refused: --set edges.samples: -3 is below")));
+  EXPECT_THAT(read_file(out + "/sweep.md"),
+              AllOf(HasSubstr("1 of 2 runs without a result, 0 lost."),
+                    HasSubstr("- walls_fast_samples--3_seed-1: refused: --set edges.samples: -3 is "
+                              "below")));
   // Once more: what is done stays, what failed is tried again.
   EXPECT_THAT(
       saccade({"sweep", folder.path() / "sweep.yaml", "-o", out, "--seed", "1", "-q"}).output,

@@ -39,6 +39,9 @@ void describe(config::Fields& fields, RunRecord& record) {
     fields.value("from", record.from, "run that was refined");
   if (fields.has("external") || (!fields.reading() && record.external))
     fields.section("external", record.external, "program of somebody else");
+  if (fields.has("class") || (!fields.reading() && record.method_class))
+    fields.section("class", record.method_class,
+                   "what it was given, with that of the runs above, and how far it looks ahead");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/config/fields.h"
+#include "core/io/run/method_class.h"
 
 namespace saccade {
 
@@ -35,7 +36,8 @@ struct RunRecord {
   std::filesystem::path depth_from;  ///< depth run; empty: not in place of the dataset's
   std::filesystem::path from;        ///< run that was refined; empty: none
   std::optional<External> external;  ///< nullopt: one of this program's modules
-  std::optional<Window> window;      ///< nullopt: the whole dataset
+  std::optional<MethodClass> method_class;  ///< what it was given in all; nullopt: not known
+  std::optional<Window> window;             ///< nullopt: the whole dataset
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0: not stated
   std::string tool_version;  ///< "0.1.0 (1234567890ab)"

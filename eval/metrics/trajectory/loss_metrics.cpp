@@ -49,6 +49,14 @@ std::vector<bool> reported_lost(const ErrorSeries& series, std::span<const PoseS
   return reported;
 }
 
+/// From the begin of the series to the first loss; nullopt without one.
+std::optional<double> first_loss_s(const ErrorSeries& series) {
+  const std::vector<bool> lost = truly_lost(series);
+  const auto first = std::find(lost.begin(), lost.end(), true);
+  if (first == lost.end()) return std::nullopt;
+  return series.t_s[static_cast<std::size_t>(first - lost.begin())] - series.t_s.front();
+}
+
 std::optional<double> fraction(double part, double whole) {
   return whole > 0 ? std::optional(part / whole) : std::nullopt;
 }
@@ -86,6 +94,7 @@ Metrics score_loss(const TrajectoryScoreInput& input) {
     if (counts.losses > 0) delay_ms = 1e3 * kScoreStepS * counts.delay / counts.losses;
   }
   Metrics metrics;
+  metrics.set("trajectory.loss.first_s", input.has_own_world ? std::nullopt : first_loss_s(series));
   metrics.set("trajectory.loss.precision", precision);
   metrics.set("trajectory.loss.recall", recall);
   metrics.set("trajectory.loss.delay_ms", delay_ms);

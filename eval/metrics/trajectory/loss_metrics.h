@@ -19,7 +19,7 @@ namespace saccade {
 [[nodiscard]] std::optional<std::size_t> row_in_force(std::span<const PoseStatus> rows, double t_s);
 
 /// What a run says of being lost against the truth, over the grid of the scored interval:
-/// trajectory.loss.{precision,recall,delay_ms,unreported_s,reported_s,count}. With L the instants
+/// trajectory.loss.{precision,recall,delay_ms,unreported_s,reported_s,count}, and first_s. With L the instants
 /// that are truly lost, R those at which the row in force says `lost`, and w the time of one (the
 /// interval's length over their number, as of trajectory.lost_s),
 ///   precision = |L and R| / |R|,  recall = |L and R| / |L|,  unreported_s = w |L without R|,
@@ -27,6 +27,8 @@ namespace saccade {
 ///   delay_ms = mean over the losses of the time from their begin to the first report in them, the
 /// whole length of a loss that is never reported. What has no denominator is null; all of them are
 /// where the run reports no status, no error is known, or the estimate has a world of its own.
+/// first_s is the time from the begin of the interval to the first instant of L, whatever the run
+/// reports.
 [[nodiscard]] Metrics score_loss(const TrajectoryScoreInput& input);
 
 /// 1 where the run succeeded: its positions err by less than 1 % of the mean depth (RMSE, without

@@ -8,11 +8,19 @@ namespace saccade {
 namespace {
 
 LeaderboardEntry run_entry(const RunData& data) {
-  return {data.method, data.dataset, data.metrics, data.run.record.problem(), ""};
+  const RunRecord& record = data.run.record;
+  return {.method = data.method,
+          .sequence = data.dataset,
+          .metrics = data.metrics,
+          .problem = record.problem(),
+          .module = record.module,
+          .method_class = record.method_class,
+          .threads = record.threads};
 }
 
 LeaderboardEntry published_entry(const PublishedRow& row) {
-  LeaderboardEntry entry{row.method + " (published)", row.sequence, {}, "", row.citation};
+  LeaderboardEntry entry{
+      .method = row.method + " (published)", .sequence = row.sequence, .source = row.citation};
   entry.metrics.set(row.metric, row.value);
   return entry;
 }
@@ -36,8 +44,11 @@ std::string leaderboard_section(std::span<const Table> tables) {
   std::string html =
       "<section id=\"leaderboard\"><h2>Leaderboard</h2>\n"
       "<p>Methods against sequences; runs that differ in the seed alone are pooled. Below a mean "
-      "its 95 % interval. The overall score is the geometric mean over the sequences; ranked are "
-      "methods that have all of them and failed on none. Bold: the best of a column.</p>\n";
+      "its 95 % interval. Methods are ranked among those that were given the same inputs and look "
+      "equally far ahead: first by the share of their runs that did not fail, then by the overall "
+      "score, the geometric mean over the sequences. A trajectory whose error exceeds 1 % of the "
+      "depth, or that was lost, has failed: means are over successes. Bold: the best of a column "
+      "within a class.</p>\n";
   for (const Table& table : tables) html += table_html(table);
   return html + "</section>\n";
 }

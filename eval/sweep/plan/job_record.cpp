@@ -69,8 +69,7 @@ std::string dataset_identity(const fs::path& folder) {
 }
 
 bool is_complete(const SweepJob& job) {
-  return fs::exists(job.output / job.marker()) &&
-         (job.is_simulation() || fs::exists(job.output / "metrics.json"));
+  return fs::exists(job.output / job.marker()) && (job.scores.empty() || fs::exists(job.scores));
 }
 
 }  // namespace
@@ -88,7 +87,7 @@ Fingerprint JobInputs::of(const SweepJob& job) {
   if (!job.config.empty()) inputs = configuration(job.config);
   inputs["the program"] = program_identity();
   inputs["the command"] = job.settings;
-  if (!job.is_simulation()) inputs["the dataset"] = dataset(job.dataset);
+  if (!job.dataset.empty()) inputs["the dataset"] = dataset(job.dataset);
   for (const fs::path& run : job.source_runs) {
     const fs::path record = run / "run.yaml";
     inputs["the run " + run.filename().string()] =

@@ -117,7 +117,14 @@ class Planner {
   }
 
  private:
-  /// Adds the simulation, if the dataset is one. Returns the common part of the runs over it.
+  /// What events may be scored against.
+  struct Truth {
+    SweepPoint point;
+    fs::path folder;
+    std::optional<std::size_t> made_by;
+  };
+
+  /// Adds the job that makes the dataset, if any does. Returns the common part of the runs over it.
   SweepJob dataset_job(const SweepDataset& dataset, const std::optional<std::uint64_t>& seed) {
     SweepJob base;
     base.point.dataset = dataset.name;
@@ -126,24 +133,69 @@ class Planner {
     if (seed && dataset.seeds.size() > 1) base.name += fmt::format("-{}", *seed);
     if (dataset.path) {
       base.dataset = fixed_path(*dataset.path);
+      truths_.push_back({base.point, base.dataset, std::nullopt});
       return base;
     }
-    SweepJob simulation = base;
-    simulation.name = names_.unique(base.name);
-    simulation.config = fixed_path(*dataset.simulate);
-    simulation.output = folder_ / "data" / simulation.name;
+    SweepJob job = base;
+    job.name = names_.unique(base.name);
+    job.output = folder_ / "data" / job.name;
+    if (!dataset.against.empty()) set_truth(job, dataset.against);
+    if (dataset.adapter)
+      run_simulator(job, dataset);
+    else
+      simulate(job, dataset);
+    if (!dataset.against.empty()) score_events(job);
+    base.dataset = job.output;
+    base.made_by = plan_.simulations.size();
+    plan_.simulations.push_back(std::move(job));
+    truths_.push_back({base.point, base.dataset, base.made_by});
+    return base;
+  }
+
+  static void simulate(SweepJob& job, const SweepDataset& dataset) {
+    job.config = fixed_path(*dataset.simulate);
     Words settings;
     append(settings, dataset.set);
-    if (seed) append(settings, "--seed", std::to_string(*seed));
-    Words call{"simulate", simulation.config.string(), "-o", simulation.output.string(),
-               "--cached"};
+    if (job.point.dataset_seed) append(settings, "--seed", std::to_string(*job.point.dataset_seed));
+    Words call{"simulate", job.config.string(), "-o", job.output.string(), "--cached"};
     append(call, settings);
-    simulation.commands = {call};
-    simulation.settings = "simulate " + shell_line(settings);
-    base.dataset = simulation.output;
-    base.made_by = plan_.simulations.size();
-    plan_.simulations.push_back(std::move(simulation));
-    return base;
+    job.commands = {call};
+    job.settings = "simulate " + shell_line(settings);
+  }
+
+  /// An external simulator works from the dataset that its events are scored against.
+  void run_simulator(SweepJob& job, const SweepDataset& dataset) const {
+    job.config = fixed_path(*dataset.adapter);
+    job.makes_run = true;
+    Words settings;
+    append(settings, dataset.set);
+    append(settings, "--threads", std::to_string(sweep_.threads));
+    Words call{"run", "external",          "--data", job.dataset.string(),
+               "-o",  job.output.string(), "-c",     job.config.string()};
+    append(call, settings);
+    job.commands = {call};
+    job.settings = "run external " + shell_line(settings);
+  }
+
+  /// The events of the dataset of this name, of the same seed where it has several.
+  void set_truth(SweepJob& job, const std::string& name) {
+    const Truth* found = nullptr;
+    for (const Truth& truth : truths_)
+      if (truth.point.dataset == name &&
+          (found == nullptr || truth.point.dataset_seed == job.point.dataset_seed))
+        found = &truth;
+    SACCADE_CHECK(found != nullptr);
+    job.dataset = found->folder;
+    job.made_by = found->made_by;
+    if (found->made_by) job.stage = plan_.simulations[*found->made_by].stage + 1;
+  }
+
+  void score_events(SweepJob& job) const {
+    const fs::path folder = folder_ / "scores" / job.name;
+    const fs::path events = job.makes_run ? job.output / "events.h5" : job.output;
+    job.scores = folder / "metrics.json";
+    job.commands.push_back({"eval", "--events", events.string(), "--against", job.dataset.string(),
+                            "-o", folder.string()});
   }
 
   /// Generated datasets go to the folder of the sweep and not into the cache: other sweeps do not
@@ -228,6 +280,8 @@ class Planner {
                   const SweepVariant& variant) {
     job.name = names_.unique(run_name(job));
     job.output = folder_ / "runs" / job.name;
+    job.scores = job.output / "metrics.json";
+    job.makes_run = true;
     if (configuration.file) job.config = fixed_path(*configuration.file);
     if (configuration.adapter) job.config = fixed_path(*configuration.adapter);
     Words settings;
@@ -265,6 +319,7 @@ class Planner {
   const SweepConfig& sweep_;
   fs::path folder_;
   SweepPlan plan_;
+  std::vector<Truth> truths_;
   UniqueNames names_;
 };
 
@@ -275,9 +330,9 @@ bool SweepPoint::differs_in_seed_only(const SweepPoint& other) const {
          variant == other.variant && grid == other.grid;
 }
 
-int SweepPlan::stages() const {
+int SweepPlan::stages(const std::vector<SweepJob>& jobs) {
   int last = 0;
-  for (const SweepJob& job : runs) last = std::max(last, job.stage);
+  for (const SweepJob& job : jobs) last = std::max(last, job.stage);
   return last + 1;
 }
 

@@ -35,19 +35,21 @@ struct SweepJob {
   SweepPoint point;
   std::filesystem::path output;                    ///< dataset or run folder
   std::filesystem::path config;                    ///< configuration file; empty: none
-  std::filesystem::path dataset;                   ///< input; empty: the job is a simulation
+  std::filesystem::path dataset;                   ///< input, or truth of the events; empty: none
   std::optional<std::size_t> made_by;              ///< index of the simulation that makes `dataset`
   std::vector<std::size_t> sources;                ///< indices of the runs whose results it reads
   std::vector<std::filesystem::path> source_runs;  ///< folders of `sources`
-  int stage = 0;  ///< 0: reads no other run; else 1 + the largest stage of its sources
+  int stage = 0;  ///< 0: reads the result of no other job of its list; else 1 + their largest
   std::vector<std::vector<std::string>> commands;  ///< arguments of `saccade`, run in order
   /// The arguments without the paths. The result depends on these and the contents of the files.
   std::string settings;
+  std::filesystem::path scores;  ///< metrics.json; empty: nothing is scored
+  bool makes_run = false;        ///< a run folder, not a dataset
   JobState state = JobState::kPending;
+  std::string failure;  ///< of kFailed: "refused: ..." for bad input, else "failed: ..."
 
-  [[nodiscard]] bool is_simulation() const { return dataset.empty(); }
   /// The file that marks a complete output folder.
-  [[nodiscard]] const char* marker() const { return is_simulation() ? "dataset.yaml" : "run.yaml"; }
+  [[nodiscard]] const char* marker() const { return makes_run ? "run.yaml" : "dataset.yaml"; }
 };
 
 /// The jobs of a sweep. Runs are ordered by dataset, configuration, variant, grid point (the last
@@ -57,7 +59,7 @@ struct SweepPlan {
   std::vector<SweepJob> simulations;
   std::vector<SweepJob> runs;
 
-  [[nodiscard]] int stages() const;
+  [[nodiscard]] static int stages(const std::vector<SweepJob>& jobs);
 
   /// The jobs that have table rows: the runs, or the datasets where nothing runs.
   [[nodiscard]] const std::vector<SweepJob>& rows() const {

@@ -40,10 +40,10 @@ void expect_no_seed(config::Fields& fields, const char* key, const std::vector<K
   fields.expect(!stated, key, "must not hold 'seed'; state it in 'seeds'");
 }
 
-const SweepConfiguration* find_named(std::span<const SweepConfiguration> configurations,
-                                     const std::string& name) {
-  for (const SweepConfiguration& configuration : configurations)
-    if (configuration.name == name) return &configuration;
+template <class Named>
+const Named* find_named(std::span<const Named> items, const std::string& name) {
+  for (const Named& item : items)
+    if (item.name == name) return &item;
   return nullptr;
 }
 
@@ -82,6 +82,33 @@ void expect_datasets(config::Fields& fields, const char* key, const SweepConfig&
                               config::suggestion(name, known, "datasets")));
 }
 
+/// An earlier dataset, simulated once or with the same seeds.
+void check_truths(config::Fields& fields, const SweepConfig& sweep) {
+  std::vector<std::string> earlier;
+  for (const SweepDataset& dataset : sweep.datasets) {
+    if (!dataset.against.empty()) {
+      const SweepDataset* truth = find_named(std::span(sweep.datasets), dataset.against);
+      const bool is_earlier =
+          std::find(earlier.begin(), earlier.end(), dataset.against) != earlier.end();
+      fields.expect(
+          is_earlier, "datasets",
+          fmt::format("'{}', which '{}' is scored against, is not a dataset before it; {}",
+                      dataset.against, dataset.name,
+                      config::suggestion(dataset.against, earlier, "datasets")));
+      fields.expect(truth->seeds.size() < 2 || truth->seeds == dataset.seeds, "datasets",
+                    fmt::format("'{}' must have the seeds of '{}', which it is scored against",
+                                dataset.name, dataset.against));
+      fields.expect(!truth->adapter, "datasets",
+                    fmt::format("'{}' is of an external simulator and no truth", truth->name));
+      fields.expect(sweep.configurations.empty(), "datasets",
+                    fmt::format("'against' of '{}' is for sweeps without 'configurations', whose "
+                                "rows are datasets",
+                                dataset.name));
+    }
+    earlier.push_back(dataset.name);
+  }
+}
+
 void check_configurations(config::Fields& fields, const SweepConfig& sweep) {
   for (std::size_t i = 0; i < sweep.configurations.size(); ++i) {
     const SweepConfiguration& configuration = sweep.configurations[i];
@@ -98,7 +125,8 @@ void check_expected(config::Fields& fields, const SweepConfig& sweep) {
   for (const SweepConfiguration& configuration : sweep.configurations)
     names.push_back(configuration.name);
   for (const ExpectedMetric& expected : sweep.expected) {
-    const bool is_known = find_named(sweep.configurations, expected.configuration) != nullptr;
+    const bool is_known =
+        find_named(std::span(sweep.configurations), expected.configuration) != nullptr;
     fields.expect(
         is_known, "expected",
         fmt::format("'{}' is not a configuration of the sweep; {}", expected.configuration,
@@ -128,19 +156,33 @@ void describe(config::Fields& fields, SweepDataset& dataset) {
       .must_exist();
   fields.path("simulate", dataset.simulate, "A simulation configuration that makes the dataset.")
       .must_exist();
+  fields
+      .path("adapter", dataset.adapter,
+            "Adapter file of an external simulator, which makes the events from the dataset that "
+            "'against' names.")
+      .must_exist();
+  fields.value("against", dataset.against,
+               "Name of an earlier dataset of the sweep. Its events are the truth that those of "
+               "this one are scored against (events.*).");
   fields.value("set", dataset.set,
-               "Overrides of the simulation configuration, as `key.path: value`.");
+               "Overrides of the simulation configuration or of the adapter, as `key.path: "
+               "value`.");
   fields.value("seeds", dataset.seeds,
                "Seeds of the simulation; each makes a dataset. Default: the seed it states.");
-  fields.expect(dataset.path.has_value() != dataset.simulate.has_value(), "path",
-                "must be stated, or 'simulate', and not both");
-  fields.expect(dataset.simulate || (dataset.set.empty() && dataset.seeds.empty()), "path",
-                "names a finished dataset: 'set' and 'seeds' belong to 'simulate'");
+  fields.expect(
+      dataset.path.has_value() + dataset.simulate.has_value() + dataset.adapter.has_value() == 1,
+      "path", "must be stated, or 'simulate', or 'adapter', and one of them alone");
+  fields.expect(!dataset.path || (dataset.set.empty() && dataset.against.empty()), "path",
+                "names a finished dataset: 'set' and 'against' belong to what makes one");
+  fields.expect(dataset.simulate || dataset.seeds.empty(), "seeds", "belong to 'simulate'");
+  fields.expect(!dataset.adapter || !dataset.against.empty(), "adapter",
+                "needs 'against': the dataset from which the program makes its events");
   expect_seeds_differ(fields, dataset.seeds);
   expect_no_seed(fields, "set", dataset.set);
   if (!fields.reading() || !dataset.name.empty()) return;
   if (dataset.path) dataset.name = folder_name(*dataset.path);
   if (dataset.simulate) dataset.name = dataset.simulate->stem();
+  if (dataset.adapter) dataset.name = dataset.adapter->stem();
 }
 
 void describe(config::Fields& fields, SweepConfiguration& configuration) {
@@ -218,7 +260,9 @@ void describe_axes(config::Fields& fields, SweepConfig& sweep) {
                  "Simulates many datasets with sampled parameters, in place of 'datasets'. "
                  "Results over them are grouped by their scenes.");
   config::Rule datasets = fields.list(
-      "datasets", sweep.datasets, "Datasets, each {name, path} or {name, simulate, set, seeds}.");
+      "datasets", sweep.datasets,
+      "Datasets, each {name, path} or {name, simulate, set, seeds, against}, or, of an external "
+      "simulator, {name, adapter, set, against}.");
   if (!sweep.generate) datasets.required().length(1, config::Rule::kAnyLength);
   fields.list(
       "configurations", sweep.configurations,
@@ -286,6 +330,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   fields.expect(!simulates_only || sweep.variants.empty(), "variants",
                 "need 'configurations' to vary");
   if (!fields.reading()) return;
+  check_truths(fields, sweep);
   check_configurations(fields, sweep);
   check_expected(fields, sweep);
 }

@@ -12,11 +12,14 @@
 
 namespace saccade {
 
-/// An existing dataset folder, or a simulation that makes one dataset per seed.
+/// An existing dataset folder, a simulation that makes one dataset per seed, or the events of an
+/// external simulator.
 struct SweepDataset {
   std::string name;
   std::optional<std::filesystem::path> path;
   std::optional<std::filesystem::path> simulate;
+  std::optional<std::filesystem::path> adapter;  ///< runs over `against`
+  std::string against;  ///< earlier dataset whose events are the truth of these; empty: none
   Settings set;
   std::vector<std::uint64_t> seeds;  ///< empty: the one that the simulation states
 };

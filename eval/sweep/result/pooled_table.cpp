@@ -105,7 +105,7 @@ std::vector<std::string> loss_cells(const PooledRows& pool) {
 }
 
 std::string success_cell(const PooledRows& pool) {
-  const std::optional<MetricSummary> share = success_fraction(pool.rows);
+  const std::optional<SuccessShare> share = success_of(pool.rows);
   if (!share) return rounded(std::nullopt);
   return fmt::format("{} ({}–{})", rounded(100 * share->value), rounded(100 * share->low),
                      rounded(100 * share->high));

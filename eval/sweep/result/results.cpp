@@ -35,17 +35,32 @@ Metrics dataset_metrics(const std::filesystem::path& folder) {
   return facts;
 }
 
+void merge(Metrics& metrics, const Metrics& more, const std::string& prefix = "") {
+  for (const auto& [key, value] : more.values()) metrics.set(prefix + key, value);
+}
+
 SweepRow read_row(const SweepJob& job) {
   SweepRow row{&job, false, {}, {}, {}};
-  if (job.is_simulation()) {
-    row.metrics = dataset_metrics(job.output);
+  if (!job.scores.empty()) row.metrics = read_json_metrics(job.scores);
+  if (!job.makes_run) {
+    merge(row.metrics, dataset_metrics(job.output));
     return row;
   }
+  // `eval` takes the timing of a run, but not that of an external simulator.
+  if (job.point.module.empty())
+    merge(row.metrics, read_json_metrics(job.output / "timing.json"), "speed.");
   const RunRecord record = read_run_record(job.output / "run.yaml");
   row.problem = record.problem();
-  row.metrics = read_json_metrics(job.output / "metrics.json");
   row.machine = record.machine;
   row.tool_version = record.tool_version;
+  row.method_class = record.method_class;
+  row.threads = record.threads;
+  return row;
+}
+
+SweepRow failed_row(const SweepJob& job) {
+  SweepRow row{&job, true, {}, {}, {}};
+  row.problem = job.failure;
   return row;
 }
 
@@ -92,8 +107,7 @@ ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group)
 SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
   SweepResults results{sweep, plan, {}, {}, sweep.metrics};
   for (const SweepJob& job : plan.rows())
-    results.rows.push_back(job.state == JobState::kFailed ? SweepRow{&job, true, {}, {}, {}}
-                                                          : read_row(job));
+    results.rows.push_back(job.state == JobState::kFailed ? failed_row(job) : read_row(job));
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
     for (const MetricInfo& metric : default_metrics())
@@ -117,25 +131,18 @@ std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
   return groups;
 }
 
-std::optional<MetricSummary> success_fraction(std::span<const SweepRow* const> rows) {
-  double successes = 0;
-  std::size_t count = 0;
-  bool is_known = false;
-  for (const SweepRow* row : rows) {
-    const std::optional<double> success = row->metrics.get(kSuccess);
-    is_known = is_known || success;
-    // A run that failed is no success; of one that cannot be scored nothing is known.
-    const bool has_failed = row->failed || !row->problem.empty();
-    if (has_failed || success) ++count;
-    if (!has_failed) successes += success.value_or(0);
-  }
-  if (!is_known) return std::nullopt;
-  const ProportionInterval interval = wilson_95(successes, static_cast<double>(count));
-  return MetricSummary{successes / static_cast<double>(count), interval.low, interval.high, count};
+std::optional<SuccessShare> success_of(std::span<const SweepRow* const> rows) {
+  std::vector<RunOutcome> outcomes;
+  for (const SweepRow* row : rows) outcomes.push_back(row->outcome());
+  return success_share(outcomes);
 }
 
 std::optional<MetricSummary> summarise(const SweepGroup& group, const std::string& key) {
-  if (key == kSuccess) return success_fraction(group.rows);
+  if (key == kSuccess) {
+    const std::optional<SuccessShare> share = success_of(group.rows);
+    if (!share) return std::nullopt;
+    return MetricSummary{share->value, share->low, share->high, share->count};
+  }
   std::vector<double> values;
   for (const SweepRow* row : group.rows) {
     if (!row->problem.empty()) continue;  // the time until a crash is not a speed

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/io/run/method_class.h"
 #include "eval/metrics/metrics.h"
+#include "eval/metrics/outcome.h"
 #include "eval/sweep/plan/plan.h"
 
 namespace saccade {
@@ -19,8 +21,15 @@ struct SweepRow {
   Metrics metrics;      ///< of metrics.json, or properties of the dataset ("dataset.events")
   std::string machine;  ///< empty where unknown
   std::string tool_version;
-  /// Why an external program returned no poses, although the job itself succeeded.
+  /// Why there is no result: what the failed job says, or how an external program ended, whose job
+  /// itself succeeded. Empty where there is one.
   std::string problem = {};
+  std::optional<MethodClass> method_class = {};  ///< nullopt: not known
+  int threads = 0;                               ///< 0: not known
+
+  [[nodiscard]] RunOutcome outcome() const {
+    return {metrics.get("success"), failed || !problem.empty()};
+  }
 };
 
 /// Rows that differ in their seeds alone, in the order of the plan.
@@ -43,9 +52,8 @@ struct MetricSummary {
 [[nodiscard]] std::optional<MetricSummary> summarise(const SweepGroup& group,
                                                      const std::string& key);
 
-/// The share of the rows that succeeded, a failed row among those that did not; nullopt where no row
-/// tells. Contract: at least one row.
-[[nodiscard]] std::optional<MetricSummary> success_fraction(std::span<const SweepRow* const> rows);
+/// success_share() of the rows.
+[[nodiscard]] std::optional<SuccessShare> success_of(std::span<const SweepRow* const> rows);
 
 /// The input of the tables and charts of a sweep.
 struct SweepResults {
@@ -67,8 +75,8 @@ struct ExpectationResult {
 /// One result per expected metric and group of its configuration.
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
 
-/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (one row per
-/// group with `metrics`, and the expected metrics) and FOLDER/*.png. Returns the number of expected
+/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (what failed, one
+/// row per group with `metrics`, the leaderboard, and the expected metrics) and FOLDER/*.png. Returns the number of expected
 /// metrics that were missed.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
                                 const std::filesystem::path& folder);

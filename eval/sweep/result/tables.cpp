@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "eval/metrics/catalogue.h"
+#include "eval/sweep/result/failures.h"
+#include "eval/sweep/result/leaderboards.h"
 #include "eval/sweep/result/pooled_table.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
@@ -60,8 +62,6 @@ std::optional<double> best_of(const std::vector<const SweepGroup*>& groups,
   return info.better == Better::kLower ? *eligible.begin() : *eligible.rbegin();
 }
 
-bool has_failed(const SweepRow& row) { return row.failed || !row.problem.empty(); }
-
 std::string value_cell(const SweepGroup& group, const std::string& metric,
                        const std::optional<double>& best) {
   const std::optional<MetricSummary> summary = summarise(group, metric);
@@ -85,7 +85,7 @@ std::vector<std::string> body(
   if (!results.sweep.variants.empty()) cells.push_back(group.point.variant);
   cells.insert(cells.end(), group.point.grid.begin(), group.point.grid.end());
   const auto failed = std::count_if(group.rows.begin(), group.rows.end(),
-                                    [](const SweepRow* row) { return has_failed(*row); });
+                                    [](const SweepRow* row) { return row->outcome().has_failed; });
   if (has_seeds(results))
     cells.push_back(failed == 0 ? std::to_string(group.rows.size())
                                 : fmt::format("{} ({} failed)", group.rows.size(), failed));
@@ -199,21 +199,6 @@ std::string method_text(const SweepResults& results) {
   return text + "\n";
 }
 
-std::string failures(const SweepResults& results) {
-  std::string text;
-  for (const SweepRow& row : results.rows)
-    if (has_failed(row))
-      text += fmt::format("- {0}: {1}\n", row.job->name,
-                          row.failed ? "jobs/" + row.job->name + "/log.txt" : row.problem);
-  return text.empty() ? "" : "## Failed jobs\n" + text;
-}
-
-/// "ok", "failed", or the problem of an external program, such as "timed out".
-std::string status_of(const SweepRow& row) {
-  if (row.failed) return "failed";
-  return row.problem.empty() ? "ok" : row.problem.substr(0, row.problem.find(':'));
-}
-
 }  // namespace
 
 CsvTable sweep_csv(const SweepResults& results) {
@@ -225,7 +210,7 @@ CsvTable sweep_csv(const SweepResults& results) {
   if (runs) columns.insert(columns.end(), {"module", "configuration", "variant"});
   columns.insert(columns.end(), results.plan.axes.begin(), results.plan.axes.end());
   if (runs) columns.emplace_back("seed");
-  columns.emplace_back("status");
+  columns.insert(columns.end(), {"status", "reason"});
   columns.insert(columns.end(), metrics.begin(), metrics.end());
   CsvTable csv(columns);
   for (const SweepRow& row : results.rows) {
@@ -235,6 +220,7 @@ CsvTable sweep_csv(const SweepResults& results) {
     for (const std::string& value : point.grid) cells.emplace_back(value);
     if (runs) cells.push_back(seed_cell(point.seed));
     cells.emplace_back(status_of(row));
+    cells.emplace_back(reason_of(row));
     for (const std::string& key : metrics)
       cells.emplace_back(row.metrics.get(key).value_or(std::numeric_limits<double>::quiet_NaN()));
     csv.add(cells);
@@ -245,7 +231,7 @@ CsvTable sweep_csv(const SweepResults& results) {
 std::string sweep_markdown(const SweepResults& results, std::span<const std::string> charts,
                            std::span<const ExpectationResult> expectations) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
-  std::string text = "# " + title + "\n\n" + method_text(results);
+  std::string text = "# " + title + "\n\n" + method_text(results) + failures_section(results);
   const auto parts = by_dataset(results);
   if (results.plan.runs.empty() || parts.size() == results.groups.size()) {
     // One row per dataset: a single table.
@@ -255,9 +241,9 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
   } else {
     for (const Groups& groups : parts) text += tables_of(results, groups);
   }
-  text += pooled_table(results) + expected_table(expectations);
+  text += pooled_table(results) + sweep_leaderboards(results) + expected_table(expectations);
   for (const std::string& chart : charts) text += chart + "\n\n";
-  return text + failures(results);
+  return text;
 }
 
 }  // namespace saccade

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/io/dataset/dataset.h"
+#include "core/io/events/event_file.h"
 #include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/progress.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using testing::error_of;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::read_file;
 using ::testing::StartsWith;
 
@@ -96,6 +98,41 @@ TEST_F(External, WhatGoesWrongIsAStatusWithoutPoses) {
               AllOf(StartsWith("bad output: trajectory.txt:1"), HasSubstr("finite")));
   EXPECT_THAT(problem("printf '0.2 0 0 0 0 0 0 1\\\\n0.1 0 0 0 0 0 0 1' > {out}/trajectory.txt"),
               HasSubstr("times must increase"));
+}
+
+TEST_F(External, ASimulatorLeavesEvents) {
+  const RunRecord record = run("printf '0.001 3 4 1\\\\n0.002 5 6 0\\\\n' > {out}/made.txt",
+                               "output: {events: made.txt}\n");
+  EXPECT_EQ(record.problem(), "");
+  const Events events = read_events(output() / "events.h5", {});
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1], (Event{2'000'000, 5, 6, -1}));
+  EXPECT_FALSE(fs::exists(output() / "trajectory.txt"));
+  EXPECT_THAT(read_file(output() / "timing.json"), Not(HasSubstr("\"poses\"")));
+
+  EXPECT_THAT(
+      run("printf '0.001 60 4 1\\\\n' > {out}/made.txt", "output: {events: made.txt}\n").problem(),
+      StartsWith("bad output: made.txt"))
+      << "beyond the sensor of 60 x 45 pixels";
+  EXPECT_EQ(run("exit 3", "output: {events: made.txt}\n").problem(), "crashed: exit code 3");
+  EXPECT_TRUE(read_events(output() / "events.h5", {}).empty());
+}
+
+TEST_F(External, TheClassIsWhatTheAdapterStates) {
+  const auto class_of = [&](const std::string& more) {
+    return run("touch {out}/trajectory.txt", more).method_class;
+  };
+  EXPECT_EQ(class_of(""), std::nullopt) << "nobody knows";
+  EXPECT_EQ(class_of("class: {inputs: [events, start], processing: batch}\n"),
+            (MethodClass{{MethodInput::kEvents, MethodInput::kStart}, Processing::kBatch}));
+  const auto error = [&](const std::string& yaml) {
+    const RunRequest request = testing::run_request(path("data"), path("none"), yaml);
+    return error_of([&] { return run_external(request).poses; });
+  };
+  EXPECT_THAT(error("{command: ls, start: {truth_s: 0.1}, class: {inputs: [events]}}"),
+              HasSubstr("must hold `start`"));
+  EXPECT_THAT(error("{command: 'ls {imu}', class: {inputs: [events]}}"),
+              HasSubstr("must hold `imu`"));
 }
 
 TEST_F(External, WhatCannotBeginIsAnError) {

@@ -16,6 +16,7 @@ TEST(RunRecord, ReadsBackWhatItWrote) {
   record.dataset = "/data/walls";
   record.dataset_sha256 = "abc";
   record.window = RunRecord::Window{0.25, 1.5};
+  record.method_class = MethodClass{{MethodInput::kMap, MethodInput::kEvents}, Processing::kBatch};
   record.seed = 18446744073709551615U;
   record.threads = 2;
   record.tool_version = "0.1.0 (123)";
@@ -29,6 +30,7 @@ TEST(RunRecord, ReadsBackWhatItWrote) {
   EXPECT_EQ(read.dataset, record.dataset);
   EXPECT_EQ(read.window->start_s, 0.25);
   EXPECT_EQ(read.window->end_s, 1.5);
+  EXPECT_EQ(read.method_class, record.method_class);
   EXPECT_EQ(read.seed, record.seed);
   EXPECT_EQ(read.threads, 2);
   EXPECT_EQ(read.command, record.command);
@@ -42,6 +44,7 @@ TEST(RunRecord, NeedsOnlyModuleAndDataset) {
       folder.write("run.yaml", "format_version: 1\nmodule: track\ndataset: {path: walls}\n"));
   EXPECT_EQ(record.dataset, folder.path() / "walls");
   EXPECT_FALSE(record.window);
+  EXPECT_FALSE(record.method_class);
   EXPECT_TRUE(record.config_yaml.empty());
 }
 
@@ -52,8 +55,25 @@ TEST(RunRecord, RefusesWhatItDoesNotKnow) {
   };
   refuse("format_version: 2\nmodule: track\ndataset: {path: walls}\n");
   refuse("format_version: 1\ndataset: {path: walls}\n");
+  refuse("format_version: 1\nmodule: track\ndataset: {path: walls}\nclass: {inputs: [event]}\n");
   refuse(
       "format_version: 1\nmodule: track\ndataset: {path: walls}\nwindow: {start_s: 2, end_s: 1}\n");
+}
+
+TEST(MethodClass, IsNamedInAFixedOrder) {
+  const MethodClass method{{MethodInput::kMap, MethodInput::kImu, MethodInput::kEvents},
+                           Processing::kFixedLag};
+  EXPECT_EQ(inputs_text(method), "events + IMU + map");
+  EXPECT_EQ(processing_text(method), "fixed lag");
+}
+
+TEST(MethodClass, OfAResultThatContinuesAnotherHoldsTheInputsOfBoth) {
+  const MethodClass tracked{{MethodInput::kEvents, MethodInput::kMap}};
+  const MethodClass refined{{MethodInput::kEvents, MethodInput::kImu}, Processing::kBatch};
+  const MethodClass both{{MethodInput::kEvents, MethodInput::kImu, MethodInput::kMap},
+                         Processing::kBatch};
+  EXPECT_EQ(merged(tracked, refined), both);
+  EXPECT_EQ(merged(refined, tracked), both);
 }
 
 }  // namespace

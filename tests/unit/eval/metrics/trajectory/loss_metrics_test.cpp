@@ -46,6 +46,7 @@ TEST(LossMetrics, CountWhatIsReportedOfWhatIsTrue) {
   EXPECT_NEAR(loss(m, "unreported_s"), kInstant_s * (246 - 195 + 101), 1e-12);
   EXPECT_NEAR(loss(m, "reported_s"), kInstant_s * (405 - 246), 1e-12);
   EXPECT_NEAR(loss(m, "delay_ms"), (51.0 + 101) / 2, 1e-9);
+  EXPECT_NEAR(loss(m, "first_s"), 0.195, 1e-9);
   EXPECT_NEAR(*score_trajectory(input).get("trajectory.lost_s"), kInstant_s * (201 + 101), 1e-12);
 }
 
@@ -87,6 +88,13 @@ TEST(LossMetrics, WhatHasNoDenominatorIsNull) {
   EXPECT_FALSE(m.get("trajectory.loss.delay_ms"));
   EXPECT_EQ(loss(m, "unreported_s"), 0);
   EXPECT_EQ(loss(m, "count"), 0);
+  EXPECT_FALSE(m.get("trajectory.loss.first_s"));
+
+  TrajectoryScoreInput without_report = twice_lost();
+  without_report.reported.reset();
+  EXPECT_FALSE(score_loss(without_report).get("trajectory.loss.count"));
+  EXPECT_NEAR(loss(score_loss(without_report), "first_s"), 0.195, 1e-9)
+      << "whatever the run reports";
 
   // Nothing reported of a true loss: no precision, but a recall of zero.
   TrajectoryScoreInput silent = twice_lost();
@@ -106,8 +114,11 @@ TEST(LossMetrics, AreNullWithoutStatusDepthTruthPoseOrCommonWorld) {
     if (missing == 3) input.estimate = {};
     if (missing == 4) input.has_own_world = true;
     const Metrics m = score_loss(input);
-    EXPECT_EQ(m.values().size(), 6U);
-    for (const auto& [key, value] : m.values()) EXPECT_FALSE(value) << key << missing;
+    EXPECT_EQ(m.values().size(), 7U);
+    for (const auto& [key, value] : m.values()) {
+      const bool is_known = missing == 0 && key == "trajectory.loss.first_s";
+      EXPECT_EQ(value.has_value(), is_known) << key << missing;
+    }
   }
 }
 

@@ -25,7 +25,7 @@ TEST(Pareto, KeepsWhatNoOtherBeatsFromSlowToFast) {
 
 LeaderboardEntry timed(const std::string& method, const std::string& sequence, double error,
                        double speed) {
-  LeaderboardEntry entry{method, sequence, {}, "", ""};
+  LeaderboardEntry entry{.method = method, .sequence = sequence};
   entry.metrics.set(kPositionError, error);
   entry.metrics.set("speed.realtime_factor", speed);
   return entry;
@@ -48,7 +48,7 @@ TEST(Pareto, TakesBothAsGeometricMeansOverTheSequences) {
 }
 
 TEST(Pareto, AFailedRunKeepsItsMethodOut) {
-  LeaderboardEntry failed{"a", "walls", {}, "crashed", ""};
+  const LeaderboardEntry failed{.method = "a", .sequence = "walls", .problem = "crashed"};
   const std::vector<LeaderboardEntry> entries{timed("a", "walls", 1, 2), timed("b", "walls", 1, 1),
                                               failed};
   const std::vector<Leaderboard> boards = leaderboards(entries);

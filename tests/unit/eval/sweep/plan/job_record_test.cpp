@@ -29,6 +29,8 @@ class Resuming : public ::testing::Test {
     run_.dataset = simulation_.output;
     run_.output = folder_.path() / "runs/walls_fast";
     run_.settings = "run track";
+    run_.scores = run_.output / "metrics.json";
+    run_.makes_run = true;
     folder_.write("runs/walls_fast/run.yaml", "module: track\n");
     folder_.write("runs/walls_fast/metrics.json", "{}\n");
     for (const SweepJob* job : {&simulation_, &run_})

@@ -63,7 +63,7 @@ TEST(SweepPlan, ARunThatStartsFromAnotherComesInALaterWave) {
                   "walls_deep_seed-2", "recorded_odometry-fast_seed-1",
                   "recorded_odometry-fast_seed-2", "recorded_refined_seed-1",
                   "recorded_refined_seed-2", "recorded_deep_seed-1", "recorded_deep_seed-2"));
-  EXPECT_EQ(sweep.stages(), 2);
+  EXPECT_EQ(SweepPlan::stages(sweep.runs), 2);
   EXPECT_EQ(sweep.runs[4].stage, 0);
   const SweepJob& refined = sweep.runs[7];
   EXPECT_EQ(refined.stage, 1);
@@ -105,6 +105,55 @@ TEST(SweepPlan, AnAdapterRunsAnExternalProgram) {
               ElementsAre("run", "external", "--data", root + "/recorded", "-o",
                           root + "/out/runs/recorded_accurate", "-c", root + "/accurate.yaml",
                           "--repeat", "1", "--threads", "1"));
+}
+
+TEST(SweepPlan, EventsAreScoredAgainstThoseOfAnEarlierDataset) {
+  const TemporaryFolder folder;
+  const SweepPlan sweep =
+      plan(folder,
+           "datasets:\n"
+           "  - {name: exact, simulate: walls.yaml}\n"
+           "  - {name: coarse, simulate: walls.yaml, set: {a: 1}, against: exact}\n"
+           "  - {name: theirs, adapter: accurate.yaml, set: {b: 2}, against: exact}\n"
+           "  - {name: measured, path: recorded}\n"
+           "  - {name: modelled, simulate: walls.yaml, against: measured}\n");
+  const std::string root = folder.path(), out = root + "/out/";
+  ASSERT_THAT(names(sweep.simulations), ElementsAre("exact", "coarse", "theirs", "modelled"));
+  EXPECT_TRUE(sweep.runs.empty());
+  const SweepJob& coarse = sweep.simulations[1];
+  EXPECT_THAT(coarse.commands,
+              ElementsAre(ElementsAre("simulate", root + "/walls.yaml", "-o", out + "data/coarse",
+                                      "--cached", "--set", "a=1"),
+                          ElementsAre("eval", "--events", out + "data/coarse", "--against",
+                                      out + "data/exact", "-o", out + "scores/coarse")));
+  EXPECT_EQ(coarse.made_by, 0U);
+  EXPECT_EQ(coarse.stage, 1);
+  EXPECT_STREQ(coarse.marker(), "dataset.yaml");
+  EXPECT_EQ(coarse.scores, out + "scores/coarse/metrics.json");
+  const SweepJob& theirs = sweep.simulations[2];
+  EXPECT_THAT(
+      theirs.commands,
+      ElementsAre(
+          ElementsAre("run", "external", "--data", out + "data/exact", "-o", out + "data/theirs",
+                      "-c", root + "/accurate.yaml", "--set", "b=2", "--threads", "1"),
+          ElementsAre("eval", "--events", out + "data/theirs/events.h5", "--against",
+                      out + "data/exact", "-o", out + "scores/theirs")));
+  EXPECT_STREQ(theirs.marker(), "run.yaml");
+  EXPECT_EQ(sweep.simulations[3].commands[1][4], root + "/recorded");
+  EXPECT_EQ(sweep.simulations[3].stage, 0);
+  EXPECT_EQ(SweepPlan::stages(sweep.simulations), 2);
+}
+
+TEST(SweepPlan, ATruthOfSeveralSeedsIsThatOfTheSameSeed) {
+  const TemporaryFolder folder;
+  const SweepPlan sweep =
+      plan(folder,
+           "datasets:\n"
+           "  - {name: exact, simulate: walls.yaml, seeds: [1, 2]}\n"
+           "  - {name: coarse, simulate: walls.yaml, seeds: [1, 2], against: exact}\n");
+  ASSERT_THAT(sweep.simulations, SizeIs(4));
+  EXPECT_EQ(sweep.simulations[2].dataset, sweep.simulations[0].output);
+  EXPECT_EQ(sweep.simulations[3].dataset, sweep.simulations[1].output);
 }
 
 TEST(SweepPlan, MakesCommandLines) {

@@ -55,6 +55,36 @@ TEST(SweepConfig, ReadsABenchmark) {
   EXPECT_EQ(sweep.expected[0].at_least, std::nullopt);
 }
 
+TEST(SweepConfig, WhatEventsAreScoredAgainstMustComeBefore) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& datasets, const std::string& more = "") {
+    return error_of([&] { return read_sweep(folder, "datasets: [" + datasets + "]\n" + more); });
+  };
+  const std::string truth = "{name: exact, simulate: walls.yaml}, ";
+  EXPECT_EQ(error(truth + "{name: b, simulate: walls.yaml, against: exact}"), "no error");
+  EXPECT_EQ(error(truth + "{adapter: fast.yaml, against: exact}"), "no error");
+  EXPECT_THAT(error(truth + "{name: b, simulate: walls.yaml, against: exakt}"),
+              HasSubstr("'exakt', which 'b' is scored against, is not a dataset before it; did you "
+                        "mean 'exact'?"));
+  EXPECT_THAT(error(truth + "{name: b, simulate: walls.yaml, against: b}"),
+              HasSubstr("is not a dataset before it"));
+  EXPECT_THAT(error("{adapter: fast.yaml}"), HasSubstr("needs 'against'"));
+  EXPECT_THAT(error("{path: recorded, simulate: walls.yaml}"), HasSubstr("one of them alone"));
+  EXPECT_THAT(error(truth + "{path: recorded, against: exact}"),
+              HasSubstr("'set' and 'against' belong to what makes one"));
+  EXPECT_THAT(error(truth + "{adapter: fast.yaml, against: exact, seeds: [1]}"),
+              HasSubstr("belong to 'simulate'"));
+  EXPECT_THAT(error("{name: exact, simulate: walls.yaml, seeds: [1, 2]}, "
+                    "{name: b, simulate: walls.yaml, against: exact}"),
+              HasSubstr("'b' must have the seeds of 'exact'"));
+  EXPECT_THAT(error(truth + "{name: a, adapter: fast.yaml, against: exact}, "
+                            "{name: b, adapter: fast.yaml, against: a}"),
+              HasSubstr("'a' is of an external simulator and no truth"));
+  EXPECT_THAT(error(truth + "{name: b, simulate: walls.yaml, against: exact}",
+                    "configurations: [{name: c}]\n"),
+              HasSubstr("sweeps without 'configurations'"));
+}
+
 TEST(SweepConfig, WhatABenchmarkNamesMustBeThere) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& configurations, const std::string& more = "") {
@@ -124,7 +154,8 @@ TEST(SweepConfig, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error(data + "configurations: [{adapter: fast.yaml}]\ngrid: {a.b: [1]}\n"),
               HasSubstr("keys of the module"));
   EXPECT_THAT(error("datasets: [{}]\n"), HasSubstr("must be stated, or 'simulate'"));
-  EXPECT_THAT(error("datasets: [{path: recorded, simulate: walls.yaml}]\n"), HasSubstr("not both"));
+  EXPECT_THAT(error("datasets: [{path: recorded, simulate: walls.yaml}]\n"),
+              HasSubstr("one of them alone"));
   EXPECT_THAT(error("datasets: [{path: recorded, seeds: [1]}]\n"), HasSubstr("belong to"));
   EXPECT_THAT(error("datasets: [{path: nowhere}]\n"), HasSubstr("nowhere"));
   EXPECT_THAT(error("datasets: [{simulate: walls.yaml}, {simulate: walls.yaml}]\n"),

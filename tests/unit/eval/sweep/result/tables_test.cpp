@@ -8,6 +8,8 @@
 #include "core/io/images/image_file.h"
 #include "eval/metrics/catalogue.h"
 #include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/failures.h"
+#include "eval/sweep/result/leaderboards.h"
 #include "eval/table/number_text.h"
 #include "tests/unit/eval/sweep/sweep_files.h"
 
@@ -53,31 +55,59 @@ class SweepTables : public ::testing::Test {
 TEST_F(SweepTables, CsvHoldsOneRowForEachJob) {
   fill("a.b: [1, 2]");
   EXPECT_EQ(sweep_csv(results_).text(),
-            "job,dataset,dataset_seed,module,configuration,variant,a.b,seed,status,"
+            "job,dataset,dataset_seed,module,configuration,variant,a.b,seed,status,reason,"
             "speed.poses_per_s.median,trajectory.drift_percent,trajectory.dt_rel_percent.mean\n"
-            "recorded_fast_b-1_seed-1,recorded,,track,fast,,1,1,ok,20000,,0.5\n"
-            "recorded_fast_b-1_seed-2,recorded,,track,fast,,1,2,ok,30000,,0.7\n"
-            "recorded_fast_b-2_seed-1,recorded,,track,fast,,2,1,ok,12345,,0.25\n"
-            "recorded_fast_b-2_seed-2,recorded,,track,fast,,2,2,failed,,,\n");
+            "recorded_fast_b-1_seed-1,recorded,,track,fast,,1,1,ok,,20000,,0.5\n"
+            "recorded_fast_b-1_seed-2,recorded,,track,fast,,1,2,ok,,30000,,0.7\n"
+            "recorded_fast_b-2_seed-1,recorded,,track,fast,,2,1,ok,,12345,,0.25\n"
+            "recorded_fast_b-2_seed-2,recorded,,track,fast,,2,2,failed,failed,,,\n");
 }
 
 TEST_F(SweepTables, AnExternalProgramThatCrashedIsARowWithItsReason) {
   fill("a.b: [1, 2]");
   results_.rows[0].problem = "timed out: after 3 s";
-  EXPECT_THAT(sweep_csv(results_).text(), HasSubstr("fast,,1,1,timed out,20000"));
+  EXPECT_THAT(sweep_csv(results_).text(),
+              HasSubstr("fast,,1,1,timed out,timed out: after 3 s,20000"));
   EXPECT_THAT(sweep_markdown(results_, {}, {}),
               AllOf(HasSubstr("| 1 | 2 (1 failed) | 0.700 | **30,000** |"),
                     HasSubstr("- recorded_fast_b-1_seed-1: timed out: after 3 s\n")));
 }
 
+TEST_F(SweepTables, FailuresStandFirstWithTheirReasons) {
+  fill("a.b: [1, 2]");
+  results_.rows[0].metrics.set("trajectory.lost_s", 0.5);
+  results_.rows[0].metrics.set("trajectory.loss.first_s", 0.25);
+  results_.rows[0].metrics.set("success", 0);
+  results_.rows[3].problem = "refused: data/walls: the events show no motion";
+  EXPECT_EQ(status_of(results_.rows[0]), "lost");
+  EXPECT_EQ(status_of(results_.rows[1]), "ok");
+  EXPECT_EQ(status_of(results_.rows[3]), "refused");
+  const std::string page = sweep_markdown(results_, {}, {});
+  EXPECT_THAT(page, HasSubstr("## Failures\n1 of 4 runs without a result, 1 lost.\n\n"
+                              "- recorded_fast_b-1_seed-1: lost after 0.250 s\n"
+                              "- recorded_fast_b-2_seed-2: refused: data/walls: the events show no "
+                              "motion (jobs/recorded_fast_b-2_seed-2/log.txt)\n"));
+  EXPECT_LT(page.find("## Failures"), page.find("## recorded"));
+  EXPECT_THAT(
+      sweep_csv(results_).text(),
+      AllOf(HasSubstr("fast,,1,1,lost,lost after 0.250 s,"),
+            HasSubstr("fast,,2,2,refused,refused: data/walls: the events show no motion,")));
+}
+
+TEST_F(SweepTables, WithoutAFailureThereIsNoSuchPart) {
+  fill("a.b: [1]");
+  EXPECT_THAT(sweep_markdown(results_, {}, {}), Not(HasSubstr("## Failures")));
+}
+
 TEST_F(SweepTables, MarkdownAveragesOverSeedsAndMarksTheBest) {
   fill("a.b: [1, 2]", "repeat: 5\ntiming: true\ntitle: Mine\n");
-  EXPECT_THAT(sweep_markdown(results_, {}, {}),
-              AllOf(HasSubstr("# Mine\n"), HasSubstr("medians of 5 repetitions, one run at a time"),
-                    HasSubstr("| `a.b` | seeds | dt_rel [%] | poses/s |\n|---|---|---:|---:|\n"
-                              "| 1 | 2 | 0.600 (0.500–0.700) | **25,000** |\n"
-                              "| 2 | 2 (1 failed) | **0.250** | 12,300 |\n"),
-                    HasSubstr("- recorded_fast_b-2_seed-2: jobs/"), HasSubstr("a machine")));
+  EXPECT_THAT(
+      sweep_markdown(results_, {}, {}),
+      AllOf(HasSubstr("# Mine\n"), HasSubstr("medians of 5 repetitions, one run at a time"),
+            HasSubstr("| `a.b` | seeds | dt_rel [%] | poses/s |\n|---|---|---:|---:|\n"
+                      "| 1 | 2 | 0.600 (0.500–0.700) | **25,000** |\n"
+                      "| 2 | 2 (1 failed) | **0.250** | 12,300 |\n"),
+            HasSubstr("- recorded_fast_b-2_seed-2: failed (jobs/"), HasSubstr("a machine")));
 }
 
 TEST_F(SweepTables, TheSpeedOfALostRunIsNotTheBest) {
@@ -221,6 +251,47 @@ TEST_F(PooledTables, ASuccessIsAShareOfAllRunsOfAGroup) {
   EXPECT_EQ(summarise(results_.groups[0], "success")->value, 0);
   results_.rows[1].metrics = {};
   EXPECT_EQ(summarise(results_.groups[0], "success")->count, 1U) << "nothing is known of the other";
+}
+
+TEST_F(PooledTables, OneConfigurationHasNoLeaderboard) {
+  EXPECT_EQ(sweep_leaderboards(results_), "");
+}
+
+/// Two configurations of one class on two datasets, and a third that is refused on one.
+TEST(SweepLeaderboard, RanksConfigurationsWithTheirFailures) {
+  const TemporaryFolder folder;
+  folder.write("second/events.txt", "0.1 0 0 1\n");
+  const std::string file =
+      "datasets: [{path: recorded}, {path: second}]\n"
+      "configurations: [{name: a}, {name: b}, {name: c}]\n";
+  const SweepConfig sweep = read_sweep(folder, file);
+  const SweepPlan plan = plan_sweep(sweep, folder.path() / "out");
+  SweepResults results{sweep, plan, {}, {}, {"trajectory.dt_rel_percent.mean"}};
+  const double errors[] = {1, 0.5, 0.25, 4, 0.5, 0};
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    SweepRow row{&plan.runs[i], i == 5, {}, "", ""};
+    row.threads = 2;
+    if (row.failed) {
+      row.problem = "refused: no parallax";
+    } else {
+      row.metrics.set("trajectory.dt_rel_percent.mean", errors[i]);
+      row.method_class = MethodClass{{MethodInput::kEvents},
+                                     i % 3 == 0 ? Processing::kBatch : Processing::kCausal};
+    }
+    results.rows.push_back(row);
+  }
+  results.groups = group_by_seed(results.rows);
+  EXPECT_THAT(
+      sweep_leaderboards(results),
+      AllOf(HasSubstr("| method | inputs | processing | rank | threads | × real time | runs | "
+                      "overall | recorded | second |\n"),
+            HasSubstr("| b | events | causal | 1 | 2 | – | 2 | **0.500** | 0.500 | **0.500** |\n"
+                      "| c | events | causal | 2 | 2 | – | 2 (1 failed) | 0.250 | **0.250** | "
+                      "refused |\n"
+                      "| a | events | batch | 1 | 2 | – | 2 | 2.00 | 1.00 | 4.00 |\n")));
+  const SweepConfig ablation = read_sweep(folder, file + "grid: {k: [1]}\n");
+  const SweepResults varied{ablation, plan, results.rows, results.groups, results.metrics};
+  EXPECT_EQ(sweep_leaderboards(varied), "") << "values of a key are no methods";
 }
 
 TEST(MetricInfo, KnowsWhatIsBetter) {
