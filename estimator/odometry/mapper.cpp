@@ -247,10 +247,13 @@ void Mapper::add_points(Keyframe& keyframe) const {
 }
 
 void Mapper::add_assumed_points(const WindowEdgels& edges, Keyframe& keyframe) const {
+  const RayDepthOptions& rays = options_.depth.rays;
+  if (!rays.assumed_inverse_depth) return;
   const PinholeCamera camera = camera_.undistorted();
+  // What the fit made of the depth is noise: it stays as it was assumed.
+  const double depth_m = 1 / *rays.assumed_inverse_depth;
   for (const FittedEdgel& fitted : edges.edges) {
-    if (!options_.depth.rays.is_assumed(fitted)) continue;
-    const double depth_m = 1 / static_cast<double>(fitted.edge.inverse_depth);
+    if (!rays.is_assumed(fitted)) continue;
     const Eigen::Vector3f point =
         (keyframe.world_from_camera * (depth_m * camera.ray(fitted.edge.pixel.cast<double>())))
             .cast<float>();

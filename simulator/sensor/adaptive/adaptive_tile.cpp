@@ -411,7 +411,8 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
   if (!is_continuous_there) return {false, middle_s, true};
   // At a fraction f of the line a parabola departs from it by 4 f (1 - f) of that in the middle.
   const double level = to >= band.upper ? band.upper : band.lower;
-  const double fraction = std::clamp((level - from) / (to - from), 0.0, 1.0);
+  // A signal that rests on the level has no place where it crosses it.
+  const double fraction = to == from ? 0 : std::clamp((level - from) / (to - from), 0.0, 1.0);
   const double middle_error_s = error / std::max(std::abs(slope), kLeastSlope);
   const auto is_exact = [&](double f) {
     return 2 * 4 * f * (1 - f) * middle_error_s <= bracket_s_;
@@ -420,7 +421,7 @@ auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& ne
     return {false, now.t_s + std::clamp(fraction, kLeastFraction, 1 - kLeastFraction) * length_s,
             needs_ray};
   const double reset = fraction + refractory_s_ / length_s;
-  if (refractory_s_ > 0 && reset < 1 && !is_exact(reset))
+  if (refractory_s_ > 0 && reset * length_s < length_s - bracket_s_ && !is_exact(reset))
     return {false, now.t_s + reset * length_s, needs_ray};
   // A line across several thresholds.
   const double contrast = 0.5 * (band.upper - band.lower);
