@@ -102,17 +102,17 @@ class BatchProblem {
   void judge(BatchAdjustment& result) {
     result.observations = residuals_.size();
     result.knots = correction_.knots();
-    if (residuals_.empty()) return;
     std::vector<double> absolute_px;
     double squares = 0;
     for (const auto& [id, sigma_px] : residuals_) {
       double value = 0;
-      problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr);
+      if (!problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr)) continue;
       absolute_px.push_back(std::abs(value) * sigma_px);
       squares += clipped_square(value);
     }
+    if (absolute_px.empty()) return;
     result.residual_px = gaussian_sigma(absolute_px);
-    const double spread = squares / static_cast<double>(residuals_.size());
+    const double spread = squares / static_cast<double>(absolute_px.size());
     result.covariance = spread / options_.information_ratio * inverse_information();
   }
 
@@ -196,6 +196,10 @@ class BatchProblem {
     observation.lag = event.polarity;
     observation.pixel = edge.pixel.cast<double>();
     observation.normal = edge.normal.cast<double>();
+    // An event whose ray leads away from the view, by a path that is wrong, is none of the edge.
+    const EdgeUnknowns unknowns = batch_edge.unknowns.head<4>();
+    if (!std::isfinite(edge_residual(observation, undistorted_, Twist::Zero(), unknowns, nullptr)))
+      return;
     const SplineKnots::LocalBasis basis = correction_.knots().at(t_s);
     const auto id = problem_.AddResidualBlock(
         new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, basis.weight,
@@ -270,6 +274,7 @@ class BatchProblem {
       for (double* block : inertial_factors_->unknowns()) controls.push_back(block);
     for (BatchEdge& edge : edges_) edges.push_back(edge.unknowns.data());
     const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
+    if (information.size() == 0) return {};
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     if (factor.info() != Eigen::Success) return {};
     const auto wanted =

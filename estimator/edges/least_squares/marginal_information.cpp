@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/check.h"
-
 namespace saccade {
 namespace {
 
@@ -76,7 +74,7 @@ Eigen::MatrixXd marginal_information(ceres::Problem& problem, const std::vector<
   options.parameter_blocks.insert(options.parameter_blocks.end(), eliminated.begin(),
                                   eliminated.end());
   ceres::CRSMatrix jacobian;
-  SACCADE_CHECK(problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian));
+  if (!problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return {};
   // A row of kept blocks alone is a group of its own, after those of the eliminated ones.
   std::vector<std::vector<int>> groups(eliminated.size());
   for (int row = 0; row < jacobian.num_rows; ++row) {

@@ -113,7 +113,8 @@ class EdgeOptimizer {
   [[nodiscard]] std::optional<double> sigma_of(ceres::Problem& problem,
                                                const std::vector<ceres::ResidualBlockId>& residuals,
                                                EdgeUnknowns& unknowns) const {
-    const Eigen::Matrix4d information = marginal_information(problem, {unknowns.data()}, {});
+    const Eigen::MatrixXd information = marginal_information(problem, {unknowns.data()}, {});
+    if (information.size() == 0) return std::nullopt;
     const Eigen::LLT<Eigen::Matrix4d> factor(information);
     if (factor.info() != Eigen::Success) return std::nullopt;
     double squares = 0;

@@ -79,6 +79,7 @@ PathEvidence PathProblem::judge(double information) {
 Eigen::MatrixXd PathProblem::covariance(double scale) {
   const Eigen::MatrixXd information =
       marginal_information(problem_, corrections(0, corrections_.size()), eliminated_);
+  if (information.size() == 0) return {};
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success) return {};
   return scale * factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));

@@ -45,5 +45,22 @@ TEST(MarginalInformation, IsTheInverseOfTheBlockOfTheWholeCovariance) {
   EXPECT_LT((information.inverse() - whole.topLeftCorner(2, 2)).norm(), 1e-9 * whole.norm());
 }
 
+/// A residual that cannot be evaluated.
+class Undefined : public ceres::SizedCostFunction<1, 2> {
+ public:
+  bool Evaluate(double const* const*, double*, double**) const override { return false; }
+};
+
+TEST(MarginalInformation, IsEmptyWhereAResidualCannotBeEvaluated) {
+  std::array<double, 2> kept{};
+  double offset = 0;
+  ceres::Problem problem;
+  for (int i = 0; i < 5; ++i)
+    problem.AddResidualBlock(new Linear(0.1 * i), nullptr, kept.data(), &offset);
+  ASSERT_EQ(marginal_information(problem, {kept.data()}, {&offset}).rows(), 2);
+  problem.AddResidualBlock(new Undefined, nullptr, kept.data());
+  EXPECT_EQ(marginal_information(problem, {kept.data()}, {&offset}).size(), 0);
+}
+
 }  // namespace
 }  // namespace saccade
