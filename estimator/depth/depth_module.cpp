@@ -39,7 +39,7 @@ RunSummary run_depth(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write_depth(writer.path(), dataset.camera(), windows, results);
   }
-  writer.set_class(class_of_views(request));
+  writer.set_class(class_of_views(request, config.window));
   writer.finish("depth", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 

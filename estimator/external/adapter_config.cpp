@@ -43,6 +43,10 @@ void describe_output(config::Fields& fields, AdapterOutput& output) {
   fields.value("events", output.events,
                "File with the events that a simulator makes; its ending is that of the format. The "
                "program then writes no trajectory. Empty: the program makes none.");
+  fields.expect(output.events.empty() ||
+                    (output.covariance.empty() && output.map.empty() && output.views.empty()),
+                "events",
+                "is of a simulator: 'covariance', 'map' and 'views' belong to a trajectory");
 }
 
 void describe_input(config::Fields& fields, AdapterConfig& config) {
@@ -58,7 +62,7 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
                 "Time unit of h5 and csv.");
 }
 
-/// A class that leaves out what the adapter hands over.
+/// A class must not leave out what the adapter hands over.
 void check_class(config::Fields& fields, const AdapterConfig& config) {
   if (!config.method_class) return;
   const std::set<MethodInput>& inputs = config.method_class->inputs;
@@ -66,6 +70,9 @@ void check_class(config::Fields& fields, const AdapterConfig& config) {
                 "must hold `start` among its inputs: start.truth_s gives poses");
   fields.expect(!uses_placeholder(config.command, "imu") || inputs.contains(MethodInput::kImu),
                 "class", "must hold `imu` among its inputs: the command takes {imu}");
+  fields.expect(
+      !uses_placeholder(config.command, "events") || inputs.contains(MethodInput::kEvents), "class",
+      "must hold `events` among its inputs: the command takes {events}");
 }
 
 }  // namespace

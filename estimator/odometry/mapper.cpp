@@ -126,7 +126,9 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
                            ? keyframe.end_s
                            : (keyframe.start_s + keyframe.end_s) / 2;
   const double expected_m = path.typical_depth_m ? *path.typical_depth_m : sweep_depth(window);
-  const std::optional<WindowEdgels> edges = adjust_path(window, adjusted, path, expected_m);
+  std::optional<WindowEdgels> edges = adjust_path(window, adjusted, path, expected_m);
+  // Without an adjustment the edges are found for their own sake.
+  if (!edges && options_.depth.rays.assumed_inverse_depth) edges = rays().find_edgels(window);
   mapping.world_from_before =
       adjusted.at_clamped(keyframe.end_s) * smooth.at_clamped(keyframe.end_s).inverse();
   for (const StampedPose& pose : adjusted.poses())

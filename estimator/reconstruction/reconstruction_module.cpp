@@ -60,7 +60,7 @@ RunSummary run_reconstruction(const RunRequest& request) {
     write_reconstruction(writer.path(), windows, results, snapshots);
     if (config.figures) write_thesis_figures(writer.path(), dataset, windows.front());
   }
-  MethodClass method_class = class_of_views(request);
+  MethodClass method_class = class_of_views(request, config.window);
   if (!request.depth_from) method_class.inputs.insert(MethodInput::kDepth);
   writer.set_class(method_class);
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),

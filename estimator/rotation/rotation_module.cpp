@@ -122,16 +122,13 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
   return rates_of(events, camera, config, gyroscope, progress);
 }
 
+/// Rates over a window are stamped with its middle.
 MethodClass class_of(const RotationConfig& config) {
-  switch (config.method) {
-    case Method::kEvents:
-      return {{MethodInput::kEvents}};
-    case Method::kImu:
-      return {{MethodInput::kImu}};
-    case Method::kBoth:
-      break;
-  }
-  return {{MethodInput::kEvents, MethodInput::kImu}};
+  const bool is_averaged = config.method != Method::kImu || config.averaging_s > 0;
+  MethodClass method{{}, is_averaged ? Processing::kFixedLag : Processing::kCausal};
+  if (config.method != Method::kImu) method.inputs.insert(MethodInput::kEvents);
+  if (config.method != Method::kEvents) method.inputs.insert(MethodInput::kImu);
+  return method;
 }
 
 }  // namespace

@@ -51,9 +51,13 @@ struct ViewInput {
   return input;
 }
 
-/// Of a module whose views depend on the events of their own window alone.
-[[nodiscard]] inline MethodClass class_of_views(const RunRequest& request) {
+/// Of a module whose views depend on the events of their own window alone: of those after the view,
+/// too, unless it lies at the window's end.
+[[nodiscard]] inline MethodClass class_of_views(const RunRequest& request,
+                                                const ViewWindowOptions& windows) {
   MethodClass method{{MethodInput::kEvents}};
+  if (windows.reference != ViewWindowOptions::Reference::kEnd)
+    method.processing = Processing::kFixedLag;
   if (!request.poses_from) method.inputs.insert(MethodInput::kPoses);
   return method;
 }

@@ -156,16 +156,21 @@ LeaderboardRow board_row(const Runs& runs, const Leaderboard& board) {
   return row;
 }
 
-/// The runs that stand on the board, method by method and class by class; one that came to nothing
-/// has the class of its method's other runs.
+/// A run that came to nothing may not say of what class it is.
+bool lacks_class(const LeaderboardEntry& entry) {
+  return !entry.problem.empty() && !entry.method_class;
+}
+
+/// The runs that stand on the board, method by method and class by class; one that lacks a class has
+/// that of its method's other runs, which come first.
 std::vector<Runs> by_method(Entries entries, const Leaderboard& board) {
   std::vector<Runs> methods;
-  for (const bool failures : {false, true})
+  for (const bool lacking : {false, true})
     for (const LeaderboardEntry& entry : entries) {
-      if (entry.problem.empty() == failures || !stands_on(entry, board.key, entries)) continue;
+      if (lacks_class(entry) != lacking || !stands_on(entry, board.key, entries)) continue;
       const auto known = std::find_if(methods.begin(), methods.end(), [&](const Runs& runs) {
         return runs.front()->method == entry.method &&
-               (runs.front()->method_class == entry.method_class || failures);
+               (runs.front()->method_class == entry.method_class || lacking);
       });
       (known == methods.end() ? methods.emplace_back() : *known).push_back(&entry);
     }

@@ -36,14 +36,15 @@ void describe(config::Fields& fields, MethodClass& method) {
              "its depth (`map`), true poses at all times (`poses`), true depth at all times "
              "(`depth`).")
       .one_of(known)
-      .required();
+      .required()
+      .length(1, config::Rule::kAnyLength);
   fields.choice("processing", method.processing,
                 {{"causal", Processing::kCausal},
                  {"fixed_lag", Processing::kFixedLag},
                  {"batch", Processing::kBatch}},
-                "How far it looks ahead: a result depends on nothing after the measurements that "
-                "it is stamped with (`causal`), is revised by those of a limited time after it "
-                "(`fixed_lag`), or depends on all (`batch`).");
+                "How far it looks ahead: a result depends on no measurement after its time but for "
+                "the milliseconds of its own frame (`causal`), depends on or is revised by those "
+                "of a limited time after it (`fixed_lag`), or depends on all (`batch`).");
   if (!fields.reading()) return;
   method.inputs.clear();
   for (const InputName& name : kInputs)

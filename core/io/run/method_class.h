@@ -21,8 +21,10 @@ enum class MethodInput {
 
 /// How far a method looks ahead, from little to much.
 enum class Processing {
-  kCausal,    ///< a result depends on no measurement after those that it is stamped with
-  kFixedLag,  ///< results are revised by measurements of a limited time after them
+  /// A result depends on no measurement after its time, but for the rest of the frame of events of a
+  /// tracker, which lasts milliseconds and is stamped with its mean time.
+  kCausal,
+  kFixedLag,  ///< results depend on, or are revised by, measurements of a limited time after them
   kBatch,     ///< every result depends on all measurements
 };
 

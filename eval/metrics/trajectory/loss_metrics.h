@@ -19,9 +19,9 @@ namespace saccade {
 [[nodiscard]] std::optional<std::size_t> row_in_force(std::span<const PoseStatus> rows, double t_s);
 
 /// What a run says of being lost against the truth, over the grid of the scored interval:
-/// trajectory.loss.{precision,recall,delay_ms,unreported_s,reported_s,count}, and first_s. With L the instants
-/// that are truly lost, R those at which the row in force says `lost`, and w the time of one (the
-/// interval's length over their number, as of trajectory.lost_s),
+/// trajectory.loss.{precision,recall,delay_ms,unreported_s,reported_s,count}, and first_s. With L the
+/// instants that are truly lost, R those at which the row in force says `lost`, and w the time of
+/// one (the interval's length over their number, as of trajectory.lost_s),
 ///   precision = |L and R| / |R|,  recall = |L and R| / |L|,  unreported_s = w |L without R|,
 ///   reported_s = w |R|,  count = losses, the runs of consecutive instants of L,
 ///   delay_ms = mean over the losses of the time from their begin to the first report in them, the

@@ -109,7 +109,7 @@ class Planner {
   SweepPlan plan() {
     if (sweep_.generate) add_generated(*sweep_.generate);
     for (const SweepDataset& dataset : sweep_.datasets)
-      for (const auto& seed : seeds_or_default(dataset.seeds)) {
+      for (const auto& seed : seeds_or_default(seeds_of(dataset))) {
         SweepJob base = dataset_job(dataset, seed);
         if (!sweep_.configurations.empty()) add_runs(base, 0);
       }
@@ -124,13 +124,23 @@ class Planner {
     std::optional<std::size_t> made_by;
   };
 
+  /// Of an external simulator those of the dataset that it works from.
+  [[nodiscard]] const std::vector<std::uint64_t>& seeds_of(const SweepDataset& dataset) const {
+    if (!dataset.adapter) return dataset.seeds;
+    const auto truth =
+        std::find_if(sweep_.datasets.begin(), sweep_.datasets.end(),
+                     [&](const SweepDataset& other) { return other.name == dataset.against; });
+    SACCADE_CHECK(truth != sweep_.datasets.end());
+    return truth->seeds;
+  }
+
   /// Adds the job that makes the dataset, if any does. Returns the common part of the runs over it.
   SweepJob dataset_job(const SweepDataset& dataset, const std::optional<std::uint64_t>& seed) {
     SweepJob base;
     base.point.dataset = dataset.name;
     base.point.dataset_seed = seed;
     base.name = file_name_part(dataset.name);
-    if (seed && dataset.seeds.size() > 1) base.name += fmt::format("-{}", *seed);
+    if (seed && seeds_of(dataset).size() > 1) base.name += fmt::format("-{}", *seed);
     if (dataset.path) {
       base.dataset = fixed_path(*dataset.path);
       truths_.push_back({base.point, base.dataset, std::nullopt});

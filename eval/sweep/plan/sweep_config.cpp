@@ -95,7 +95,9 @@ void check_truths(config::Fields& fields, const SweepConfig& sweep) {
           fmt::format("'{}', which '{}' is scored against, is not a dataset before it; {}",
                       dataset.against, dataset.name,
                       config::suggestion(dataset.against, earlier, "datasets")));
-      fields.expect(truth->seeds.size() < 2 || truth->seeds == dataset.seeds, "datasets",
+      // An external simulator has no seeds of its own: it runs over each of the truth's datasets.
+      fields.expect(dataset.adapter || truth->seeds.size() < 2 || truth->seeds == dataset.seeds,
+                    "datasets",
                     fmt::format("'{}' must have the seeds of '{}', which it is scored against",
                                 dataset.name, dataset.against));
       fields.expect(!truth->adapter, "datasets",
@@ -174,7 +176,8 @@ void describe(config::Fields& fields, SweepDataset& dataset) {
       "path", "must be stated, or 'simulate', or 'adapter', and one of them alone");
   fields.expect(!dataset.path || (dataset.set.empty() && dataset.against.empty()), "path",
                 "names a finished dataset: 'set' and 'against' belong to what makes one");
-  fields.expect(dataset.simulate || dataset.seeds.empty(), "seeds", "belong to 'simulate'");
+  fields.expect(dataset.simulate || dataset.seeds.empty(), "seeds",
+                "belong to 'simulate'; an 'adapter' runs over all seeds of 'against'");
   fields.expect(!dataset.adapter || !dataset.against.empty(), "adapter",
                 "needs 'against': the dataset from which the program makes its events");
   expect_seeds_differ(fields, dataset.seeds);

@@ -76,8 +76,8 @@ struct ExpectationResult {
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
 
 /// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (what failed, one
-/// row per group with `metrics`, the leaderboard, and the expected metrics) and FOLDER/*.png. Returns the number of expected
-/// metrics that were missed.
+/// row per group with `metrics`, the leaderboard, and the expected metrics) and FOLDER/*.png.
+/// Returns the number of expected metrics that were missed.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
                                 const std::filesystem::path& folder);
 

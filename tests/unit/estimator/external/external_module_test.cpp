@@ -133,6 +133,11 @@ TEST_F(External, TheClassIsWhatTheAdapterStates) {
               HasSubstr("must hold `start`"));
   EXPECT_THAT(error("{command: 'ls {imu}', class: {inputs: [events]}}"),
               HasSubstr("must hold `imu`"));
+  EXPECT_THAT(error("{command: 'ls {events}', class: {inputs: [imu]}}"),
+              HasSubstr("must hold `events`"));
+  EXPECT_THAT(error("{command: ls, class: {inputs: []}}"), HasSubstr("class.inputs"));
+  EXPECT_THAT(error("{command: ls, output: {events: made.txt, map: map.ply}}"),
+              HasSubstr("'map' and 'views' belong to a trajectory"));
 }
 
 TEST_F(External, WhatCannotBeginIsAnError) {

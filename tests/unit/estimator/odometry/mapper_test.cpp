@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "tests/support/planar_world.h"
@@ -64,42 +65,52 @@ double fraction_on_map(std::span<const Event> events, double from_s, const MapPo
   return static_cast<double>(near) / static_cast<double>(all);
 }
 
-TEST(Mapper, ATurningCameraMapsEdgesAtTheTypicalDepth) {
-  const testing::PlanarWorld corner = testing::corner_world(160, 120);
-  const Events events = corner.simulate(turn, 0, kMapped_s, 1e-3, 0.15);
+const testing::PlanarWorld& turned_world() {
+  static const testing::PlanarWorld corner = testing::corner_world(160, 120);
+  return corner;
+}
+
+const Events& events_of_turn() {
+  static const Events events = turned_world().simulate(turn, 0, kMapped_s, 1e-3, 0.15);
+  return events;
+}
+
+/// The keyframe of a turn on its true path, which shows no depth.
+Keyframe keyframe_of_turn(int adjust_rounds, std::optional<double> typical_depth_m) {
   MappingOptions options;
   options.image = false;
   options.min_edges = 300;
-  options.adjust_rounds = 1;
+  options.adjust_rounds = adjust_rounds;
   options.depth.method = DepthConfig::Method::kRays;
   PathEstimate path;
   path.poses = testing::trajectory_of(turn, kMapped_s);
   path.fixed_until_s = kMapped_s;
-  path.typical_depth_m = testing::kCornerDepth_m;
-  const Keyframe keyframe = Mapper(options, corner.camera()).map(events, path).keyframe;
-  EXPECT_GT(keyframe.edges.size(), 300U);
-  EXPECT_TRUE(keyframe.depth.points.empty()) << "an assumed depth is no measured one";
-  const Rigid3 view_from_world = keyframe.world_from_camera.inverse();
-  for (std::size_t i = 0; i < keyframe.edges.size(); ++i) {
-    const Eigen::Vector3d point =
-        view_from_world *
-        Eigen::Vector3d(keyframe.edges.x[i], keyframe.edges.y[i], keyframe.edges.z[i]);
-    ASSERT_NEAR(point.z(), testing::kCornerDepth_m, 0.01 * testing::kCornerDepth_m);
+  path.typical_depth_m = typical_depth_m;
+  return Mapper(options, turned_world().camera()).map(events_of_turn(), path).keyframe;
+}
+
+TEST(Mapper, ATurningCameraMapsEdgesAtTheTypicalDepth) {
+  for (const int adjust_rounds : {0, 1}) {
+    const Keyframe keyframe = keyframe_of_turn(adjust_rounds, testing::kCornerDepth_m);
+    EXPECT_GT(keyframe.edges.size(), 300U);
+    EXPECT_TRUE(keyframe.depth.points.empty()) << "an assumed depth is no measured one";
+    const Rigid3 view_from_world = keyframe.world_from_camera.inverse();
+    for (std::size_t i = 0; i < keyframe.edges.size(); ++i) {
+      const Eigen::Vector3d point =
+          view_from_world *
+          Eigen::Vector3d(keyframe.edges.x[i], keyframe.edges.y[i], keyframe.edges.z[i]);
+      ASSERT_NEAR(point.z(), testing::kCornerDepth_m, 0.01 * testing::kCornerDepth_m);
+    }
+    // The view is at the end: most of what was seen shortly before is in it.
+    EXPECT_GT(fraction_on_map(events_of_turn(), 0.75 * kMapped_s, keyframe.edges,
+                              turned_world().camera()),
+              0.5);
   }
-  // The view is in the middle: most of what is seen at the end was in it.
-  EXPECT_GT(fraction_on_map(events, 0.75 * kMapped_s, keyframe.edges, corner.camera()), 0.5);
 }
 
 TEST(Mapper, NoDepthIsAssumedWhereNoneIsTypical) {
-  const testing::PlanarWorld corner = testing::corner_world(160, 120);
-  const Events events = corner.simulate(turn, 0, kMapped_s, 1e-3, 0.15);
-  MappingOptions options;
-  options.image = false;
-  options.min_edges = 300;
-  options.depth.method = DepthConfig::Method::kRays;
-  PathEstimate path;
-  path.poses = testing::trajectory_of(turn, kMapped_s);
-  EXPECT_EQ(Mapper(options, corner.camera()).map(events, path).keyframe.edges.size(), 0U);
+  for (const int adjust_rounds : {0, 1})
+    EXPECT_EQ(keyframe_of_turn(adjust_rounds, std::nullopt).edges.size(), 0U);
 }
 
 }  // namespace

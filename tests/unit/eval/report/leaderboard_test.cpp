@@ -218,6 +218,28 @@ TEST(Leaderboard, AFailedRunBelongsToTheClassOfItsMethod) {
   EXPECT_EQ(board.rows[1].rank, 2);
 }
 
+TEST(Leaderboard, AFailureThatStatesItsClassIsOfThatClassInAnyOrder) {
+  const LeaderboardEntry refused = failed("a", "desk", "refused: nothing moves");
+  const LeaderboardEntry crashed = of_class(failed("a", "office", "crashed"), kOdometry);
+  const LeaderboardEntry scored_b = scored("b", "walls", 2);
+  for (const auto& entries :
+       {std::vector{refused, crashed, scored_b}, std::vector{crashed, refused, scored_b}}) {
+    const Leaderboard board = leaderboards(entries).at(0);
+    const auto a = std::find_if(board.rows.begin(), board.rows.end(),
+                                [](const LeaderboardRow& row) { return row.method == "a"; });
+    ASSERT_NE(a, board.rows.end());
+    EXPECT_EQ(a->method_class, kOdometry);
+    EXPECT_EQ(a->failed, 2U);
+  }
+  // A crash by one's own statement is none of the method's other class.
+  const Leaderboard board =
+      leaderboards(std::vector{of_class(scored("a", "walls", 1), kTracking), crashed}).at(0);
+  ASSERT_EQ(board.rows.size(), 2U);
+  EXPECT_EQ(board.rows[0].failed + board.rows[1].failed, 1U);
+  for (const LeaderboardRow& row : board.rows)
+    EXPECT_EQ(row.failed, row.method_class == kOdometry ? 1U : 0U);
+}
+
 // A method that is for some sequences alone is not measured by those of another class.
 TEST(Leaderboard, RankedAreMethodsWithAllSequencesOfTheirClass) {
   const std::vector<LeaderboardEntry> entries{

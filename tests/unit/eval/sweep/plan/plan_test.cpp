@@ -11,7 +11,9 @@
 namespace saccade {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::Not;
 using testing::read_sweep;
 using ::testing::SizeIs;
 using testing::TemporaryFolder;
@@ -150,8 +152,13 @@ TEST(SweepPlan, ATruthOfSeveralSeedsIsThatOfTheSameSeed) {
       plan(folder,
            "datasets:\n"
            "  - {name: exact, simulate: walls.yaml, seeds: [1, 2]}\n"
-           "  - {name: coarse, simulate: walls.yaml, seeds: [1, 2], against: exact}\n");
-  ASSERT_THAT(sweep.simulations, SizeIs(4));
+           "  - {name: coarse, simulate: walls.yaml, seeds: [1, 2], against: exact}\n"
+           "  - {name: theirs, adapter: accurate.yaml, against: exact}\n");
+  ASSERT_THAT(sweep.simulations, SizeIs(6));
+  EXPECT_EQ(sweep.simulations[4].dataset, sweep.simulations[0].output);
+  EXPECT_EQ(sweep.simulations[5].dataset, sweep.simulations[1].output);
+  EXPECT_EQ(sweep.simulations[5].name, "theirs-2");
+  EXPECT_THAT(sweep.simulations[5].commands[0], Not(Contains("--seed")));
   EXPECT_EQ(sweep.simulations[2].dataset, sweep.simulations[0].output);
   EXPECT_EQ(sweep.simulations[3].dataset, sweep.simulations[1].output);
 }
