@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "eval/report/leaderboard.h"
 #include "eval/table/number_text.h"
@@ -66,8 +67,12 @@ Table::Cell runs_cell(const LeaderboardRow& row) {
   return {text, PooledValue{static_cast<double>(row.runs), {}, {}, 1}};
 }
 
-std::string threads_text(const LeaderboardRow& row) {
-  return row.threads.empty() ? "–" : fmt::format("{}", fmt::join(row.threads, ", "));
+/// A number that sorts, where all runs had the same.
+Table::Cell threads_cell(const LeaderboardRow& row) {
+  if (row.threads.size() > 1) return {fmt::format("{}", fmt::join(row.threads, ", ")), {}};
+  if (row.threads.empty()) return number_cell(std::nullopt);
+  const int threads = *row.threads.begin();
+  return number_cell(threads, std::to_string(threads));
 }
 
 /// The columns before those with scores.
@@ -77,7 +82,7 @@ std::vector<Table::Cell> method_cells(const LeaderboardRow& row, const Leaderboa
                                  {known ? inputs_text(*known) : "unknown", {}},
                                  {known ? processing_text(*known) : "unknown", {}},
                                  rank_cell(row, board.sequences.size()),
-                                 {threads_text(row), {}}};
+                                 threads_cell(row)};
   if (board.key != kSpeed) cells.push_back(number_cell(row.realtime_factor));
   cells.push_back(runs_cell(row));
   return cells;

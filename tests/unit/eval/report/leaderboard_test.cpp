@@ -291,6 +291,9 @@ TEST(Leaderboard, StatesThreadsAndSpeed) {
   }
   const Table table = leaderboard_table(leaderboards(entries).at(0));
   EXPECT_EQ(cell(table, 0, "threads").text, "1, 2");
+  EXPECT_FALSE(cell(table, 0, "threads").value);
+  const Table single = leaderboard_table(leaderboards(std::span(entries).first(1)).at(0));
+  EXPECT_EQ(cell(single, 0, "threads").value->mean, 1) << "a number that sorts";
   EXPECT_NEAR(cell(table, 0, "× real time").value->mean, 4, 1e-12);
 }
 
