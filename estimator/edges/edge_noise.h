@@ -19,7 +19,7 @@ struct EdgeNoise {
   static constexpr double kOffsetSigma_px = 2;        ///< of c
   static constexpr double kTiltSigma = 0.3;           ///< of m
   static constexpr double kHysteresisSigma_px = 0.5;  ///< of h
-  static constexpr double kRunSpacingSigma_px = 0.5;  ///< of k (path_edge_cost.h)
+  static constexpr double kRunSpacingSigma_px = 0.5;  ///< of k (edge_bundle.h)
 
   /// Standard deviation of an edge's events: what the regression left of them, but no less than the
   /// sensor's own.

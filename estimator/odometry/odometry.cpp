@@ -54,6 +54,7 @@ Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, 
       mapper_(options.mapping, camera),
       map_(options.keyframe.active, camera),
       tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {
+  batch_.solver = options.mapping.adjustment.solver;
   batch_.use_imu = options.batch_adjustment == BatchMode::kEventsAndImu;
   start_.min_edges = static_cast<std::size_t>(options.mapping.min_edges);
   start_.refinement.limits = options.mapping.depth.limits;
@@ -275,7 +276,7 @@ void Odometry::adjust(std::span<const Event> events, const PathEstimate& start,
   parallel_for(keyframes.size(),
                [&](std::size_t i) { mapper_.renew(events, adjusted.path, keyframes[i]); });
   output(result);
-  if (adjusted.covariance.size() > 0)
+  if (!adjusted.covariances.empty())
     result.covariances =
         set_sigmas(result.poses, [&](double t_s) { return adjusted.covariance_at(t_s); });
   result.inertial = adjusted.inertial;

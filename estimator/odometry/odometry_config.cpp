@@ -181,6 +181,10 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                   "Whether the whole path and the edges of all keyframes are adjusted together "
                   "after the last event, with or without the samples of the inertial sensor. Slow. "
                   "Only with mode: offline; skipped if a pose was lost.");
+    fields.choice("solver", odometry.mapping.adjustment.solver,
+                  {{"structured", BundleSolver::kStructured}, {"ceres", BundleSolver::kCeres}},
+                  "What solves the adjustments: the project's own solver, which makes use of their "
+                  "structure, or Ceres, its reference, to the same costs and many times slower.");
   }
   describe_parts(fields, odometry);
   fields.value(

@@ -92,6 +92,10 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
       .value("rounds", options.rounds,
              "How often edges are found on the refined path and adjusted together with it.")
       .range(1, 100);
+  fields.choice("solver", options.solver,
+                {{"structured", BundleSolver::kStructured}, {"ceres", BundleSolver::kCeres}},
+                "What solves the adjustment: the project's own solver, which makes use of its "
+                "structure, or Ceres, its reference, to the same cost and many times slower.");
   fields.value("use_imu", options.use_imu,
                "Whether the samples of gyroscope and accelerometer join in, with gravity, biases "
                "and time offset as further unknowns. Of a run without given poses they determine "

@@ -1,8 +1,5 @@
 #include "estimator/edges/batch/batch_adjustment.h"
 
-#include <ceres/ceres.h>
-
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,20 +9,23 @@
 #include "core/error.h"
 #include "core/process/parallel.h"
 #include "core/time_search.h"
-#include "estimator/edges/batch/path_edge_cost.h"
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_noise.h"
-#include "estimator/edges/least_squares/marginal_information.h"
-#include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/edges/least_squares/bundle_solver.h"
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
-#include "estimator/edges/least_squares/schur_solver.h"
 #include "estimator/edges/polarity_runs.h"
 
 namespace saccade {
 namespace {
 
 constexpr double kPoseSpacing_s = 1e-3;  ///< of a path
+constexpr double kTolerance = 1e-6;      ///< of the cost, where a round ends
+
+/// The unknowns of an edge (edge_residual.h) and, last, k [px]: how much farther across the edge each
+/// event of a polarity run (polarity_runs.h) lies than the one before. h, the ON/OFF shift, is of the
+/// polarity alone.
+using BatchEdgeUnknowns = PathBundle::Unknowns;
 
 /// `most` of `count` indices, evenly.
 std::vector<std::size_t> evenly(std::size_t count, int most) {
@@ -75,21 +75,22 @@ class BatchProblem {
         options_(options),
         depth_m_(input.typical_depth_m),
         given_until_s_(input.given.size() > 1 ? input.given.back().t_s : path.start_s()),
-        correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)) {
+        correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)),
+        bundle_(undistorted_, correction_.unknowns()) {
     run_positions_.resize(windows.size());
     parallel_for(windows.size(), [&](std::size_t k) {
       run_positions_[k] = run_positions(windows[k].events, camera);
     });
     choose_edges();
-    for (BatchEdge& edge : edges_) add_edge(edge);
-    if (options.reobserved_keyframes > 0) add_reobservations();
+    add_edges();
     add_path_priors(input.given);
     if (options.use_imu) add_inertial_factors(input);
   }
 
   void solve(CostLog& costs, const std::function<void()>& each) {
     const double start_s = costs.now_s();
-    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-6, each);
+    const SolverSummary summary =
+        solve_bundle(bundle_, options_.solver, {options_.iterations, kTolerance, each});
     costs.add_round(summary.iterations, start_s);
   }
 
@@ -100,20 +101,19 @@ class BatchProblem {
   }
 
   void judge(BatchAdjustment& result) {
-    result.observations = residuals_.size();
+    result.observations = bundle_.events();
     result.knots = correction_.knots();
     std::vector<double> absolute_px;
     double squares = 0;
-    for (const auto& [id, sigma_px] : residuals_) {
-      double value = 0;
-      if (!problem_.EvaluateResidualBlock(id, false, nullptr, &value, nullptr)) continue;
-      absolute_px.push_back(std::abs(value) * sigma_px);
-      squares += clipped_square(value);
-    }
+    bundle_.for_each_residual([&](double residual, double sigma_px) {
+      absolute_px.push_back(std::abs(residual) * sigma_px);
+      squares += clipped_square(residual);
+    });
     if (absolute_px.empty()) return;
     result.residual_px = gaussian_sigma(absolute_px);
     const double spread = squares / static_cast<double>(absolute_px.size());
-    result.covariance = spread / options_.information_ratio * inverse_information();
+    result.covariances = path_covariances(bundle_);
+    for (auto& covariance : result.covariances) covariance *= spread / options_.information_ratio;
   }
 
  private:
@@ -132,15 +132,34 @@ class BatchProblem {
       }
   }
 
-  void add_edge(BatchEdge& edge) {
-    add_events(edge, edge.found, [&](std::span<const std::uint32_t> events) {
-      return choose_events(windows_[edge.found.keyframe], events);
-    });
+  /// Each edge with some of its own events and of those of its matches in later keyframes.
+  void add_edges() {
+    std::vector<KeyframeEdge> found;
+    for (const BatchEdge& edge : edges_) found.push_back(edge.found);
+    std::vector<std::vector<KeyframeEdge>> again(edges_.size());
+    if (options_.reobserved_keyframes > 0)
+      again = reobservations(found, windows_, found_, options_.window_s, undistorted_);
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      BatchEdge& edge = edges_[i];
+      begin_edge(edge);
+      add_events(edge, edge.found, [&](std::span<const std::uint32_t> events) {
+        return choose_events(windows_[edge.found.keyframe], events);
+      });
+      for (const std::size_t a : evenly(again[i].size(), options_.reobserved_keyframes))
+        add_events(edge, again[i][a], [&](std::span<const std::uint32_t> events) {
+          std::vector<std::uint32_t> chosen;
+          append_evenly(events, options_.reobserved_events, chosen);
+          return chosen;
+        });
+    }
+  }
+
+  void begin_edge(BatchEdge& edge) {
+    const Edgel& found = found_[edge.found.keyframe].edges[edge.found.edge].edge;
     BatchEdgeUnknowns sigma;
     sigma << EdgeNoise::prior_sigma(edge.unknowns[0]), EdgeNoise::kRunSpacingSigma_px;
-    problem_.AddResidualBlock(new LinearPriorCost<5>(root_of_sigma<5>(sigma), edge.unknowns),
-                              nullptr, edge.unknowns.data());
-    ordering_->AddElementToGroup(edge.unknowns.data(), 0);
+    bundle_.add_edge(found.pixel.cast<double>(), found.normal.cast<double>(), edge.unknowns.data(),
+                     {edge.unknowns, sigma});
   }
 
   /// Residuals of an edge by some of the events of `observation`: of itself, or of its match in
@@ -156,20 +175,6 @@ class BatchProblem {
     for (const std::uint32_t e : choose(events))
       add_event(edge, windows_[observation.keyframe].events[e],
                 positions[e] > 0 ? positions[e] - mean : 0, EdgeNoise::sigma_px(observed));
-  }
-
-  /// Events of edges that later keyframes observe again, as observations of the first one's edge.
-  void add_reobservations() {
-    std::vector<KeyframeEdge> edges;
-    for (const BatchEdge& edge : edges_) edges.push_back(edge.found);
-    const auto again = reobservations(edges, windows_, found_, options_.window_s, undistorted_);
-    for (std::size_t i = 0; i < edges_.size(); ++i)
-      for (const std::size_t a : evenly(again[i].size(), options_.reobserved_keyframes))
-        add_events(edges_[i], again[i][a], [&](std::span<const std::uint32_t> events) {
-          std::vector<std::uint32_t> chosen;
-          append_evenly(events, options_.reobserved_events, chosen);
-          return chosen;
-        });
   }
 
   /// Some of an edge's events, given and returned in order of time.
@@ -196,26 +201,17 @@ class BatchProblem {
     observation.lag = event.polarity;
     observation.pixel = edge.pixel.cast<double>();
     observation.normal = edge.normal.cast<double>();
-    // An event whose ray leads away from the view, by a path that is wrong, is none of the edge.
-    const EdgeUnknowns unknowns = batch_edge.unknowns.head<4>();
-    if (!std::isfinite(edge_residual(observation, undistorted_, Twist::Zero(), unknowns, nullptr)))
-      return;
     const SplineKnots::LocalBasis basis = correction_.knots().at(t_s);
-    const auto id = problem_.AddResidualBlock(
-        new PathEdgeCost(observation, event.polarity * run_offset, undistorted_, basis.weight,
-                         sigma_px),
-        new ceres::CauchyLoss(EdgeNoise::kCauchyScale), correction_.data(basis.first),
-        correction_.data(basis.first + 1), correction_.data(basis.first + 2),
-        correction_.data(basis.first + 3), batch_edge.unknowns.data());
-    residuals_.emplace_back(id, sigma_px);
+    // An event whose ray leads away from the view, by a path that is wrong, is none of the edge.
+    (void)bundle_.add_event(
+        {observation, event.polarity * run_offset, sigma_px, basis.first, basis.weight});
   }
 
   void add_path_priors(const std::vector<StampedPose>& given) {
     const Matrix6 weak = root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px));
     for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
-      problem_.AddResidualBlock(new LinearPriorCost<6>(weak, Twist::Zero()), nullptr,
-                                correction_.data(k));
-      ordering_->AddElementToGroup(correction_.data(k), 1);
+      bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(weak, Twist::Zero()),
+                         {correction_.data(k)});
     }
     add_slope_prior();
     const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px));
@@ -231,9 +227,10 @@ class BatchProblem {
   /// A prior on sum_k weight_k c_(first + k) of the correction's controls.
   void add_prior(const Matrix6& root, const Twist& mean, const Eigen::Vector4d& weight,
                  std::size_t first) {
-    problem_.AddResidualBlock(new LinearPriorCost<6>(root, mean, {weight.begin(), weight.end()}),
-                              nullptr, correction_.data(first), correction_.data(first + 1),
-                              correction_.data(first + 2), correction_.data(first + 3));
+    bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(
+                           root, mean, std::vector<double>(weight.begin(), weight.end())),
+                       {correction_.data(first), correction_.data(first + 1),
+                        correction_.data(first + 2), correction_.data(first + 3)});
   }
 
   /// c_(k-1) - 2 c_k + c_(k+1) = 0 of the correction's controls: its slope is a random walk.
@@ -263,23 +260,7 @@ class BatchProblem {
         path_, correction_.knots(),
         InertialStart{*input.imu, aligned, input.is_metric || !knows_scale, depth_m_},
         options_.imu_interval_s, 1 / std::sqrt(options_.information_ratio));
-    inertial_factors_->add_to(problem_, correction_, *ordering_);
-  }
-
-  [[nodiscard]] Eigen::MatrixXd inverse_information() {
-    std::vector<double*> controls, edges;
-    for (std::size_t k = 0; k < correction_.knots().controls(); ++k)
-      controls.push_back(correction_.data(k));
-    if (inertial_factors_)
-      for (double* block : inertial_factors_->unknowns()) controls.push_back(block);
-    for (BatchEdge& edge : edges_) edges.push_back(edge.unknowns.data());
-    const Eigen::MatrixXd information = marginal_information(problem_, controls, edges);
-    if (information.size() == 0) return {};
-    const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    if (factor.info() != Eigen::Success) return {};
-    const auto wanted =
-        static_cast<Eigen::Index>(PathCorrection::kSize * correction_.knots().controls());
-    return factor.solve(Eigen::MatrixXd::Identity(information.rows(), wanted)).topRows(wanted);
+    inertial_factors_->add_to(bundle_, correction_);
   }
 
   const Trajectory& path_;
@@ -294,10 +275,7 @@ class BatchProblem {
   std::vector<std::vector<std::uint8_t>> run_positions_;  ///< of the windows' events
   std::vector<BatchEdge> edges_;
   std::optional<InertialFactors> inertial_factors_;
-  std::vector<std::pair<ceres::ResidualBlockId, double>> residuals_;  ///< with their sigma_px
-  ceres::Problem problem_;
-  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
-      std::make_shared<ceres::ParameterBlockOrdering>();
+  PathBundle bundle_;
 };
 
 }  // namespace
@@ -324,7 +302,7 @@ Matrix6 BatchAdjustment::covariance_at(double t_s) const {
   Eigen::Matrix<double, 6, 24> by_twists;
   for (Eigen::Index k = 0; k < 4; ++k)
     by_twists.middleCols<6>(6 * k) = basis.weight[k] * Matrix6::Identity();
-  return saccade::covariance_at(covariance, basis.first, by_twists);
+  return saccade::covariance_at(covariances, basis.first, by_twists);
 }
 
 BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& input,

@@ -12,6 +12,8 @@
 #include "estimator/edges/batch/inertial_factors.h"
 #include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/least_squares/cost_log.h"
+#include "estimator/edges/least_squares/edge_bundle.h"
+#include "estimator/edges/least_squares/path_covariance.h"
 
 namespace saccade {
 
@@ -29,6 +31,7 @@ struct BatchAdjustmentOptions {
   double given_sigma_px = 0.02;     ///< of the given poses, as image motion
   int rounds = 2;                   ///< of finding the edges, and adjusting them with the path
   int iterations = 10;              ///< of Levenberg-Marquardt in a round, at most
+  BundleSolver solver = BundleSolver::kStructured;
   double information_ratio = 0.04;  ///< of that of independent residuals: neighbours err alike
   bool use_imu = false;             ///< BatchInput::imu joins in
   double imu_interval_s = 0.1;      ///< over which its samples are preintegrated
@@ -53,7 +56,7 @@ struct BatchInput {
 struct BatchAdjustment {
   Trajectory path;  ///< every millisecond
   SplineKnots knots;
-  Eigen::MatrixXd covariance;  ///< of the correction's twists; empty where it is not determined
+  SplineCovariances covariances;  ///< of the correction's twists; empty: they are not determined
   std::optional<InertialAlignment> inertial;  ///< what the samples say, in the last round
   CostLog costs;
   std::size_t observations = 0;  ///< in the last round
@@ -64,9 +67,8 @@ struct BatchAdjustment {
 };
 
 /// The batch optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
-/// over all keyframes' windows, which overlap and so constrain each other, by Ceres with the edges
-/// eliminated first. The residual is that of path_edge_cost.h, its noise model that of
-/// edge_noise.h. The given poses of the start fix the gauge. With an inertial sensor its
+/// over all keyframes' windows, which overlap and so constrain each other, solved as an EdgeBundle
+/// with the noise model of edge_noise.h. The given poses of the start fix the gauge. With an inertial sensor its
 /// preintegrated samples join in (inertial_cost.h), with gravity, biases and time offset and, of a
 /// path that is not metric, the scale; the path stays in its unit. Deterministic for any number of
 /// threads. `progress` is called with the steps done since its last call, of options.steps() in

@@ -87,51 +87,47 @@ InertialCost::Matrix9 InertialFactors::root_of(const Preintegration& sum) const 
   return weight_ * InertialCost::Matrix9(factor.matrixL().solve(InertialCost::Matrix9::Identity()));
 }
 
-void InertialFactors::add_to(ceres::Problem& problem, PathCorrection& correction,
-                             ceres::ParameterBlockOrdering& ordering) {
+void InertialFactors::add_to(PathBundle& bundle, PathCorrection& correction) {
+  // Block by block: velocities far apart do not couple.
+  for (std::size_t j = 0; j < nodes_.size(); ++j) bundle.keep({velocity(j), 3});
+  for (std::size_t i = 0; i < biases_; ++i) bundle.keep({bias(i), 6});
+  bundle.keep({frame(), InertialFrame::kSize});
   for (const Link& link : links_) {
-    auto* cost = new InertialCost({nodes_[link.node], nodes_[link.node + 1]}, link.sum,
-                                  start_.imu.position_in_camera, frame_, root_of(link.sum));
+    auto cost = std::make_unique<InertialCost>(std::array{nodes_[link.node], nodes_[link.node + 1]},
+                                               link.sum, start_.imu.position_in_camera, frame_,
+                                               root_of(link.sum));
     std::vector<double*> blocks;
     for (std::size_t k = 0; k < cost->controls(); ++k)
       blocks.push_back(correction.data(cost->first_control() + k));
     blocks.insert(blocks.end(), {velocity(link.node), velocity(link.node + 1),
                                  bias(bias_of(link.node)), frame()});
-    problem.AddResidualBlock(cost, nullptr, blocks);
+    bundle.add_factor(std::move(cost), std::move(blocks));
   }
-  add_priors(problem);
-  for (double* block : unknowns()) ordering.AddElementToGroup(block, 2);
+  add_priors(bundle);
 }
 
-void InertialFactors::add_priors(ceres::Problem& problem) {
+void InertialFactors::add_priors(PathBundle& bundle) {
   // Where there are no samples; far beyond what a hand does.
   const Eigen::Matrix3d free = root_of_sigma<3>(Eigen::Vector3d::Constant(kFree));
   for (std::size_t j = 0; j < nodes_.size(); ++j)
-    problem.AddResidualBlock(
-        new LinearPriorCost<3>(free, Eigen::Map<const Eigen::Vector3d>(velocity(j))), nullptr,
-        velocity(j));
-  problem.AddResidualBlock(
-      new LinearPriorCost<6>(root_of_sigma<6>(biases_of(kGyroBiasSigma, kAccelBiasSigma)),
-                             Twist::Zero()),
-      nullptr, bias(0));
+    bundle.add_factor(
+        std::make_unique<LinearPriorCost<3>>(free, Eigen::Map<const Eigen::Vector3d>(velocity(j))),
+        {velocity(j)});
+  bundle.add_factor(
+      std::make_unique<LinearPriorCost<6>>(
+          root_of_sigma<6>(biases_of(kGyroBiasSigma, kAccelBiasSigma)), Twist::Zero()),
+      {bias(0)});
   const Matrix6 walk = root_of_sigma<6>(biases_of(kGyroBiasWalk, kAccelBiasWalk));
   for (std::size_t i = 0; i + 1 < biases_; ++i)
-    problem.AddResidualBlock(new LinearPriorCost<6>(walk, Twist::Zero(), {-1, 1}), nullptr, bias(i),
-                             bias(i + 1));
+    bundle.add_factor(
+        std::make_unique<LinearPriorCost<6>>(walk, Twist::Zero(), std::vector<double>{-1, 1}),
+        {bias(i), bias(i + 1)});
   const Eigen::Map<const InertialFrame::Vector> mean(frame());
   const InertialFrame::Vector sigma(kFree, kFree, start_.is_metric ? kKnownScale : kFree,
                                     kOffsetSigma_s);
-  problem.AddResidualBlock(
-      new LinearPriorCost<InertialFrame::kSize>(root_of_sigma<InertialFrame::kSize>(sigma), mean),
-      nullptr, frame());
-}
-
-std::vector<double*> InertialFactors::unknowns() {
-  std::vector<double*> blocks;
-  for (std::size_t j = 0; j < nodes_.size(); ++j) blocks.push_back(velocity(j));
-  for (std::size_t i = 0; i < biases_; ++i) blocks.push_back(bias(i));
-  blocks.push_back(frame());
-  return blocks;
+  bundle.add_factor(std::make_unique<LinearPriorCost<InertialFrame::kSize>>(
+                        root_of_sigma<InertialFrame::kSize>(sigma), mean),
+                    {frame()});
 }
 
 InertialAlignment InertialFactors::found() const {

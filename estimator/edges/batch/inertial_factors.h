@@ -3,11 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <ceres/ceres.h>
-
 #include "core/trajectory.h"
 #include "estimator/edges/batch/inertial_cost.h"
 #include "estimator/edges/batch/path_correction.h"
+#include "estimator/edges/least_squares/edge_bundle.h"
 #include "estimator/imu/inertial_alignment.h"
 
 namespace saccade {
@@ -21,18 +20,16 @@ struct InertialStart {
 };
 
 /// Gravity, biases, scale, time offset and the sensor's velocities, and the preintegrated samples
-/// that constrain them together with a path's correction (InertialCost). Outlives the problem that it adds to.
+/// that constrain them together with a path's correction (InertialCost). Outlives the bundle that it adds to.
 class InertialFactors {
  public:
   /// `interval_s`: over which samples are preintegrated; `weight`: of a residual, over 1 / its sigma.
   InertialFactors(const Trajectory& path, const SplineKnots& knots, const InertialStart& start,
                   double interval_s, double weight);
 
-  /// Its unknowns join the last group of the ordering.
-  void add_to(ceres::Problem& problem, PathCorrection& correction,
-              ceres::ParameterBlockOrdering& ordering);
+  /// `correction` is that of the bundle's path.
+  void add_to(PathBundle& bundle, PathCorrection& correction);
 
-  [[nodiscard]] std::vector<double*> unknowns();
   /// What was found, with the first bias; sigmas are the start's.
   [[nodiscard]] InertialAlignment found() const;
 
@@ -48,7 +45,7 @@ class InertialFactors {
   [[nodiscard]] double* bias(std::size_t i) { return &unknowns_[3 * nodes_.size() + 6 * i]; }
   [[nodiscard]] double* frame() { return &unknowns_[unknowns_.size() - InertialFrame::kSize]; }
   [[nodiscard]] std::size_t bias_of(std::size_t node) const;
-  void add_priors(ceres::Problem& problem);
+  void add_priors(PathBundle& bundle);
 
   const Trajectory& path_;
   SplineKnots knots_;

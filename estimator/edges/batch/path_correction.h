@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/spline/knots.h"
@@ -21,6 +22,10 @@ class PathCorrection {
 
   [[nodiscard]] const SplineKnots& knots() const { return knots_; }
   [[nodiscard]] double* data(std::size_t control) { return twists_[control].data(); }
+  /// The six numbers of all controls, one after the other.
+  [[nodiscard]] std::span<double> unknowns() {
+    return {twists_.front().data(), kSize * twists_.size()};
+  }
   [[nodiscard]] Twist control(std::size_t i) const {
     return Eigen::Map<const Twist>(twists_[i].data());
   }

@@ -1,15 +1,13 @@
 #include "estimator/edges/least_squares/cost_log.h"
 
-#include <ceres/iteration_callback.h>
-
 #include "core/io/tables/csv_file.h"
 
 namespace saccade {
 
-void CostLog::add_round(std::span<const ceres::IterationSummary> iterations, double start_s) {
-  for (const ceres::IterationSummary& iteration : iterations)
-    steps_.push_back({rounds_, iteration.iteration, iteration.cost,
-                      start_s + iteration.cumulative_time_in_seconds});
+void CostLog::add_round(std::span<const SolverIteration> iterations, double start_s) {
+  for (std::size_t i = 0; i < iterations.size(); ++i)
+    steps_.push_back(
+        {rounds_, static_cast<int>(i), iterations[i].cost, start_s + iterations[i].seconds});
   ++rounds_;
 }
 

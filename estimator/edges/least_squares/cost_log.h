@@ -6,11 +6,19 @@
 
 #include "core/stopwatch.h"
 
-namespace ceres {
-struct IterationSummary;
-}
-
 namespace saccade {
+
+/// An iteration of a solver; the first is the start.
+struct SolverIteration {
+  double cost = 0;
+  double seconds = 0;  ///< since the solver began
+};
+
+/// What a solver did.
+struct SolverSummary {
+  std::vector<SolverIteration> iterations;
+  bool is_usable = false;  ///< false: the problem could not be evaluated, and nothing is changed
+};
 
 /// One iteration of a refinement.
 struct IterationCost {
@@ -26,7 +34,7 @@ class CostLog {
   /// Since the refinement began [s].
   [[nodiscard]] double now_s() const { return stopwatch_.seconds(); }
   /// Appends the iterations of a round whose adjustment began at `start_s`.
-  void add_round(std::span<const ceres::IterationSummary> iterations, double start_s);
+  void add_round(std::span<const SolverIteration> iterations, double start_s);
   /// Appends what independent problems of one view cost together, before and after; a round.
   void add_view(double before, double after, double now_s) {
     steps_.push_back({rounds_, 0, before, 0});

@@ -2,11 +2,17 @@
 
 namespace saccade {
 
-Matrix6 covariance_at(const Eigen::MatrixXd& covariance, std::size_t first_control,
+SplineCovariances spline_covariances(const Eigen::MatrixXd& covariance) {
+  SplineCovariances blocks;
+  for (Eigen::Index first = 0; first + 24 <= covariance.rows(); first += 6)
+    blocks.emplace_back(covariance.block<24, 24>(first, first));
+  return blocks;
+}
+
+Matrix6 covariance_at(const SplineCovariances& covariances, std::size_t first_control,
                       const Eigen::Matrix<double, 6, 24>& by_controls) {
-  if (covariance.size() == 0) return Matrix6::Zero();
-  const auto first = static_cast<Eigen::Index>(6 * first_control);
-  return by_controls * covariance.block<24, 24>(first, first) * by_controls.transpose();
+  if (covariances.empty()) return Matrix6::Zero();
+  return by_controls * covariances[first_control] * by_controls.transpose();
 }
 
 std::vector<StampedCovariance> set_sigmas(std::span<TrackedPose> poses,

@@ -12,12 +12,19 @@
 
 namespace saccade {
 
+/// Covariances of a cubic spline's unknowns, six of each control: block i of the controls i .. i + 3,
+/// on which a pose depends. Memory grows with the length of the path alone.
+using SplineCovariances = std::vector<Eigen::Matrix<double, 24, 24>>;
+
+/// The blocks of a covariance of all controls.
+[[nodiscard]] SplineCovariances spline_covariances(const Eigen::MatrixXd& covariance);
+
 /// Covariance of a pose of a cubic spline, propagated to first order:
 ///   J C J^T,
-/// C the part of `covariance` that belongs to the four controls from `first_control` on, six
-/// unknowns each, and J the derivative of the pose's twist (v, w), in the camera's axes, by them. 0
-/// where `covariance` is empty, which says that it is not determined.
-[[nodiscard]] Matrix6 covariance_at(const Eigen::MatrixXd& covariance, std::size_t first_control,
+/// C that of the four controls from `first_control` on, and J the derivative of the pose's twist
+/// (v, w), in the camera's axes, by them. 0 where `covariances` is empty, which says that they are
+/// not determined.
+[[nodiscard]] Matrix6 covariance_at(const SplineCovariances& covariances, std::size_t first_control,
                                     const Eigen::Matrix<double, 6, 24>& by_controls);
 
 /// Gives poses the sigmas of their covariances at their times; returns these covariances.

@@ -15,22 +15,26 @@ class CallEach : public ceres::IterationCallback {
   const std::function<void()>& each_;
 };
 
-ceres::Solver::Summary solve(ceres::Problem& problem, ceres::Solver::Options options,
-                             int iterations, double tolerance) {
+SolverSummary solve(ceres::Problem& problem, ceres::Solver::Options options, int iterations,
+                    double tolerance) {
   options.max_num_iterations = iterations;
   options.function_tolerance = tolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solver::Summary solved;
+  ceres::Solve(options, &problem, &solved);
+  SolverSummary summary;
+  summary.is_usable = solved.IsSolutionUsable();
+  for (const ceres::IterationSummary& iteration : solved.iterations)
+    summary.iterations.push_back({iteration.cost, iteration.cumulative_time_in_seconds});
   return summary;
 }
 
 }  // namespace
 
-ceres::Solver::Summary solve_by_schur(
-    ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering,
-    int iterations, double tolerance, const std::function<void()>& each) {
+SolverSummary solve_by_schur(ceres::Problem& problem,
+                             const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering,
+                             int iterations, double tolerance, const std::function<void()>& each) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
@@ -39,7 +43,7 @@ ceres::Solver::Summary solve_by_schur(
   return solve(problem, options, iterations, tolerance);
 }
 
-ceres::Solver::Summary solve_sparsely(ceres::Problem& problem, int iterations, double tolerance) {
+SolverSummary solve_sparsely(ceres::Problem& problem, int iterations, double tolerance) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   return solve(problem, options, iterations, tolerance);

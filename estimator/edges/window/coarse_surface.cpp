@@ -1,41 +1,16 @@
 #include "estimator/edges/window/coarse_surface.h"
 
-#include <ceres/ceres.h>
+#include <ceres/sized_cost_function.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace saccade {
 namespace {
 
-constexpr int kEdgeSize = 4;
 /// Sigma of neighbouring nodes, relative: constrains those that no edge is near to.
 constexpr double kRoughness = 0.3;
-
-/// (rho - sum_k weight_k node_k) / sigma.
-class OnSurfaceCost : public ceres::SizedCostFunction<1, kEdgeSize, 1, 1, 1, 1> {
- public:
-  OnSurfaceCost(const std::array<double, 4>& weights, double sigma)
-      : weights_(weights), sigma_(sigma) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    residuals[0] = parameters[0][0] / sigma_;
-    for (std::size_t k = 0; k < 4; ++k) residuals[0] -= weights_[k] * parameters[k + 1][0] / sigma_;
-    if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) {
-      std::fill_n(jacobians[0], kEdgeSize, 0.0);
-      jacobians[0][0] = 1 / sigma_;
-    }
-    for (std::size_t k = 0; k < 4; ++k)
-      if (jacobians[k + 1] != nullptr) jacobians[k + 1][0] = -weights_[k] / sigma_;
-    return true;
-  }
-
- private:
-  std::array<double, 4> weights_;
-  double sigma_;
-};
 
 /// (b - a) / sigma.
 class DifferenceCost : public ceres::SizedCostFunction<1, 1, 1> {
@@ -88,24 +63,24 @@ auto CoarseSurface::cell_at(const Eigen::Vector2d& pixel) const -> Cell {
           {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b}};
 }
 
-void CoarseSurface::add_smoothness(ceres::Problem& problem) {
+void CoarseSurface::add_to(WindowBundle& bundle) {
+  bundle.keep(nodes_);
+  const double sigma = kRoughness * inverse_depth_;
   for (int y = 0; y < rows_; ++y)
     for (int x = 0; x < columns_; ++x) {
       if (x > 0)
-        problem.AddResidualBlock(new DifferenceCost(kRoughness * inverse_depth_), nullptr,
-                                 node(x - 1, y), node(x, y));
+        bundle.add_factor(std::make_unique<DifferenceCost>(sigma), {node(x - 1, y), node(x, y)});
       if (y > 0)
-        problem.AddResidualBlock(new DifferenceCost(kRoughness * inverse_depth_), nullptr,
-                                 node(x, y - 1), node(x, y));
+        bundle.add_factor(std::make_unique<DifferenceCost>(sigma), {node(x, y - 1), node(x, y)});
     }
 }
 
-void CoarseSurface::add_edge(ceres::Problem& problem, const Eigen::Vector2d& pixel,
-                             double* unknowns, double sigma) {
+WindowBundle::SurfaceLink CoarseSurface::link(const Eigen::Vector2d& pixel, double sigma) {
   const Cell cell = cell_at(pixel);
-  problem.AddResidualBlock(new OnSurfaceCost(cell.weights, sigma * inverse_depth_),
-                           new ceres::CauchyLoss(1), unknowns, &nodes_[cell.nodes[0]],
-                           &nodes_[cell.nodes[1]], &nodes_[cell.nodes[2]], &nodes_[cell.nodes[3]]);
+  return {{&nodes_[cell.nodes[0]], &nodes_[cell.nodes[1]], &nodes_[cell.nodes[2]],
+           &nodes_[cell.nodes[3]]},
+          cell.weights,
+          sigma * inverse_depth_};
 }
 
 }  // namespace saccade

@@ -7,10 +7,7 @@
 #include <Eigen/Core>
 
 #include "core/camera.h"
-
-namespace ceres {
-class Problem;
-}  // namespace ceres
+#include "estimator/edges/least_squares/edge_bundle.h"
 
 namespace saccade {
 
@@ -22,14 +19,13 @@ class CoarseSurface {
   /// Nodes every `spacing_px` > 0 or less over the camera's view, at `inverse_depth` > 0 [1/m].
   CoarseSurface(const PinholeCamera& camera, double spacing_px, double inverse_depth);
 
-  /// Adds to the problem that it is smooth where no edge says more.
-  void add_smoothness(ceres::Problem& problem);
-  /// Adds that an edge at `pixel` of the view, with the unknowns of EdgeUnknowns, lies on it to a
-  /// relative standard deviation `sigma` (Cauchy).
-  void add_edge(ceres::Problem& problem, const Eigen::Vector2d& pixel, double* unknowns,
-                double sigma);
+  /// Keeps its nodes among the bundle's unknowns, and adds that they are smooth where no edge says
+  /// more.
+  void add_to(WindowBundle& bundle);
+  /// That an edge at `pixel` of the view lies on it to a relative standard deviation `sigma`.
+  [[nodiscard]] WindowBundle::SurfaceLink link(const Eigen::Vector2d& pixel, double sigma);
 
-  /// Inverse depths [1/m], row by row: the problem's unknowns.
+  /// Inverse depths [1/m], row by row.
   [[nodiscard]] std::span<double> nodes() { return nodes_; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,10 @@ class NodeCorrection {
   [[nodiscard]] double* data(int node) { return nodes_[static_cast<std::size_t>(node)].data(); }
   [[nodiscard]] const double* data(int node) const {
     return nodes_[static_cast<std::size_t>(node)].data();
+  }
+  /// Those of all nodes, one after the other.
+  [[nodiscard]] std::span<double> unknowns() {
+    return {nodes_.front().data(), kSize * nodes_.size()};
   }
   /// The node before a time and the fraction s of the one after it; times are clamped to the ends.
   [[nodiscard]] std::pair<int, double> before(double t_s) const;

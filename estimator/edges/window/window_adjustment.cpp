@@ -9,15 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <ceres/ceres.h>
-
 #include "core/process/parallel.h"
 #include "estimator/edges/edge_fit.h"
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_noise.h"
+#include "estimator/edges/least_squares/bundle_solver.h"
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
-#include "estimator/edges/least_squares/schur_solver.h"
 #include "estimator/edges/window/coarse_surface.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/edges/window/observed_edges.h"
@@ -26,8 +24,9 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kMinEdges = 30;  ///< fewer do not constrain a path
-constexpr std::size_t kGrain = 16;     ///< edges that a thread takes at a time
+constexpr std::size_t kMinEdges = 30;    ///< fewer do not constrain a path
+constexpr double kCostTolerance = 1e-5;  ///< of the cost, where an adjustment ends
+constexpr std::size_t kGrain = 16;       ///< edges that a thread takes at a time
 
 EdgeUnknowns unknowns_of(const FittedEdgel& edge) {
   return {static_cast<double>(edge.edge.inverse_depth), 0, 0, 0};
@@ -57,7 +56,8 @@ class WindowProblem {
                     seconds_from_ns(window.events.back().t_ns), options.node_spacing_s),
         observed_(window, edges, camera, correction_,
                   [&](double t_s) { return t_s < priors.given_until_s ? options.given_pairs : 1; }),
-        surface_(observed_.camera(), options.surface_spacing_px, 1 / priors.typical_depth_m) {}
+        surface_(observed_.camera(), options.surface_spacing_px, 1 / priors.typical_depth_m),
+        bundle_(observed_.camera(), correction_.unknowns()) {}
 
   WindowAdjustment solve() {
     WindowAdjustment result;
@@ -66,11 +66,11 @@ class WindowProblem {
     if (edges_.edges.size() < kMinEdges) return result;
     add_edges();
     add_nodes();
-    if (options_.surface_sigma > 0) add_surface();
+    if (options_.surface_sigma > 0) surface_.add_to(bundle_);
     result.residual_before_px = residual_sigma_px();
-    const auto summary = solve_by_schur(problem_, ordering_, options_.iterations, 1e-5);
+    result.ok =
+        solve_bundle(bundle_, options_.solver, {options_.iterations, kCostTolerance}).is_usable;
     result.residual_after_px = residual_sigma_px();
-    result.ok = summary.IsSolutionUsable();
     if (result.ok) correct(result);
     return result;
   }
@@ -107,16 +107,18 @@ class WindowProblem {
       ChosenEdge& edge = chosen_[k];
       edge.pixel = fitted.edge.pixel.cast<double>();
       edge.unknowns = unknowns_of(fitted);
-      const double weight = 1 / EdgeNoise::sigma_px(fitted);
-      for (std::size_t i = 0; i < edge.events.size();) {
-        // One that is left alone is paired with nothing.
-        const bool is_pair =
-            i + 1 < edge.events.size() && edge.events[i + 1].node == edge.events[i].node;
-        add_pair(edge, edge.events[i], edge.events[is_pair ? i + 1 : i],
-                 {weight, is_pair ? weight : 0});
-        i += is_pair ? 2 : 1;
-      }
-      add_prior(edge, prior_of(fitted));
+      // Robust, since not every landmark is on the edge.
+      const EdgePrior prior = prior_of(fitted);
+      std::optional<WindowBundle::SurfaceLink> link;
+      if (options_.surface_sigma > 0) link = surface_.link(edge.pixel, options_.surface_sigma);
+      bundle_.add_edge(edge.pixel, fitted.edge.normal.cast<double>(), edge.unknowns.data(),
+                       {prior.mean, prior.sigma, true}, link);
+      for (const ObservedEvent& event : edge.events)
+        (void)bundle_.add_event({event.observation,
+                                 0,
+                                 EdgeNoise::sigma_px(fitted),
+                                 static_cast<std::size_t>(event.node),
+                                 {1 - event.fraction, event.fraction}});
     }
   }
 
@@ -125,13 +127,6 @@ class WindowProblem {
     EdgeUnknowns unknowns;
     std::vector<ObservedEvent> events;
   };
-
-  void add_pair(ChosenEdge& edge, const ObservedEvent& first, const ObservedEvent& second,
-                const std::array<double, 2>& weights) {
-    problem_.AddResidualBlock(new EventPairCost({first, second}, weights, observed_.camera()),
-                              nullptr, correction_.data(first.node),
-                              correction_.data(first.node + 1), edge.unknowns.data());
-  }
 
   /// By the landmark that the edge lies on, where there is one.
   [[nodiscard]] EdgePrior prior_of(const FittedEdgel& fitted) const {
@@ -150,28 +145,19 @@ class WindowProblem {
     return prior;
   }
 
-  /// Robust, since not every landmark is on the edge.
-  void add_prior(ChosenEdge& edge, const EdgePrior& prior) {
-    const Eigen::Matrix4d root = root_of_sigma<4>(prior.sigma);
-    for (const int first : {0, 2})
-      problem_.AddResidualBlock(new LinearPriorCost<4, 2>(root.middleRows<2>(first), prior.mean),
-                                new ceres::CauchyLoss(EdgeNoise::kCauchyScale),
-                                edge.unknowns.data());
-    ordering_->AddElementToGroup(edge.unknowns.data(), 0);
-  }
-
   void add_nodes() {
     const Matrix6 smooth = sqrt_information_of_px(options_.smoothness_sigma_px);
     const Matrix6 active = sqrt_information_of_px(options_.pose_sigma_px);
     const Matrix6 fixed = root_of_sigma<6>(sigma_of_px(options_.fixed_sigma_px));
     for (int i = 0; i < correction_.count(); ++i) {
       const bool is_fixed = correction_.time_s(i) <= priors_.fixed_until_s;
-      problem_.AddResidualBlock(new LinearPriorCost<6>(is_fixed ? fixed : active, Twist::Zero()),
-                                nullptr, correction_.data(i));
+      bundle_.add_factor(
+          std::make_unique<LinearPriorCost<6>>(is_fixed ? fixed : active, Twist::Zero()),
+          {correction_.data(i)});
       if (i > 0)
-        problem_.AddResidualBlock(new LinearPriorCost<6>(smooth, Twist::Zero(), {-1, 1}), nullptr,
-                                  correction_.data(i - 1), correction_.data(i));
-      ordering_->AddElementToGroup(correction_.data(i), 1);
+        bundle_.add_factor(
+            std::make_unique<LinearPriorCost<6>>(smooth, Twist::Zero(), std::vector<double>{-1, 1}),
+            {correction_.data(i - 1), correction_.data(i)});
     }
   }
 
@@ -185,22 +171,13 @@ class WindowProblem {
     return observation;
   }
 
-  void add_surface() {
-    surface_.add_smoothness(problem_);
-    for (ChosenEdge& edge : chosen_)
-      surface_.add_edge(problem_, edge.pixel, edge.unknowns.data(), options_.surface_sigma);
-    // A group of its own: within one Ceres orders by address, which differs from run to run.
-    for (double& node : surface_.nodes()) ordering_->AddElementToGroup(&node, 2);
-  }
-
   /// Median of the absolute residuals, as the sigma of a Gaussian [px].
-  [[nodiscard]] double residual_sigma_px() {
-    std::vector<double> residuals;
-    for (const ChosenEdge& edge : chosen_)
-      for (const ObservedEvent& event : edge.events)
-        residuals.push_back(std::abs(edge_residual(moved(event), observed_.camera(), Twist::Zero(),
-                                                   edge.unknowns, nullptr)));
-    return gaussian_sigma(residuals);
+  [[nodiscard]] double residual_sigma_px() const {
+    std::vector<double> absolute_px;
+    bundle_.for_each_residual([&](double residual, double sigma_px) {
+      absolute_px.push_back(std::abs(residual) * sigma_px);
+    });
+    return gaussian_sigma(absolute_px);
   }
 
   void correct(WindowAdjustment& result) {
@@ -244,9 +221,7 @@ class WindowProblem {
   ObservedEdges observed_;
   std::vector<ChosenEdge> chosen_;
   CoarseSurface surface_;
-  ceres::Problem problem_;
-  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
-      std::make_shared<ceres::ParameterBlockOrdering>();
+  WindowBundle bundle_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/trajectory.h"
 #include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/landmarks.h"
+#include "estimator/edges/least_squares/edge_bundle.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
@@ -22,6 +23,7 @@ struct WindowAdjustmentOptions {
   /// many, evenly in time: only there events determine the scale.
   int given_pairs = 5;
   int iterations = 10;  ///< of Levenberg-Marquardt, at most
+  BundleSolver solver = BundleSolver::kStructured;
   /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
   double landmark_sigma_px = 0.1;       ///< across the edge
   double landmark_depth_sigma = 0.003;  ///< relative, beside the landmark's own
@@ -58,10 +60,9 @@ struct WindowAdjustment {
 
 /// Bundle adjustment over a sliding window (Triggs et al., 2000), edges in place of points: a
 /// NodeCorrection of the path, and of every edge the inverse depth, offset, tilt and hysteresis. It
-/// minimises the residual of edge_residual.h with the noise model of edge_noise.h, by Ceres with
-/// the edges eliminated first (Schur). The fixed poses and the landmarks on which edges lie
-/// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic;
-/// one thread.
+/// minimises the residual of edge_residual.h with the noise model of edge_noise.h as an EdgeBundle. The fixed poses and the landmarks on which edges lie
+/// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic
+/// for any number of threads.
 [[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edges,
                                              const PinholeCamera& camera,
                                              const WindowPriors& priors,

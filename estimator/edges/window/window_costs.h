@@ -44,60 +44,11 @@ namespace saccade {
   return (information / count).llt().matrixU();
 }
 
-/// What a Cauchy loss a^2 ln(1 + (r/a)^2) makes of a residual r: r' with r'^2 the loss, and dr'/dr.
-[[nodiscard]] inline std::pair<double, double> cauchy_residual(double residual, double scale) {
-  const double squared = (residual / scale) * (residual / scale);
-  // The series of sqrt(log1p(x) / x), where the quotient has no digits left.
-  const double shrunk = squared < 1e-8 ? 1 - squared / 4 : std::sqrt(std::log1p(squared) / squared);
-  return {residual * shrunk, 1 / (shrunk * (1 + squared))};
-}
-
 /// An event of an edge between two nodes of a path's correction.
 struct ObservedEvent {
   EdgeObservation observation;
   int node = 0;         ///< the earlier
   double fraction = 0;  ///< s of the later, 0..1
-};
-
-/// The residuals of edge_residual.h of two events of one edge between the same two nodes, over
-/// their sigma: a pair, because of Ceres' Schur eliminators the one for rows of two with blocks of
-/// four and six is compiled for these sizes, and that for single rows is not. The loss of EdgeNoise
-/// is inside, so that one event of a pair may be an outlier. Parameters: both nodes, the edge.
-class EventPairCost
-    : public ceres::SizedCostFunction<2, NodeCorrection::kSize, NodeCorrection::kSize, 4> {
- public:
-  /// `weights`: 1 / sigma [1/px] of each; 0: no event. `camera` outlives this.
-  EventPairCost(const std::array<ObservedEvent, 2>& events, const std::array<double, 2>& weights,
-                const PinholeCamera& camera)
-      : events_(events), weights_(weights), camera_(camera) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Twist> before(parameters[0]), after(parameters[1]);
-    const Eigen::Map<const EdgeUnknowns> edge(parameters[2]);
-    for (std::size_t row = 0; row < 2; ++row) {
-      const double weight = weights_[row], s = events_[row].fraction;
-      EdgeDerivatives by;
-      const double residual =
-          edge_residual(events_[row].observation, camera_, (1 - s) * before + s * after, edge,
-                        jacobians != nullptr ? &by : nullptr);
-      if (!std::isfinite(residual)) return false;
-      const auto [value, slope] = cauchy_residual(weight * residual, EdgeNoise::kCauchyScale);
-      residuals[row] = value;
-      if (jacobians == nullptr) continue;
-      const double scale = weight * slope;
-      for (std::size_t node = 0; node < 2; ++node)
-        if (jacobians[node] != nullptr)
-          write_block(jacobians[node] + row * 6, scale * (node == 0 ? 1 - s : s) * by.motion);
-      if (jacobians[2] != nullptr) write_block(jacobians[2] + row * 4, scale * by.edge);
-    }
-    return true;
-  }
-
- private:
-  std::array<ObservedEvent, 2> events_;
-  std::array<double, 2> weights_;
-  const PinholeCamera& camera_;
 };
 
 }  // namespace saccade

@@ -86,7 +86,7 @@ std::vector<StampedCovariance> replace_poses(const BatchAdjustment& result,
     // What the run said of its own pose does not hold of this one.
     pose.probability = std::numeric_limits<double>::quiet_NaN();
   }
-  if (result.covariance.size() == 0) return {};
+  if (result.covariances.empty()) return {};
   return set_sigmas(poses, [&](double t_s) { return result.covariance_at(t_s); });
 }
 
@@ -96,11 +96,12 @@ void transform_to_metric_world(BatchAdjustment& result) {
   for (StampedPose& pose : poses)
     pose.world_from_camera = in_metric_world(*result.inertial, pose.world_from_camera);
   result.path = Trajectory(std::move(poses));
-  for (Eigen::Index i = 0; i < result.covariance.rows(); ++i) {
-    if (i % PathCorrection::kSize >= 3) continue;
-    result.covariance.row(i) *= result.inertial->scale;
-    result.covariance.col(i) *= result.inertial->scale;
-  }
+  for (auto& covariance : result.covariances)
+    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+      if (i % PathCorrection::kSize >= 3) continue;
+      covariance.row(i) *= result.inertial->scale;
+      covariance.col(i) *= result.inertial->scale;
+    }
 }
 
 /// The run's keyframes with their depth on the refined path.

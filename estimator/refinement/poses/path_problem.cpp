@@ -71,18 +71,19 @@ PathEvidence PathProblem::judge(double information) {
     squares += clipped_square(value);
   }
   evidence.residual = gaussian_sigma(absolute);
-  evidence.covariance =
-      covariance(squares / (static_cast<double>(residuals_.size()) * information));
+  evidence.covariances =
+      covariances(squares / (static_cast<double>(residuals_.size()) * information));
   return evidence;
 }
 
-Eigen::MatrixXd PathProblem::covariance(double scale) {
+SplineCovariances PathProblem::covariances(double scale) {
   const Eigen::MatrixXd information =
       marginal_information(problem_, corrections(0, corrections_.size()), eliminated_);
   if (information.size() == 0) return {};
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success) return {};
-  return scale * factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return spline_covariances(
+      scale * factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())));
 }
 
 }  // namespace saccade

@@ -11,6 +11,7 @@
 
 #include "core/spline/knots.h"
 #include "estimator/edges/least_squares/cost_log.h"
+#include "estimator/edges/least_squares/path_covariance.h"
 #include "estimator/refinement/poses/log_intensity_sample.h"
 
 namespace saccade {
@@ -22,7 +23,7 @@ struct PathEvidence {
   double residual = 0;      ///< robust standard deviation [log units]
   /// Of the control poses' corrections (e, w), see log_intensity_sample.h; empty where they are not
   /// determined.
-  Eigen::MatrixXd covariance;
+  SplineCovariances covariances;
 };
 
 /// One round of a path's refinement: its control poses, and residuals that they are adjusted to.
@@ -54,7 +55,7 @@ class PathProblem {
     ceres::ResidualBlockId id;
     double sigma;
   };
-  [[nodiscard]] Eigen::MatrixXd covariance(double scale);
+  [[nodiscard]] SplineCovariances covariances(double scale);
 
   SplineControls path_;
   std::vector<std::array<double, kControlSize>> corrections_;

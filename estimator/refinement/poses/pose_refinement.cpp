@@ -36,7 +36,7 @@ Matrix6 RefinedPath::covariance_at(double t_s) const {
     by_controls.block<3, 3>(0, 6 * k) = basis.weight[k] * camera_from_map;
     by_controls.block<3, 3>(3, 6 * k + 3) = pose.rotation_jacobian.middleCols<3>(3 * k);
   }
-  return saccade::covariance_at(covariance, basis.first, by_controls);
+  return saccade::covariance_at(covariances, basis.first, by_controls);
 }
 
 RefinedPath refine_path(const MapSurface& surface, const PinholeCamera& camera,

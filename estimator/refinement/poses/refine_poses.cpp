@@ -54,7 +54,7 @@ std::vector<StampedCovariance> replace_poses(const RefinedPath& path, const Rigi
     // What the run said of its own pose does not hold of this one.
     pose.probability = std::numeric_limits<double>::quiet_NaN();
   }
-  if (path.covariance.size() == 0) return {};
+  if (path.covariances.empty()) return {};
   return set_sigmas(poses, [&](double t_s) { return path.covariance_at(t_s); });
 }
 

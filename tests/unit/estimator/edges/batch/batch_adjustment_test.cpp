@@ -186,7 +186,7 @@ TEST(BatchAdjustments, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.path.poses()[i].world_from_camera.rotation().coeffs(),
               three.path.poses()[i].world_from_camera.rotation().coeffs());
   }
-  EXPECT_EQ(one.covariance, three.covariance);
+  EXPECT_EQ(one.covariances, three.covariances);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "estimator/edges/window/coarse_surface.h"
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
-#include <array>
+#include <memory>
 #include <vector>
+
+#include "estimator/edges/least_squares/bundle_solver.h"
+#include "estimator/edges/least_squares/prior_cost.h"
 
 namespace saccade {
 namespace {
@@ -19,78 +21,57 @@ PinholeCamera camera() {
   return camera;
 }
 
-/// Edges all over the view at 0.5 + 0.002 x, with the unknowns of an adjustment.
+/// Edges all over the view at 0.5 + 0.002 x without events, the unknowns of an adjustment.
 struct Edges {
-  std::vector<std::array<double, 4>> unknowns;
+  std::vector<Eigen::Vector4d> unknowns;
   std::vector<Eigen::Vector2d> pixels;
+  std::vector<double> path = std::vector<double>(12, 0);
 
   Edges() {
     for (int y = 3; y < 60; y += 6)
-      for (int x = 2; x < 100; x += 7) unknowns.push_back({0.5 + 0.002 * x, 0.1, 0.2, 0.3});
-    for (int y = 3; y < 60; y += 6)
-      for (int x = 2; x < 100; x += 7) pixels.emplace_back(x, y);
+      for (int x = 2; x < 100; x += 7) {
+        unknowns.emplace_back(0.5 + 0.002 * x, 0.1, 0.2, 0.3);
+        pixels.emplace_back(x, y);
+      }
   }
 
-  void add_to(CoarseSurface& surface, ceres::Problem& problem, double sigma) {
-    surface.add_smoothness(problem);
+  /// Each edge's depth is certain to `prior_sigma`, relative.
+  WindowBundle bundle(CoarseSurface& surface, double sigma, double prior_sigma) {
+    WindowBundle bundle(camera(), path);
+    surface.add_to(bundle);
     for (std::size_t i = 0; i < pixels.size(); ++i)
-      surface.add_edge(problem, pixels[i], unknowns[i].data(), sigma);
+      bundle.add_edge(pixels[i], {1, 0}, unknowns[i].data(),
+                      {unknowns[i], {prior_sigma * unknowns[i][0], 1, 1, 1}},
+                      surface.link(pixels[i], sigma));
+    for (const std::size_t node : {0U, 6U})
+      bundle.add_factor(std::make_unique<LinearPriorCost<6>>(Matrix6::Identity(), Twist::Zero()),
+                        {&path[node]});
+    return bundle;
   }
 };
 
-double cost_of(ceres::Problem& problem) {
-  double cost = 0;
-  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return cost;
-}
-
-TEST(CoarseSurface, DerivativesAreThoseOfTheCost) {
+TEST(CoarseSurface, GoesThroughTheEdges) {
   Edges edges;
   CoarseSurface surface(camera(), 30, 0.6);
-  ceres::Problem problem;
-  edges.add_to(surface, problem, 0.05);
+  WindowBundle bundle = edges.bundle(surface, 0.02, 0.001);
+  ASSERT_TRUE(solve_bundle(bundle, BundleSolver::kStructured, {30, 1e-12}).is_usable);
+  // Nodes at x = 0, 24.75, ... of a plane, which bilinear nodes meet exactly.
+  const std::size_t columns = 5;
   for (std::size_t i = 0; i < surface.nodes().size(); ++i)
-    surface.nodes()[i] += 0.01 * static_cast<double>(i % 5);
-  std::vector<double*> blocks;
-  problem.GetParameterBlocks(&blocks);
-  double cost = 0;
-  std::vector<double> gradient;
-  // Of its own accord Ceres takes the blocks in another order than it lists them in.
-  ceres::Problem::EvaluateOptions listed;
-  listed.parameter_blocks = blocks;
-  problem.Evaluate(listed, &cost, nullptr, &gradient, nullptr);
-  std::size_t at = 0;
-  for (double* block : blocks)
-    for (int k = 0; k < problem.ParameterBlockSize(block); ++k, ++at) {
-      constexpr double kStep = 1e-6;
-      const double value = block[k];
-      block[k] = value + kStep;
-      const double forward = cost_of(problem);
-      block[k] = value - kStep;
-      const double backward = cost_of(problem);
-      block[k] = value;
-      EXPECT_NEAR(gradient[at], (forward - backward) / (2 * kStep),
-                  1e-5 * (1 + std::abs(gradient[at])));
-    }
+    EXPECT_NEAR(surface.nodes()[i], 0.5 + 0.002 * 24.75 * static_cast<double>(i % columns), 2e-3);
 }
 
 TEST(CoarseSurface, BringsAnEdgeToItsNeighboursButNotOneThatIsFarOff) {
   Edges edges;
-  std::array<double, 4>& near = edges.unknowns[40];
+  Eigen::Vector4d &near = edges.unknowns[40], &far = edges.unknowns[70];
   const double true_inverse_depth = near[0];
-  std::array<double, 4>& far = edges.unknowns[70];
   near[0] *= 1.02;
   far[0] = 5;
   CoarseSurface surface(camera(), 30, 0.6);
-  ceres::Problem problem;
-  edges.add_to(surface, problem, 0.02);
-  for (std::array<double, 4>& edge : edges.unknowns)
-    if (&edge != &near) problem.SetParameterBlockConstant(edge.data());
-  ceres::Solver::Options options;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  EXPECT_NEAR(near[0], true_inverse_depth, 2e-3 * true_inverse_depth);
+  WindowBundle bundle = edges.bundle(surface, 0.002, 0.02);
+  ASSERT_TRUE(solve_bundle(bundle, BundleSolver::kStructured, {50, 1e-12}).is_usable);
+  EXPECT_NEAR(near[0], true_inverse_depth, 3e-3 * true_inverse_depth);
+  EXPECT_GT(far[0], 4);
 }
 
 TEST(CoarseSurface, CoversACameraOfOnePixel) {

@@ -14,17 +14,6 @@ namespace saccade {
 namespace {
 
 using testing::uneven_camera;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-EdgeObservation observation(double x) {
-  EdgeObservation o;
-  o.view_from_camera = Rigid3::exp((Twist() << x, -0.05, 0.02, 0.03, -0.02, 0.05).finished());
-  o.ray = {0.21, -0.13, 1};
-  o.lag = -1;
-  o.pixel = {165, 62};
-  o.normal = Eigen::Vector2d(0.8, 0.6);
-  return o;
-}
 
 /// The residuals of a cost whose block `varied` is replaced; with all derivatives by it.
 template <int kRows, int kColumns>
@@ -48,32 +37,6 @@ void expect_derivative(const ceres::CostFunction& cost, std::vector<std::vector<
   testing::expect_jacobian<kRows, kColumns>(
       Eigen::Matrix<double, kRows, kColumns>(derivative),
       [&](const Block& value) { return evaluate(value, nullptr); }, at);
-}
-
-TEST(WindowCosts, AnEventPairHasItsDerivatives) {
-  const PinholeCamera camera = uneven_camera();
-  // Of some pixels, so that the residuals are around 1.
-  const EventPairCost cost({ObservedEvent{observation(0.1), 0, 0.3}, {observation(0.12), 0, 0.8}},
-                           {0.02, 0.05}, camera);
-  const std::vector<std::vector<double>> blocks = {{0.02, -0.01, 0.03, 0.01, 0.02, -0.015},
-                                                   {0.01, 0.01, -0.02, 0.03, -0.01, 0.02},
-                                                   {0.4, 0.1, 0.05, 0.2}};
-  expect_derivative<2, 6>(cost, blocks, 0);
-  expect_derivative<2, 6>(cost, blocks, 1);
-  expect_derivative<2, 4>(cost, blocks, 2);
-}
-
-TEST(WindowCosts, AnEventWithoutWeightSaysNothing) {
-  const PinholeCamera camera = uneven_camera();
-  const EventPairCost cost({ObservedEvent{observation(0.1), 0, 0.3}, {observation(0.12), 0, 0.8}},
-                           {1, 0}, camera);
-  const std::array<double, 6> node{};
-  const std::array<double, 4> edge = {0.4, 0, 0, 0};
-  const std::array<const double*, 3> parameters = {node.data(), node.data(), edge.data()};
-  std::array<double, 2> residuals{};
-  ASSERT_TRUE(cost.Evaluate(parameters.data(), residuals.data(), nullptr));
-  EXPECT_NE(residuals[0], 0);
-  EXPECT_EQ(residuals[1], 0);
 }
 
 TEST(WindowCosts, PriorsHaveTheirDerivatives) {
@@ -103,19 +66,6 @@ TEST(WindowCosts, ImageMotionTellsMotionsThatLookAlikeApartByLittle) {
   EXPECT_NEAR((root * turn).norm(), 1, 0.2);
   EXPECT_NEAR((root * aside).norm(), std::sqrt((4 + 1 + 0.25) / 3), 1e-9);
   EXPECT_LT((root * (turn - aside)).norm(), (root * (turn + aside)).norm() / 2);
-}
-
-TEST(WindowCosts, TheRobustResidualIsTheRootOfCauchysLoss) {
-  for (const double residual : {-7.0, -0.4, 0.0, 1e-7, 0.3, 50.0}) {
-    const auto [value, slope] = cauchy_residual(residual, 2);
-    EXPECT_NEAR(value * value, 4 * std::log1p(residual * residual / 4), 1e-9);
-    EXPECT_EQ(std::signbit(value), std::signbit(residual));
-    const double d = 1e-6;
-    EXPECT_NEAR(
-        slope,
-        (cauchy_residual(residual + d, 2).first - cauchy_residual(residual - d, 2).first) / (2 * d),
-        1e-8);
-  }
 }
 
 }  // namespace

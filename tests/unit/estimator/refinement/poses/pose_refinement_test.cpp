@@ -83,7 +83,7 @@ TEST(PoseRefinement, IsTheSameEveryTime) {
     EXPECT_EQ(a.map_from_camera.poses[k].rotation().coeffs(),
               b.map_from_camera.poses[k].rotation().coeffs());
   }
-  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.covariances, b.covariances);
 }
 
 TEST(PoseRefinement, WithoutEventsThePathStays) {
