@@ -32,7 +32,7 @@ ReliefOptions rippled_relief() {
 }
 
 void expect_slopes_of(const Relief& relief) {
-  constexpr double kStep = 1e-5;
+  constexpr double kStep = 3e-6;
   for (double x = -2.9; x < 3; x += 0.173)
     for (double y = -1.9; y < 2; y += 0.191) {
       const auto height = [&](double dx, double dy) { return relief.at({x + dx, y + dy}).height; };
