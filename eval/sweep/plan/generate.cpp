@@ -34,7 +34,8 @@ const Weighted& sample_by_weight(const std::vector<Weighted>& items, const char*
 }
 
 const GenerateScene& scene_of(const GenerateConfig& generate, std::uint64_t index) {
-  if (generate.scenes_in_turn || generate.paired) return generate.scenes[index % generate.scenes.size()];
+  if (generate.scenes_in_turn || generate.paired)
+    return generate.scenes[index % generate.scenes.size()];
   return sample_by_weight(generate.scenes, "generate.scenes", generate.seed, index);
 }
 
