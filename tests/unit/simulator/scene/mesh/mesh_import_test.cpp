@@ -12,7 +12,6 @@
 #include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"
 #include "core/srgb.h"
-#include "simulator/scene/mesh/file_source.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 
 namespace saccade {
@@ -227,14 +226,6 @@ TEST_F(MeshImport, MalformedFilesAreNamed) {
   EXPECT_THAT(error_of("broken.zip!/a.obj"),
               AllOf(HasSubstr("broken.zip"), HasSubstr("zip archive")));
   EXPECT_THAT(error_of("nowhere.zip!/a.obj"), HasSubstr("nowhere.zip does not exist"));
-}
-
-TEST_F(MeshImport, MissingTexturesOfDebianPackagesNameThem) {
-  write_square("map_Kd /usr/share/backgrounds/mate/no_such_picture.jpg\n");
-  EXPECT_THAT(error_of("square.obj"),
-              AllOf(HasSubstr("square.obj"), HasSubstr("apt-get install mate-backgrounds")));
-  EXPECT_THAT(missing_file_problem("/usr/share/games/openarena/baseoa/pak4-textures.no!/a.jpg"),
-              HasSubstr("apt-get install openarena-081-textures"));
 }
 
 TEST_F(MeshImport, MalformedMaterialsAreNamed) {
