@@ -34,7 +34,8 @@ const Weighted& sample_by_weight(const std::vector<Weighted>& items, const char*
 }
 
 const GenerateScene& scene_of(const GenerateConfig& generate, std::uint64_t index) {
-  if (generate.scenes_in_turn) return generate.scenes[index % generate.scenes.size()];
+  if (generate.scenes_in_turn || generate.paired)
+    return generate.scenes[index % generate.scenes.size()];
   return sample_by_weight(generate.scenes, "generate.scenes", generate.seed, index);
 }
 
@@ -173,6 +174,11 @@ void describe(config::Fields& fields, GenerateConfig& generate) {
   fields.value("scenes_in_turn", generate.scenes_in_turn,
                "Whether the scenes take turns, so that each has as many datasets as the others, "
                "instead of being sampled by their weights.");
+  fields.value("paired", generate.paired,
+               "Whether the scenes take turns and as many consecutive datasets as there are scenes "
+               "share all samples and the seed, so that they differ in what their scenes set. "
+               "Dataset k has the samples of index k / number of scenes, rounded down: a paired "
+               "comparison of settings of the simulator.");
   fields.list("cases", generate.cases,
               "Overrides and distributions that belong together, each {name, weight, set, draw}: "
               "every dataset samples one of them beside its scene. By default there are none.");
@@ -191,10 +197,11 @@ GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t
   dataset.index = index;
   dataset.name = fmt::format("{}-{:06}", generate.name, index);
   dataset.scene = &scene_of(generate, index);
+  const std::uint64_t sample = generate.paired ? index / generate.scenes.size() : index;
   if (!generate.cases.empty())
-    dataset.part = &sample_by_weight(generate.cases, "generate.cases", generate.seed, index);
-  dataset.seed = sample_below(kSeeds, "seed", generate.seed, index);
-  dataset.split = dataset.scene->split == "any" ? split_of(generate, index) : dataset.scene->split;
+    dataset.part = &sample_by_weight(generate.cases, "generate.cases", generate.seed, sample);
+  dataset.seed = sample_below(kSeeds, "seed", generate.seed, sample);
+  dataset.split = dataset.scene->split == "any" ? split_of(generate, sample) : dataset.scene->split;
   dataset.shard = static_cast<int>(index % static_cast<std::uint64_t>(generate.shards));
   if (!generate.classes.empty())
     dataset.settings.push_back(
@@ -206,7 +213,7 @@ GeneratedDataset generated_dataset(const GenerateConfig& generate, std::uint64_t
   if (dataset.part != nullptr) append(dataset.part->set);
   append(dataset.scene->set);
   const Node sampled =
-      sample_values(parameters_of(generate, dataset.part, *dataset.scene), generate.seed, index);
+      sample_values(parameters_of(generate, dataset.part, *dataset.scene), generate.seed, sample);
   for (const config::Entry& entry : sampled.entries) {
     dataset.settings.push_back({entry.key, config::to_flow_yaml(entry.value)});
     flatten(entry.value, entry.key, dataset.sampled);

@@ -48,6 +48,7 @@ struct GenerateConfig {
   std::vector<std::string> classes;  ///< of all scenes; empty: as they state them
   std::vector<GenerateScene> scenes;
   bool scenes_in_turn = false;      ///< dataset k shows scene k modulo their number
+  bool paired = false;              ///< in turn, and each sample is shown in all scenes
   std::vector<GenerateCase> cases;  ///< each dataset samples one of them, too; empty: none
   Settings set;                     ///< overrides of every scene
   SampledParameters draw;

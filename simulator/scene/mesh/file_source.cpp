@@ -21,11 +21,17 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kInside = "!/";
 
-/// Where Debian packages put the scenes of the catalogue (docs/scenes.md).
-struct PackageFolder {
-  std::string_view folder, package;
+/// Where Debian packages put the scenes of the catalogue and the pictures of the shipped scenes
+/// (docs/scenes.md).
+struct PackageFiles {
+  std::string_view prefix, package;  ///< files whose path begins with `prefix`
 };
-constexpr PackageFolder kPackages[] = {
+constexpr PackageFiles kPackages[] = {
+    {"/usr/share/backgrounds/mate/", "mate-backgrounds"},
+    {"/usr/share/backgrounds/Picture_", "lomiri-wallpapers-16.04"},
+    {"/usr/share/backgrounds/aitzgorri_by_", "lomiri-wallpapers-16.04"},
+    {"/usr/share/backgrounds/life_by_", "lomiri-wallpapers-16.04"},
+    {"/usr/share/backgrounds/picosdeeuropa_by_", "lomiri-wallpapers-16.04"},
     {"/usr/share/sweethome3d/", "sweethome3d-furniture"},
     {"/usr/share/assimp/", "assimp-testmodels"},
     {"/usr/share/blender/datafiles/", "blender-data"},
@@ -33,6 +39,7 @@ constexpr PackageFolder kPackages[] = {
     {"/usr/share/games/cube2/", "cube2-data"},
     {"/usr/share/games/flightgear/Models/", "flightgear-data-models"},
     {"/usr/share/games/openarena/baseoa/pak1-maps", "openarena-081-maps"},
+    {"/usr/share/games/openarena/baseoa/pak4-textures", "openarena-081-textures"},
     {"/usr/share/games/torcs/", "torcs-data"},
 };
 
@@ -155,8 +162,8 @@ std::string missing_file_problem(const fs::path& path) {
   const FileLocation location = FileLocation::parse(path);
   const fs::path& file = location.archive.empty() ? location.file : location.archive;
   if (fs::is_regular_file(file)) return {};
-  for (const auto& [folder, package] : kPackages)
-    if (file.string().starts_with(folder))
+  for (const auto& [prefix, package] : kPackages)
+    if (file.string().starts_with(prefix))
       return fmt::format("{} is missing: it is in the Debian package {}; apt-get install {}",
                          file.string(), package, package);
   return fmt::format("{} {}", file.string(), fs::exists(file) ? "is not a file" : "does not exist");

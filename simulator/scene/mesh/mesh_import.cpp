@@ -288,7 +288,8 @@ Mesh MeshImporter::read_relief(const FileLocation& location, const FileSource& s
     throw InputError(source_name, "relief parameters cannot be read from within an archive");
   const ReliefOptions options = read_relief_options(location.file);
   if (!options.texture) return generate_relief(options);
-  const WrapModes wrap{Wrap::kClamp, Wrap::kClamp};
+  const Wrap mode = options.texture_size_m ? Wrap::kRepeat : Wrap::kClamp;
+  const WrapModes wrap{mode, mode};
   return generate_relief(options,
                          textures_.colour(source, *options.texture, wrap, source_name).grey);
 }

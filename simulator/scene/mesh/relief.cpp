@@ -14,7 +14,7 @@ constexpr double kMaxTriangles = 4e6;
 constexpr double kMaxWaves = 2048;
 
 /// Who draws random numbers; the octaves of the swell follow from kSwell on.
-enum ReliefStream : std::uint64_t { kBend, kCrest, kSwell = 16 };
+enum ReliefStream : std::uint64_t { kDunes = 0, kRipples = 2, kSwell = 16 };
 
 /// A function of one variable and its derivative.
 struct Slope {
@@ -26,18 +26,59 @@ Slope fade(double t) {
   return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
 }
 
-/// One period of a dune: up over the first `rise` of it, down over the rest.
-Slope profile(double phase, double rise) {
+/// The same with the slope 2 and no curvature at t = 1.
+Slope fade_to_kink(double t) { return {t * t * t * (2 - t), t * t * (6 - 4 * t)}; }
+
+/// One period of a row: up over the first `rise` of it, down over the rest.
+Slope profile(double phase, const ReliefOptions::Rows& rows) {
   const double t = phase - std::floor(phase);
-  const bool rising = t < rise;
-  const double length = rising ? rise : rise - 1;
-  const Slope side = fade(rising ? t / rise : (1 - t) / (1 - rise));
-  return {side.value, side.derivative / length};
+  const bool rising = t < rows.rise;
+  const double length = rising ? rows.rise : rows.rise - 1;
+  const double along = rising ? t / rows.rise : (1 - t) / (1 - rows.rise);
+  const Slope round = fade(along);
+  const Slope sharp = fade_to_kink(along);
+  return {round.value + rows.sharpness * (sharp.value - round.value),
+          (round.derivative + rows.sharpness * (sharp.derivative - round.derivative)) / length};
 }
 
 ReliefOptions checked(const ReliefOptions& options) {
   config::check(options);
   return options;
+}
+
+void expect_few_waves(config::Fields& fields, std::string_view key, double side,
+                      double wavelength_m) {
+  fields.expect(side / wavelength_m <= kMaxWaves, key, "must fit at most 2048 times into size_m");
+}
+
+/// `side`: the longer side of the relief.
+void describe_rows(config::Fields& fields, ReliefOptions::Rows& rows, double side) {
+  fields
+      .value("height_m", rows.height_m,
+             "Height of the highest crests above the troughs, in metres. 0 leaves the rows out.")
+      .at_least(0);
+  fields.value("across", rows.across, "Direction from crest to crest; its length does not matter.")
+      .range(-1e6, 1e6);
+  fields.expect(rows.across[0] != 0 || rows.across[1] != 0, "across", "must not be zero");
+  fields.value("wavelength_m", rows.wavelength_m, "Distance from crest to crest, in metres.")
+      .above(0);
+  expect_few_waves(fields, "wavelength_m", side, rows.wavelength_m);
+  fields.value("rise", rows.rise, "Fraction of a wavelength on the gentle side of a row.")
+      .range(0.05, 0.95);
+  fields
+      .value("sharpness", rows.sharpness,
+             "Form of the crests. 0: they are round; 1: two straight slopes meet at them, as at "
+             "the slip face of a dune.")
+      .range(0, 1);
+  fields
+      .value("bend_m", rows.bend_m,
+             "Largest displacement of the crests from straight lines, in metres.")
+      .at_least(0);
+  fields
+      .value("bend_wavelength_m", rows.bend_wavelength_m,
+             "Wavelength of that displacement and of the crests' height, in metres.")
+      .above(0);
+  expect_few_waves(fields, "bend_wavelength_m", side, rows.bend_wavelength_m);
 }
 
 }  // namespace
@@ -54,41 +95,15 @@ void describe(config::Fields& fields, ReliefOptions& options) {
       .at_least(0);
   fields.path("texture", options.texture, "Picture or *.texture.yaml that covers the whole relief.")
       .must_exist();
+  fields
+      .value("texture_size_m", options.texture_size_m,
+             "Size of the texture along x and y, in metres; it repeats over the relief. Default: "
+             "that of the relief.")
+      .above(0);
   fields.value("albedo", options.albedo, "Albedo without a texture, in linear light.").range(0, 1);
   const double side = std::max(options.size_m[0], options.size_m[1]);
-  const auto expect_few_waves = [side](config::Fields& group, std::string_view key,
-                                       double wavelength) {
-    group.expect(side / wavelength <= kMaxWaves, key, "must fit at most 2048 times into size_m");
-  };
   fields.group(
-      "dunes",
-      [&](config::Fields& group) {
-        auto& dunes = options.dunes;
-        group
-            .value(
-                "height_m", dunes.height_m,
-                "Height of the highest crests above the troughs, in metres. 0 disables the dunes.")
-            .at_least(0);
-        group
-            .value("across", dunes.across,
-                   "Direction from crest to crest; its length does not matter.")
-            .range(-1e6, 1e6);
-        group.expect(dunes.across[0] != 0 || dunes.across[1] != 0, "across", "must not be zero");
-        group.value("wavelength_m", dunes.wavelength_m, "Distance from crest to crest, in metres.")
-            .above(0);
-        expect_few_waves(group, "wavelength_m", dunes.wavelength_m);
-        group.value("rise", dunes.rise, "Fraction of a wavelength on the gentle side of a dune.")
-            .range(0.05, 0.95);
-        group
-            .value("bend_m", dunes.bend_m,
-                   "Largest displacement of the crests from straight lines, in metres.")
-            .at_least(0);
-        group
-            .value("bend_wavelength_m", dunes.bend_wavelength_m,
-                   "Wavelength of that displacement and of the crests' height, in metres.")
-            .above(0);
-        expect_few_waves(group, "bend_wavelength_m", dunes.bend_wavelength_m);
-      },
+      "dunes", [&](config::Fields& group) { describe_rows(group, options.dunes, side); },
       "Rows of dunes whose crests bend, rise and sink.");
   fields.group(
       "swell",
@@ -104,9 +119,14 @@ void describe(config::Fields& fields, ReliefOptions& options) {
             .above(0);
         group.expect(swell.wavelength_m[0] <= swell.wavelength_m[1], "wavelength_m",
                      "must not fall: the smaller number comes first");
-        expect_few_waves(group, "wavelength_m", swell.wavelength_m[0]);
+        expect_few_waves(group, "wavelength_m", side, swell.wavelength_m[0]);
       },
       "Smooth bumps of many sizes.");
+  fields.group(
+      "ripples", [&](config::Fields& group) { describe_rows(group, options.ripples, side); },
+      "Ripples that the wind leaves on the dunes: rows like theirs, but small. By default there "
+      "are "
+      "none.");
 }
 
 ReliefOptions read_relief_options(const std::filesystem::path& file) {
@@ -141,12 +161,28 @@ Elevation SmoothNoise::at(const Eigen::Vector2d& point) const {
                                        fy.derivative * (high - low))};
 }
 
+CrestRows::CrestRows(const ReliefOptions::Rows& options, std::uint64_t seed, std::uint64_t stream,
+                     const Eigen::Vector2d& size)
+    : options_(options),
+      across_(Eigen::Vector2d(options.across[0], options.across[1]).normalized()),
+      bend_(seed, stream, size, options.bend_wavelength_m),
+      crest_(seed, stream + 1, size, options.bend_wavelength_m) {}
+
+Elevation CrestRows::at(const Eigen::Vector2d& point) const {
+  const Elevation bend = bend_.at(point);
+  const Elevation crest = crest_.at(point);
+  const double phase = (across_.dot(point) + options_.bend_m * bend.height) / options_.wavelength_m;
+  const Eigen::Vector2d phase_slope =
+      (across_ + options_.bend_m * bend.slope) / options_.wavelength_m;
+  const Slope shape = profile(phase, options_);
+  const double height = options_.height_m * (0.75 + 0.25 * crest.height);
+  return {height * shape.value, height * shape.derivative * phase_slope +
+                                    0.25 * options_.height_m * shape.value * crest.slope};
+}
+
 Relief::Relief(const ReliefOptions& options)
-    : options_(checked(options)),
-      size_(options.size_m[0], options.size_m[1]),
-      across_(Eigen::Vector2d(options.dunes.across[0], options.dunes.across[1]).normalized()),
-      bend_(options.seed, kBend, size_, options.dunes.bend_wavelength_m),
-      crest_(options.seed, kCrest, size_, options.dunes.bend_wavelength_m) {
+    : size_(checked(options).size_m[0], options.size_m[1]),
+      dunes_(options.dunes, options.seed, kDunes, size_) {
   const auto& [shortest, longest] = options.swell.wavelength_m;
   double total = 0;
   for (double length = longest; length >= shortest; length /= 2) {
@@ -154,29 +190,20 @@ Relief::Relief(const ReliefOptions& options)
     total += length;
   }
   for (Octave& octave : swell_) octave.height_m *= options.swell.height_m / total;
+  if (options.ripples.height_m > 0)
+    ripples_.emplace(options.ripples, options.seed, kRipples, size_);
 }
 
 Elevation Relief::at(const Eigen::Vector2d& point) const {
   const Eigen::Vector2d from_corner = point + 0.5 * size_;
-  Elevation sum = dunes(from_corner);
-  for (const Octave& octave : swell_) {
-    const Elevation part = octave.noise.at(from_corner);
-    sum.height += octave.height_m * part.height;
-    sum.slope += octave.height_m * part.slope;
-  }
+  Elevation sum = dunes_.at(from_corner);
+  const auto add = [&sum](const Elevation& part, double factor) {
+    sum.height += factor * part.height;
+    sum.slope += factor * part.slope;
+  };
+  for (const Octave& octave : swell_) add(octave.noise.at(from_corner), octave.height_m);
+  if (ripples_) add(ripples_->at(from_corner), 1);
   return sum;
-}
-
-Elevation Relief::dunes(const Eigen::Vector2d& point) const {
-  const auto& dunes = options_.dunes;
-  const Elevation bend = bend_.at(point);
-  const Elevation crest = crest_.at(point);
-  const double phase = (across_.dot(point) + dunes.bend_m * bend.height) / dunes.wavelength_m;
-  const Eigen::Vector2d phase_slope = (across_ + dunes.bend_m * bend.slope) / dunes.wavelength_m;
-  const Slope shape = profile(phase, dunes.rise);
-  const double height = dunes.height_m * (0.75 + 0.25 * crest.height);
-  return {height * shape.value, height * shape.derivative * phase_slope +
-                                    0.25 * dunes.height_m * shape.value * crest.slope};
 }
 
 Mesh generate_relief(const ReliefOptions& options, std::shared_ptr<const Texture> texture) {
@@ -186,6 +213,9 @@ Mesh generate_relief(const ReliefOptions& options, std::shared_ptr<const Texture
   const auto columns = static_cast<std::uint32_t>(
       std::clamp(std::round(std::sqrt(cells * width / height)), 1.0, cells));
   const auto rows = static_cast<std::uint32_t>(std::max(std::round(cells / columns), 1.0));
+
+  const auto [tile_width, tile_height] = options.texture_size_m.value_or(options.size_m);
+  const Eigen::Vector2d repeats(width / tile_width, height / tile_height);
 
   Mesh mesh;
   mesh.materials.push_back({options.albedo, std::move(texture), 1, nullptr});
@@ -202,7 +232,7 @@ Mesh generate_relief(const ReliefOptions& options, std::shared_ptr<const Texture
       mesh.vertices.emplace_back(ground.x(), ground.y(), elevation.height);
       mesh.normals.push_back(
           Eigen::Vector3d(-elevation.slope.x(), -elevation.slope.y(), 1).normalized());
-      mesh.uvs.push_back(uv);
+      mesh.uvs.push_back(uv.cwiseProduct(repeats));
     }
   for (std::uint32_t j = 0; j < rows; ++j)
     for (std::uint32_t i = 0; i < columns; ++i) {

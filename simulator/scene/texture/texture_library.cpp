@@ -18,8 +18,11 @@ namespace fs = std::filesystem;
 Bytes read_texture(const FileSource& source, const fs::path& file, const std::string& user) {
   std::optional<Bytes> bytes = source.read(file);
   if (!bytes) {
-    const std::string name = FileLocation{source.archive(), file}.text();
-    throw InputError(user, fmt::format("its texture {} does not exist", name));
+    const bool is_in_archive = !source.archive().empty();
+    throw InputError(user,
+                     "its texture " + (is_in_archive ? FileLocation{source.archive(), file}.text() +
+                                                           " is not in this archive"
+                                                     : missing_file_problem(file)));
   }
   return std::move(*bytes);
 }

@@ -69,6 +69,23 @@ TEST(Generate, ScenesMayTakeTurns) {
     EXPECT_EQ(generated_dataset(*sweep.generate, i).scene, &sweep.generate->scenes[i % 3]);
 }
 
+TEST(Generate, PairedScenesShareTheirSamples) {
+  const TemporaryFolder folder;
+  SweepConfig sweep = read_sweep(folder, kInTurn);
+  const GenerateConfig unpaired = *sweep.generate;
+  sweep.generate->paired = true;
+  const auto value_of_a = [](const GeneratedDataset& dataset) { return dataset.sampled.front(); };
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const GeneratedDataset dataset = generated_dataset(*sweep.generate, i);
+    const GeneratedDataset first = generated_dataset(unpaired, i / 3);
+    EXPECT_EQ(dataset.scene, &sweep.generate->scenes[i % 3]);
+    EXPECT_EQ(dataset.part->name, first.part->name);
+    EXPECT_EQ(dataset.seed, first.seed);
+    EXPECT_EQ(value_of_a(dataset), value_of_a(first));
+    EXPECT_EQ(dataset.index, i);
+  }
+}
+
 TEST(Generate, ACaseIsSampledAsAWholeByItsWeight) {
   const TemporaryFolder folder;
   const SweepConfig sweep = read_sweep(folder, kInTurn);

@@ -24,9 +24,15 @@ ReliefOptions small_relief() {
   return options;
 }
 
-TEST(Relief, SlopeIsTheDerivativeOfTheHeight) {
-  const Relief relief(small_relief());
-  constexpr double kStep = 1e-5;
+ReliefOptions rippled_relief() {
+  ReliefOptions options = small_relief();
+  options.dunes.sharpness = 0.7;
+  options.ripples.height_m = 0.02;
+  return options;
+}
+
+void expect_slopes_of(const Relief& relief) {
+  constexpr double kStep = 3e-6;
   for (double x = -2.9; x < 3; x += 0.173)
     for (double y = -1.9; y < 2; y += 0.191) {
       const auto height = [&](double dx, double dy) { return relief.at({x + dx, y + dy}).height; };
@@ -34,6 +40,48 @@ TEST(Relief, SlopeIsTheDerivativeOfTheHeight) {
       EXPECT_NEAR(slope.x(), (height(kStep, 0) - height(-kStep, 0)) / (2 * kStep), 1e-7);
       EXPECT_NEAR(slope.y(), (height(0, kStep) - height(0, -kStep)) / (2 * kStep), 1e-7);
     }
+}
+
+TEST(Relief, SlopeIsTheDerivativeOfTheHeight) {
+  expect_slopes_of(Relief(small_relief()));
+  expect_slopes_of(Relief(rippled_relief()));
+}
+
+TEST(Relief, SharpCrestsHaveAKinkWhereRoundOnesAreFlat) {
+  ReliefOptions options = small_relief();
+  options.swell.height_m = 0;
+  options.dunes.bend_m = 0;
+  options.dunes.height_m = 1;
+  options.dunes.wavelength_m = 3;
+  options.dunes.rise = 0.75;
+  // Crests at 0.75 and 1.75 wavelengths from the lower corner at x = -3.
+  constexpr double kCrest = -3 + 0.75 * 3;
+  constexpr double kNear = 1e-7;
+  const auto slope = [&](double x) { return Relief(options).at({x, 0}).slope.x(); };
+  EXPECT_NEAR(slope(kCrest - kNear), slope(kCrest + kNear), 1e-5);
+  options.dunes.sharpness = 1;
+  const double height = Relief(options).at({kCrest, 0}).height;
+  const double windward = slope(kCrest - kNear);
+  const double lee = slope(kCrest + kNear);
+  // The rise and fall of the crest's own height along the row is the same on both sides.
+  EXPECT_NEAR(windward - lee, 2 * height / (0.75 * 3) + 2 * height / (0.25 * 3), 1e-4);
+}
+
+TEST(Relief, RipplesAreAddedToTheRest) {
+  ReliefOptions options = small_relief();
+  const Relief bare(options);
+  options.ripples.height_m = 0.02;
+  const Relief rippled(options);
+  double low = 1;
+  double high = 0;
+  for (double x = -2.9; x < 3; x += 0.0171) {
+    const double ripple = rippled.at({x, 0.3}).height - bare.at({x, 0.3}).height;
+    low = std::min(low, ripple);
+    high = std::max(high, ripple);
+  }
+  EXPECT_NEAR(low, 0, 1e-3);
+  EXPECT_LE(high, 0.02);
+  EXPECT_GT(high, 0.01);
 }
 
 TEST(Relief, SlopeNeverJumps) {
@@ -125,6 +173,14 @@ TEST_F(ReliefFiles, AreReadLikeMeshes) {
   EXPECT_EQ(mesh.materials[0].texture->width(), 20);
 }
 
+TEST_F(ReliefFiles, ATextureMayRepeat) {
+  const Mesh once = read("size_m: [6, 3]\ntriangles: 200\n");
+  EXPECT_EQ(once.uvs.back(), Eigen::Vector2d(1, 1));
+  const Mesh mesh = read("size_m: [6, 3]\ntriangles: 200\ntexture_size_m: [2, 1.5]\n");
+  EXPECT_EQ(mesh.uvs.front(), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(mesh.uvs.back(), Eigen::Vector2d(3, 2));
+}
+
 TEST_F(ReliefFiles, MistakesAreErrorsWithTheirPlace) {
   const auto fails = [&](const std::string& text, const std::string& message) {
     EXPECT_THAT([&] { static_cast<void>(read(text)); },
@@ -137,6 +193,9 @@ TEST_F(ReliefFiles, MistakesAreErrorsWithTheirPlace) {
   fails("texture: none.png\n", "no such file");
   fails("dunes: {across: [0, 0]}\n", "must not be zero");
   fails("dunes: {rise: 1}\n", "dunes.rise");
+  fails("dunes: {sharpness: 2}\n", "dunes.sharpness");
+  fails("ripples: {wavelength_m: 1e-6}\n", "at most 2048 times");
+  fails("texture_size_m: [0, 1]\n", "texture_size_m");
   fails("swell: {wavelength_m: [2, 1]}\n", "must not fall");
   fails("swell: {wavelength_m: [1e-6, 1]}\n", "at most 2048 times");
   fails("dunes: {heigth_m: 1}\n", "did you mean 'height_m'");
