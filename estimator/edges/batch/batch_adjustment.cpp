@@ -125,8 +125,9 @@ class BatchProblem {
   }
 
   void choose_edges() {
+    const int most = std::min(options_.edges, options_.all_edges / static_cast<int>(found_.size()));
     for (std::size_t k = 0; k < found_.size(); ++k)
-      for (const std::size_t i : evenly(found_[k].edges.size(), options_.edges)) {
+      for (const std::size_t i : evenly(found_[k].edges.size(), most)) {
         const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);
         edges_.push_back({{k, i}, {rho, 0, 0, 0, 0}});
       }
@@ -285,15 +286,18 @@ std::span<const Event> events_of_view(std::span<const Event> events, double t_s,
                         ns_from_seconds(t_s + window_s / 2));
 }
 
-std::vector<double> batch_views(std::vector<double> keyframe_s, double end_s, double window_s) {
-  const double most_s = window_s / 3;
-  if (keyframe_s.back() < end_s - most_s) keyframe_s.push_back(end_s - most_s);
+std::vector<double> batch_views(const std::vector<double>& keyframe_s, double end_s,
+                                double window_s) {
+  const double least_s = window_s / 4, most_s = window_s / 3;
   std::vector<double> views = {keyframe_s.front()};
-  for (std::size_t k = 1; k < keyframe_s.size(); ++k) {
-    const double from_s = keyframe_s[k - 1], gap_s = keyframe_s[k] - from_s;
+  const auto reach = [&](double t_s) {
+    const double from_s = views.back(), gap_s = t_s - from_s;
     const int parts = std::max(1, static_cast<int>(std::ceil(gap_s / most_s)));
     for (int i = 1; i <= parts; ++i) views.push_back(from_s + gap_s * i / parts);
-  }
+  };
+  for (const double t_s : keyframe_s)
+    if (t_s >= views.back() + least_s) reach(t_s);
+  if (views.back() < end_s - most_s) reach(end_s - most_s);
   return views;
 }
 

@@ -21,7 +21,8 @@ struct BatchAdjustmentOptions {
   double smoothing_s = 0.025;  ///< knots of the given path: follows a hand's motion, removes jitter
   double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
   double window_s = 1.6;            ///< of the events around a view in which its edges are found
-  int edges = 600;                  ///< of a view, at most, evenly chosen
+  int edges = 1500;                 ///< of a view, at most, evenly chosen
+  int all_edges = 100000;           ///< of all views: some seven million events, 2 GB
   int events_per_edge = 30;         ///< at most, evenly in time
   int given_events_per_edge = 100;  ///< beside them, while poses are given: the scale is theirs
   int reobserved_keyframes = 4;     ///< later ones that observe an edge again, at most
@@ -82,10 +83,11 @@ struct BatchAdjustment {
 [[nodiscard]] std::span<const Event> events_of_view(std::span<const Event> events, double t_s,
                                                     double window_s);
 
-/// The keyframes' times, in order and at least one, and more between them and behind the last, so
-/// that a view is never farther than a third of a window from the next and from the end: where no
-/// window reaches, nothing constrains the path.
-[[nodiscard]] std::vector<double> batch_views(std::vector<double> keyframe_s, double end_s,
+/// Times of views from those of the keyframes, which are in order and at least one. Views are never
+/// nearer than a quarter of a window, since windows that overlap more show the same edges again, and
+/// never farther than a third from the next and from the end: where no window reaches, nothing
+/// constrains the path.
+[[nodiscard]] std::vector<double> batch_views(const std::vector<double>& keyframe_s, double end_s,
                                               double window_s);
 
 }  // namespace saccade

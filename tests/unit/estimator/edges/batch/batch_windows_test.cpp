@@ -10,9 +10,13 @@ using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
 TEST(ViewsAlong, LeaveNoGapAndReachTheEnd) {
-  EXPECT_THAT(batch_views({0.1, 0.2, 1.1, 1.2}, 2.1, 1.5),
-              ElementsAre(0.1, 0.2, DoubleNear(0.65, 1e-12), 1.1, 1.2, DoubleNear(1.6, 1e-12)));
+  EXPECT_THAT(batch_views({0.1, 1.1}, 2.1, 1.5),
+              ElementsAre(0.1, DoubleNear(0.6, 1e-12), 1.1, DoubleNear(1.6, 1e-12)));
   EXPECT_THAT(batch_views({0.3}, 0.75, 1.5), ElementsAre(0.3)) << "near the end already";
+}
+
+TEST(ViewsAlong, AreNotCrowded) {
+  EXPECT_THAT(batch_views({0.1, 0.2, 0.45, 0.5, 0.8, 1.0}, 1.2, 1.2), ElementsAre(0.1, 0.45, 0.8));
 }
 
 TEST(EventsAround, AreThoseOfTheWindow) {
