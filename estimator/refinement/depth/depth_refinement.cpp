@@ -5,11 +5,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "estimator/depth/rays/event_rays.h"
-#include "estimator/depth/rays/ray_gatherer.h"
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/edge_residual.h"
 #include "estimator/edges/least_squares/jacobian_block.h"
@@ -21,8 +20,6 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kMinEvents = 8;  ///< of an edge
-// Events within so much of an edge, across and along it, are its observations.
-constexpr double kReach_px = 2, kHalfLength_px = 1.5;
 // An edge is that of a point of the run within so much of it, and within this ratio of its inverse
 // depth.
 constexpr double kNear_px = 1.5, kDepthTolerance = 0.05;
@@ -53,21 +50,20 @@ class EdgeCost : public ceres::SizedCostFunction<1, 4> {
 
 class EdgeOptimizer {
  public:
-  EdgeOptimizer(const ViewWindow& window, const PinholeCamera& camera, int slabs)
+  EdgeOptimizer(const ViewWindow& window, const PinholeCamera& camera)
       : window_(window),
         view_from_world_(window.world_from_reference().inverse()),
         undistorted_(camera.undistorted()),
-        undistortion_(camera),
-        rays_(window, undistorted_, undistortion_, slabs),
-        gatherer_(rays_, {kReach_px, kHalfLength_px}) {}
+        undistortion_(camera) {}
 
-  /// False where too few events say anything, or no optimum is found.
-  bool optimize(FittedEdgel& fitted, RefinedDepth& sums) {
-    gatherer_.gather({0, rays_.slice_count(), 1}, fitted.edge, near_);
-    if (near_.count < kMinEvents) return false;
+  /// By the window's events that were assigned to the edge and to no other: those of a neighbour, which
+  /// lie near it, too, would pull it over. False where too few events say anything, or no optimum is
+  /// found.
+  bool optimize(std::span<const std::uint32_t> events, FittedEdgel& fitted, RefinedDepth& sums) {
+    if (events.size() < kMinEvents) return false;
     EdgeUnknowns unknowns(fitted.edge.inverse_depth, 0, 0, 0);
     ceres::Problem problem;
-    const auto residuals = add_events(fitted, unknowns, problem);
+    const auto residuals = add_events(events, fitted, unknowns, problem);
     const EdgeUnknowns sigma = EdgeNoise::prior_sigma(unknowns[0]);
     problem.AddResidualBlock(new LinearPriorCost<4>(root_of_sigma<4>(sigma), unknowns), nullptr,
                              unknowns.data());
@@ -89,12 +85,13 @@ class EdgeOptimizer {
   }
 
  private:
-  std::vector<ceres::ResidualBlockId> add_events(const FittedEdgel& fitted, EdgeUnknowns& unknowns,
+  std::vector<ceres::ResidualBlockId> add_events(std::span<const std::uint32_t> events,
+                                                 const FittedEdgel& fitted, EdgeUnknowns& unknowns,
                                                  ceres::Problem& problem) {
     const double sigma_px = EdgeNoise::sigma_px(fitted);
     std::vector<ceres::ResidualBlockId> ids;
-    for (std::size_t i = 0; i < near_.count; ++i) {
-      const Event& event = window_.events[rays_.source[near_.event[i]]];
+    for (const std::uint32_t e : events) {
+      const Event& event = window_.events[e];
       const double t_s = seconds_from_ns(event.t_ns);
       EdgeObservation observation;
       observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
@@ -141,9 +138,6 @@ class EdgeOptimizer {
   Rigid3 view_from_world_;
   PinholeCamera undistorted_;
   UndistortionTable undistortion_;
-  EventRays rays_;
-  RayGatherer gatherer_;
-  RayNeighbourhood near_;
 };
 
 /// A run's points by their pixel.
@@ -188,17 +182,20 @@ class PointsByPixel {
 }  // namespace
 
 RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint> start,
-                             const PinholeCamera& camera, const RayDepth& depth, int slabs) {
+                             const PinholeCamera& camera, const RayDepth& depth) {
   RefinedDepth refined;
   WindowEdgels edges = depth.find_edgels(window);
   const PointsByPixel points(start, camera);
-  EdgeOptimizer optimizer(window, camera, slabs);
+  EdgeOptimizer optimizer(window, camera);
   std::vector<FittedEdgel> kept;
   for (FittedEdgel& fitted : edges.edges) {
     const EdgePoint* point = points.near(fitted.edge);
     if (point == nullptr) continue;
     fitted.edge.inverse_depth = point->inverse_depth;
-    if (optimizer.optimize(fitted, refined)) kept.push_back(fitted);
+    if (optimizer.optimize(std::span<const std::uint32_t>(edges.events.event)
+                               .subspan(fitted.first, fitted.last - fitted.first),
+                           fitted, refined))
+      kept.push_back(fitted);
   }
   edges.edges = std::move(kept);
   refined.result = depth.fuse(edges);

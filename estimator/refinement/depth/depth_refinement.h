@@ -15,13 +15,12 @@ struct RefinedDepth {
   double cost_after = 0;
 };
 
-/// The optimum of every edge's inverse depth, offset, tilt and hysteresis over all events of the
-/// window that pass near it (edge_residual.h, edge_noise.h), poses fixed, by Ceres; the sigma of the
+/// The optimum of every edge's inverse depth, offset, tilt and hysteresis over all of the window's
+/// events that are its own (edge_residual.h, edge_noise.h), poses fixed, by Ceres; the sigma of the
 /// depth is that of its covariance. `start`: a run's points in the window's view; edges near them
 /// are kept and begin there. `depth` finds and fuses the edges. Deterministic; thread-safe.
 [[nodiscard]] RefinedDepth refine_depth_of(const ViewWindow& window,
                                            std::span<const EdgePoint> start,
-                                           const PinholeCamera& camera, const RayDepth& depth,
-                                           int slabs);
+                                           const PinholeCamera& camera, const RayDepth& depth);
 
 }  // namespace saccade

@@ -91,8 +91,7 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
   std::vector<RefinedDepth> refined(windows.size());
   repeat_timed(request.repeat, timing.wall_s, [&] {
     parallel_for(windows.size(), [&](std::size_t k) {
-      refined[k] =
-          refine_depth_of(windows[k], points[k], dataset.camera(), depth, method.rays.kTimeSlices);
+      refined[k] = refine_depth_of(windows[k], points[k], dataset.camera(), depth);
     });
   });
   timing.events = events.size();

@@ -44,8 +44,7 @@ double median_error(const std::vector<EdgePoint>& points) {
 
 RefinedDepth refined(const std::vector<EdgePoint>& start) {
   const DepthRecording& r = depth_recording();
-  return refine_depth_of(r.window(), start, r.world.camera(), r.depth,
-                         DepthConfig{}.rays.kTimeSlices);
+  return refine_depth_of(r.window(), start, r.world.camera(), r.depth);
 }
 
 TEST(DepthRefinement, BringsDisturbedDepthsBack) {
