@@ -22,6 +22,7 @@ class LinePlot {
            const Theme& theme)
       : canvas_(canvas),
         panel_(panel),
+        marks_(chart.marks),
         left_(left + kLeft),
         theme_(theme),
         x_(values(panel, false), false),
@@ -72,11 +73,13 @@ class LinePlot {
                    mix(theme_.background, colour, 0.5), 2);
     }
     canvas_.polyline(points, colour, 2);
+    if (!marks_) return;
     for (const Vector2d& point : points) canvas_.disc(point, 3.2, colour);
   }
 
   Canvas& canvas_;
   const LineChart::Panel& panel_;
+  bool marks_;
   double left_;
   const Theme& theme_;
   Axis x_;

@@ -24,6 +24,7 @@ struct LineChart {
   std::string x_label;
   std::vector<std::string> names;  ///< of the lines
   std::vector<Panel> panels;
+  bool marks = true;  ///< a dot at every point; false: for curves of many points
 };
 
 /// Panels side by side above the legend. The range of a value is a vertical bar.
