@@ -47,11 +47,22 @@ class PageFiller {
                                   "' is no mark; write {{RUNS METRIC}} or {{RUNS METRIC "
                                   "DECIMALS}}");
     const std::vector<ResultRow> rows = rows_of(runs, place);
+    if (const std::string lost = lost_text(rows, metric); !lost.empty()) return lost;
     const std::optional<double> value = pooled(rows, metric, place);
     return decimals.empty() ? rounded(value) : fixed(value, number_of(decimals, place));
   }
 
  private:
+  /// Of an error of the trajectory, where runs were lost: what they drifted to says nothing. Empty
+  /// otherwise.
+  [[nodiscard]] std::string lost_text(std::span<const ResultRow> rows, const std::string& metric) {
+    constexpr const char* kFirstLoss = "trajectory.loss.first_s";
+    if (!metric.starts_with("trajectory.") || reader_.stored_metric(kFirstLoss).empty()) return "";
+    const std::size_t lost = scores(rows, kFirstLoss, "").size();
+    if (lost == 0) return "";
+    return lost == rows.size() ? "lost" : fmt::format("{} of {} lost", lost, rows.size());
+  }
+
   [[nodiscard]] std::vector<ResultRow> rows_of(const std::string& pattern,
                                                const std::string& place) const {
     std::vector<ResultRow> rows;

@@ -14,7 +14,7 @@ namespace saccade {
 ///             for its median
 ///   DECIMALS  0 to 6; default: three significant digits
 /// The number is the mean over the runs, of a speed their median, in the catalogue's scale; a dash
-/// where none of them measured it. InputError with `location` and the line of a mark that names no
+/// where none of them measured it, and of trajectories "lost" or "1 of 3 lost" where runs were. InputError with `location` and the line of a mark that names no
 /// run, no metric or is malformed, with the nearest right answer.
 [[nodiscard]] std::string fill_page(std::string_view text, const std::string& location,
                                     ResultReader& reader);

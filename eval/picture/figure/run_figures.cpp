@@ -43,7 +43,7 @@ FigureRows trajectory_figure(const FigureInput& input) {
   const ErrorSeries errors = errors_over_time(score_input(input.run, input.dataset));
   if (errors.t_s.empty()) return {};
   const bool has_depth = !errors.dt_rel_percent.empty();
-  LineChart chart{.x_label = "time [s]", .names = {}, .panels = {}, .marks = false};
+  LineChart chart{.x_label = "time [s]", .names = {}, .panels = {}, .is_over_time = true};
   chart.panels.push_back({has_depth ? "position error / mean depth [%]" : "position error [m]",
                           {curve(errors.t_s, has_depth ? errors.dt_rel_percent : errors.dt_m)}});
   chart.panels.push_back({"rotation error [deg]", {curve(errors.t_s, errors.dtheta_deg)}});

@@ -16,6 +16,7 @@ using ::testing::HasSubstr;
 using testing::kDrift;
 using testing::one_metric;
 using testing::TemporaryFolder;
+using testing::write_stored_run;
 
 class FilledPage : public ::testing::Test {
  protected:
@@ -36,11 +37,11 @@ class FilledPage : public ::testing::Test {
     return error_of([&] { return fill(text); });
   }
 
- private:
   void add(const std::string& name, const Metrics& metrics) {
     store_result(write_stored_run(folder_.path(), {.name = name, .metrics = metrics}));
   }
 
+ private:
   TemporaryFolder folder_;
 };
 
@@ -65,6 +66,18 @@ TEST_F(FilledPage, ASpeedIsTheMedianOfItsMedians) {
 
 TEST_F(FilledPage, WhatWasNotMeasuredIsADash) {
   EXPECT_EQ(fill("{{walls_best trajectory.drift_percent 1}}"), fixed(std::nullopt, 1));
+}
+
+TEST_F(FilledPage, ALostTrajectoryHasNoError) {
+  Metrics lost = one_metric(kDrift, 5000);
+  lost.set("trajectory.loss.first_s", 0.1);
+  lost.set("depth.rel_median", 0.02);
+  add("bad_1", lost);
+  EXPECT_EQ(fill("{{bad_1 trajectory.drift_percent 1}}"), "lost");
+  EXPECT_EQ(fill("{{bad_1 depth.rel_median 1}}"), "2.0");
+  add("bad_2", one_metric(kDrift, 1));
+  EXPECT_EQ(fill("{{bad_* trajectory.drift_percent 1}}"), "1 of 2 lost");
+  EXPECT_EQ(fill("{{bad_2 trajectory.drift_percent 1}}"), "1.0");
 }
 
 TEST_F(FilledPage, MistakesNameTheirLineAndTheNearestAnswer) {
