@@ -11,6 +11,7 @@
 #include "apps/scene_preview.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "eval/picture/figure/run_figures.h"
 #include "eval/picture/render.h"
 
 namespace saccade {
@@ -29,6 +30,14 @@ struct RenderVerbOptions {
 
 bool is_configuration(const std::filesystem::path& path) {
   return path.extension() == ".yaml" && !std::filesystem::is_directory(path);
+}
+
+/// "name: what it shows." of every figure.
+std::string figure_help() {
+  std::string text = "Draw a figure of a run in place of its contact sheet.";
+  for (const RunFigure& figure : run_figures())
+    text += fmt::format(" {}: {}", figure.name, figure.help);
+  return text;
 }
 
 void render_path(RenderVerbOptions options) {
@@ -98,6 +107,7 @@ void add_render_verb(CLI::App& command) {
   verb->add_option("--duration-s", render.duration_s,
                    "Length of the part that is drawn, in seconds.")
       ->check(positive_number());
+  verb->add_option("--figure", render.figure, figure_help())->type_name("NAME");
   verb->add_option("--data", render.dataset,
                    "Dataset of a run, instead of the one that the run names.");
   verb->add_option("--events", render.events,
@@ -124,6 +134,7 @@ void add_render_verb(CLI::App& command) {
       "  saccade render data/walls -o walls.png\n"
       "  saccade render runs/walls -o walls.mp4 --slow-motion 5\n"
       "  saccade render runs/dunes -o odometry.mp4 --slow-motion 5\n"
+      "  saccade render runs/walls --figure trajectory -o walls_errors.png\n"
       "  saccade render runs/walls_depth -o walls_depth.png\n"
       "  saccade render runs/walls_image -o growth.mp4 --fps 10\n"
       "  saccade render runs/leaves -o leaves.mp4 --overlay docs/images/logo.png --overlay-truth");

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,6 +13,7 @@
 
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "eval/report/filled_page.h"
 #include "eval/store/result_diff.h"
 #include "eval/store/result_store.h"
 #include "eval/store/result_text.h"
@@ -26,6 +29,7 @@ struct ResultsOptions {
   std::vector<std::string> columns;
   std::vector<std::string> diff;
   std::string format = "table";
+  fs::path fill;
   std::vector<fs::path> add;
   fs::path scan;
 };
@@ -81,6 +85,13 @@ void show_results(const ResultsOptions& options) {
   }
   if (!runs.empty()) return add_runs(runs);
   ResultReader reader(find_store(options.store.empty() ? "." : options.store));
+  if (!options.fill.empty()) {
+    std::ifstream file(options.fill);
+    if (!file) throw InputError(options.fill.string(), "cannot be read (--fill)");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    fmt::print("{}", fill_page(text, options.fill.string(), reader));
+    return;
+  }
   if (options.diff.empty()) {
     fmt::print("{}", list_results(reader, options.where, options.columns, format_of(options)));
     return;
@@ -117,6 +128,11 @@ void add_results_verb(CLI::App& command) {
   verb->add_option("--format", options->format, "Output format: table, csv or json.")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
+  verb->add_option("--fill", options->fill,
+                   "Print a text with results in place of its marks {{RUNS METRIC}} or {{RUNS "
+                   "METRIC DECIMALS}}; * in the name of a run stands for any text, and several "
+                   "runs give their mean, of a speed their median.")
+      ->type_name("FILE");
   verb->add_option("--add", options->add, "Add runs to the stores beside them.")
       ->type_name("RUN...");
   verb->add_option("--scan", options->scan, "Add every run below a folder.")->type_name("FOLDER");
@@ -126,6 +142,7 @@ void add_results_verb(CLI::App& command) {
       "  saccade results runs --where \"module = 'track' and trajectory.drift_percent < 1\"\n"
       "  saccade results runs --diff best fast\n"
       "  saccade results runs --columns run,machine,speed.wall_s --format csv\n"
+      "  saccade results runs --fill page.in.md > page.md\n"
       "  saccade results --scan runs");
   verb->callback([options] { show_results(*options); });
 }

@@ -44,6 +44,10 @@ MotionModelOptions speed_dependent_motion() {
 
 void describe_edge_method(config::Fields& fields, TrackConfig& config) {
   describe(fields, config.edges);
+  fields.value(
+      "figures", config.figures,
+      "Whether to write the data of the thesis's figures 4.1, 4.2 and 4.4 to 4.6, of a pose "
+      "in the middle of the run, to figures/.");
   if (!fields.has("preset")) return;
   config.motion = config.edges.motion;
   if (config.edges.preset != EdgeTrackerOptions::Preset::kThesis) return;

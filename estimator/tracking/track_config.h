@@ -25,6 +25,7 @@ struct TrackConfig {
   ReferenceOptions reference;
   MapOptions map;
   EdgeTrackerOptions edges;
+  bool figures = false;  ///< of the method of edges
   MotionModelOptions motion = edges.motion;
   IntensityOptions intensity;
   PolarityOptions polarity;

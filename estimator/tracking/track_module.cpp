@@ -2,9 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/config/config.h"
@@ -15,6 +19,7 @@
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/check/pose_monitor.h"
+#include "estimator/tracking/edges/tracking_figures.h"
 #include "estimator/tracking/frames/grey_frames.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/track_config.h"
@@ -150,6 +155,24 @@ std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, const 
   return poses;
 }
 
+/// Of the pose in the middle of the run; nothing where there is none.
+void write_figures(const std::filesystem::path& folder, const TrackConfig& config,
+                   const TrackInput& input, const TrackWorld& world,
+                   std::span<const TrackedPose> poses) {
+  const TrackedPose* moment = nullptr;
+  for (std::size_t i = 0; i < poses.size() && (!moment || i <= poses.size() / 2); ++i)
+    if (!poses[i].is_gap) moment = &poses[i];
+  if (!moment) return;
+  const auto first = std::lower_bound(input.events.begin(), input.events.end(), moment->first_ns,
+                                      [](const Event& e, TimeNs t_ns) { return e.t_ns < t_ns; });
+  const auto last = std::upper_bound(first, input.events.end(), moment->last_ns,
+                                     [](TimeNs t_ns, const Event& e) { return t_ns < e.t_ns; });
+  const ReferenceView& reference = input.references.front();
+  write_tracking_figures(
+      folder, config.edges, input.camera, reference, world.edge_points,
+      {{first, last}, reference.world_from_reference.inverse() * moment->world_from_camera});
+}
+
 MethodClass class_of(const TrackConfig& config, const TrackInput& input) {
   MethodClass method{{MethodInput::kMap}};
   method.inputs.insert(method_of(config).takes_frames ? MethodInput::kFrames
@@ -180,6 +203,7 @@ RunSummary run_track(const RunRequest& request) {
     const ScopedTimer writing(timing.io_s);
     write_poses(writer.path(), poses);
     write_map(writer.path() / "map.ply", world.edge_points, world.intensity_map.world_from_map());
+    if (config.figures) write_figures(writer.path(), config, input, world, poses);
   }
   writer.set_class(class_of(config, input));
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),

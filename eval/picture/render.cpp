@@ -9,6 +9,7 @@
 #include "core/io/images/image_file.h"
 #include "eval/metrics/trajectory/scored_samples.h"
 #include "eval/picture/canvas/contact_sheet.h"
+#include "eval/picture/figure/run_figures.h"
 #include "eval/picture/image/trajectory_picture.h"
 #include "eval/picture/view/mosaic_picture.h"
 #include "eval/picture/view/odometry_view.h"
@@ -154,6 +155,15 @@ ImageRgb8 contact_sheet(const Scene& scene, const RunRecord::Window& span) {
   return sheet.draw();
 }
 
+ImageRgb8 figure_of(const std::filesystem::path& path, const Subject& subject,
+                    const RenderOptions& options) {
+  if (!subject.run)
+    throw InputError(path.string(), "is a dataset; --figure draws figures of a run");
+  return draw_run_figure(
+      *options.figure, title_of(subject),
+      {*subject.run, subject.dataset, options.upscale, options.dark ? kDarkTheme : kLightTheme});
+}
+
 ImageRgb8 sheet_at(const Scene& scene, double t_s) {
   ContactSheet sheet(title_of(scene.subject), scene.view.theme());
   sheet.add_row(fmt::format("{:.4f} s", t_s), pictures_at(scene, t_s));
@@ -169,6 +179,10 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
   if (ending != ".png" && ending != ".mp4")
     throw InputError(output.string(), "must end in .png or .mp4");
   const Subject subject = open_subject(path, options);
+  if (options.figure) {
+    if (ending != ".png") throw InputError(output.string(), "must end in .png with --figure");
+    return write_png(output, figure_of(path, subject, options));
+  }
   const RunRecord::Window span = span_of(subject, options);
   if (subject.run && !options.overlay) {
     if (const auto mosaic = load_mosaic(*subject.run))

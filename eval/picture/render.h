@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "eval/picture/overlay/overlay.h"
 
@@ -28,6 +29,8 @@ struct RenderOptions {
   /// A picture at a fixed pose in the world, over undistorted events and frames; each frame uses
   /// the pose at its own time.
   std::optional<OverlayOptions> overlay = std::nullopt;
+  /// One of run_figures() in place of all else; only of a run, as .png.
+  std::optional<std::string> figure = std::nullopt;
 };
 
 /// Draws a dataset or a run (a folder with run.yaml) into `output`:
@@ -48,7 +51,7 @@ struct RenderOptions {
 /// Of a run that stabilized frames and events: both before and after, at three moments or at
 /// `time_s`; likewise in a video.
 /// Events are drawn undistorted wherever something is drawn over them.
-/// With an overlay: events and frame, with the picture in them.
+/// With `figure` that figure of a run. With an overlay: events and frame, with the picture in them.
 /// Throws InputError for another ending, an option out of range, a time without events or truth,
 /// and a missing ffmpeg.
 void render(const std::filesystem::path& path, const std::filesystem::path& output,

@@ -22,17 +22,20 @@ class LinePlot {
            const Theme& theme)
       : canvas_(canvas),
         panel_(panel),
+        is_over_time_(chart.is_over_time),
         left_(left + kLeft),
         theme_(theme),
-        x_(values(panel, false), false),
-        y_(values(panel, true), true) {
+        x_(values(chart, panel, false), false),
+        y_(values(chart, panel, true), true) {
     draw_frame(panel.x_label.empty() ? chart.x_label : panel.x_label);
     for (std::size_t i = 0; i < panel.lines.size(); ++i) draw_line(i);
   }
 
  private:
-  static std::vector<double> values(const LineChart::Panel& panel, bool of_y) {
+  static std::vector<double> values(const LineChart& chart, const LineChart::Panel& panel,
+                                    bool of_y) {
     std::vector<double> all;
+    if (chart.is_over_time) all.push_back(0);  // which also makes the axis linear
     for (const auto& line : panel.lines)
       for (const LineChart::Point& point : line) {
         if (of_y)
@@ -66,17 +69,19 @@ class LinePlot {
   void draw_line(std::size_t index) {
     const Rgb8 colour = series_colour(index);
     std::vector<Vector2d> points;
-    for (const LineChart::Point& point : panel_.lines[index]) {
+    for (const LineChart::Point& point : panel_.lines[index])
       points.emplace_back(column(point.x), row(point.y.value));
+    if (is_over_time_) return canvas_.polyline(points, colour);
+    for (const LineChart::Point& point : panel_.lines[index])
       canvas_.line({column(point.x), row(point.y.low)}, {column(point.x), row(point.y.high)},
                    mix(theme_.background, colour, 0.5), 2);
-    }
     canvas_.polyline(points, colour, 2);
     for (const Vector2d& point : points) canvas_.disc(point, 3.2, colour);
   }
 
   Canvas& canvas_;
   const LineChart::Panel& panel_;
+  bool is_over_time_;
   double left_;
   const Theme& theme_;
   Axis x_;

@@ -24,6 +24,8 @@ struct LineChart {
   std::string x_label;
   std::vector<std::string> names;  ///< of the lines
   std::vector<Panel> panels;
+  /// Curves of many points over time: thin and without dots, both axes linear from 0.
+  bool is_over_time = false;
 };
 
 /// Panels side by side above the legend. The range of a value is a vertical bar.

@@ -6,15 +6,11 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "eval/depth_views.h"
-#include "eval/picture/canvas/canvas.h"
 #include "eval/picture/image/depth_picture.h"
-#include "eval/picture/image/derotation_picture.h"
-#include "eval/picture/image/event_picture.h"
-#include "eval/picture/image/log_picture.h"
+#include "eval/picture/view/derotation_pictures.h"
 #include "eval/picture/view/view_pictures.h"
 #include "eval/report/html.h"
 #include "eval/table/number_text.h"
@@ -22,8 +18,6 @@
 
 namespace saccade {
 namespace {
-
-constexpr double kDerotationReachS = 0.2;
 
 std::string percent(const Metrics& metrics, const char* key, int decimals = 2) {
   std::optional<double> value = metrics.get(key);
@@ -71,30 +65,11 @@ std::string view_pictures(const RunData& data, const EstimatedView& view, const 
 }
 
 /// Events around the view as they came and rotated into its orientation (thesis fig. 5.2).
-std::string derotation_pictures(const RunData& data, const EstimatedView& view) {
-  const Trajectory& truth = data.data->groundtruth();
-  if (truth.empty() || data.data->events_file().empty()) return "";
-  const PinholeCamera& camera = data.data->camera();
-  // One per pixel: some 50 ms, over which rotation blurs and translation hardly does.
-  const auto most =
-      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  const Events around =
-      data.data->load_events(view.t_s - kDerotationReachS, view.t_s + kDerotationReachS);
-  const std::span<const Event> events = events_around(around, view.t_s, most, kDerotationReachS);
-  if (events.empty()) return "";
-  const ImageF plain = count_events(events, camera);
-  const ImageF derotated = count_derotated_events(events, camera, truth, view.t_s);
-  const float top = quantile(derotated, {}, 0.99);
-  const std::string what = fmt::format(
-      "{} events of {:.0f} ms around {:.3f} s", grouped(static_cast<double>(events.size())),
-      1e3 * seconds_from_ns(events.back().t_ns - events.front().t_ns), view.t_s);
-  return "<div class=\"grid three\">" +
-         upscaled_figure(draw_magnitude(plain, {}, top), what + ", as they came",
-                         "events as they came") +
-         upscaled_figure(draw_magnitude(derotated, {}, top),
-                         what + ", rotated into the view's orientation by the true poses",
-                         "derotated events") +
-         "</div>\n";
+std::string derotation_figures(const RunData& data, const EstimatedView& view) {
+  std::string html;
+  for (const CaptionedPicture& drawn : derotation_pictures(*data.data, view.t_s, kUpscale))
+    html += figure(drawn.image, drawn.caption, drawn.caption);
+  return html.empty() ? "" : "<div class=\"grid three\">" + html + "</div>\n";
 }
 
 std::string planes_table(const std::vector<FittedPlane>& planes, std::size_t points) {
@@ -137,7 +112,7 @@ std::string depth_section(const RunData& data) {
   const std::size_t middle = order[(order.size() - 1) / 2];
   html += view_pictures(data, views[middle], "Median");
   if (order.size() > 1) html += view_pictures(data, views[order.back()], "Worst");
-  return html + derotation_pictures(data, views[middle]) + cloud(data, views);
+  return html + derotation_figures(data, views[middle]) + cloud(data, views);
 }
 
 }  // namespace saccade

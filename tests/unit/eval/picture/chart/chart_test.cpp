@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "eval/picture/chart/axis.h"
 #include "eval/picture/chart/bar_chart.h"
 #include "eval/picture/chart/line_chart.h"
@@ -72,6 +74,18 @@ TEST(LineChart, DrawsEveryLineInItsColour) {
   EXPECT_TRUE(shows(picture, series_colour(0)));
   EXPECT_TRUE(shows(picture, series_colour(1)));
   EXPECT_FALSE(shows(picture, series_colour(2)));
+}
+
+TEST(LineChart, ACurveOverTimeIsThinOnLinearAxes) {
+  LineChart chart{"time [s]", {}, {{"error [%]", {{{0.001, {0.1, 0.1, 0.1}}, {1, {9, 9, 9}}}}}}};
+  const auto coloured = [](const ImageRgb8& picture) {
+    return std::count(picture.pixels().begin(), picture.pixels().end(), series_colour(0));
+  };
+  const auto with_dots = coloured(draw(chart, kLightTheme));
+  chart.is_over_time = true;
+  const ImageRgb8 picture = draw(chart, kLightTheme);
+  EXPECT_TRUE(shows(picture, series_colour(0)));
+  EXPECT_LT(coloured(picture), with_dots / 2);
 }
 
 TEST(LineChart, SurvivesHavingNothingToShow) {
