@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -30,6 +31,7 @@ struct ResultsOptions {
   std::vector<std::string> diff;
   std::string format = "table";
   fs::path fill;
+  std::optional<std::string> missing;
   std::vector<fs::path> add;
   fs::path scan;
 };
@@ -89,7 +91,7 @@ void show_results(const ResultsOptions& options) {
     std::ifstream file(options.fill);
     if (!file) throw InputError(options.fill.string(), "cannot be read (--fill)");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    fmt::print("{}", fill_page(text, options.fill.string(), reader));
+    fmt::print("{}", fill_page(text, options.fill.string(), reader, options.missing));
     return;
   }
   if (options.diff.empty()) {
@@ -133,6 +135,9 @@ void add_results_verb(CLI::App& command) {
                    "METRIC DECIMALS}}; * in the name of a run stands for any text, and several "
                    "runs give their mean, of a speed their median.")
       ->type_name("FILE");
+  verb->add_option("--missing", options->missing,
+                   "With --fill: what stands in place of a mark of which no run is stored, e.g. "
+                   "\"no run\"; without it such a mark is an error.");
   verb->add_option("--add", options->add, "Add runs to the stores beside them.")
       ->type_name("RUN...");
   verb->add_option("--scan", options->scan, "Add every run below a folder.")->type_name("FOLDER");

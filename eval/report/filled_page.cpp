@@ -35,7 +35,8 @@ bool matches(std::string_view pattern, std::string_view text) {
 
 class PageFiller {
  public:
-  explicit PageFiller(ResultReader& reader) : reader_(reader), rows_(reader.select("")) {}
+  PageFiller(ResultReader& reader, const std::optional<std::string>& missing)
+      : reader_(reader), missing_(missing), rows_(reader.select("")) {}
 
   /// What stands in place of a mark; `place` is where it is.
   [[nodiscard]] std::string value_of(const std::string& mark, const std::string& place) {
@@ -47,6 +48,7 @@ class PageFiller {
                                   "' is no mark; write {{RUNS METRIC}} or {{RUNS METRIC "
                                   "DECIMALS}}");
     const std::vector<ResultRow> rows = rows_of(runs, place);
+    if (rows.empty()) return *missing_;
     if (const std::string lost = lost_text(rows, metric); !lost.empty()) return lost;
     const std::optional<double> value = pooled(rows, metric, place);
     return decimals.empty() ? rounded(value) : fixed(value, number_of(decimals, place));
@@ -71,7 +73,7 @@ class PageFiller {
       names.push_back(row.run);
       if (matches(pattern, row.run)) rows.push_back(row);
     }
-    if (rows.empty())
+    if (rows.empty() && !missing_)
       throw InputError(place, "no stored run is called '" + pattern + "'; " +
                                   config::suggestion(pattern, names, "runs"));
     return rows;
@@ -130,13 +132,15 @@ class PageFiller {
   }
 
   ResultReader& reader_;
+  std::optional<std::string> missing_;
   std::vector<ResultRow> rows_;
 };
 
 }  // namespace
 
-std::string fill_page(std::string_view text, const std::string& location, ResultReader& reader) {
-  PageFiller filler(reader);
+std::string fill_page(std::string_view text, const std::string& location, ResultReader& reader,
+                      const std::optional<std::string>& missing) {
+  PageFiller filler(reader, missing);
   std::string filled;
   std::size_t at = 0;
   for (std::size_t open = text.find(kOpen); open != std::string_view::npos;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,9 +15,12 @@ namespace saccade {
 ///             for its median
 ///   DECIMALS  0 to 6; default: three significant digits
 /// The number is the mean over the runs, of a speed their median, in the catalogue's scale; a dash
-/// where none of them measured it, and of trajectories "lost" or "1 of 3 lost" where runs were. InputError with `location` and the line of a mark that names no
-/// run, no metric or is malformed, with the nearest right answer.
+/// where none of them measured it, and of trajectories "lost" or "1 of 3 lost" where runs were.
+/// `missing` stands in place of a mark of which no run is stored, if it is set. InputError with
+/// `location` and the line of a mark that names no run otherwise, no metric or is malformed, with the
+/// nearest right answer.
 [[nodiscard]] std::string fill_page(std::string_view text, const std::string& location,
-                                    ResultReader& reader);
+                                    ResultReader& reader,
+                                    const std::optional<std::string>& missing = {});
 
 }  // namespace saccade

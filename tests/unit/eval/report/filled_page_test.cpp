@@ -29,9 +29,10 @@ class FilledPage : public ::testing::Test {
           one_metric("speed.poses_per_s.median", 1000 * wall_s));
   }
 
-  [[nodiscard]] std::string fill(const std::string& text) const {
+  [[nodiscard]] std::string fill(const std::string& text,
+                                 const std::optional<std::string>& missing = {}) const {
     ResultReader reader(folder_.path() / kResultStoreName);
-    return fill_page(text, "page.md", reader);
+    return fill_page(text, "page.md", reader, missing);
   }
   [[nodiscard]] std::string error(const std::string& text) const {
     return error_of([&] { return fill(text); });
@@ -80,6 +81,10 @@ TEST_F(FilledPage, ALostTrajectoryHasNoError) {
   EXPECT_EQ(fill("{{bad_2 trajectory.drift_percent 1}}"), "1.0");
 }
 
+TEST_F(FilledPage, ARunThatIsNotStoredHasWhatStandsForIt) {
+  EXPECT_EQ(fill("{{dunes_* depth.rel_median}} {{walls_best depth.rel_median 2}}", "no run"),
+            "no run 1.23");
+}
 TEST_F(FilledPage, MistakesNameTheirLineAndTheNearestAnswer) {
   EXPECT_THAT(error("\n\n{{walls_bost depth.rel_median}}"),
               AllOf(HasSubstr("page.md:3"), HasSubstr("'walls_best'")));

