@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "apps/common_options.h"
@@ -12,6 +13,7 @@
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/event_file.h"
+#include "core/io/events/event_formats.h"
 #include "core/io/import/public_sequence.h"
 
 namespace saccade {
@@ -26,18 +28,46 @@ struct ConvertOptions {
   CommonOptions common;
 };
 
-/// Events of a file, or of the dataset in a folder, whose sensor they are checked against.
-Events load(const ConvertOptions& options) {
-  if (std::filesystem::is_directory(options.input))
-    return Dataset::open(options.input).load_events();
-  return read_events(options.input, SensorSize{});
+/// An event file, or that of the dataset in a folder, whose sensor it is checked against.
+struct EventInput {
+  std::filesystem::path file;
+  SensorSize size;
+};
+
+EventInput find_events(const std::filesystem::path& input) {
+  if (!std::filesystem::is_directory(input)) return {input, {}};
+  const Dataset dataset = Dataset::open(input);
+  if (dataset.events_file().empty())
+    throw InputError(input.string(), "holds no events (" + event_file_names() + ")");
+  return {dataset.events_file(), {dataset.camera().width, dataset.camera().height}};
 }
 
-TimestampUnit unit_of(const ConvertOptions& options, const Events& events) {
-  const bool keeps_microseconds =
-      std::all_of(events.begin(), events.end(), [](const Event& e) { return e.t_ns % 1000 == 0; });
-  const bool microseconds = options.unit.empty() ? keeps_microseconds : options.unit == "us";
-  return microseconds ? TimestampUnit::kMicroseconds : TimestampUnit::kNanoseconds;
+/// The coarsest that keeps every time. A file that states its times in ns is read for it.
+TimestampUnit coarsest_unit(const EventInput& input) {
+  EventStream stream(input.file, input.size);
+  if (stream.unit() == TimestampUnit::kMicroseconds) return TimestampUnit::kMicroseconds;
+  while (true) {
+    const std::span<const Event> events = stream.next();
+    if (events.empty()) return TimestampUnit::kMicroseconds;
+    if (!std::all_of(events.begin(), events.end(),
+                     [](const Event& e) { return e.t_ns % 1000 == 0; }))
+      return TimestampUnit::kNanoseconds;
+  }
+}
+
+/// Block by block, so that memory does not grow with the file.
+std::uint64_t convert_events(const ConvertOptions& options) {
+  const EventInput input = find_events(options.input);
+  TimestampUnit unit =
+      options.unit == "ns" ? TimestampUnit::kNanoseconds : TimestampUnit::kMicroseconds;
+  if (options.unit.empty()) unit = coarsest_unit(input);
+  EventStream stream(input.file, input.size);
+  const SensorSize sensor = input.size.width > 0 ? input.size : stream.sensor();
+  const std::unique_ptr<EventWriter> writer = make_event_writer(options.output, unit, sensor);
+  for (auto events = stream.next(); !events.empty(); events = stream.next())
+    writer->append(events);
+  writer->close();
+  return writer->count();
 }
 
 /// A sequence of a public benchmark into a dataset folder.
@@ -52,14 +82,6 @@ void convert_sequence(const PublicSequence& sequence, const ConvertOptions& opti
                sequence.camera_residual_px);
 }
 
-/// ".h5, .hdf5, .txt"
-std::string event_file_endings() {
-  std::string list;
-  for (const EventFormat& format : event_formats())
-    list += (list.empty() ? "" : ", ") + std::string(format.ending);
-  return list;
-}
-
 void convert(const ConvertOptions& options) {
   options.common.apply();
   if (options.grids.is_stated()) {
@@ -70,24 +92,20 @@ void convert(const ConvertOptions& options) {
     if (!options.common.quiet) fmt::print("{}", text);
     return;
   }
-  if (find_event_format(options.output) == nullptr) {
+  if (find_written_format(options.output) == nullptr) {
     if (std::filesystem::is_directory(options.input))
       if (const auto sequence = open_public_sequence(options.input))
         return convert_sequence(*sequence, options);
     throw InputError(
         options.output.string(),
-        "cannot tell the format from the ending; valid endings: " + event_file_endings() +
+        "cannot tell the format from the ending; valid endings: " + event_file_endings(true) +
             "; a folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the "
             "layout of the Event Camera Dataset is read as it is)");
   }
   if (options.window.start_s != 0 || options.window.duration_s)
     throw InputError("--start-s", "belongs to the conversion of whole sequences");
-  const Events events = load(options);
-  const std::unique_ptr<EventWriter> writer =
-      make_event_writer(options.output, unit_of(options, events));
-  writer->append(events);
-  writer->close();
-  if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), events.size());
+  const std::uint64_t count = convert_events(options);
+  if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), count);
 }
 
 void add_grid_options(CLI::App& verb, GridRequest& request) {

@@ -51,7 +51,9 @@ EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
   recording.file = path;
   if (!fs::is_directory(path)) {
     recording.events = read_events(path, {}, window_of(path, part));
-    recording.size = extent(recording.events);
+    recording.size = stated_sensor(path);
+    recording.is_size_stated = recording.size.width > 0;
+    if (!recording.is_size_stated) recording.size = extent(recording.events);
     return recording;
   }
   const Dataset dataset = Dataset::open(path);

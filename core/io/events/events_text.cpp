@@ -52,40 +52,48 @@ void append_field(std::uint16_t value, std::string& text) {
   text.append(digits.begin(), end);
 }
 
+class EventTextReader final : public EventReader {
+ public:
+  EventTextReader(const std::filesystem::path& file, SensorSize size, TimeWindow window)
+      : reader_(file), size_(size), window_(window) {
+    if (window.is_everything() && std::filesystem::is_regular_file(file))
+      expected_ = std::filesystem::file_size(file) / kTypicalLineBytes;
+  }
+
+  bool read(Events& events) override {
+    const std::size_t before = events.size();
+    std::string_view line;
+    while (events.size() < before + kEventBlock && reader_.next(line)) {
+      TextRow row = reader_.row(line);
+      Event event;
+      event.t_ns = previous_ = read_time(row, previous_);
+      if (event.t_ns >= window_.end_ns) break;
+      if (event.t_ns < window_.start_ns) continue;
+      event.x = read_coordinate(row, "x", size_.width);
+      event.y = read_coordinate(row, "y", size_.height);
+      event.polarity = read_polarity(row);
+      row.expect_end(kEventColumns);
+      events.push_back(event);
+    }
+    return events.size() > before;
+  }
+
+  [[nodiscard]] TimestampUnit unit() const override { return TimestampUnit::kNanoseconds; }
+  [[nodiscard]] std::uint64_t expected_count() const override { return expected_; }
+
+ private:
+  TextReader reader_;
+  SensorSize size_;
+  TimeWindow window_;
+  TimeNs previous_ = std::numeric_limits<TimeNs>::min();
+  std::uint64_t expected_ = 0;
+};
+
 }  // namespace
 
-Events read_events_text(const std::filesystem::path& file, SensorSize size, TimeWindow window) {
-  Events events;
-  const bool whole = window.start_ns == TimeWindow().start_ns;
-  if (whole && std::filesystem::is_regular_file(file))
-    events.reserve(std::filesystem::file_size(file) / kTypicalLineBytes);
-  TimeNs previous = std::numeric_limits<TimeNs>::min();
-  for_each_row(file, [&](TextRow& row) {
-    Event event;
-    event.t_ns = previous = read_time(row, previous);
-    if (event.t_ns >= window.end_ns) return false;
-    if (event.t_ns < window.start_ns) return true;
-    event.x = read_coordinate(row, "x", size.width);
-    event.y = read_coordinate(row, "y", size.height);
-    event.polarity = read_polarity(row);
-    row.expect_end(kEventColumns);
-    events.push_back(event);
-    return true;
-  });
-  sort_ties(events);
-  return events;
-}
-
-EventFileInfo read_events_text_info(const std::filesystem::path& file) {
-  EventFileInfo info;
-  TimeNs previous = std::numeric_limits<TimeNs>::min();
-  for_each_row(file, [&](TextRow& row) {
-    previous = read_time(row, previous);
-    if (info.count++ == 0) info.first_ns = previous;
-    info.last_ns = previous;
-    return true;
-  });
-  return info;
+std::unique_ptr<EventReader> open_events_text(const std::filesystem::path& file, SensorSize size,
+                                              TimeWindow window) {
+  return std::make_unique<EventTextReader>(file, size, window);
 }
 
 struct EventTextWriter::State {
