@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "core/io/events/event_formats.h"
 #include "core/time_search.h"
@@ -33,6 +35,24 @@ bool read_within(EventReader& reader, TimeWindow window, Events& events) {
     if (is_beyond) return false;
   }
   return false;
+}
+
+/// Of events of the same time: their place in EventOrder, and all that tells them apart.
+std::uint64_t tie_key(const Event& event) {
+  return std::uint64_t{event.y} << 17U | std::uint64_t{event.x} << 1U |
+         static_cast<std::uint64_t>(event.polarity > 0);
+}
+
+/// Sorts events of the same time, by their keys: several times as fast as event by event.
+void sort_run(std::span<Event> events, std::vector<std::uint64_t>& keys) {
+  keys.resize(events.size());
+  std::transform(events.begin(), events.end(), keys.begin(), tie_key);
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    events[i].y = static_cast<std::uint16_t>(keys[i] >> 17U);
+    events[i].x = static_cast<std::uint16_t>(keys[i] >> 1U);
+    events[i].polarity = static_cast<std::int8_t>((keys[i] & 1U) != 0 ? 1 : -1);
+  }
 }
 
 }  // namespace
@@ -95,15 +115,17 @@ std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file
 }
 
 void sort_ties(std::span<Event> events) {
-  for (std::size_t begin = 0; begin < events.size();) {
-    std::size_t end = begin + 1;
-    bool sorted = true;
-    for (; end < events.size() && events[end].t_ns == events[begin].t_ns; ++end)
-      sorted = sorted && !EventOrder()(events[end], events[end - 1]);
-    if (!sorted)
-      std::sort(events.begin() + static_cast<std::ptrdiff_t>(begin),
-                events.begin() + static_cast<std::ptrdiff_t>(end), EventOrder());
-    begin = end;
+  std::vector<std::uint64_t> keys;
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    const TimeNs t_ns = events[i].t_ns;
+    if (t_ns != events[i - 1].t_ns || tie_key(events[i - 1]) <= tie_key(events[i])) continue;
+    std::size_t begin = i - 1;
+    while (begin > 0 && events[begin - 1].t_ns == t_ns) --begin;
+    while (i < events.size() && events[i].t_ns == t_ns) ++i;
+    if (i - begin == 2)
+      std::swap(events[begin], events[begin + 1]);
+    else
+      sort_run(events.subspan(begin, i - begin), keys);
   }
 }
 

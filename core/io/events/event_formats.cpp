@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/io/events/aedat/aedat2.h"
+#include "core/io/events/aedat/aedat4.h"
+#include "core/io/events/aedat/aedat4_file.h"
 #include "core/io/events/events_h5.h"
 #include "core/io/events/events_text.h"
 #include "core/io/events/prophesee/evt2.h"
@@ -19,10 +22,17 @@ namespace {
 
 constexpr std::size_t kHeadBytes = 4096;
 
-bool is_h5(const EventFileHead& head) { return head.bytes.starts_with("\x89HDF\r\n\x1a\n"); }
+constexpr std::string_view kH5Magic = "\x89HDF\r\n\x1a\n";
+constexpr std::string_view kAedat2Magic = "#!AER-DAT2.0";
 
-/// Also an empty file, which holds no events.
+template <const std::string_view& kMagic>
+bool begins_with(const EventFileHead& head) {
+  return head.bytes.starts_with(kMagic);
+}
+
+/// Also an empty file, which holds no events; not AEDAT of versions that are not read.
 bool is_text(const EventFileHead& head) {
+  if (head.bytes.starts_with("#!AER-DAT")) return false;
   return std::none_of(head.bytes.begin(), head.bytes.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte == 0x7F || (byte < 0x20 && c != '\t' && c != '\n' && c != '\r');
@@ -52,7 +62,7 @@ constexpr EventFormat kEventFormats[] = {
      .help = "HDF5 in the layout of DSEC.",
      .states_sensor = true,
      .finest = TimestampUnit::kNanoseconds,
-     .recognises = is_h5,
+     .recognises = begins_with<kH5Magic>,
      .open = open_events_h5,
      .read_info = read_h5_info,
      .make_writer = make_h5},
@@ -61,7 +71,7 @@ constexpr EventFormat kEventFormats[] = {
      .help = "The same.",
      .states_sensor = true,
      .finest = TimestampUnit::kNanoseconds,
-     .recognises = is_h5,
+     .recognises = begins_with<kH5Magic>,
      .open = open_events_h5,
      .read_info = read_h5_info,
      .make_writer = make_h5},
@@ -99,6 +109,24 @@ constexpr EventFormat kEventFormats[] = {
      .finest = TimestampUnit::kMicroseconds,
      .recognises = is_raw<RawEncoding::kDat>,
      .open = open_dat,
+     .read_info = nullptr,
+     .make_writer = nullptr},
+    {.name = "AEDAT4",
+     .ending = ".aedat4",
+     .help = "AEDAT 4.0 of iniVation's DV.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kMicroseconds,
+     .recognises = begins_with<kAedat4Magic>,
+     .open = open_aedat4,
+     .read_info = nullptr,
+     .make_writer = make_aedat4_writer},
+    {.name = "AEDAT2",
+     .ending = ".aedat",
+     .help = "AEDAT 2.0 of jAER, of a DAVIS.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kMicroseconds,
+     .recognises = begins_with<kAedat2Magic>,
+     .open = open_aedat2,
      .read_info = nullptr,
      .make_writer = nullptr},
     {.name = "text",
