@@ -13,6 +13,7 @@
 #include "core/io/events/aedat/aedat4_file.h"
 #include "core/io/events/events_h5.h"
 #include "core/io/events/events_text.h"
+#include "core/io/events/numpy/numpy_events.h"
 #include "core/io/events/prophesee/evt2.h"
 #include "core/io/events/prophesee/evt3.h"
 #include "core/io/events/prophesee/raw_header.h"
@@ -127,6 +128,33 @@ constexpr EventFormat kEventFormats[] = {
      .finest = TimestampUnit::kMicroseconds,
      .recognises = begins_with<kAedat2Magic>,
      .open = open_aedat2,
+     .read_info = nullptr,
+     .make_writer = nullptr},
+    {.name = "NumPy archive",
+     .ending = ".npz",
+     .help = "NumPy arrays t, x, y and p.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = is_npz,
+     .open = open_numpy,
+     .read_info = nullptr,
+     .make_writer = make_npz_writer},
+    {.name = "NumPy array",
+     .ending = ".npy",
+     .help = "One NumPy array with fields or columns t, x, y and p.",
+     .states_sensor = false,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = is_npy,
+     .open = open_numpy,
+     .read_info = nullptr,
+     .make_writer = nullptr},
+    {.name = "zipped text",
+     .ending = ".zip",
+     .help = "A zip archive with events.txt, as of the Event Camera Dataset.",
+     .states_sensor = false,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = is_events_zip,
+     .open = open_events_zip,
      .read_info = nullptr,
      .make_writer = nullptr},
     {.name = "text",

@@ -7,10 +7,12 @@
 #include <charconv>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "core/check.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
+#include "core/io/files/zip_archive.h"
 #include "core/io/tables/text_table.h"
 
 namespace saccade {
@@ -54,11 +56,11 @@ void append_field(std::uint16_t value, std::string& text) {
 
 class EventTextReader final : public EventReader {
  public:
-  EventTextReader(const std::filesystem::path& file, SensorSize size, TimeWindow window)
-      : reader_(file), size_(size), window_(window) {
-    if (window.is_everything() && std::filesystem::is_regular_file(file))
-      expected_ = std::filesystem::file_size(file) / kTypicalLineBytes;
-  }
+  EventTextReader(TextReader reader, std::uint64_t bytes, SensorSize size, TimeWindow window)
+      : reader_(std::move(reader)),
+        size_(size),
+        window_(window),
+        expected_(window.is_everything() ? bytes / kTypicalLineBytes : 0) {}
 
   bool read(Events& events) override {
     const std::size_t before = events.size();
@@ -86,14 +88,41 @@ class EventTextReader final : public EventReader {
   SensorSize size_;
   TimeWindow window_;
   TimeNs previous_ = std::numeric_limits<TimeNs>::min();
-  std::uint64_t expected_ = 0;
+  std::uint64_t expected_;
 };
+
+/// The events.txt that lies least deep; empty where there is none.
+std::string events_member(const ZipArchive& archive) {
+  std::string best;
+  for (const std::string& member : archive.members()) {
+    const bool is_events = member == "events.txt" || member.ends_with("/events.txt");
+    if (is_events && (best.empty() || member.size() < best.size())) best = member;
+  }
+  return best;
+}
 
 }  // namespace
 
 std::unique_ptr<EventReader> open_events_text(const std::filesystem::path& file, SensorSize size,
                                               TimeWindow window) {
-  return std::make_unique<EventTextReader>(file, size, window);
+  const std::uint64_t bytes =
+      std::filesystem::is_regular_file(file) ? std::filesystem::file_size(file) : 0;
+  return std::make_unique<EventTextReader>(TextReader(file), bytes, size, window);
+}
+
+std::unique_ptr<EventReader> open_events_zip(const std::filesystem::path& archive, SensorSize size,
+                                             TimeWindow window) {
+  const auto zip = std::make_shared<ZipArchive>(archive);
+  const std::string member = events_member(*zip);
+  const auto text = std::make_shared<ZipMember>(*zip, member);
+  TextReader reader(zip->location(member), [zip, text](std::span<char> memory) {
+    return text->read(std::as_writable_bytes(memory));
+  });
+  return std::make_unique<EventTextReader>(std::move(reader), 0, size, window);
+}
+
+bool is_events_zip(const EventFileHead& head) {
+  return head.bytes.starts_with("PK\x03\x04") && !events_member(ZipArchive(head.file)).empty();
 }
 
 struct EventTextWriter::State {

@@ -22,16 +22,15 @@ class ByteBuilder {
  public:
   template <class T>
   void put(T value) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof value);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  void put_text(std::string_view text) {
-    for (const char c : text) bytes_.push_back(static_cast<std::byte>(c));
+  void put_text(std::string_view text) { bytes_.append(text); }
+  [[nodiscard]] std::span<const std::byte> bytes() const {
+    return std::as_bytes(std::span(bytes_));
   }
-  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  std::vector<std::byte> bytes_;
+  std::string bytes_;
 };
 
 /// "<attr key="KEY" type="TYPE">VALUE</attr>".
