@@ -64,8 +64,7 @@ std::uint64_t convert_events(const ConvertOptions& options) {
   EventStream stream(input.file, input.size);
   const SensorSize sensor = input.size.width > 0 ? input.size : stream.sensor();
   const std::unique_ptr<EventWriter> writer = make_event_writer(options.output, unit, sensor);
-  for (auto events = stream.next(); !events.empty(); events = stream.next())
-    writer->append(events);
+  for (auto events = stream.next(); !events.empty(); events = stream.next()) writer->append(events);
   writer->close();
   return writer->count();
 }

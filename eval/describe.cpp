@@ -66,17 +66,15 @@ std::string event_lines(const EventSummary& events, TimestampUnit unit) {
   const auto all = static_cast<double>(events.count);
   const double first_s = seconds_from_ns(events.first_ns);
   const double last_s = seconds_from_ns(events.last_ns);
-  const double peak_rate =
-      static_cast<double>(events.most_in_bin) / seconds_from_ns(kRateBinNs);
+  const double peak_rate = static_cast<double>(events.most_in_bin) / seconds_from_ns(kRateBinNs);
   std::string text = line("events", fmt::format("{} ({} ON, {} OFF: {:.1f} % ON)", grouped(all),
                                                 grouped(on), grouped(all - on), 100 * on / all)) +
                      line("time", fmt::format("{:.6f} .. {:.6f} s ({:.6f} s), stamps in {}",
                                               first_s, last_s, last_s - first_s,
                                               unit == TimestampUnit::kNanoseconds ? "ns" : "us"));
   if (last_s > first_s)
-    text +=
-        line("rate", fmt::format("{} events/s mean, {} events/s in the busiest 10 ms",
-                                 grouped(all / (last_s - first_s)), grouped(peak_rate)));
+    text += line("rate", fmt::format("{} events/s mean, {} events/s in the busiest 10 ms",
+                                     grouped(all / (last_s - first_s)), grouped(peak_rate)));
   return text;
 }
 
@@ -217,14 +215,14 @@ std::string describe_event_file(const fs::path& file) {
   const SensorSize sensor = stream.sensor();
   return text + line("sensor", sensor.width > 0
                                    ? fmt::format("{} x {} px", sensor.width, sensor.height)
-                                   : fmt::format("not stated, at least {} x {} px",
-                                                 events.columns, events.rows));
+                                   : fmt::format("not stated, at least {} x {} px", events.columns,
+                                                 events.rows));
 }
 
 }  // namespace
 
 PathDescription describe_path(const fs::path& path, bool verify) {
-  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::exists(event_file_place(path).file)) throw InputError(path.string(), "is not there");
   if (!fs::is_directory(path)) {
     if (verify) throw InputError(path.string(), "only a dataset folder states hashes to verify");
     return {describe_event_file(path), {}};

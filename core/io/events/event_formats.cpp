@@ -17,6 +17,8 @@
 #include "core/io/events/prophesee/evt2.h"
 #include "core/io/events/prophesee/evt3.h"
 #include "core/io/events/prophesee/raw_header.h"
+#include "core/io/ros/bag_events.h"
+#include "core/io/ros/bag_file.h"
 
 namespace saccade {
 namespace {
@@ -157,6 +159,15 @@ constexpr EventFormat kEventFormats[] = {
      .open = open_events_zip,
      .read_info = nullptr,
      .make_writer = nullptr},
+    {.name = "ROS bag",
+     .ending = ".bag",
+     .help = "A bag of ROS 1 with messages dvs_msgs/EventArray.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = begins_with<kBagMagic>,
+     .open = open_bag_events,
+     .read_info = nullptr,
+     .make_writer = nullptr},
     {.name = "text",
      .ending = ".txt",
      .help = "Text lines t x y p, t in seconds.",
@@ -212,7 +223,15 @@ std::vector<std::string_view> endings(bool written) {
 
 std::span<const EventFormat> event_formats() { return kEventFormats; }
 
-const EventFormat& recognise_event_format(const std::filesystem::path& file) {
+EventFilePlace event_file_place(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  const std::size_t inside = text.find("!/");
+  if (inside == std::string::npos || std::filesystem::exists(path)) return {path, ""};
+  return {text.substr(0, inside), text.substr(inside + 1)};
+}
+
+const EventFormat& recognise_event_format(const std::filesystem::path& path) {
+  const std::filesystem::path file = event_file_place(path).file;
   // What comes through a pipe cannot be looked at before it is read.
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file) &&
       !std::filesystem::is_directory(file))

@@ -10,6 +10,15 @@
 
 namespace saccade {
 
+/// "recording.bag!/davis/left/events": a file, and which of the streams in it is meant.
+struct EventFilePlace {
+  std::filesystem::path file;
+  std::string member;  ///< with its '/'; empty where none is named
+};
+
+/// Splits at the first "!/" where there is no file of the whole name.
+[[nodiscard]] EventFilePlace event_file_place(const std::filesystem::path& path);
+
 /// What a format is recognised by.
 struct EventFileHead {
   const std::filesystem::path& file;

@@ -33,7 +33,7 @@ class RoundedEvents {
  private:
   TimeNs unit_;  ///< [ns]
   Events pending_;
-  std::size_t open_ties_ = 0;  ///< where the last run of equal times begins
+  std::size_t open_ties_ = 0;                         ///< where the last run of equal times begins
   TimeNs last_ = std::numeric_limits<TimeNs>::min();  ///< before rounding
 };
 

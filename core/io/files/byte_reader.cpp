@@ -30,8 +30,8 @@ std::span<const std::byte> ByteReader::peek(std::size_t least) {
     end_ -= begin_;
     begin_ = 0;
     const std::uint64_t rest = size_ - block_offset_;
-    const auto wanted = static_cast<std::size_t>(
-        std::min<std::uint64_t>(rest, std::max(least, kReadAheadBytes)));
+    const auto wanted =
+        static_cast<std::size_t>(std::min<std::uint64_t>(rest, std::max(least, kReadAheadBytes)));
     if (block_.size() < wanted) block_.resize(wanted);
     stream_.read(reinterpret_cast<char*>(block_.data() + end_),
                  static_cast<std::streamsize>(wanted - end_));
@@ -43,8 +43,8 @@ std::span<const std::byte> ByteReader::peek(std::size_t least) {
 
 std::span<const std::byte> ByteReader::take(std::uint64_t count, std::string_view what) {
   if (count > left())
-    fail(offset(), fmt::format("the file ends within {}: {} bytes are missing", what,
-                               count - left()));
+    fail(offset(),
+         fmt::format("the file ends within {}: {} bytes are missing", what, count - left()));
   const auto size = static_cast<std::size_t>(count);
   const std::span<const std::byte> bytes = peek(size).first(size);
   skip(size);

@@ -44,8 +44,7 @@ ZipMember::ZipMember(ZipArchive& archive, const std::string& member)
 std::size_t ZipMember::read(std::span<std::byte> bytes) {
   std::size_t filled = 0;
   while (filled < bytes.size()) {
-    const zip_int64_t count =
-        zip_fread(file_.get(), bytes.data() + filled, bytes.size() - filled);
+    const zip_int64_t count = zip_fread(file_.get(), bytes.data() + filled, bytes.size() - filled);
     if (count < 0)
       throw InputError(location_,
                        fmt::format("cannot be unpacked: {}", zip_file_strerror(file_.get())));
@@ -64,13 +63,14 @@ void write_zip(const std::filesystem::path& target,
   bool is_good = true;
   for (const auto& [name, path] : files) {
     zip_source_t* source = zip_source_file(archive, path.c_str(), 0, -1);
-    const zip_int64_t index = source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, 0);
+    const zip_int64_t index =
+        source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, 0);
     if (source != nullptr && index < 0) zip_source_free(source);
     constexpr std::time_t kFirstOfDos = 315'532'800;  // 1980: no time of writing
-    is_good = is_good && index >= 0 &&
-              zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_STORE,
-                                       0) == 0 &&
-              zip_file_set_mtime(archive, static_cast<zip_uint64_t>(index), kFirstOfDos, 0) == 0;
+    is_good =
+        is_good && index >= 0 &&
+        zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0) == 0 &&
+        zip_file_set_mtime(archive, static_cast<zip_uint64_t>(index), kFirstOfDos, 0) == 0;
   }
   if (is_good && zip_close(archive) == 0) return;
   const std::string reason = zip_strerror(archive);

@@ -33,7 +33,8 @@ class NpyGridWriter final : public GridWriter {
  public:
   NpyGridWriter(const fs::path& file, const GridShape& shape)
       : shape_(shape), file_(file), stream_(file_.path(), std::ios::binary) {
-    stream_ << npy_header_text("<f4", {shape.count, size(shape.channels), size(shape.height), size(shape.width)});
+    stream_ << npy_header_text(
+        "<f4", {shape.count, size(shape.channels), size(shape.height), size(shape.width)});
   }
 
   void append(const EventGrid& grid, const GridWindow& window) override {

@@ -82,12 +82,13 @@ NpyType parse_type(const std::string& text) {
       bytes > kMostHeaderBytes)
     throw NpyError{fmt::format("'{}' is no type of numbers", text)};
   if (text[0] == '>' && bytes > 1)
-    throw NpyError{fmt::format("numbers of the type '{}' are big-endian; store them little-endian, "
-                               "in NumPy by array.astype(array.dtype.newbyteorder('<'))",
-                               text)};
+    throw NpyError{
+        fmt::format("numbers of the type '{}' are big-endian; store them little-endian, "
+                    "in NumPy by array.astype(array.dtype.newbyteorder('<'))",
+                    text)};
   const char kind = text[1];
-  const bool is_number = (kind == 'i' || kind == 'u') &&
-                         (bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8);
+  const bool is_number =
+      (kind == 'i' || kind == 'u') && (bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8);
   if (!is_number && !(kind == 'f' && (bytes == 4 || bytes == 8)) && !(kind == 'b' && bytes == 1) &&
       kind != 'V' && kind != 'U')
     throw NpyError{fmt::format("numbers of the type '{}' cannot be read", text)};
@@ -125,9 +126,9 @@ std::size_t npy_header_bytes(std::string_view prefix) {
   const std::size_t version = byte(6);
   if (version < 1 || version > 3)
     throw NpyError{fmt::format("version {} of NumPy's format is not known; 1 to 3 are", version)};
-  const std::size_t size = version == 1 ? 10 + byte(8) + (byte(9) << 8U)
-                                        : 12 + byte(8) + (byte(9) << 8U) + (byte(10) << 16U) +
-                                              (byte(11) << 24U);
+  const std::size_t size =
+      version == 1 ? 10 + byte(8) + (byte(9) << 8U)
+                   : 12 + byte(8) + (byte(9) << 8U) + (byte(10) << 16U) + (byte(11) << 24U);
   if (size > kMostHeaderBytes) throw NpyError{fmt::format("the header claims {} bytes", size)};
   return size;
 }

@@ -50,9 +50,10 @@ SensorSize read_header(ByteReader& bytes) {
   const SensorSize sensor = sensor_of_chip(chip);
   if (sensor.width > 0) return sensor;
   const std::string found = chip.empty() ? "has no such line" : "names" + chip;
-  bytes.fail(0, fmt::format("the header must name the camera in a line \"{} ...\", one of DAVIS128, "
-                            "208, 240, 346 or 640, whose addresses are known; it {}",
-                            kChipKey, found));
+  bytes.fail(0,
+             fmt::format("the header must name the camera in a line \"{} ...\", one of DAVIS128, "
+                         "208, 240, 346 or 640, whose addresses are known; it {}",
+                         kChipKey, found));
 }
 
 std::uint32_t load_big_endian(const std::byte* bytes) {

@@ -28,9 +28,10 @@ Unpacker::Method method_of(const FlatTable& header) {
     case 4:
       return Unpacker::Method::kZstd;
     default:
-      throw FlatBufferError{fmt::format("the compression has the unknown number {}; it must be 0 "
-                                        "(none), 1 or 2 (LZ4), 3 or 4 (Zstandard)",
-                                        code)};
+      throw FlatBufferError{
+          fmt::format("the compression has the unknown number {}; it must be 0 "
+                      "(none), 1 or 2 (LZ4), 3 or 4 (Zstandard)",
+                      code)};
   }
 }
 
@@ -60,7 +61,8 @@ void read_attribute(const std::vector<std::string_view>& path, std::string_view 
   if (id < 0) return;
   auto stream = std::find_if(streams.begin(), streams.end(),
                              [&](const Aedat4Stream& other) { return other.id == id; });
-  if (stream == streams.end()) stream = streams.insert(streams.end(), {.id = id, .type = {}, .sensor = {}});
+  if (stream == streams.end())
+    stream = streams.insert(streams.end(), {.id = id, .type = {}, .sensor = {}});
   if (key == "typeIdentifier") stream->type = text;
   if (key == "sizeX") parse_into(text, stream->sensor.width);
   if (key == "sizeY") parse_into(text, stream->sensor.height);
@@ -80,8 +82,8 @@ std::vector<Aedat4Stream> parse_aedat4_streams(std::string_view xml) {
     if (tag.starts_with("<node") && !tag.ends_with('/')) path.push_back(attribute(tag, "name"));
     if (tag.starts_with("</node") && !path.empty()) path.pop_back();
     if (tag.starts_with("<attr"))
-      read_attribute(path, attribute(tag, "key"), xml.substr(0, std::min(xml.find('<'), xml.size())),
-                     streams);
+      read_attribute(path, attribute(tag, "key"),
+                     xml.substr(0, std::min(xml.find('<'), xml.size())), streams);
   }
 }
 

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/io/events/aedat/compression.h"
 #include "core/io/events/aedat/flatbuffer.h"
 #include "core/io/events/event_file.h"
 #include "core/io/files/byte_reader.h"
+#include "core/io/files/compression.h"
 
 namespace saccade {
 

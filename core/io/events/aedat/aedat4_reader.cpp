@@ -71,7 +71,7 @@ class Aedat4EventReader final : public EventReader {
       const int x = load<std::int16_t>(item + kAedat4XAt);
       const int y = load<std::int16_t>(item + kAedat4YAt);
       if (x < 0 || y < 0 || x >= width_ || y >= height_ || t_us < last_us_ || t_us > kMostUs)
-        [[unlikely]]
+          [[unlikely]]
         refuse(packet, i, t_us, x, y);
       last_us_ = t_us;
       events[i] = {t_us * 1000, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
@@ -82,8 +82,8 @@ class Aedat4EventReader final : public EventReader {
   [[noreturn]] void refuse(const Aedat4Packet& packet, std::size_t index, std::int64_t t_us, int x,
                            int y) const {
     if (t_us < last_us_ || t_us > kMostUs)
-      fail(packet, fmt::format("event {}: time goes back: {} us after {} us", index, t_us,
-                               last_us_));
+      fail(packet,
+           fmt::format("event {}: time goes back: {} us after {} us", index, t_us, last_us_));
     fail(packet, fmt::format("event {}: pixel ({}, {}) lies outside the sensor of {} x {} px",
                              index, x, y, width_, height_));
   }

@@ -21,7 +21,8 @@ class FlatTable {
  public:
   /// The root of a buffer with its size in front and the identifier of its type behind the root's
   /// offset.
-  [[nodiscard]] static FlatTable root(std::span<const std::byte> sized, std::string_view identifier);
+  [[nodiscard]] static FlatTable root(std::span<const std::byte> sized,
+                                      std::string_view identifier);
 
   /// A number; `absent` where the table leaves the field out. Fields count from 0.
   template <class T>

@@ -112,9 +112,9 @@ Layout of_archive(const NumpyFile& file) {
     *column = {index++, array.header().fields.front()};
   }
   if (file.contains("t_unit") && file.open("t_unit").text() == "ns") layout.unit_ns = 1;
-  layout.sensor = {static_cast<int>(std::clamp<std::int64_t>(side_number(file, "width", 0), 0, 65536)),
-                   static_cast<int>(
-                       std::clamp<std::int64_t>(side_number(file, "height", 0), 0, 65536))};
+  layout.sensor = {
+      static_cast<int>(std::clamp<std::int64_t>(side_number(file, "width", 0), 0, 65536)),
+      static_cast<int>(std::clamp<std::int64_t>(side_number(file, "height", 0), 0, 65536))};
   return layout;
 }
 

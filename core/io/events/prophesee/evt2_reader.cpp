@@ -33,9 +33,9 @@ class Evt2State {
     if (last_x >= limits_.width || y >= limits_.height || t_ns < last_ns_) [[unlikely]]
       refuse(last_x, y, t_ns, index);
     last_ns_ = t_ns;
-    return {t_ns, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-            static_cast<std::int8_t>((word >> 28U) == static_cast<unsigned>(Evt2Type::kOn) ? 1
-                                                                                          : -1)};
+    return {
+        t_ns, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+        static_cast<std::int8_t>((word >> 28U) == static_cast<unsigned>(Evt2Type::kOn) ? 1 : -1)};
   }
 
  private:

@@ -16,8 +16,8 @@ class Evt2Writer final : public RawEventWriter {
   void encode(std::int64_t t_us, std::span<const Event> events) override {
     move_to(t_us >> 6U);
     for (const Event& event : events) {
-      const auto type = static_cast<std::uint32_t>(event.polarity > 0 ? Evt2Type::kOn
-                                                                      : Evt2Type::kOff);
+      const auto type =
+          static_cast<std::uint32_t>(event.polarity > 0 ? Evt2Type::kOn : Evt2Type::kOff);
       put<std::uint32_t>(type << 28U | static_cast<std::uint32_t>(t_us & 0x3F) << 22U |
                          static_cast<std::uint32_t>(event.x) << 11U | event.y);
     }

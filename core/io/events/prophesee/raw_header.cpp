@@ -89,7 +89,10 @@ void read_format(std::string_view value, RawHeader& header) {
 /// What the sensor of a plug-in measures: older headers name nothing else.
 SensorSize sensor_of_plugin(std::string_view plugin) {
   constexpr std::array<std::pair<std::string_view, SensorSize>, 4> kSensors{
-      {{"gen3", {640, 480}}, {"gen4", {1280, 720}}, {"imx636", {1280, 720}}, {"genx320", {320, 320}}}};
+      {{"gen3", {640, 480}},
+       {"gen4", {1280, 720}},
+       {"imx636", {1280, 720}},
+       {"genx320", {320, 320}}}};
   for (const auto& [name, size] : kSensors)
     if (plugin.find(name) != std::string_view::npos) return size;
   return {};

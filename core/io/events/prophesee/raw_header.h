@@ -17,8 +17,8 @@ enum class RawEncoding { kUnknown, kEvt2, kEvt21, kEvt3, kDat };
 /// The data begin behind it.
 struct RawHeader {
   RawEncoding encoding = RawEncoding::kUnknown;
-  SensorSize sensor;       ///< 0 where neither stated nor known of the camera's plug-in
-  std::string endianness;  ///< "little", "legacy", "big"; empty where it is not stated
+  SensorSize sensor;           ///< 0 where neither stated nor known of the camera's plug-in
+  std::string endianness;      ///< "little", "legacy", "big"; empty where it is not stated
   std::int64_t origin_us = 0;  ///< is added to all times; a key of this project's own files
   std::size_t bytes = 0;       ///< of the header
 };

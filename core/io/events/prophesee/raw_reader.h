@@ -56,8 +56,8 @@ class RawEventReader final : public EventReader {
       const auto bytes = bytes_.peek(kBlockWords * sizeof(Word));
       const std::size_t count = std::min(bytes.size() / sizeof(Word), kBlockWords);
       if (count == 0 && !bytes.empty())
-        bytes_.fail(bytes_.offset(), fmt::format("the file ends within a word of {} bytes",
-                                                 sizeof(Word)));
+        bytes_.fail(bytes_.offset(),
+                    fmt::format("the file ends within a word of {} bytes", sizeof(Word)));
       if (count == 0) return false;
       const Event* const end = decode(bytes.data(), count);
       bytes_.skip(count * sizeof(Word));

@@ -16,7 +16,10 @@ constexpr int kMostPixels = 2048;  // a side, of 11 bits
 
 RawEventWriter::RawEventWriter(const std::filesystem::path& file, RawEncoding encoding,
                                SensorSize sensor)
-    : target_(file), stream_(target_.path(), std::ios::binary), encoding_(encoding), sensor_(sensor) {
+    : target_(file),
+      stream_(target_.path(), std::ios::binary),
+      encoding_(encoding),
+      sensor_(sensor) {
   if (sensor.width > kMostPixels || sensor.height > kMostPixels)
     throw InputError(file.string(),
                      fmt::format("EVT2 and EVT3 hold sensors of up to {0} x {0} px, not {1} x {2}",
@@ -48,8 +51,7 @@ void RawEventWriter::write_complete() {
   if (!has_header_) write_header(events.front().t_ns);
   for (std::size_t begin = 0; begin < events.size();) {
     std::size_t end = begin;
-    for (; end < events.size() && events[end].t_ns == events[begin].t_ns; ++end)
-      check(events[end]);
+    for (; end < events.size() && events[end].t_ns == events[begin].t_ns; ++end) check(events[end]);
     encode(events[begin].t_ns / 1000 - origin_us_, events.subspan(begin, end - begin));
     if (data_.size() > kFlushBytes) flush();
     begin = end;

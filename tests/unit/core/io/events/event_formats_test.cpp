@@ -35,7 +35,8 @@ class EveryEventFormat : public ::testing::TestWithParam<EventFormat> {
  protected:
   [[nodiscard]] fs::path written(const std::string& name, const Events& events) const {
     const fs::path file = folder_.path() / (name + std::string(GetParam().ending));
-    const std::unique_ptr<EventWriter> writer = GetParam().make_writer(file, TimestampUnit::kNanoseconds, kSensor);
+    const std::unique_ptr<EventWriter> writer =
+        GetParam().make_writer(file, TimestampUnit::kNanoseconds, kSensor);
     const auto half = static_cast<std::ptrdiff_t>(events.size() / 2);
     writer->append(std::span(events.begin(), events.begin() + half));
     writer->append(std::span(events.begin() + half, events.end()));
@@ -89,9 +90,11 @@ TEST_P(EveryEventFormat, WindowsSelectExactlyTheirEvents) {
   const fs::path file = written("events", events);
   const Events all = rounded(events);
   const TimeNs middle = all[all.size() / 2].t_ns;
-  for (const TimeWindow window :
-       {TimeWindow{all[5'000].t_ns, all[150'000].t_ns}, {middle, middle + 1}, {middle, middle},
-        {all.back().t_ns, all.back().t_ns + 1}, {all.back().t_ns + 1, all.back().t_ns + 2}}) {
+  for (const TimeWindow window : {TimeWindow{all[5'000].t_ns, all[150'000].t_ns},
+                                  {middle, middle + 1},
+                                  {middle, middle},
+                                  {all.back().t_ns, all.back().t_ns + 1},
+                                  {all.back().t_ns + 1, all.back().t_ns + 2}}) {
     Events expected;
     std::copy_if(all.begin(), all.end(), std::back_inserter(expected), [&](const Event& event) {
       return event.t_ns >= window.start_ns && event.t_ns < window.end_ns;
@@ -119,9 +122,13 @@ TEST_P(EveryEventFormat, StreamsGiveTheSameInWholeRunsOfEqualTime) {
 TEST_P(EveryEventFormat, ChecksCoordinatesAgainstTheSensor) {
   Events events = random_events(1000);
   const fs::path file = written("events", events);
-  EXPECT_THAT(testing::error_of([&] { return read_events(file, {100, kSensor.height}); }),
+  EXPECT_THAT(testing::error_of([&] {
+                return read_events(file, {100, kSensor.height});
+              }),
               HasSubstr("outside the sensor"));
-  EXPECT_THAT(testing::error_of([&] { return read_events(file, {kSensor.width, 100}); }),
+  EXPECT_THAT(testing::error_of([&] {
+                return read_events(file, {kSensor.width, 100});
+              }),
               HasSubstr("outside the sensor"));
 }
 

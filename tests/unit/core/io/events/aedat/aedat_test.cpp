@@ -124,9 +124,9 @@ constexpr std::uint32_t davis(std::uint32_t x, std::uint32_t y, bool on) {
 }
 
 TEST_F(Aedat, Version2CountsFromTheLowerRight) {
-  const std::string file = aedat2({davis(0, 0, true), 5, 0x80000000 | davis(1, 2, true), 6,
-                                   davis(7, 7, true) | 0x400U, 7, davis(239, 179, false),
-                                   0xFFFFFFFF, davis(10, 20, true), 3});
+  const std::string file =
+      aedat2({davis(0, 0, true), 5, 0x80000000 | davis(1, 2, true), 6, davis(7, 7, true) | 0x400U,
+              7, davis(239, 179, false), 0xFFFFFFFF, davis(10, 20, true), 3});
   constexpr TimeNs kWrap = std::int64_t{1} << 32U;
   EXPECT_EQ(read(file), (Events{{5'000, 239, 179, 1},
                                 {(kWrap - 1) * 1000, 0, 0, -1},

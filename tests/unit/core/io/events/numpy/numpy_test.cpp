@@ -86,15 +86,16 @@ TEST_F(Numpy, ArchivesHoldFourArraysOrOneStructure) {
     return npy("{'descr': '" + type + "', 'fortran_order': False, 'shape': (2,), }", data);
   };
   const Events expected{{5'000, 10, 20, 1}, {6'000, 11, 21, -1}};
-  EXPECT_EQ(read_events(archive({{"x.npy", column("<u2", bytes_of(std::uint16_t{10}, std::uint16_t{11}))},
-                                 {"y.npy", column("|u1", bytes_of(std::uint8_t{20}, std::uint8_t{21}))},
-                                 {"other.npy", "nothing"},
-                                 {"p.npy", column("|b1", bytes_of(std::uint8_t{1}, std::uint8_t{0}))},
-                                 {"t.npy", column("<u8", bytes_of(std::uint64_t{5}, std::uint64_t{6}))}}),
-                        {}),
-            expected);
-  EXPECT_EQ(read_events(archive({{"events.npy", npy(kFields, row(5, 10, 20, 1) + row(6, 11, 21, 0))}}),
-                        {}),
+  EXPECT_EQ(
+      read_events(archive({{"x.npy", column("<u2", bytes_of(std::uint16_t{10}, std::uint16_t{11}))},
+                           {"y.npy", column("|u1", bytes_of(std::uint8_t{20}, std::uint8_t{21}))},
+                           {"other.npy", "nothing"},
+                           {"p.npy", column("|b1", bytes_of(std::uint8_t{1}, std::uint8_t{0}))},
+                           {"t.npy", column("<u8", bytes_of(std::uint64_t{5}, std::uint64_t{6}))}}),
+                  {}),
+      expected);
+  EXPECT_EQ(read_events(
+                archive({{"events.npy", npy(kFields, row(5, 10, 20, 1) + row(6, 11, 21, 0))}}), {}),
             expected);
   EXPECT_THAT(error_of([&] {
                 return read_events(archive({{"x.npy", column("<u2", bytes_of(1))},
@@ -124,9 +125,9 @@ TEST_F(Numpy, NamesTheIndexOfWhatIsWrong) {
 }
 
 TEST_F(Numpy, ClaimedSizesAreNotAllocated) {
-  EXPECT_THAT(error(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999, 4)}",
-                        "abc")),
-              HasSubstr("ends within row 0 of the 99999999999999"));
+  EXPECT_THAT(
+      error(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999, 4)}", "abc")),
+      HasSubstr("ends within row 0 of the 99999999999999"));
 }
 
 TEST_F(Numpy, DamagedFilesAreReportedOrRead) {
@@ -155,7 +156,9 @@ TEST(EventsZip, EventsOfATextAreReadInTheirArchive) {
                    {"shapes/events.txt", folder.write("e.txt", "0.5 1 2 1\n0.6 3 4 0\n")}});
   EXPECT_EQ(recognise_event_format(file).name, "zipped text");
   EXPECT_EQ(read_events(file, {}), (Events{{500'000'000, 1, 2, 1}, {600'000'000, 3, 4, -1}}));
-  EXPECT_THAT(error_of([&] { return read_events(file, {2, 5}); }),
+  EXPECT_THAT(error_of([&] {
+                return read_events(file, {2, 5});
+              }),
               HasSubstr("shapes.zip!/shapes/events.txt:2: x = 3 lies outside the sensor"));
   write_zip(file, {{"readme.txt", folder.path() / "e.txt"}});
   EXPECT_THAT(error_of([&] { return read_events(file, {}); }), HasSubstr("in none of the formats"));

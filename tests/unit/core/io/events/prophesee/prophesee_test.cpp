@@ -86,8 +86,8 @@ TEST_F(Prophesee, Evt3LeavesOutWhatHasNoTime) {
 }
 
 TEST_F(Prophesee, Evt3TimeWraps) {
-  const Events events = read_evt3({0x8FFF, 0x0001, 0x2001, 0x8000, 0x2002, 0x8FFF, 0x2003, 0x8001,
-                                   0x2004});
+  const Events events =
+      read_evt3({0x8FFF, 0x0001, 0x2001, 0x8000, 0x2002, 0x8FFF, 0x2003, 0x8001, 0x2004});
   std::vector<TimeNs> times;
   for (const Event& event : events) times.push_back(event.t_ns / 4'096'000);
   EXPECT_EQ(times, (std::vector<TimeNs>{4095, 4096, 8191, 8193}));
@@ -149,9 +149,9 @@ TEST_F(Prophesee, Evt2HoldsOneEventPerWord) {
   const auto event = [](unsigned type, unsigned t, unsigned x, unsigned y) {
     return type << 28U | t << 22U | x << 11U | y;
   };
-  const std::vector<std::uint32_t> words{event(1, 3, 9, 9), 0x80000002, event(1, 3, 10, 20),
+  const std::vector<std::uint32_t> words{event(1, 3, 9, 9),    0x80000002, event(1, 3, 10, 20),
                                          event(0, 63, 11, 21), 0xA0000001, 0x8FFFFFFF,
-                                         event(1, 0, 1, 2), 0x80000000, event(0, 0, 3, 4)};
+                                         event(1, 0, 1, 2),    0x80000000, event(0, 0, 3, 4)};
   constexpr TimeNs kWrap = std::int64_t{1} << 34U;
   EXPECT_EQ(read(file_of(kEvt2Head, words)), (Events{{131'000, 10, 20, 1},
                                                      {191'000, 11, 21, -1},
@@ -159,9 +159,9 @@ TEST_F(Prophesee, Evt2HoldsOneEventPerWord) {
                                                      {kWrap * 1000, 3, 4, -1}}));
   EXPECT_THAT(error(file_of<std::uint32_t>(kEvt2Head, {0x80000002, event(1, 3, 640, 20)})),
               HasSubstr("byte 39: pixel (640, 20) lies outside the sensor of 640 x 480"));
-  EXPECT_THAT(error(file_of<std::uint32_t>(
-                  kEvt2Head, {0x80000002, event(1, 3, 1, 1), event(1, 2, 1, 1)})),
-              HasSubstr("byte 43: time goes back: 0.000130 s after 0.000131 s"));
+  EXPECT_THAT(
+      error(file_of<std::uint32_t>(kEvt2Head, {0x80000002, event(1, 3, 1, 1), event(1, 2, 1, 1)})),
+      HasSubstr("byte 43: time goes back: 0.000130 s after 0.000131 s"));
   EXPECT_THAT(error(file_of<std::uint32_t>(kEvt2Head, {0x50000002})), HasSubstr("of a type"));
   EXPECT_THAT(error(file_of<std::uint32_t>(kEvt2Head, {0x80000002}) + "abc"),
               HasSubstr("byte 39: the file ends within a word of 4 bytes"));
@@ -180,17 +180,18 @@ TEST_F(Prophesee, Evt21HalvesComeInBothOrders) {
   // Masks whose upper bits are those of a type leave the order open; these do not.
   const std::vector<std::uint32_t> unstated{high, 0x30000000, on, 0x40000000};
   EXPECT_EQ(read(file_of(head + "\n% end\n", unstated)).size(), 1U);
-  EXPECT_EQ(read(file_of<std::uint32_t>("% evt 2.1\n% end\n", {0x30000000, high, 0x40000001, on}))
-                .size(),
-            2U);
+  EXPECT_EQ(
+      read(file_of<std::uint32_t>("% evt 2.1\n% end\n", {0x30000000, high, 0x40000001, on})).size(),
+      2U);
   EXPECT_THAT(error(file_of(head + ";endianness=legacy\n% end\n",
                             std::vector<std::uint32_t>{high, 0, on | 639U << 11U, 3})),
               HasSubstr("lies outside the sensor"));
 }
 
 TEST_F(Prophesee, DatHoldsTimesThatWrap) {
-  const std::string head = "% Data file containing CD events\n% Version 2\n% Height 480\n"
-                           "% Width 640\n";
+  const std::string head =
+      "% Data file containing CD events\n% Version 2\n% Height 480\n"
+      "% Width 640\n";
   const auto place = [](unsigned x, unsigned y, unsigned p) { return p << 28U | y << 14U | x; };
   const std::vector<std::uint32_t> words{5, place(10, 20, 1), 0xFFFFFFFF, place(639, 479, 0),
                                          7, place(1, 2, 1)};
@@ -203,9 +204,9 @@ TEST_F(Prophesee, DatHoldsTimesThatWrap) {
   EXPECT_THAT(error(file_of(head + std::string("\x00\x08", 2),
                             std::vector<std::uint32_t>{5, place(640, 0, 0)})),
               HasSubstr("pixel (640, 0) lies outside"));
-  EXPECT_THAT(error(file_of(head + std::string("\x00\x08", 2),
-                            std::vector<std::uint32_t>{5, 0, 4, 0})),
-              HasSubstr("time goes back"));
+  EXPECT_THAT(
+      error(file_of(head + std::string("\x00\x08", 2), std::vector<std::uint32_t>{5, 0, 4, 0})),
+      HasSubstr("time goes back"));
   EXPECT_THAT(error(file.substr(0, file.size() - 1)), HasSubstr("ends within a word of 8 bytes"));
 }
 

@@ -1,5 +1,6 @@
-#include "core/io/events/aedat/compression.h"
+#include "core/io/files/compression.h"
 
+#include <bzlib.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
 #include <zstd.h>
@@ -39,6 +40,7 @@ struct Unpacker::State {
 
   std::size_t unpack_lz4(std::span<const std::byte> packed);
   std::size_t unpack_zstd(std::span<const std::byte> packed);
+  std::size_t unpack_bzip2(std::span<const std::byte> packed);
 };
 
 std::size_t Unpacker::State::unpack_lz4(std::span<const std::byte> packed) {
@@ -48,11 +50,11 @@ std::size_t Unpacker::State::unpack_lz4(std::span<const std::byte> packed) {
     grow(used);
     std::size_t written = bytes.size() - used;
     std::size_t taken = packed.size();
-    const std::size_t hint = LZ4F_decompress(lz4.get(), bytes.data() + used, &written,
-                                             packed.data(), &taken, nullptr);
+    const std::size_t hint =
+        LZ4F_decompress(lz4.get(), bytes.data() + used, &written, packed.data(), &taken, nullptr);
     if (LZ4F_isError(hint) != 0)
-      throw CompressionError{fmt::format("the block is no LZ4 that can be unpacked ({})",
-                                         LZ4F_getErrorName(hint))};
+      throw CompressionError{
+          fmt::format("the block is no LZ4 that can be unpacked ({})", LZ4F_getErrorName(hint))};
     used += written;
     packed = packed.subspan(taken);
     if (hint == 0) return used;
@@ -79,6 +81,30 @@ std::size_t Unpacker::State::unpack_zstd(std::span<const std::byte> packed) {
   }
 }
 
+std::size_t Unpacker::State::unpack_bzip2(std::span<const std::byte> packed) {
+  struct Stream : bz_stream {
+    Stream() : bz_stream{} { SACCADE_CHECK(BZ2_bzDecompressInit(this, 0, 0) == BZ_OK); }
+    ~Stream() { BZ2_bzDecompressEnd(this); }
+  };
+  Stream stream;
+  // The library does not write to its input.
+  stream.next_in = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));
+  stream.avail_in = static_cast<unsigned>(packed.size());
+  std::size_t used = 0;
+  while (true) {
+    grow(used);
+    stream.next_out = reinterpret_cast<char*>(bytes.data() + used);
+    stream.avail_out = static_cast<unsigned>(bytes.size() - used);
+    const int code = BZ2_bzDecompress(&stream);
+    used = bytes.size() - stream.avail_out;
+    if (code == BZ_STREAM_END) return used;
+    if (code != BZ_OK)
+      throw CompressionError{fmt::format("the block is no bzip2 that can be unpacked ({})", code)};
+    if (stream.avail_in == 0 && stream.avail_out > 0)
+      throw CompressionError{"the block of bzip2 ends too early"};
+  }
+}
+
 Unpacker::Unpacker(Method method) : state_(std::make_unique<State>()) {
   state_->method = method;
   LZ4F_dctx* lz4 = nullptr;
@@ -92,8 +118,10 @@ Unpacker::~Unpacker() = default;
 
 std::span<const std::byte> Unpacker::unpack(std::span<const std::byte> packed) {
   if (state_->method == Method::kNone) return packed;
-  const std::size_t size = state_->method == Method::kLz4 ? state_->unpack_lz4(packed)
-                                                          : state_->unpack_zstd(packed);
+  std::size_t size = 0;
+  if (state_->method == Method::kLz4) size = state_->unpack_lz4(packed);
+  if (state_->method == Method::kZstd) size = state_->unpack_zstd(packed);
+  if (state_->method == Method::kBzip2) size = state_->unpack_bzip2(packed);
   return std::span(state_->bytes).first(size);
 }
 

@@ -13,11 +13,11 @@ struct CompressionError {
   std::string problem;
 };
 
-/// Unpacks frames of LZ4 and Zstandard. The memory grows with what is really unpacked, whatever
+/// Unpacks frames of LZ4 and Zstandard, and streams of bzip2. The memory grows with what is really unpacked, whatever
 /// size a frame claims, and ends at kMostUnpackedBytes.
 class Unpacker {
  public:
-  enum class Method { kNone, kLz4, kZstd };
+  enum class Method { kNone, kLz4, kZstd, kBzip2 };
 
   explicit Unpacker(Method method);
   ~Unpacker();
@@ -25,6 +25,7 @@ class Unpacker {
   Unpacker& operator=(const Unpacker&) = delete;
 
   /// Valid until the next call.
+  /// Without compression: the same bytes.
   [[nodiscard]] std::span<const std::byte> unpack(std::span<const std::byte> packed);
 
   static constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 28U;
