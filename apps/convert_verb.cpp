@@ -15,6 +15,7 @@
 #include "core/io/events/event_file.h"
 #include "core/io/events/event_formats.h"
 #include "core/io/import/public_sequence.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 namespace {
@@ -22,7 +23,8 @@ namespace {
 struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
-  std::string unit;  ///< empty: the coarsest that keeps every time
+  std::string unit;    ///< empty: the coarsest that keeps every time
+  std::string format;  ///< empty: the first of the ending
   ImportWindow window;
   GridRequest grids;
   CommonOptions common;
@@ -63,7 +65,14 @@ std::uint64_t convert_events(const ConvertOptions& options) {
   if (options.unit.empty()) unit = coarsest_unit(input);
   EventStream stream(input.file, input.size);
   const SensorSize sensor = input.size.width > 0 ? input.size : stream.sensor();
-  const std::unique_ptr<EventWriter> writer = make_event_writer(options.output, unit, sensor);
+  const EventFormat* format = find_written_format(options.output, options.format);
+  if (format == nullptr)
+    throw InputError("--format", fmt::format("a file with the ending '{}' is not written as {}",
+                                             options.output.extension().string(), options.format));
+  if (unit == TimestampUnit::kNanoseconds && format->finest == TimestampUnit::kMicroseconds)
+    show_notice(fmt::format("{} holds times in us, to which those of the input are rounded",
+                            options.output.string()));
+  const std::unique_ptr<EventWriter> writer = format->make_writer(options.output, unit, sensor);
   for (auto events = stream.next(); !events.empty(); events = stream.next()) writer->append(events);
   writer->close();
   return writer->count();
@@ -84,6 +93,8 @@ void convert_sequence(const PublicSequence& sequence, const ConvertOptions& opti
 void convert(const ConvertOptions& options) {
   options.common.apply();
   if (options.grids.is_stated()) {
+    if (!options.format.empty())
+      throw InputError("--format", "belongs to event files, not to grids");
     if (!options.unit.empty() || options.window.start_s != 0 || options.window.duration_s)
       throw InputError(options.unit.empty() ? "--start-s" : "--unit",
                        "does not belong to grids, whose windows are keys: duration_s=0.05");
@@ -127,20 +138,25 @@ void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* verb = command.add_subcommand(
       "convert",
-      "Convert events between text and HDF5 or into grids, or a public sequence into a dataset.");
+      "Convert events between formats or into grids, or a public sequence into a dataset.");
   verb->add_option(
           "IN", options->input,
-          "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or TUM-VIE.")
+          "Event file of any format (docs/formats.md), recognised by its content; dataset folder; "
+          "or folder of a sequence of DSEC or TUM-VIE. FILE!/topic names one of several topics.")
       ->required();
   verb->add_option(
           "OUT", options->output,
-          "Event file, whose extension selects the format; file of grids (.h5, .npy) or, for event "
-          "frames, a folder of pictures; or the dataset folder for a sequence.")
+          "Event file, whose extension selects the format (" + event_file_endings(true) +
+              "); file of grids (.h5, .npy) or, for event frames, a folder of pictures; or the "
+              "dataset folder for a sequence.")
       ->required();
   verb->add_option(
           "--unit", options->unit,
-          "Unit of the time stamps in HDF5 (default: us, or ns where us would round them).")
+          "Unit of the time stamps in HDF5 and NumPy's archives (default: us, or ns where us would "
+          "round them).")
       ->check(CLI::IsMember({"us", "ns"}));
+  verb->add_option("--format", options->format, "Encoding of a .raw file: EVT3 (default) or EVT2.")
+      ->check(CLI::IsMember({"EVT3", "EVT2"}));
   verb->add_option("--start-s", options->window.start_s,
                    "Start of the part of a sequence to convert, in seconds from its first event.")
       ->check(number_between(0, 1e9));
@@ -151,6 +167,7 @@ void add_convert_verb(CLI::App& command) {
   verb->footer(
       "Examples:\n"
       "  saccade convert recording/events.txt events.h5\n"
+      "  saccade convert recording.raw recording.aedat4\n"
       "  saccade convert data/walls grids.h5 --voxel-grid bins=5,duration_s=0.05\n"
       "  saccade convert data/walls frames --event-frame kind=polarity,events=20000\n"
       "  saccade convert dsec/interlaken_00_c data/interlaken_00_c\n"

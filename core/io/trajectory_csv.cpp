@@ -108,8 +108,8 @@ Trajectory read_csv_trajectory(const std::filesystem::path& file) {
     TextRow row = reader.row(line);
     const StampedPose pose = read_row(row, columns);
     if (!poses.empty() && !(pose.t_s > poses.back().t_s))
-      row.fail(fmt::format("times must increase: {:.9f} s after {:.9f} s", pose.t_s,
-                           poses.back().t_s));
+      row.fail(
+          fmt::format("times must increase: {:.9f} s after {:.9f} s", pose.t_s, poses.back().t_s));
     poses.push_back(pose);
   }
   if (poses.empty()) throw InputError(file.string(), "holds no poses");

@@ -247,9 +247,11 @@ const EventFormat& recognise_event_format(const std::filesystem::path& path) {
                                format_names(), hexadecimal(head.bytes.substr(0, kShownBytes))));
 }
 
-const EventFormat* find_written_format(const std::filesystem::path& file) {
+const EventFormat* find_written_format(const std::filesystem::path& file, std::string_view name) {
   for (const EventFormat& format : kEventFormats)
-    if (file.extension() == format.ending && format.make_writer != nullptr) return &format;
+    if (file.extension() == format.ending && format.make_writer != nullptr &&
+        (name.empty() || name == format.name))
+      return &format;
   return nullptr;
 }
 

@@ -43,8 +43,10 @@ struct EventFormat {
 [[nodiscard]] std::span<const EventFormat> event_formats();
 /// The row of a file, by its content. InputError where it is missing or of none of the formats.
 [[nodiscard]] const EventFormat& recognise_event_format(const std::filesystem::path& file);
-/// The row by which a file of this ending is written; nullptr where there is none.
-[[nodiscard]] const EventFormat* find_written_format(const std::filesystem::path& file);
+/// The row by which a file of this ending is written, the first or the one of this name; nullptr
+/// where there is none.
+[[nodiscard]] const EventFormat* find_written_format(const std::filesystem::path& file,
+                                                     std::string_view name = {});
 /// Whether files with this ending hold events.
 [[nodiscard]] bool is_event_file_name(const std::filesystem::path& file);
 

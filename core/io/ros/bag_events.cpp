@@ -95,7 +95,8 @@ class BagEventReader final : public EventReader {
       Event event;
       event.x = load<std::uint16_t>(at);
       event.y = load<std::uint16_t>(at + 2);
-      event.t_ns = TimeNs{load<std::uint32_t>(at + 4)} * 1'000'000'000 + load<std::uint32_t>(at + 8);
+      event.t_ns =
+          TimeNs{load<std::uint32_t>(at + 4)} * 1'000'000'000 + load<std::uint32_t>(at + 8);
       event.polarity = at[12] != std::byte{0} ? 1 : -1;
       if (event.x >= size_.width || event.y >= size_.height) [[unlikely]]
         reader.fail(fmt::format("event {}: pixel ({}, {}) lies outside the sensor of {} x {} px", i,

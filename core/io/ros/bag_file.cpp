@@ -109,9 +109,8 @@ std::optional<BagMessage> BagFile::take(const Record& record) {
 
 void BagFile::connect(const Record& record) {
   const auto connection = number<std::uint32_t>(record.header, "conn");
-  topics_.insert_or_assign(connection,
-                           BagTopic{std::string(as_text(field(record.header, "topic"))),
-                                    std::string(as_text(field(record.data, "type")))});
+  topics_.insert_or_assign(connection, BagTopic{std::string(as_text(field(record.header, "topic"))),
+                                                std::string(as_text(field(record.data, "type")))});
 }
 
 std::span<const std::byte> BagFile::field(std::span<const std::byte> header,

@@ -88,12 +88,11 @@ std::string chunk(const std::string& compression, const std::string& records) {
 }
 
 const std::string kHead =
-    std::string(kBagMagic) +
-    record({{"op", "\x03"},
-            {"index_pos", bytes_of(std::uint64_t{0})},
-            {"conn_count", bytes_of(std::uint32_t{1})},
-            {"chunk_count", bytes_of(std::uint32_t{1})}},
-           std::string(100, ' '));
+    std::string(kBagMagic) + record({{"op", "\x03"},
+                                     {"index_pos", bytes_of(std::uint64_t{0})},
+                                     {"conn_count", bytes_of(std::uint32_t{1})},
+                                     {"chunk_count", bytes_of(std::uint32_t{1})}},
+                                    std::string(100, ' '));
 
 class BagEvents : public ::testing::Test {
  protected:
@@ -114,13 +113,13 @@ TEST_F(BagEvents, ChunksOfEveryCompressionAreRead) {
   const std::span<const Event> all(events);
   const std::string imu = connection(5, "/dvs/imu", "sensor_msgs/Imu");
   for (const std::string compression : {"none", "lz4", "bz2"}) {
-    const std::string bag =
-        kHead +
-        chunk(compression, imu + events_ + message(5, "any") +
-                               message(4, event_array(all.first(1000)))) +
-        record({{"op", "\x04"}, {"ver", "1"}}, "an index") +
-        chunk(compression, message(4, event_array({})) + message(4, event_array(all.subspan(1000)))) +
-        events_ + record({{"op", "\x06"}}, "the place of a chunk");
+    const std::string bag = kHead +
+                            chunk(compression, imu + events_ + message(5, "any") +
+                                                   message(4, event_array(all.first(1000)))) +
+                            record({{"op", "\x04"}, {"ver", "1"}}, "an index") +
+                            chunk(compression, message(4, event_array({})) +
+                                                   message(4, event_array(all.subspan(1000)))) +
+                            events_ + record({{"op", "\x06"}}, "the place of a chunk");
     const fs::path file = write(bag);
     EXPECT_EQ(recognise_event_format(file).name, "ROS bag");
     EXPECT_EQ(read_events(file, {}), events) << compression;
@@ -136,18 +135,18 @@ TEST_F(BagEvents, ChunksOfEveryCompressionAreRead) {
 TEST_F(BagEvents, OneOfSeveralTopicsIsNamed) {
   const Events left = testing::random_events(10);
   const Events right = testing::random_events(20);
-  const fs::path file =
-      write(kHead + chunk("none", connection(0, "/left/events", "dvs_msgs/EventArray") +
-                                      connection(1, "/right/events", "dvs_msgs/EventArray") +
-                                      message(0, event_array(left)) +
-                                      message(1, event_array(right))));
+  const fs::path file = write(
+      kHead + chunk("none", connection(0, "/left/events", "dvs_msgs/EventArray") +
+                                connection(1, "/right/events", "dvs_msgs/EventArray") +
+                                message(0, event_array(left)) + message(1, event_array(right))));
   EXPECT_EQ(read_events(file.string() + "!/left/events", {}).size(), 10U);
   EXPECT_EQ(read_events(file.string() + "!/right/events", {}).size(), 20U);
   EXPECT_EQ(read_event_file_info(file.string() + "!/right/events").count, 20U);
   EXPECT_THAT(error_of([&] { return read_events(file, {}); }),
               HasSubstr("several topics, /left/events and /right/events; name one, as in"));
-  EXPECT_THAT(error_of([&] { return read_events(file.string() + "!/up/events", {}); }),
-              HasSubstr("no events of the topic /up/events; its topics are /left/events (dvs_msgs"));
+  EXPECT_THAT(
+      error_of([&] { return read_events(file.string() + "!/up/events", {}); }),
+      HasSubstr("no events of the topic /up/events; its topics are /left/events (dvs_msgs"));
 }
 
 TEST_F(BagEvents, NamesTheByteOfWhatIsWrong) {
@@ -158,13 +157,16 @@ TEST_F(BagEvents, NamesTheByteOfWhatIsWrong) {
   EXPECT_THAT(error(kHead + chunk("zip", "")), HasSubstr(at + "the chunk is compressed by 'zip'"));
   EXPECT_THAT(error(kHead + chunk("none", message(3, ""))),
               HasSubstr(at + "a message of the unknown connection 3"));
-  EXPECT_THAT(error(kHead + chunk("none", events_ + message(4, "short"))),
-              HasSubstr(at + "in a message of /dvs/events in the record that begins here: it ends"));
-  EXPECT_THAT(error(kHead + chunk("none", events_ + message(4, event_array(Events{{0, 240, 0, 1}})))),
-              HasSubstr("event 0: pixel (240, 0) lies outside the sensor of 240 x 180 px"));
-  EXPECT_THAT(error(kHead + chunk("none", events_ + message(4, event_array(Events{{5, 0, 0, 1},
-                                                                                  {4, 0, 0, 1}})))),
-              HasSubstr("event 1: time goes back"));
+  EXPECT_THAT(
+      error(kHead + chunk("none", events_ + message(4, "short"))),
+      HasSubstr(at + "in a message of /dvs/events in the record that begins here: it ends"));
+  EXPECT_THAT(
+      error(kHead + chunk("none", events_ + message(4, event_array(Events{{0, 240, 0, 1}})))),
+      HasSubstr("event 0: pixel (240, 0) lies outside the sensor of 240 x 180 px"));
+  EXPECT_THAT(
+      error(kHead +
+            chunk("none", events_ + message(4, event_array(Events{{5, 0, 0, 1}, {4, 0, 0, 1}})))),
+      HasSubstr("event 1: time goes back"));
   EXPECT_THAT(error(kHead), HasSubstr("holds no events; it has no topics"));
   EXPECT_THAT(error(kHead + "\xFF\xFF\xFF\x7F"), HasSubstr("ends within the header of a record"));
 }
