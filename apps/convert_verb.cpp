@@ -15,6 +15,7 @@
 #include "core/io/events/event_file.h"
 #include "core/io/events/event_formats.h"
 #include "core/io/import/public_sequence.h"
+#include "core/io/import/ros_bag.h"
 #include "core/process/progress.h"
 
 namespace saccade {
@@ -90,6 +91,16 @@ void convert_sequence(const PublicSequence& sequence, const ConvertOptions& opti
                sequence.camera_residual_px);
 }
 
+void convert_bag(const ConvertOptions& options) {
+  if (!options.unit.empty())
+    throw InputError("--unit", "belongs to event files; a dataset keeps the unit of the bag, ns");
+  const BagCounts counts = write_bag_as_dataset(options.input, options.output, options.window);
+  if (options.common.quiet) return;
+  fmt::print("{}: {} events, {} frames, {} inertial samples and {} poses of a bag\n",
+             options.output.string(), counts.events, counts.frames, counts.imu_samples,
+             counts.poses);
+}
+
 void convert(const ConvertOptions& options) {
   options.common.apply();
   if (options.grids.is_stated()) {
@@ -103,13 +114,14 @@ void convert(const ConvertOptions& options) {
     return;
   }
   if (find_written_format(options.output) == nullptr) {
+    if (is_bag(options.input)) return convert_bag(options);
     if (std::filesystem::is_directory(options.input))
       if (const auto sequence = open_public_sequence(options.input))
         return convert_sequence(*sequence, options);
     throw InputError(
         options.output.string(),
         "cannot tell the format from the ending; valid endings: " + event_file_endings(true) +
-            "; a folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the "
+            "; a folder, where IN is a bag or a sequence of DSEC or TUM-VIE (a folder in the "
             "layout of the Event Camera Dataset is read as it is)");
   }
   if (options.window.start_s != 0 || options.window.duration_s)
@@ -142,13 +154,13 @@ void add_convert_verb(CLI::App& command) {
   verb->add_option(
           "IN", options->input,
           "Event file of any format (docs/formats.md), recognised by its content; dataset folder; "
-          "or folder of a sequence of DSEC or TUM-VIE. FILE!/topic names one of several topics.")
+          "or folder of a sequence of DSEC or TUM-VIE. BAG!/topic names one of several topics.")
       ->required();
   verb->add_option(
           "OUT", options->output,
           "Event file, whose extension selects the format (" + event_file_endings(true) +
               "); file of grids (.h5, .npy) or, for event frames, a folder of pictures; or the "
-              "dataset folder for a sequence.")
+              "dataset folder for a sequence or a bag.")
       ->required();
   verb->add_option(
           "--unit", options->unit,
@@ -157,8 +169,9 @@ void add_convert_verb(CLI::App& command) {
       ->check(CLI::IsMember({"us", "ns"}));
   verb->add_option("--format", options->format, "Encoding of a .raw file: EVT3 (default) or EVT2.")
       ->check(CLI::IsMember({"EVT3", "EVT2"}));
-  verb->add_option("--start-s", options->window.start_s,
-                   "Start of the part of a sequence to convert, in seconds from its first event.")
+  verb->add_option(
+          "--start-s", options->window.start_s,
+          "Start of the part of a sequence or bag to convert, in seconds from its first event.")
       ->check(number_between(0, 1e9));
   verb->add_option("--duration-s", options->window.duration_s, "Length of that part in seconds.")
       ->check(positive_number());

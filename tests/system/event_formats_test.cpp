@@ -12,8 +12,8 @@ namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 using testing::CommandResult;
+using ::testing::HasSubstr;
 using testing::run_command;
 
 /// Times in us, which every format holds.
@@ -21,7 +21,8 @@ Events events_in_us() {
   const Random random(3);
   Events events;
   for (std::uint64_t i = 0; i < 5000; ++i)
-    events.push_back({static_cast<TimeNs>(i) * 3000, static_cast<std::uint16_t>(random.below(64, 0, i)),
+    events.push_back({static_cast<TimeNs>(i) * 3000,
+                      static_cast<std::uint16_t>(random.below(64, 0, i)),
                       static_cast<std::uint16_t>(random.below(48, 1, i)),
                       static_cast<std::int8_t>(random.below(2, 2, i) == 0 ? -1 : 1)});
   return events;
@@ -43,17 +44,19 @@ TEST(EventFormatsOfTheCommand, ConvertGoesAroundAllOfThemWithoutLoss) {
     last = next;
   }
   const CommandResult evt2 = run_command(
-      SACCADE_COMMAND, {"convert", last.string(), (folder.path() / "f.raw").string(), "--format", "EVT2"});
+      SACCADE_COMMAND,
+      {"convert", last.string(), (folder.path() / "f.raw").string(), "--format", "EVT2"});
   EXPECT_EQ(evt2.exit_code, 0) << evt2.output;
-  const CommandResult info = run_command(SACCADE_COMMAND, {"info", (folder.path() / "f.raw").string()});
+  const CommandResult info =
+      run_command(SACCADE_COMMAND, {"info", (folder.path() / "f.raw").string()});
   EXPECT_THAT(info.output, HasSubstr("format       EVT2"));
   EXPECT_THAT(info.output, HasSubstr("5,000"));
 }
 
 TEST(EventFormatsOfTheCommand, BadFilesEndWithTheirPlaceAndCode2) {
   const testing::TemporaryFolder folder;
-  const fs::path file =
-      folder.write("late.raw", std::string("% evt 3.0\n% geometry 64x48\n% end\n\x01\x80\x01\x00\x40\x20", 39));
+  const fs::path file = folder.write(
+      "late.raw", std::string("% evt 3.0\n% geometry 64x48\n% end\n\x01\x80\x01\x00\x40\x20", 39));
   const CommandResult result =
       run_command(SACCADE_COMMAND, {"convert", file.string(), (folder.path() / "x.h5").string()});
   EXPECT_EQ(result.exit_code, 2);
