@@ -108,15 +108,11 @@ double TextRow::number(const char* name) {
 }
 
 std::int64_t TextRow::long_integer(const char* name) {
-  const bool negative = rest_ != end_ && *rest_ == '-';
-  const char* p = rest_ + static_cast<int>(negative);
-  const char* digits = p;
   std::int64_t value = 0;
-  constexpr std::ptrdiff_t kMaxDigits = 18;  // these always fit
-  for (; p != end_ && is_digit(*p) && p - digits < kMaxDigits; ++p) value = value * 10 + (*p - '0');
-  if (p == digits || !ends_field(p)) fail_field(name, "a whole number");
-  rest_ = p;
-  return negative ? -value : value;
+  const auto [rest, error] = std::from_chars(rest_, end_, value);
+  if (error != std::errc() || !ends_field(rest)) fail_field(name, "a whole number");
+  rest_ = rest;
+  return value;
 }
 
 TimeNs TextRow::seconds(const char* name) {
