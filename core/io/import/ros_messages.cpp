@@ -74,9 +74,10 @@ std::optional<PinholeCamera> read_camera_message(BagMessageReader& message) {
   bool is_distorted = false;
   for (const double coefficient : lens) is_distorted = is_distorted || coefficient != 0;
   if (is_distorted && (model != "plumb_bob" || lens.size() > camera.distortion.size()))
-    message.fail(fmt::format("the lens model '{}' with {} coefficients is not known; plumb_bob with "
-                             "up to 5 is",
-                             model, lens.size()));
+    message.fail(
+        fmt::format("the lens model '{}' with {} coefficients is not known; plumb_bob with "
+                    "up to 5 is",
+                    model, lens.size()));
   if (is_distorted) std::copy(lens.begin(), lens.end(), camera.distortion.begin());
   check_picture_size(width, height, "sensor_msgs/CameraInfo");
   camera.width = static_cast<int>(width);
@@ -100,9 +101,10 @@ StampedPicture read_image_message(BagMessageReader& message) {
   const bool is_grey = encoding == "mono8" || encoding == "8UC1";
   const bool is_bgr = encoding == "bgr8";
   if (!is_grey && !is_bgr && encoding != "rgb8")
-    message.fail(fmt::format("pictures of the encoding '{}' cannot be read; mono8, 8UC1, rgb8 and "
-                             "bgr8 can",
-                             encoding));
+    message.fail(
+        fmt::format("pictures of the encoding '{}' cannot be read; mono8, 8UC1, rgb8 and "
+                    "bgr8 can",
+                    encoding));
   check_picture_size(width, height, "sensor_msgs/Image");
   const std::uint64_t used_bytes = std::uint64_t{width} * (is_grey ? 1U : 3U);
   const std::span<const std::byte> data = message.take(message.number<std::uint32_t>());

@@ -21,9 +21,9 @@ using testing::bag_message;
 using testing::bytes_of;
 using testing::error_of;
 using testing::event_array;
+using ::testing::HasSubstr;
 using testing::kBagHead;
 using testing::sized;
-using ::testing::HasSubstr;
 
 std::string stamp(std::uint32_t seconds, std::uint32_t ns) {
   return bytes_of(std::uint32_t{0}, seconds, ns) + sized("frame");

@@ -39,9 +39,10 @@ inline std::string bag_record(const Fields& header, const std::string& data) {
   return sized(fields_text(header)) + sized(data);
 }
 
-inline std::string bag_connection(std::uint32_t number, const std::string& topic, const std::string& type) {
+inline std::string bag_connection(std::uint32_t number, const std::string& topic,
+                                  const std::string& type) {
   return bag_record({{"op", "\x07"}, {"conn", bytes_of(number)}, {"topic", topic}},
-                fields_text({{"topic", topic}, {"type", type}, {"md5sum", "*"}}));
+                    fields_text({{"topic", topic}, {"type", type}, {"md5sum", "*"}}));
 }
 
 inline std::string event_array(std::span<const Event> events) {
@@ -58,8 +59,8 @@ inline std::string event_array(std::span<const Event> events) {
 }
 
 inline std::string bag_message(std::uint32_t number, const std::string& data) {
-  return bag_record({{"op", "\x02"}, {"conn", bytes_of(number)}, {"time", bytes_of(std::uint64_t{0})}},
-                data);
+  return bag_record(
+      {{"op", "\x02"}, {"conn", bytes_of(number)}, {"time", bytes_of(std::uint64_t{0})}}, data);
 }
 
 inline std::string bag_chunk(const std::string& compression, const std::string& records) {
@@ -77,16 +78,16 @@ inline std::string bag_chunk(const std::string& compression, const std::string& 
     packed.resize(size);
   }
   return bag_record({{"op", "\x05"},
-                 {"compression", compression},
-                 {"size", bytes_of(static_cast<std::uint32_t>(records.size()))}},
-                packed);
+                     {"compression", compression},
+                     {"size", bytes_of(static_cast<std::uint32_t>(records.size()))}},
+                    packed);
 }
 
 inline const std::string kBagHead =
     std::string(kBagMagic) + bag_record({{"op", "\x03"},
-                                     {"index_pos", bytes_of(std::uint64_t{0})},
-                                     {"conn_count", bytes_of(std::uint32_t{1})},
-                                     {"chunk_count", bytes_of(std::uint32_t{1})}},
-                                    std::string(100, ' '));
+                                         {"index_pos", bytes_of(std::uint64_t{0})},
+                                         {"conn_count", bytes_of(std::uint32_t{1})},
+                                         {"chunk_count", bytes_of(std::uint32_t{1})}},
+                                        std::string(100, ' '));
 
 }  // namespace saccade::testing
