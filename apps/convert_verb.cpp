@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "apps/common_options.h"
@@ -12,7 +13,10 @@
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/event_file.h"
+#include "core/io/events/event_formats.h"
 #include "core/io/import/public_sequence.h"
+#include "core/io/import/ros_bag.h"
+#include "core/process/progress.h"
 
 namespace saccade {
 namespace {
@@ -20,24 +24,59 @@ namespace {
 struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
-  std::string unit;  ///< empty: the coarsest that keeps every time
+  std::string unit;    ///< empty: the coarsest that keeps every time
+  std::string format;  ///< empty: the first of the ending
   ImportWindow window;
   GridRequest grids;
   CommonOptions common;
 };
 
-/// Events of a file, or of the dataset in a folder, whose sensor they are checked against.
-Events load(const ConvertOptions& options) {
-  if (std::filesystem::is_directory(options.input))
-    return Dataset::open(options.input).load_events();
-  return read_events(options.input, SensorSize{});
+/// An event file, or that of the dataset in a folder, whose sensor it is checked against.
+struct EventInput {
+  std::filesystem::path file;
+  SensorSize size;
+};
+
+EventInput find_events(const std::filesystem::path& input) {
+  if (!std::filesystem::is_directory(input)) return {input, {}};
+  const Dataset dataset = Dataset::open(input);
+  if (dataset.events_file().empty())
+    throw InputError(input.string(), "holds no events (" + event_file_names() + ")");
+  return {dataset.events_file(), {dataset.camera().width, dataset.camera().height}};
 }
 
-TimestampUnit unit_of(const ConvertOptions& options, const Events& events) {
-  const bool keeps_microseconds =
-      std::all_of(events.begin(), events.end(), [](const Event& e) { return e.t_ns % 1000 == 0; });
-  const bool microseconds = options.unit.empty() ? keeps_microseconds : options.unit == "us";
-  return microseconds ? TimestampUnit::kMicroseconds : TimestampUnit::kNanoseconds;
+/// The coarsest that keeps every time. A file that states its times in ns is read for it.
+TimestampUnit coarsest_unit(const EventInput& input) {
+  EventStream stream(input.file, input.size);
+  if (stream.unit() == TimestampUnit::kMicroseconds) return TimestampUnit::kMicroseconds;
+  while (true) {
+    const std::span<const Event> events = stream.next();
+    if (events.empty()) return TimestampUnit::kMicroseconds;
+    if (!std::all_of(events.begin(), events.end(),
+                     [](const Event& e) { return e.t_ns % 1000 == 0; }))
+      return TimestampUnit::kNanoseconds;
+  }
+}
+
+/// Block by block, so that memory does not grow with the file.
+std::uint64_t convert_events(const ConvertOptions& options) {
+  const EventInput input = find_events(options.input);
+  TimestampUnit unit =
+      options.unit == "ns" ? TimestampUnit::kNanoseconds : TimestampUnit::kMicroseconds;
+  if (options.unit.empty()) unit = coarsest_unit(input);
+  EventStream stream(input.file, input.size);
+  const SensorSize sensor = input.size.width > 0 ? input.size : stream.sensor();
+  const EventFormat* format = find_written_format(options.output, options.format);
+  if (format == nullptr)
+    throw InputError("--format", fmt::format("a file with the ending '{}' is not written as {}",
+                                             options.output.extension().string(), options.format));
+  if (unit == TimestampUnit::kNanoseconds && format->finest == TimestampUnit::kMicroseconds)
+    show_notice(fmt::format("{} holds times in us, to which those of the input are rounded",
+                            options.output.string()));
+  const std::unique_ptr<EventWriter> writer = format->make_writer(options.output, unit, sensor);
+  for (auto events = stream.next(); !events.empty(); events = stream.next()) writer->append(events);
+  writer->close();
+  return writer->count();
 }
 
 /// A sequence of a public benchmark into a dataset folder.
@@ -52,17 +91,21 @@ void convert_sequence(const PublicSequence& sequence, const ConvertOptions& opti
                sequence.camera_residual_px);
 }
 
-/// ".h5, .hdf5, .txt"
-std::string event_file_endings() {
-  std::string list;
-  for (const EventFormat& format : event_formats())
-    list += (list.empty() ? "" : ", ") + std::string(format.ending);
-  return list;
+void convert_bag(const ConvertOptions& options) {
+  if (!options.unit.empty())
+    throw InputError("--unit", "belongs to event files; a dataset keeps the unit of the bag, ns");
+  const BagCounts counts = write_bag_as_dataset(options.input, options.output, options.window);
+  if (options.common.quiet) return;
+  fmt::print("{}: {} events, {} frames, {} inertial samples and {} poses of a bag\n",
+             options.output.string(), counts.events, counts.frames, counts.imu_samples,
+             counts.poses);
 }
 
 void convert(const ConvertOptions& options) {
   options.common.apply();
   if (options.grids.is_stated()) {
+    if (!options.format.empty())
+      throw InputError("--format", "belongs to event files, not to grids");
     if (!options.unit.empty() || options.window.start_s != 0 || options.window.duration_s)
       throw InputError(options.unit.empty() ? "--start-s" : "--unit",
                        "does not belong to grids, whose windows are keys: duration_s=0.05");
@@ -70,24 +113,21 @@ void convert(const ConvertOptions& options) {
     if (!options.common.quiet) fmt::print("{}", text);
     return;
   }
-  if (find_event_format(options.output) == nullptr) {
+  if (find_written_format(options.output) == nullptr) {
+    if (is_bag(options.input)) return convert_bag(options);
     if (std::filesystem::is_directory(options.input))
       if (const auto sequence = open_public_sequence(options.input))
         return convert_sequence(*sequence, options);
     throw InputError(
         options.output.string(),
-        "cannot tell the format from the ending; valid endings: " + event_file_endings() +
-            "; a folder, where IN is a sequence of DSEC or TUM-VIE (a folder in the "
+        "cannot tell the format from the ending; valid endings: " + event_file_endings(true) +
+            "; a folder, where IN is a bag or a sequence of DSEC or TUM-VIE (a folder in the "
             "layout of the Event Camera Dataset is read as it is)");
   }
   if (options.window.start_s != 0 || options.window.duration_s)
     throw InputError("--start-s", "belongs to the conversion of whole sequences");
-  const Events events = load(options);
-  const std::unique_ptr<EventWriter> writer =
-      make_event_writer(options.output, unit_of(options, events));
-  writer->append(events);
-  writer->close();
-  if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), events.size());
+  const std::uint64_t count = convert_events(options);
+  if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), count);
 }
 
 void add_grid_options(CLI::App& verb, GridRequest& request) {
@@ -110,22 +150,28 @@ void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* verb = command.add_subcommand(
       "convert",
-      "Convert events between text and HDF5 or into grids, or a public sequence into a dataset.");
+      "Convert events between formats or into grids, or a public sequence into a dataset.");
   verb->add_option(
           "IN", options->input,
-          "Event file (.txt, .h5), dataset folder, or folder of a sequence of DSEC or TUM-VIE.")
+          "Event file of any format (docs/formats.md), recognised by its content; dataset folder; "
+          "or folder of a sequence of DSEC or TUM-VIE. BAG!/topic names one of several topics.")
       ->required();
   verb->add_option(
           "OUT", options->output,
-          "Event file, whose extension selects the format; file of grids (.h5, .npy) or, for event "
-          "frames, a folder of pictures; or the dataset folder for a sequence.")
+          "Event file, whose extension selects the format (" + event_file_endings(true) +
+              "); file of grids (.h5, .npy) or, for event frames, a folder of pictures; or the "
+              "dataset folder for a sequence or a bag.")
       ->required();
   verb->add_option(
           "--unit", options->unit,
-          "Unit of the time stamps in HDF5 (default: us, or ns where us would round them).")
+          "Unit of the time stamps in HDF5 and NumPy's archives (default: us, or ns where us would "
+          "round them).")
       ->check(CLI::IsMember({"us", "ns"}));
-  verb->add_option("--start-s", options->window.start_s,
-                   "Start of the part of a sequence to convert, in seconds from its first event.")
+  verb->add_option("--format", options->format, "Encoding of a .raw file: EVT3 (default) or EVT2.")
+      ->check(CLI::IsMember({"EVT3", "EVT2"}));
+  verb->add_option(
+          "--start-s", options->window.start_s,
+          "Start of the part of a sequence or bag to convert, in seconds from its first event.")
       ->check(number_between(0, 1e9));
   verb->add_option("--duration-s", options->window.duration_s, "Length of that part in seconds.")
       ->check(positive_number());
@@ -134,6 +180,7 @@ void add_convert_verb(CLI::App& command) {
   verb->footer(
       "Examples:\n"
       "  saccade convert recording/events.txt events.h5\n"
+      "  saccade convert recording.raw recording.aedat4\n"
       "  saccade convert data/walls grids.h5 --voxel-grid bins=5,duration_s=0.05\n"
       "  saccade convert data/walls frames --event-frame kind=polarity,events=20000\n"
       "  saccade convert dsec/interlaken_00_c data/interlaken_00_c\n"

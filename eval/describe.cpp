@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/event_file.h"
+#include "core/io/events/event_formats.h"
 #include "eval/evaluate.h"
 #include "eval/picture/view/sensor_view.h"
 #include "eval/run_folder.h"
@@ -22,36 +23,58 @@ std::string line(const std::string& label, const std::string& text) {
   return fmt::format("  {:<13}{}\n", label, text);
 }
 
-/// Most events within any of the consecutive 10 ms of a stream, per second.
-double peak_rate(const Events& events) {
-  constexpr TimeNs kBinNs = 10'000'000;
-  std::size_t most = 0;
-  for (std::size_t begin = 0; begin < events.size();) {
-    const TimeNs bin = (events[begin].t_ns - events.front().t_ns) / kBinNs;
-    std::size_t end = begin;
-    while (end < events.size() && (events[end].t_ns - events.front().t_ns) / kBinNs == bin) ++end;
-    most = std::max(most, end - begin);
-    begin = end;
+constexpr TimeNs kRateBinNs = 10'000'000;
+
+/// What is said of a stream of events, gathered block by block.
+struct EventSummary {
+  std::uint64_t count = 0;
+  std::uint64_t on = 0;
+  TimeNs first_ns = 0;
+  TimeNs last_ns = 0;
+  int columns = 0;  ///< of the smallest sensor that holds them [px]
+  int rows = 0;
+  std::uint64_t most_in_bin = 0;  ///< of the consecutive kRateBinNs from the first event on
+
+  void add(const Event& event) {
+    if (count++ == 0) first_ns = event.t_ns;
+    last_ns = event.t_ns;
+    if (event.polarity > 0) ++on;
+    columns = std::max(columns, event.x + 1);
+    rows = std::max(rows, event.y + 1);
+    if (event.t_ns - first_ns >= bin_end_ns_) {
+      bin_end_ns_ = ((event.t_ns - first_ns) / kRateBinNs + 1) * kRateBinNs;
+      in_bin_ = 0;
+    }
+    most_in_bin = std::max(most_in_bin, ++in_bin_);
   }
-  return static_cast<double>(most) / seconds_from_ns(kBinNs);
+
+ private:
+  TimeNs bin_end_ns_ = kRateBinNs;  ///< after the first event
+  std::uint64_t in_bin_ = 0;
+};
+
+EventSummary summarise(EventStream& stream) {
+  EventSummary summary;
+  for (auto events = stream.next(); !events.empty(); events = stream.next())
+    for (const Event& event : events) summary.add(event);
+  return summary;
 }
 
-std::string event_lines(const Events& events, TimestampUnit unit) {
-  if (events.empty()) return line("events", "none");
-  const auto on = static_cast<double>(
-      std::count_if(events.begin(), events.end(), [](const Event& e) { return e.polarity > 0; }));
-  const auto all = static_cast<double>(events.size());
-  const double first_s = seconds_from_ns(events.front().t_ns);
-  const double last_s = seconds_from_ns(events.back().t_ns);
+std::string event_lines(const EventSummary& events, TimestampUnit unit) {
+  if (events.count == 0) return line("events", "none");
+  const auto on = static_cast<double>(events.on);
+  const auto all = static_cast<double>(events.count);
+  const double first_s = seconds_from_ns(events.first_ns);
+  const double last_s = seconds_from_ns(events.last_ns);
+  const double peak_rate = static_cast<double>(events.most_in_bin) / seconds_from_ns(kRateBinNs);
   std::string text = line("events", fmt::format("{} ({} ON, {} OFF: {:.1f} % ON)", grouped(all),
                                                 grouped(on), grouped(all - on), 100 * on / all)) +
                      line("time", fmt::format("{:.6f} .. {:.6f} s ({:.6f} s), stamps in {}",
                                               first_s, last_s, last_s - first_s,
                                               unit == TimestampUnit::kNanoseconds ? "ns" : "us"));
   if (last_s > first_s)
-    text +=
-        line("rate", fmt::format("{} events/s mean, {} events/s in the busiest 10 ms",
-                                 grouped(all / (last_s - first_s)), grouped(peak_rate(events))));
+    text += line("rate", fmt::format("{} events/s mean, {} events/s in the busiest 10 ms",
+                                     grouped(all / (last_s - first_s)), grouped(peak_rate)));
   return text;
 }
 
@@ -132,10 +155,12 @@ std::string describe_dataset(const fs::path& folder) {
   const Dataset dataset = Dataset::open(folder);
   std::string text = fmt::format("dataset {} ({})\n", dataset.facts().name, folder.string());
   text += camera_lines(dataset.camera());
-  if (dataset.events_file().empty())
+  if (dataset.events_file().empty()) {
     text += line("events", "none");
-  else
-    text += event_lines(dataset.load_events(), read_event_file_info(dataset.events_file()).unit);
+  } else {
+    EventStream stream(dataset.events_file(), {dataset.camera().width, dataset.camera().height});
+    text += event_lines(summarise(stream), stream.unit());
+  }
   text += line("poses", groundtruth_text(dataset.groundtruth()));
   text += line("frames", files_text(dataset.frames()));
   text += line("depth maps", files_text(dataset.depth_maps()));
@@ -182,23 +207,22 @@ std::string describe_run(const fs::path& folder) {
 }
 
 std::string describe_event_file(const fs::path& file) {
-  const EventFileInfo info = read_event_file_info(file);
-  const Events events = read_events(file, {});
+  EventStream stream(file);
+  const EventSummary events = summarise(stream);
   std::string text = fmt::format("event file {}\n", file.string());
-  text += event_lines(events, info.unit);
-  int columns = 0;
-  int rows = 0;
-  for (const Event& event : events) {
-    columns = std::max(columns, event.x + 1);
-    rows = std::max(rows, event.y + 1);
-  }
-  return text + line("sensor", fmt::format("at least {} x {} px", columns, rows));
+  text += line("format", std::string(recognise_event_format(file).name));
+  text += event_lines(events, stream.unit());
+  const SensorSize sensor = stream.sensor();
+  return text + line("sensor", sensor.width > 0
+                                   ? fmt::format("{} x {} px", sensor.width, sensor.height)
+                                   : fmt::format("not stated, at least {} x {} px", events.columns,
+                                                 events.rows));
 }
 
 }  // namespace
 
 PathDescription describe_path(const fs::path& path, bool verify) {
-  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::exists(event_file_place(path).file)) throw InputError(path.string(), "is not there");
   if (!fs::is_directory(path)) {
     if (verify) throw InputError(path.string(), "only a dataset folder states hashes to verify");
     return {describe_event_file(path), {}};

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
+#include "core/io/events/event_formats.h"
 
 namespace saccade {
 namespace fs = std::filesystem;
@@ -23,7 +24,7 @@ TimeWindow window_of(const fs::path& file, const RecordingPart& part) {
 }
 
 fs::path events_file_of(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::exists(event_file_place(path).file)) throw InputError(path.string(), "is not there");
   if (!fs::is_directory(path)) return path;
   fs::path file = Dataset::open(path).events_file();
   if (file.empty()) throw InputError(path.string(), "holds no events");
@@ -44,14 +45,16 @@ double recording_start_s(const fs::path& path) {
 }
 
 EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
-  if (!fs::exists(path)) throw InputError(path.string(), "is not there");
+  if (!fs::exists(event_file_place(path).file)) throw InputError(path.string(), "is not there");
   EventRecording recording;
   // "data/walls/" has an empty file name.
   recording.name = (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
   recording.file = path;
   if (!fs::is_directory(path)) {
     recording.events = read_events(path, {}, window_of(path, part));
-    recording.size = extent(recording.events);
+    recording.size = stated_sensor(path);
+    recording.is_size_stated = recording.size.width > 0;
+    if (!recording.is_size_stated) recording.size = extent(recording.events);
     return recording;
   }
   const Dataset dataset = Dataset::open(path);

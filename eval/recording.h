@@ -22,8 +22,8 @@ struct EventRecording {
   std::string name;  ///< of that folder or file
   std::filesystem::path file;
   Events events;
-  SensorSize size;              ///< of an event file: as large as its events ask for
-  bool is_size_stated = false;  ///< by a dataset
+  SensorSize size;              ///< where none is stated: as large as the events ask for
+  bool is_size_stated = false;  ///< by a dataset or an event file
 };
 
 /// Time of its first event [s].

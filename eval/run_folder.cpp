@@ -72,7 +72,7 @@ Dataset RunFolder::open_dataset(const std::optional<std::filesystem::path>& inst
 Trajectory read_estimate(const std::filesystem::path& file) {
   TextReader reader(file);
   std::string_view line;
-  return reader.next(line) ? read_tum_trajectory(file) : Trajectory{};
+  return reader.next(line) ? read_trajectory(file) : Trajectory{};
 }
 
 TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {

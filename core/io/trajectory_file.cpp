@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -62,12 +61,6 @@ Trajectory finished(std::vector<StampedPose> poses, const std::filesystem::path&
   return Trajectory(std::move(poses));
 }
 
-/// A first line of column names that is not commented out.
-bool is_header(std::string_view line) {
-  return std::isalpha(static_cast<unsigned char>(line.front())) != 0 && !line.starts_with("nan") &&
-         !line.starts_with("inf");
-}
-
 }  // namespace
 
 Trajectory read_tum_trajectory(const std::filesystem::path& file) {
@@ -81,26 +74,12 @@ Trajectory read_tum_trajectory(const std::filesystem::path& file) {
   return finished(std::move(poses), file);
 }
 
-Trajectory read_esim_trajectory(const std::filesystem::path& file) {
-  std::vector<StampedPose> poses;
-  TextReader reader(file);
-  std::string_view line;
-  for (bool first = true; reader.next(line); first = false) {
-    if (first && is_header(line)) continue;
-    TextRow row = reader.row(line);
-    const double t_s = seconds_from_ns(row.integer("timestamp"));
-    append(poses, {t_s, read_pose(row)}, row);
-    row.expect_end("timestamp[ns], x, y, z, qx, qy, qz, qw");
-  }
-  return finished(std::move(poses), file);
-}
-
 Trajectory read_trajectory(const std::filesystem::path& file) {
   TextReader reader(file);
   std::string_view line;
   bool comma = false;
   if (reader.next(line)) comma = line.find(',') != std::string_view::npos;
-  return comma ? read_esim_trajectory(file) : read_tum_trajectory(file);
+  return comma ? read_csv_trajectory(file) : read_tum_trajectory(file);
 }
 
 void write_tum_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses) {

@@ -14,11 +14,15 @@ namespace saccade {
 /// is an error.
 [[nodiscard]] Trajectory read_tum_trajectory(const std::filesystem::path& file);
 
-/// Comma-separated `timestamp[ns], x, y, z, qx, qy, qz, qw` with an optional line of column names
-/// (rpg_esim); the same checks.
-[[nodiscard]] Trajectory read_esim_trajectory(const std::filesystem::path& file);
+/// Comma-separated lines of a time in ns, a position and a quaternion, below a line that names the
+/// columns, because programs differ in the order of the quaternion: rpg_esim writes
+/// `# timestamp, x, y, z, qx, qy, qz, qw`, EuRoC's ground truth (ASL)
+/// `#timestamp, p_RS_R_x [m], ..., q_RS_w [], q_RS_x [], ...`. The pose is that of the frame that the
+/// file is about. Further columns are left out. The same checks; without names an InputError that
+/// says which line to add.
+[[nodiscard]] Trajectory read_csv_trajectory(const std::filesystem::path& file);
 
-/// Either of them: rpg_esim's when the first line with numbers holds a comma.
+/// Either of them: CSV when the first line with numbers holds a comma.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// TUM text; times with 9 decimals, the rest exact in double.

@@ -1,6 +1,6 @@
 #include "estimator/external/adapter_config.h"
 
-#include "core/io/events/event_file.h"
+#include "core/io/events/event_formats.h"
 #include "estimator/external/command_template.h"
 
 namespace saccade {
@@ -53,6 +53,7 @@ void describe_input(config::Fields& fields, AdapterConfig& config) {
   config::Names<std::string> formats{{"csv", "csv"}};
   std::string help = "Format of the events: `csv`: lines t,x,y,p.";
   for (const EventFormat& format : event_formats()) {
+    if (format.make_writer == nullptr) continue;
     formats.emplace_back(format.ending.substr(1), format.ending.substr(1));
     help.append(" `").append(format.ending.substr(1)).append("`: ").append(format.help);
   }

@@ -31,15 +31,17 @@ void write_events_csv(const fs::path& file, std::span<const Event> events, Stamp
 }
 
 fs::path write_events(const fs::path& folder, const AdapterConfig& config,
-                      std::span<const Event> events) {
+                      const PinholeCamera& camera, std::span<const Event> events) {
   const fs::path file = folder / ("events." + config.events);
   if (config.events == "csv") {
     write_events_csv(file, events, config.event_unit);
     return file;
   }
-  const std::unique_ptr<EventWriter> writer = make_event_writer(
-      file, config.event_unit == StampUnit::kNanoseconds ? TimestampUnit::kNanoseconds
-                                                         : TimestampUnit::kMicroseconds);
+  const TimestampUnit unit = config.event_unit == StampUnit::kNanoseconds
+                                 ? TimestampUnit::kNanoseconds
+                                 : TimestampUnit::kMicroseconds;
+  const std::unique_ptr<EventWriter> writer =
+      make_event_writer(file, unit, {camera.width, camera.height});
   writer->append(events);
   writer->close();
   return file;
@@ -87,7 +89,7 @@ ExternalInput write_external_input(const fs::path& folder, const AdapterConfig& 
   write_camera_yaml(folder / "camera.yaml", camera);
   input.values = {{"input", folder},
                   {"dataset", fs::absolute(dataset.folder()).lexically_normal()},
-                  {"events", write_events(folder, config, events)},
+                  {"events", write_events(folder, config, dataset.camera(), events)},
                   {"calib", folder / "calib.txt"},
                   {"camera", folder / "camera.yaml"},
                   {"start_s", fmt::format("{:.9f}", window.start_s)},

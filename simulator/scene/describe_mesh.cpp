@@ -14,7 +14,7 @@
 
 #include <assimp/Importer.hpp>
 
-#include "core/io/events/event_file.h"
+#include "core/io/events/event_formats.h"
 #include "simulator/scene/animation/model_motion.h"
 #include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/mesh_import.h"
@@ -154,7 +154,7 @@ bool is_mesh_name(const fs::path& path) {
   if (kNotBuiltIn.contains(ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.
-  return !ending.empty() && ending != ".raw" && find_event_format(path) == nullptr &&
+  return !ending.empty() && !is_event_file_name(path) &&
          Assimp::Importer().IsExtensionSupported(ending);
 }
 

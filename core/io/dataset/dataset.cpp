@@ -5,6 +5,7 @@
 #include "core/check.h"
 #include "core/error.h"
 #include "core/io/calibration_file.h"
+#include "core/io/events/event_formats.h"
 #include "core/io/events/events_h5.h"
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"

@@ -5,8 +5,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <string>
-#include <string_view>
 
 #include "core/event.h"
 
@@ -25,9 +23,13 @@ enum class TimestampUnit { kMicroseconds, kNanoseconds };
 struct TimeWindow {
   TimeNs start_ns = std::numeric_limits<TimeNs>::min();
   TimeNs end_ns = std::numeric_limits<TimeNs>::max();
+
+  [[nodiscard]] bool is_everything() const {
+    return start_ns == TimeWindow().start_ns && end_ns == TimeWindow().end_ns;
+  }
 };
 
-/// What a file holds, without reading all of it where the format allows that.
+/// What a file holds.
 struct EventFileInfo {
   std::uint64_t count = 0;
   TimeNs first_ns = 0;  ///< 0 when there are no events
@@ -36,12 +38,52 @@ struct EventFileInfo {
   SensorSize sensor;  ///< where the format states it (EventFormat::states_sensor)
 };
 
-/// Events of a file in the format of its ending (event_formats(); any other ending: text), in
-/// EventOrder: the file must be in order of time, ties are sorted here. Throws
-/// InputError with line or index for everything malformed, coordinates outside `size` included.
+/// Events of a file in EventOrder. Its format is recognised by its content (event_formats.h). The
+/// file must be in order of time, ties are sorted here. Throws InputError with line, byte or index
+/// for everything malformed, coordinates outside `size` included.
 [[nodiscard]] Events read_events(const std::filesystem::path& file, SensorSize size,
                                  TimeWindow window = {});
+/// Without reading all of the file where its format allows that, else in memory of fixed size.
 [[nodiscard]] EventFileInfo read_event_file_info(const std::filesystem::path& file);
+/// The sensor's size where the file states it; no event is read.
+[[nodiscard]] SensorSize stated_sensor(const std::filesystem::path& file);
+
+/// One file that is being read, block by block: what a format implements (event_formats.h). It
+/// checks what it reads as read_events() says; those of equal time may be in any order.
+class EventReader {
+ public:
+  virtual ~EventReader() = default;
+  /// Appends the next events, about kEventBlock at a time; false where there were none left.
+  virtual bool read(Events& events) = 0;
+  /// Of the whole file; 0 where it is not stated.
+  [[nodiscard]] virtual SensorSize sensor() const { return {}; }
+  [[nodiscard]] virtual TimestampUnit unit() const { return TimestampUnit::kMicroseconds; }
+  /// About how many events read() will give, for which memory is reserved; 0: unknown. To be
+  /// estimated by the size of the file rather than by what it claims.
+  [[nodiscard]] virtual std::uint64_t expected_count() const { return 0; }
+};
+
+constexpr std::size_t kEventBlock = std::size_t{1} << 16U;
+
+/// The events of a file as read_events() gives them, block by block: memory does not grow with the
+/// file.
+class EventStream {
+ public:
+  explicit EventStream(const std::filesystem::path& file, SensorSize size = {},
+                       TimeWindow window = {});
+  /// The next events, valid until the next call; none at the end. Those of equal time come
+  /// together.
+  [[nodiscard]] std::span<const Event> next();
+  [[nodiscard]] SensorSize sensor() const { return reader_->sensor(); }
+  [[nodiscard]] TimestampUnit unit() const { return reader_->unit(); }
+
+ private:
+  std::unique_ptr<EventReader> reader_;
+  TimeWindow window_;
+  Events events_;
+  std::size_t given_ = 0;  ///< of events_, by the last call
+  bool is_over_ = false;
+};
 
 /// Writes a stream of events in order of time, span by span. Nothing stands under the final name
 /// before close(); without it everything is discarded.
@@ -54,32 +96,11 @@ class EventWriter {
   [[nodiscard]] virtual std::uint64_t count() const = 0;
 };
 
-/// The writer for the file's ending, as read_events() chooses; `unit` and `sensor` matter only to
-/// formats that store them.
+/// The writer for the file's ending; text for endings that event_formats() does not hold. `unit`
+/// and `sensor` matter only to formats that store them.
 [[nodiscard]] std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,
                                                              TimestampUnit unit,
                                                              SensorSize sensor = {});
-
-/// A row of the table of formats. A new format is a reader and a writer beside this file and a row
-/// in event_file.cpp; datasets, adapters and `saccade convert` read the table.
-struct EventFormat {
-  std::string_view ending;  ///< with its dot
-  std::string_view help;    ///< a sentence: what such a file holds
-  bool states_sensor;       ///< EventFileInfo::sensor
-  Events (*read)(const std::filesystem::path&, SensorSize, TimeWindow);
-  EventFileInfo (*read_info)(const std::filesystem::path&);
-  std::unique_ptr<EventWriter> (*make_writer)(const std::filesystem::path&, TimestampUnit,
-                                              SensorSize);
-};
-
-[[nodiscard]] std::span<const EventFormat> event_formats();
-/// What the events of a dataset folder are called: "events.h5, events.txt", in the table's order.
-[[nodiscard]] std::string event_file_names();
-/// The row of the file's ending; nullptr where the table does not hold it.
-[[nodiscard]] const EventFormat* find_event_format(const std::filesystem::path& file);
-
-/// The sensor's size where the file states it; no event is read.
-[[nodiscard]] SensorSize stated_sensor(const std::filesystem::path& file);
 
 /// Sorts runs of equal time by EventOrder; `events` are in order of time.
 void sort_ties(std::span<Event> events);

@@ -29,11 +29,18 @@ class EventH5Reader {
   /// place `file:/events/t[INDEX]` for times that go back, polarities other than 0/1, coordinates
   /// outside `size`, an index that contradicts the times, and chunks that cannot be read.
   [[nodiscard]] Events read(SensorSize size, TimeWindow window = {}) const;
+  /// Appends the events of indices [begin, end), with the same checks but for ties, which stay as
+  /// they are.
+  void append(std::uint64_t begin, std::uint64_t end, SensorSize size, Events& events) const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// The window's events, block by block.
+[[nodiscard]] std::unique_ptr<EventReader> open_events_h5(const std::filesystem::path& file,
+                                                          SensorSize size, TimeWindow window);
 
 /// Writes the layout above; chunks are shuffled and deflated (level 1) in parallel, the bytes do
 /// not depend on the number of threads. With TimestampUnit::kMicroseconds times are rounded to the

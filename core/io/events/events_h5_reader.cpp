@@ -306,17 +306,22 @@ std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) 
   return {range.begin, range.end};
 }
 
-Events EventH5Reader::read(SensorSize size, TimeWindow window) const {
+void EventH5Reader::append(std::uint64_t begin, std::uint64_t end, SensorSize size,
+                           Events& events) const {
   const H5Lock lock;
-  const Range range = state_->find(window);
-  Events events;
-  events.reserve(range.end - range.begin);
   // Blocks end at multiples of kBlock, so that no chunk is unpacked twice.
-  for (std::uint64_t begin = range.begin; begin < range.end;) {
-    const std::uint64_t end = std::min(range.end, (begin / kBlock + 1) * kBlock);
-    state_->append_block({begin, end}, size, events);
-    begin = end;
+  while (begin < end) {
+    const std::uint64_t block_end = std::min(end, (begin / kBlock + 1) * kBlock);
+    state_->append_block({begin, block_end}, size, events);
+    begin = block_end;
   }
+}
+
+Events EventH5Reader::read(SensorSize size, TimeWindow window) const {
+  const auto [begin, end] = range(window);
+  Events events;
+  events.reserve(end - begin);
+  append(begin, end, size, events);
   sort_ties(events);
   return events;
 }

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/check.h"
 #include "core/error.h"
 #include "core/io/events/events_h5.h"
+#include "core/io/events/rounded_events.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/tables/h5_column.h"
 #include "core/process/parallel.h"
@@ -36,17 +36,14 @@ PackedChunk pack(std::span<const Event> events, TimeNs unit, TimeNs offset) {
   return {{pack_h5_chunk(x), pack_h5_chunk(y), pack_h5_chunk(p), pack_h5_chunk(t)}};
 }
 
-std::int64_t floor_div(std::int64_t a, std::int64_t b) {
-  return a / b - static_cast<std::int64_t>(a % b < 0);
-}
-
 }  // namespace
 
 struct EventH5Writer::State {
   State(const std::filesystem::path& file_name, TimestampUnit timestamp_unit, SensorSize sensor)
       : target(file_name),
         unit(timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1),
-        ticks_per_ms(1'000'000 / unit) {
+        ticks_per_ms(1'000'000 / unit),
+        pending(timestamp_unit) {
     const H5Lock lock;
     file = {H5Fcreate(target.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
     check(file.valid());
@@ -81,7 +78,7 @@ struct EventH5Writer::State {
   }
 
   void add(std::span<const Event> events);
-  void write_chunks(std::size_t end);
+  void write_chunks(std::size_t most);
   void index(std::span<const Event> events);
   void finish();
 
@@ -90,33 +87,27 @@ struct EventH5Writer::State {
   std::int64_t ticks_per_ms;
   H5Handle file;
   std::array<H5Column, 4> columns;
-  std::vector<Event> pending;  ///< not yet written, times rounded to the unit
-  std::size_t open_ties = 0;   ///< where the last run of equal times begins in `pending`
-  std::int64_t offset = 0;     ///< /t_offset [ticks]
+  RoundedEvents pending;    ///< not yet written
+  std::int64_t offset = 0;  ///< /t_offset [ticks]
   std::uint64_t written = 0;
-  TimeNs last = std::numeric_limits<TimeNs>::min();  ///< before rounding
   std::vector<std::uint64_t> ms_to_idx;
 };
 
 void EventH5Writer::State::add(std::span<const Event> events) {
-  for (Event event : events) {
-    SACCADE_CHECK(event.t_ns >= last);
-    last = event.t_ns;
-    if (unit > 1) event.t_ns = floor_div(event.t_ns + 500, 1000) * 1000;
-    if (pending.empty() || pending.back().t_ns != event.t_ns) {
-      sort_ties(std::span(pending).subspan(open_ties));
-      // Only complete runs of ties are written: a later event may still belong before the others.
-      if (pending.size() >= kH5BatchValues) write_chunks(pending.size());
-      open_ties = pending.size();
-    }
-    pending.push_back(event);
+  // In parts, so that what is pending stays small however long the span is.
+  while (!events.empty()) {
+    const std::span<const Event> part = events.first(std::min(events.size(), kH5BatchValues));
+    events = events.subspan(part.size());
+    pending.add(part);
+    if (pending.complete().size() >= kH5BatchValues) write_chunks(kH5BatchValues);
   }
 }
 
-/// Writes the whole chunks among the first `end` pending events.
-void EventH5Writer::State::write_chunks(std::size_t end) {
-  const std::size_t count = end / kH5ChunkValues * kH5ChunkValues;
-  const std::span<const Event> events = std::span(pending).first(count);
+/// Writes the whole chunks among the first `most` complete events.
+void EventH5Writer::State::write_chunks(std::size_t most) {
+  const std::size_t count =
+      std::min(most, pending.complete().size()) / kH5ChunkValues * kH5ChunkValues;
+  const std::span<const Event> events = pending.complete().first(count);
   index(events);
   std::vector<PackedChunk> packed(count / kH5ChunkValues);
   parallel_for(packed.size(), [&](std::size_t i) {
@@ -128,17 +119,12 @@ void EventH5Writer::State::write_chunks(std::size_t end) {
     for (const PackedChunk& chunk : packed) columns[c].append(chunk.columns[c]);
   }
   written += count;
-  pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(count));
+  pending.drop(count);
 }
 
 /// Extends ms_to_idx by events that follow those written.
 void EventH5Writer::State::index(std::span<const Event> events) {
-  if (written == 0 && !events.empty()) {
-    constexpr std::int64_t kHourNs = 3'600'000'000'000;
-    const TimeNs first = events.front().t_ns;
-    if (first < 0 || first > kHourNs)
-      offset = floor_div(first, 1'000'000'000) * ticks_per_ms * 1000;
-  }
+  if (written == 0 && !events.empty()) offset = time_origin_ns(events.front().t_ns) / unit;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::int64_t tick = in_ticks(events[i].t_ns, unit) - offset;
     if (tick > kMaxIndexMs * ticks_per_ms)
@@ -150,19 +136,20 @@ void EventH5Writer::State::index(std::span<const Event> events) {
 }
 
 void EventH5Writer::State::finish() {
-  sort_ties(std::span(pending).subspan(open_ties));
+  pending.finish();
   write_chunks(pending.size());
-  index(pending);
+  const std::span<const Event> rest = pending.complete();
+  index(rest);
   const H5Lock lock;
-  if (!pending.empty()) {
-    const PackedChunk chunk = pack(pending, unit, offset);  // padded to the chunk's size
-    const std::size_t size = written + pending.size();
+  if (!rest.empty()) {
+    const PackedChunk chunk = pack(rest, unit, offset);  // padded to the chunk's size
+    const std::size_t size = written + rest.size();
     for (std::size_t c = 0; c < columns.size(); ++c) {
       columns[c].extend(size);
       columns[c].append(chunk.columns[c]);
     }
     written = size;
-    pending.clear();
+    pending.drop(rest.size());
   }
   H5Column index_column(file, "ms_to_idx", H5T_STD_U64LE, target.target());
   index_column.extend(ms_to_idx.size());

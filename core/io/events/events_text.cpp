@@ -7,10 +7,12 @@
 #include <charconv>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "core/check.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
+#include "core/io/files/zip_archive.h"
 #include "core/io/tables/text_table.h"
 
 namespace saccade {
@@ -52,40 +54,75 @@ void append_field(std::uint16_t value, std::string& text) {
   text.append(digits.begin(), end);
 }
 
-}  // namespace
+class EventTextReader final : public EventReader {
+ public:
+  EventTextReader(TextReader reader, std::uint64_t bytes, SensorSize size, TimeWindow window)
+      : reader_(std::move(reader)),
+        size_(size),
+        window_(window),
+        expected_(window.is_everything() ? bytes / kTypicalLineBytes : 0) {}
 
-Events read_events_text(const std::filesystem::path& file, SensorSize size, TimeWindow window) {
-  Events events;
-  const bool whole = window.start_ns == TimeWindow().start_ns;
-  if (whole && std::filesystem::is_regular_file(file))
-    events.reserve(std::filesystem::file_size(file) / kTypicalLineBytes);
-  TimeNs previous = std::numeric_limits<TimeNs>::min();
-  for_each_row(file, [&](TextRow& row) {
-    Event event;
-    event.t_ns = previous = read_time(row, previous);
-    if (event.t_ns >= window.end_ns) return false;
-    if (event.t_ns < window.start_ns) return true;
-    event.x = read_coordinate(row, "x", size.width);
-    event.y = read_coordinate(row, "y", size.height);
-    event.polarity = read_polarity(row);
-    row.expect_end(kEventColumns);
-    events.push_back(event);
-    return true;
-  });
-  sort_ties(events);
-  return events;
+  bool read(Events& events) override {
+    const std::size_t before = events.size();
+    std::string_view line;
+    while (events.size() < before + kEventBlock && reader_.next(line)) {
+      TextRow row = reader_.row(line);
+      Event event;
+      event.t_ns = previous_ = read_time(row, previous_);
+      if (event.t_ns >= window_.end_ns) break;
+      if (event.t_ns < window_.start_ns) continue;
+      event.x = read_coordinate(row, "x", size_.width);
+      event.y = read_coordinate(row, "y", size_.height);
+      event.polarity = read_polarity(row);
+      row.expect_end(kEventColumns);
+      events.push_back(event);
+    }
+    return events.size() > before;
+  }
+
+  [[nodiscard]] TimestampUnit unit() const override { return TimestampUnit::kNanoseconds; }
+  [[nodiscard]] std::uint64_t expected_count() const override { return expected_; }
+
+ private:
+  TextReader reader_;
+  SensorSize size_;
+  TimeWindow window_;
+  TimeNs previous_ = std::numeric_limits<TimeNs>::min();
+  std::uint64_t expected_;
+};
+
+/// The events.txt that lies least deep; empty where there is none.
+std::string events_member(const ZipArchive& archive) {
+  std::string best;
+  for (const std::string& member : archive.members()) {
+    const bool is_events = member == "events.txt" || member.ends_with("/events.txt");
+    if (is_events && (best.empty() || member.size() < best.size())) best = member;
+  }
+  return best;
 }
 
-EventFileInfo read_events_text_info(const std::filesystem::path& file) {
-  EventFileInfo info;
-  TimeNs previous = std::numeric_limits<TimeNs>::min();
-  for_each_row(file, [&](TextRow& row) {
-    previous = read_time(row, previous);
-    if (info.count++ == 0) info.first_ns = previous;
-    info.last_ns = previous;
-    return true;
+}  // namespace
+
+std::unique_ptr<EventReader> open_events_text(const std::filesystem::path& file, SensorSize size,
+                                              TimeWindow window) {
+  const std::uint64_t bytes =
+      std::filesystem::is_regular_file(file) ? std::filesystem::file_size(file) : 0;
+  return std::make_unique<EventTextReader>(TextReader(file), bytes, size, window);
+}
+
+std::unique_ptr<EventReader> open_events_zip(const std::filesystem::path& archive, SensorSize size,
+                                             TimeWindow window) {
+  const auto zip = std::make_shared<ZipArchive>(archive);
+  const std::string member = events_member(*zip);
+  const auto text = std::make_shared<ZipMember>(*zip, member);
+  TextReader reader(zip->location(member), [zip, text](std::span<char> memory) {
+    return text->read(std::as_writable_bytes(memory));
   });
-  return info;
+  return std::make_unique<EventTextReader>(std::move(reader), 0, size, window);
+}
+
+bool is_events_zip(const EventFileHead& head) {
+  return head.bytes.starts_with("PK\x03\x04") && !events_member(ZipArchive(head.file)).empty();
 }
 
 struct EventTextWriter::State {

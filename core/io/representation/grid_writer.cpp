@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fstream>
 #include <span>
@@ -12,6 +11,7 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/images/image_file.h"
+#include "core/io/tables/npy_header.h"
 #include "core/io/tables/text_table.h"
 
 namespace saccade {
@@ -27,27 +27,14 @@ void append_line(const GridWindow& window, std::string& text) {
   text += fmt::format(" {}\n", window.last - window.first);
 }
 
-/// Version 1.0 of the format: the header is padded so that the values begin at a multiple of 64.
-std::string npy_header(const GridShape& shape) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string text =
-      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}, {}), }}",
-                  shape.count, shape.channels, shape.height, shape.width);
-  constexpr std::size_t kPrefix = 10;
-  constexpr std::size_t kAlignment = 64;
-  while ((kPrefix + text.size() + 1) % kAlignment != 0) text += ' ';
-  text += '\n';
-  std::string header = "\x93NUMPY";
-  header +=
-      {'\x01', '\x00', static_cast<char>(text.size() % 256), static_cast<char>(text.size() / 256)};
-  return header + text;
-}
+std::uint64_t size(int side) { return static_cast<std::uint64_t>(side); }
 
 class NpyGridWriter final : public GridWriter {
  public:
   NpyGridWriter(const fs::path& file, const GridShape& shape)
       : shape_(shape), file_(file), stream_(file_.path(), std::ios::binary) {
-    stream_ << npy_header(shape);
+    stream_ << npy_header_text(
+        "<f4", {shape.count, size(shape.channels), size(shape.height), size(shape.width)});
   }
 
   void append(const EventGrid& grid, const GridWindow& window) override {

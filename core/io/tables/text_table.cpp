@@ -7,8 +7,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/io/files/input_log.h"
@@ -105,15 +108,11 @@ double TextRow::number(const char* name) {
 }
 
 std::int64_t TextRow::long_integer(const char* name) {
-  const bool negative = rest_ != end_ && *rest_ == '-';
-  const char* p = rest_ + static_cast<int>(negative);
-  const char* digits = p;
   std::int64_t value = 0;
-  constexpr std::ptrdiff_t kMaxDigits = 18;  // these always fit
-  for (; p != end_ && is_digit(*p) && p - digits < kMaxDigits; ++p) value = value * 10 + (*p - '0');
-  if (p == digits || !ends_field(p)) fail_field(name, "a whole number");
-  rest_ = p;
-  return negative ? -value : value;
+  const auto [rest, error] = std::from_chars(rest_, end_, value);
+  if (error != std::errc() || !ends_field(rest)) fail_field(name, "a whole number");
+  rest_ = rest;
+  return value;
 }
 
 TimeNs TextRow::seconds(const char* name) {
@@ -158,24 +157,30 @@ void TextRow::fail_field(const char* name, const char* expected) const {
 
 TextReader::TextReader(const std::filesystem::path& file) : name_(file.string()) {
   if (std::filesystem::is_directory(file)) throw InputError(name_, "is a folder, not a file");
-  stream_.open(file, std::ios::binary);
-  if (!stream_)
+  const auto stream = std::make_shared<std::ifstream>(file, std::ios::binary);
+  if (!*stream)
     throw InputError(name_, std::filesystem::exists(file) ? "cannot be opened" : "no such file");
   InputLog::note(file);
+  source_ = [stream](std::span<char> memory) {
+    stream->read(memory.data(), static_cast<std::streamsize>(memory.size()));
+    return static_cast<std::size_t>(stream->gcount());
+  };
   block_.resize(kReadBytes);
 }
 
+TextReader::TextReader(std::string name, Source source)
+    : name_(std::move(name)), source_(std::move(source)), block_(kReadBytes) {}
+
 bool TextReader::refill() {
-  if (!stream_) return false;
   if (begin_ == 0 && end_ == block_.size())
     throw InputError(name_ + ":" + std::to_string(line_ + 1),
                      "a line of more than 1 MiB; this is no table of text");
   std::memmove(block_.data(), block_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  stream_.read(block_.data() + end_, static_cast<std::streamsize>(block_.size() - end_));
-  end_ += static_cast<std::size_t>(stream_.gcount());
-  return stream_.gcount() > 0;
+  const std::size_t count = source_(std::span(block_).subspan(end_));
+  end_ += count;
+  return count > 0;
 }
 
 bool TextReader::next(std::string_view& line) {

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -103,7 +104,12 @@ class TextRow {
 /// that start with '#' are skipped.
 class TextReader {
  public:
+  /// Fills memory and returns how many bytes there were; 0 at the end.
+  using Source = std::function<std::size_t(std::span<char>)>;
+
   explicit TextReader(const std::filesystem::path& file);
+  /// `name`: what errors call it.
+  TextReader(std::string name, Source source);
 
   /// The next line with content; false at the end of the file.
   [[nodiscard]] bool next(std::string_view& line);
@@ -119,7 +125,7 @@ class TextReader {
   [[nodiscard]] bool refill();
 
   std::string name_;
-  std::ifstream stream_;
+  Source source_;
   std::vector<char> block_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

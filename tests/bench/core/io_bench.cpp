@@ -111,6 +111,12 @@ BENCHMARK_CAPTURE(read_all_events, h5, "events.h5")
     ->Arg(2)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK_CAPTURE(write_events, evt3, "events.raw")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all_events, evt3, "events.raw")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_events, aedat4, "events.aedat4")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all_events, aedat4, "events.aedat4")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(write_events, npz, "events.npz")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all_events, npz, "events.npz")->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_window)->Unit(benchmark::kMillisecond);
 BENCHMARK(write_frame)->Unit(benchmark::kMillisecond);
 BENCHMARK(hash);

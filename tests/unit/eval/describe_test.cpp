@@ -47,10 +47,11 @@ TEST_F(Describe, ARun) {
 
 TEST_F(Describe, AnEventFile) {
   expect_lines(describe_path(dataset() / "events.h5").text,
-               {"stamps in us", "at least 80 x 60 px"});
+               {"format       HDF5", "stamps in us", "sensor       80 x 60 px"});
   TemporaryFolder folder;
-  expect_lines(describe_path(folder.write("e.txt", "0.001 3 4 1\n0.002 5 6 0\n0.003 5 6 0\n")).text,
-               {"3 (1 ON, 2 OFF: 33.3 % ON)", "0.001000 .. 0.003000 s"});
+  expect_lines(
+      describe_path(folder.write("e.txt", "0.001 3 4 1\n0.002 5 6 0\n0.003 5 6 0\n")).text,
+      {"not stated, at least 6 x 7 px", "3 (1 ON, 2 OFF: 33.3 % ON)", "0.001000 .. 0.003000 s"});
 }
 
 TEST_F(Describe, RefusesAnythingElse) {

@@ -33,13 +33,30 @@ TEST(TrajectoryFile, ReadsTum) {
   EXPECT_EQ(t.poses()[1].world_from_camera.rotation().x(), 1);
 }
 
-TEST(TrajectoryFile, ReadsEsimCsvWithAnyHeader) {
-  for (const char* header : {"", "# timestamp, x, y, z, qx, qy, qz, qw\n", "timestamp,x,y,z\n"}) {
-    const Trajectory t = parse_poses(std::string(header) + "500000000, 1,2, 3,0,0,0,1\n");
+TEST(TrajectoryFile, TheFirstLineOfACsvTellsTheOrderOfTheQuaternion) {
+  for (const char* header :
+       {"# timestamp, x, y, z, qx, qy, qz, qw\n", "timestamp,tx,ty,tz,qx,qy,qz,qw\n"}) {
+    const Trajectory t = parse_poses(std::string(header) + "500000000, 1,2, 3,0,0,0.6,0.8\n");
     ASSERT_EQ(t.size(), 1U);
     EXPECT_EQ(t.start_s(), 0.5);
     EXPECT_EQ(t.poses()[0].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(t.poses()[0].world_from_camera.rotation().w(), 0.8);
   }
+  const Trajectory euroc = parse_poses(
+      "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+      "q_RS_z [], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1]\n"
+      "1403636580838555648,4.5,-1.7,0.7,0.8,0.6,0,0,0.1,0.2,0.3\n");
+  ASSERT_EQ(euroc.size(), 1U);
+  EXPECT_EQ(euroc.poses()[0].world_from_camera.translation(), Eigen::Vector3d(4.5, -1.7, 0.7));
+  EXPECT_EQ(euroc.poses()[0].world_from_camera.rotation().w(), 0.8);
+  EXPECT_EQ(euroc.poses()[0].world_from_camera.rotation().x(), 0.6);
+}
+
+TEST(TrajectoryFile, ACsvWithoutNamesIsAskedForThem) {
+  for (const char* header :
+       {"", "timestamp,x,y,z\n", "# a,b,c,d,e,f,g,h\n", "# timestamp, x, y, z, qx, qy, qz, qx\n"})
+    EXPECT_THAT(error(std::string(header) + "500000000,1,2,3,0,0,0,1\n"),
+                HasSubstr("poses.txt:1: the first line must name the columns"));
 }
 
 TEST(TrajectoryFile, OrientationsAreExactAndHaveNoPosition) {
@@ -77,8 +94,14 @@ TEST(TrajectoryFile, NamesTheLineOfWhatIsWrong) {
               HasSubstr("poses.txt:2: times must increase: 1.000000000 s after"));
   EXPECT_THAT(error("0 0 0 0 0 0 1\n"), HasSubstr("poses.txt:1: qw: expected a number"));
   EXPECT_THAT(error("0 0 0 0 0 0 0 1 9\n"), HasSubstr("poses.txt:1: more fields"));
-  EXPECT_THAT(error("5,0,0,0,0,0,0,1\n4,0,0,0,0,0,0,1\n"), HasSubstr("poses.txt:2: times must"));
-  EXPECT_THAT(error("0.5,0,0,0,0,0,0,1\n"), HasSubstr("timestamp: expected a whole number"));
+  const std::string names = "# t,x,y,z,qx,qy,qz,qw\n";
+  EXPECT_THAT(error(names + "5,0,0,0,0,0,0,1\n4,0,0,0,0,0,0,1\n"),
+              HasSubstr("poses.txt:3: times must"));
+  EXPECT_THAT(error(names + "0.5,0,0,0,0,0,0,1\n"),
+              HasSubstr("timestamp: expected a whole number"));
+  EXPECT_THAT(error(names + "5,0,0,0,0,0,0,2\n"), HasSubstr("the quaternion's length is 2"));
+  EXPECT_THAT(error(names + "5,0,0,0,0,0,0\n"), HasSubstr("poses.txt:2: a column of the pose"));
+  EXPECT_THAT(error(names + "5,0,0,0,0,0,0,1,9\n"), HasSubstr("poses.txt:2: more fields"));
   EXPECT_THAT(error(""), HasSubstr("poses.txt: holds no poses"));
   EXPECT_THAT(error("# only a comment\n"), HasSubstr("holds no poses"));
   EXPECT_THAT(error_of([] { return read_trajectory("/nowhere/x.txt"); }),

@@ -296,7 +296,7 @@ TEST(SplineSmooth, NeedsNoMoreThanTwoPoses) {
 
 TEST(SplineSmooth, FitsRecordedHandHeldMotion) {
   SACCADE_SHARED_DATA_OR_SKIP(path, "trajectories/poster_6dof_handheld.csv");
-  const Trajectory recorded = read_esim_trajectory(path);
+  const Trajectory recorded = read_csv_trajectory(path);
   std::vector<StampedPose> poses;
   for (const StampedPose& p : recorded.poses()) {
     if (p.t_s <= recorded.start_s() + 20) poses.push_back(p);

@@ -325,7 +325,8 @@ TEST_F(EventsH5, MayStateTheSensor) {
   const SensorSize sensor = stated_sensor(file_);
   EXPECT_EQ(sensor.width, 346);
   EXPECT_EQ(sensor.height, 260);
-  EXPECT_EQ(stated_sensor(folder_.path() / "a.txt").width, 0) << "text cannot, and is not read";
+  EXPECT_EQ(stated_sensor(folder_.write("a.txt", "no event")).width, 0)
+      << "text cannot, and is not read";
 }
 
 TEST_F(EventsH5, ASensorWithoutPixelsIsAnError) {

@@ -18,7 +18,7 @@ using testing::TemporaryFolder;
 
 Events parse_events(const std::string& text, TimeWindow window = {}) {
   const TemporaryFolder folder;
-  return read_events_text(folder.write("events.txt", text), kSensor, window);
+  return read_events(folder.write("events.txt", text), kSensor, window);
 }
 
 std::string parse_error(const std::string& text) {
@@ -78,8 +78,8 @@ TEST(EventsText, RoundTripIsExact) {
   EXPECT_EQ(writer.count(), events.size());
   Events sorted = events;
   sort_ties(sorted);
-  EXPECT_EQ(read_events_text(file, kSensor), sorted);
-  const EventFileInfo info = read_events_text_info(file);
+  EXPECT_EQ(read_events(file, kSensor), sorted);
+  const EventFileInfo info = read_event_file_info(file);
   EXPECT_EQ(info.count, events.size());
   EXPECT_EQ(info.first_ns, events.front().t_ns);
   EXPECT_EQ(info.last_ns, events.back().t_ns);

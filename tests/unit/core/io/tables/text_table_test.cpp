@@ -101,6 +101,8 @@ TEST_F(TextTable, DecimalSecondsReadBack) {
 
 TEST_F(TextTable, WholeNumbers) {
   EXPECT_EQ(TextRow(name_, 1, "-12").integer("i"), -12);
+  EXPECT_EQ(TextRow(name_, 1, "1403636580838555648").integer("i"), 1'403'636'580'838'555'648)
+      << "ns since 1970 have 19 digits";
   EXPECT_THAT(error_of([&] { return TextRow(name_, 1, "1.5").integer("i"); }),
               HasSubstr("i: expected a whole number, found '1.5'"));
   EXPECT_THAT(error_of([&] { return TextRow(name_, 1, "99999999999999999999").integer("i"); }),

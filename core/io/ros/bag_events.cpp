@@ -1,0 +1,138 @@
+#include "core/io/ros/bag_events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "core/error.h"
+#include "core/io/events/event_formats.h"
+#include "core/io/ros/bag_file.h"
+
+namespace saccade {
+namespace {
+
+bool holds_events(const BagTopic& topic) {
+  return topic.type == "dvs_msgs/EventArray" || topic.type == "prophesee_event_msgs/EventArray";
+}
+
+class BagEventReader final : public EventReader {
+ public:
+  BagEventReader(const std::filesystem::path& path, SensorSize size, TimeWindow window)
+      : place_(event_file_place(path)), bag_(place_.file), size_(size), window_(window) {
+    // Until the first message, which states the sensor.
+    while (first_.empty() && read_message(first_)) {
+    }
+  }
+
+  bool read(Events& events) override {
+    if (!first_.empty()) {
+      events.insert(events.end(), first_.begin(), first_.end());
+      first_ = {};
+      return true;
+    }
+    const std::size_t before = events.size();
+    while (events.size() < before + kEventBlock && read_message(events)) {
+      if (events.size() > before && events.back().t_ns < window_.start_ns) events.resize(before);
+    }
+    return events.size() > before;
+  }
+
+  [[nodiscard]] SensorSize sensor() const override { return sensor_; }
+  [[nodiscard]] TimestampUnit unit() const override { return TimestampUnit::kNanoseconds; }
+  [[nodiscard]] std::uint64_t expected_count() const override {
+    return window_.is_everything() ? bag_.bytes().size() / kEventBytes : 0;
+  }
+
+ private:
+  static constexpr std::size_t kEventBytes = 13;  // column and row, seconds and ns, polarity
+
+  /// Appends the events of the next message of the topic; false where there is none.
+  bool read_message(Events& events) {
+    while (const auto message = bag_.next()) {
+      if (!holds_events(*message->topic) || !is_chosen(message->topic->name)) continue;
+      append(*message, events);
+      return true;
+    }
+    if (topic_.empty() && !place_.member.empty())
+      throw InputError(place_.file.string(), fmt::format("holds no events of the topic {}; {}",
+                                                         place_.member, topics_text()));
+    if (topic_.empty()) throw InputError(place_.file.string(), "holds no events; " + topics_text());
+    return false;
+  }
+
+  bool is_chosen(const std::string& topic) {
+    if (!place_.member.empty() && topic != place_.member) return false;
+    if (topic_.empty()) topic_ = topic;
+    if (topic == topic_) return true;
+    throw InputError(place_.file.string(),
+                     fmt::format("holds events of several topics, {0} and {1}; name one, as in "
+                                 "{2}!{0}",
+                                 topic_, topic, place_.file.string()));
+  }
+
+  [[nodiscard]] std::string topics_text() const {
+    std::set<std::string> names;
+    for (const auto& [number, topic] : bag_.topics())
+      names.insert(fmt::format("{} ({})", topic.name, topic.type));
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "it has no topics" : "its topics are " + text;
+  }
+
+  void append(const BagMessage& message, Events& events) {
+    BagMessageReader reader(bag_.bytes(), message);
+    static_cast<void>(reader.header());
+    const auto height = reader.number<std::uint32_t>();
+    const auto width = reader.number<std::uint32_t>();
+    take_sensor(width, height);
+    const std::uint64_t count = reader.number<std::uint32_t>();
+    const auto bytes = reader.take(static_cast<std::size_t>(count) * kEventBytes);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::byte* at = bytes.data() + i * kEventBytes;
+      Event event;
+      event.x = load<std::uint16_t>(at);
+      event.y = load<std::uint16_t>(at + 2);
+      event.t_ns =
+          TimeNs{load<std::uint32_t>(at + 4)} * 1'000'000'000 + load<std::uint32_t>(at + 8);
+      event.polarity = at[12] != std::byte{0} ? 1 : -1;
+      if (event.x >= size_.width || event.y >= size_.height) [[unlikely]]
+        reader.fail(fmt::format("event {}: pixel ({}, {}) lies outside the sensor of {} x {} px", i,
+                                event.x, event.y, size_.width, size_.height));
+      if (event.t_ns < last_ns_) [[unlikely]]
+        reader.fail(fmt::format("event {}: time goes back: {:.9f} s after {:.9f} s", i,
+                                seconds_from_ns(event.t_ns), seconds_from_ns(last_ns_)));
+      last_ns_ = event.t_ns;
+      events.push_back(event);
+    }
+  }
+
+  void take_sensor(std::uint32_t width, std::uint32_t height) {
+    constexpr std::uint32_t kMost = 65536;
+    const bool is_known = width > 0 && height > 0 && width <= kMost && height <= kMost;
+    if (sensor_.width == 0 && is_known)
+      sensor_ = {static_cast<int>(width), static_cast<int>(height)};
+    if (size_.width == 0) size_ = sensor_;
+    if (size_.width == 0) size_ = {kMost, kMost};
+  }
+
+  EventFilePlace place_;
+  BagFile bag_;
+  SensorSize size_;
+  TimeWindow window_;
+  SensorSize sensor_;
+  std::string topic_;
+  TimeNs last_ns_ = std::numeric_limits<TimeNs>::min();
+  Events first_;
+};
+
+}  // namespace
+
+std::unique_ptr<EventReader> open_bag_events(const std::filesystem::path& file, SensorSize size,
+                                             TimeWindow window) {
+  return std::make_unique<BagEventReader>(file, size, window);
+}
+
+}  // namespace saccade
