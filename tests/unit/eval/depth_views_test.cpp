@@ -131,8 +131,8 @@ TEST_F(DepthViews, WithoutTruthPointsAreCountedOnly) {
 TEST_F(DepthViews, AppearInTheReport) {
   write_report(std::vector<fs::path>{fake()}, folder_.path() / "report.html");
   const std::string page = testing::read_file(folder_.path() / "report.html");
-  for (const char* part : {"id=\"depth\"", "relative error of the depth", "derotated events",
-                           "cloud from above", "to 1 [deg]"})
+  for (const char* part : {"id=\"depth\"", "relative error of the depth",
+                           "orientation by the true poses", "cloud from above", "to 1 [deg]"})
     EXPECT_THAT(page, HasSubstr(part));
 }
 

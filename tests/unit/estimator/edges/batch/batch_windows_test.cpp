@@ -16,7 +16,8 @@ TEST(ViewsAlong, LeaveNoGapAndReachTheEnd) {
 }
 
 TEST(ViewsAlong, AreNotCrowded) {
-  EXPECT_THAT(batch_views({0.1, 0.2, 0.45, 0.5, 0.8, 1.0}, 1.2, 1.2), ElementsAre(0.1, 0.45, DoubleNear(0.8, 1e-12)));
+  EXPECT_THAT(batch_views({0.1, 0.2, 0.45, 0.5, 0.8, 1.0}, 1.2, 1.2),
+              ElementsAre(0.1, DoubleNear(0.45, 1e-12), DoubleNear(0.8, 1e-12)));
 }
 
 TEST(EventsAround, AreThoseOfTheWindow) {
