@@ -57,6 +57,7 @@ Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, 
   batch_.solver = options.mapping.adjustment.solver;
   batch_.use_imu = options.batch_adjustment == BatchMode::kEventsAndImu;
   start_.min_edges = static_cast<std::size_t>(options.mapping.min_edges);
+  start_.refinement.adjustment.solver = batch_.solver;
   start_.refinement.limits = options.mapping.depth.limits;
 }
 

@@ -79,8 +79,10 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
       },
       "Part of the events around each keyframe in which its edges are found.");
   fields
-      .value("edges", options.edges,
-             "The most edges of a keyframe that are adjusted. More reduce drift and take longer.")
+      .value(
+          "edges", options.edges,
+          "The most edges of a view that are adjusted; fewer where all views would have more than "
+          "100,000 together. More reduce drift and take longer.")
       .range(30, 1e7);
   fields
       .value("reobserved_keyframes", options.reobserved_keyframes,

@@ -59,7 +59,9 @@ class PageFiller {
   /// otherwise.
   [[nodiscard]] std::string lost_text(std::span<const ResultRow> rows, const std::string& metric) {
     constexpr const char* kFirstLoss = "trajectory.loss.first_s";
-    if (!metric.starts_with("trajectory.") || reader_.stored_metric(kFirstLoss).empty()) return "";
+    if (!metric.starts_with("trajectory.") || metric.starts_with("trajectory.loss.") ||
+        reader_.stored_metric(kFirstLoss).empty())
+      return "";
     const std::size_t lost = scores(rows, kFirstLoss, "").size();
     if (lost == 0) return "";
     return lost == rows.size() ? "lost" : fmt::format("{} of {} lost", lost, rows.size());

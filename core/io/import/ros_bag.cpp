@@ -47,10 +47,14 @@ BagContents survey(const fs::path& file, const std::string& event_topic) {
       cameras.emplace(message->topic->name, *camera);
   }
   BagContents contents;
+  // Of a bag with one topic of events nobody names it.
+  std::string beside = event_topic;
+  for (const auto& [number, topic] : bag.topics())
+    if (beside.empty() && holds_events(topic)) beside = topic.name;
   for (const auto& [number, topic] : bag.topics()) {
     std::string& chosen = contents.topic_of_type[topic.type];
-    const std::size_t common = common_letters(topic.name, event_topic);
-    const std::size_t before = common_letters(chosen, event_topic);
+    const std::size_t common = common_letters(topic.name, beside);
+    const std::size_t before = common_letters(chosen, beside);
     if (chosen.empty() || common > before || (common == before && topic.name < chosen))
       chosen = topic.name;
   }

@@ -12,11 +12,12 @@
 #include "core/io/ros/bag_file.h"
 
 namespace saccade {
-namespace {
 
 bool holds_events(const BagTopic& topic) {
   return topic.type == "dvs_msgs/EventArray" || topic.type == "prophesee_event_msgs/EventArray";
 }
+
+namespace {
 
 class BagEventReader final : public EventReader {
  public:

@@ -10,6 +10,7 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 16U;
+constexpr std::size_t kMostItemBytes = std::size_t{1} << 20U;  ///< of a row
 
 /// The subset of Python's literals that headers are made of.
 class Literals {
@@ -109,8 +110,12 @@ void read_types(Literals& text, NpyHeader& header) {
     text.expect(',');
     const NpyType type = parse_type(text.string());
     text.expect(')');
-    if (type.kind != 'V') header.fields.push_back({name, type, header.item_bytes});
+    // Text and raw bytes are no numbers: they are passed over.
+    if (type.kind != 'V' && type.kind != 'U')
+      header.fields.push_back({name, type, header.item_bytes});
     header.item_bytes += type.bytes;
+    if (header.item_bytes > kMostItemBytes)
+      throw NpyError{fmt::format("the header claims {} bytes for a row", header.item_bytes)};
     if (text.peek() != ']') text.expect(',');
   }
 }

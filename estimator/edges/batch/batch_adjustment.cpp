@@ -125,7 +125,8 @@ class BatchProblem {
   }
 
   void choose_edges() {
-    const int most = std::min(options_.edges, options_.all_edges / static_cast<int>(found_.size()));
+    const int most =
+        std::min(options_.edges, std::max(1, options_.all_edges / static_cast<int>(found_.size())));
     for (std::size_t k = 0; k < found_.size(); ++k)
       for (const std::size_t i : evenly(found_[k].edges.size(), most)) {
         const auto rho = static_cast<double>(found_[k].edges[i].edge.inverse_depth);

@@ -68,7 +68,7 @@ struct BatchAdjustment {
 };
 
 /// The batch optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
-/// over all keyframes' windows, which overlap and so constrain each other, solved as an EdgeBundle
+/// over the windows of views along the path (batch_views()), which overlap and so constrain each other, solved as an EdgeBundle
 /// with the noise model of edge_noise.h. The given poses of the start fix the gauge. With an inertial sensor its
 /// preintegrated samples join in (inertial_cost.h), with gravity, biases and time offset and, of a
 /// path that is not metric, the scale; the path stays in its unit. Deterministic for any number of
@@ -83,10 +83,10 @@ struct BatchAdjustment {
 [[nodiscard]] std::span<const Event> events_of_view(std::span<const Event> events, double t_s,
                                                     double window_s);
 
-/// Times of views from those of the keyframes, which are in order and at least one. Views are never
-/// nearer than a quarter of a window, since windows that overlap more show the same edges again, and
-/// never farther than a third from the next and from the end: where no window reaches, nothing
-/// constrains the path.
+/// Times of views from those of the keyframes, which are in order and at least one. A keyframe nearer
+/// than a quarter of a window to the view before it is left out, since windows that overlap more show
+/// the same edges again, and views are added so that none is farther than a third from the next and
+/// from the end: where no window reaches, nothing constrains the path.
 [[nodiscard]] std::vector<double> batch_views(const std::vector<double>& keyframe_s, double end_s,
                                               double window_s);
 

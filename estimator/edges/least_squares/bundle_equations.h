@@ -248,13 +248,16 @@ class BundleEquations {
       for (int j = 0; j < kUnknowns; ++j) eliminated_[e].damping[j] = damping(square(j, j));
       square.diagonal() += eliminated_[e].damping;
       eliminated_[e].factor.compute(square);
-      eliminated_[e].factor.solve_lower(&rows(0, 0), chunk.size);
+      if (chunk.size > 0) eliminated_[e].factor.solve_lower(&rows(0, 0), chunk.size);
       auto half = eliminated.template segment<kUnknowns>(
           kUnknowns * static_cast<Eigen::Index>(e - chunk.first));
       half = gradient;
       eliminated_[e].factor.solve_lower(half.data(), 1);
     }
-    for (std::size_t k = 0; k + kSupport <= chunk.blocks.size(); ++k) {
+    const auto twists = static_cast<std::size_t>(
+        std::lower_bound(chunk.blocks.begin(), chunk.blocks.end(), rows_.kept().path_blocks()) -
+        chunk.blocks.begin());
+    for (std::size_t k = 0; k + kSupport <= twists; ++k) {
       const auto at = 6 * static_cast<Eigen::Index>(k);
       product.matrix.template block<kMotion, kMotion>(at, at) += squares[k];
     }

@@ -37,7 +37,7 @@ SolverSummary solve_structured(EdgeBundle<kSupport, kUnknowns>& bundle,
     const std::optional<double> predicted = equations.take_step(trial);
     const bool is_valid = predicted && *predicted > 0;
     invalid = is_valid ? 0 : invalid + 1;
-    if (invalid == kMaxInvalidSteps) break;
+    if (invalid == kMaxInvalidSteps) return {std::move(summary.iterations), false};
     if (is_valid && equations.step_norm() <= kStepTolerance * (now.norm() + kStepTolerance)) break;
     const std::optional<double> after = is_valid ? rows.cost_at(trial) : std::nullopt;
     const double decrease = after ? *cost - *after : 0;
@@ -77,6 +77,8 @@ PathCovariances<kSupport> path_covariances(EdgeBundle<kSupport, kUnknowns>& bund
   BundleEquations<kSupport, kUnknowns> equations(rows);
   equations.build(point, [](double) { return 0.0; });
   const auto blocks = equations.path_covariances();
+  for (const Eigen::MatrixXd& block : blocks)
+    if (!block.allFinite()) return {};
   return {blocks.begin(), blocks.end()};
 }
 

@@ -91,6 +91,17 @@ NumpyArray::NumpyArray(std::string location, Source source)
 }
 
 std::span<const std::byte> NumpyArray::read(std::size_t most) {
+  if (!header_.fields.empty())
+    if (const char kind = header_.fields.front().type.kind; kind == 'U' || kind == 'V')
+      throw InputError(location_, "holds text or raw bytes where numbers are expected");
+  return read_rows(most);
+}
+
+std::span<const std::byte> NumpyArray::read_rows(std::size_t most) {
+  // A claimed row may be as long as it likes, a block of them may not.
+  constexpr std::size_t kMostBlockBytes = std::size_t{1} << 26U;
+  most = std::min(most,
+                  std::max<std::size_t>(1, kMostBlockBytes / std::max<std::size_t>(1, row_bytes_)));
   const std::uint64_t rows = std::min<std::uint64_t>(most, this->rows() - done_);
   block_.resize(static_cast<std::size_t>(rows) * row_bytes_);
   const std::size_t filled = source_(block_);
@@ -105,7 +116,7 @@ std::string NumpyArray::text() {
   std::string result;
   const NpyType type = header_.fields.front().type;
   if (type.kind != 'U' || !header_.shape.empty()) return result;
-  const std::span<const std::byte> bytes = read(1);
+  const std::span<const std::byte> bytes = read_rows(1);
   for (std::size_t i = 0; i < bytes.size(); i += 4)
     if (bytes[i] != std::byte{0}) result += static_cast<char>(bytes[i]);
   return result;

@@ -30,13 +30,15 @@ class NumpyArray {
   [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }
   void set_row_bytes(std::size_t bytes) { row_bytes_ = bytes; }
 
-  /// The next rows, `most` at most, none at the end; valid until the next call. InputError where
-  /// the file ends early.
+  /// The next rows, `most` at most, fewer where they are long, none at the end; valid until the next
+  /// call. InputError where the file ends early or holds no numbers.
   [[nodiscard]] std::span<const std::byte> read(std::size_t most);
   /// Of an array of a single text in ASCII.
   [[nodiscard]] std::string text();
 
  private:
+  /// Of any type.
+  [[nodiscard]] std::span<const std::byte> read_rows(std::size_t most);
   std::string location_;
   Source source_;
   NpyHeader header_;

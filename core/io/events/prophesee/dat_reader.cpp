@@ -39,7 +39,7 @@ class DatDecoder {
     if (time_ - time < kHalf)
       throw RawError{word, time_goes_back((origin_us_ + wraps_us_ + time) * 1000,
                                           (origin_us_ + wraps_us_ + time_) * 1000)};
-    wraps_us_ += std::int64_t{1} << 32U;
+    if (wraps_us_ < kMostTime_us) wraps_us_ += std::int64_t{1} << 32U;
   }
 
   RawLimits limits_;

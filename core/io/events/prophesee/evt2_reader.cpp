@@ -17,7 +17,8 @@ class Evt2State {
   void set_high(std::uint32_t word) {
     const std::int64_t high = word & kEvt2HighMask;
     // Backwards by more than half of the range is a wrap.
-    if (has_time_ && high + (kEvt2Highs / 2) < high_) wraps_ += kEvt2Highs;
+    const bool is_wrap = has_time_ && high + (kEvt2Highs / 2) < high_;
+    if (is_wrap && wraps_ < kMostTime_us >> 6U) wraps_ += kEvt2Highs;
     high_ = high;
     has_time_ = true;
     block_ns_ = (origin_us_ + ((wraps_ + high_) << 6U)) * 1000;

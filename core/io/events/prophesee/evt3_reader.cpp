@@ -86,7 +86,8 @@ class Evt3Decoder {
 
   void set_high(unsigned high) {
     // Backwards by more than half of the range is a wrap.
-    if (has_time_ && high + kEvt3HalfHigh < high_) wraps_ += kEvt3Highs;
+    const bool is_wrap = has_time_ && high + kEvt3HalfHigh < high_;
+    if (is_wrap && wraps_ < kMostTime_us >> 12U) wraps_ += kEvt3Highs;
     if (!has_time_ || high != high_) low_ = 0;
     high_ = high;
     has_time_ = true;

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <utility>
 
+#include "core/io/events/prophesee/raw_reader.h"
+
 namespace saccade {
 namespace {
 
@@ -106,7 +108,9 @@ void read_line(const HeaderLine& line, RawHeader& header, SensorSize& of_plugin)
   if (line.key == "Height" || line.key == "height") set_side(line.value, header.sensor.height);
   if (line.key == "endianness") header.endianness = line.value;
   if (line.key == "plugin_name") of_plugin = sensor_of_plugin(line.value);
-  if (line.key == kOriginKey) static_cast<void>(parse_whole(line.value, header.origin_us));
+  if (std::int64_t origin_us = 0; line.key == kOriginKey && parse_whole(line.value, origin_us) &&
+                                  origin_us >= 0 && origin_us <= kMostTime_us)
+    header.origin_us = origin_us;
   if (line.key == "geometry") {
     const std::size_t x = std::min(line.value.find('x'), line.value.size());
     set_side(line.value.substr(0, x), header.sensor.width);

@@ -20,6 +20,10 @@ struct RawLimits {
 };
 
 /// What a word of the data is refused for; the reader adds where it stands.
+/// The greatest time [us], 142 years: a file that claims more is noise, and its times would not fit into
+/// nanoseconds.
+inline constexpr std::int64_t kMostTime_us = std::int64_t{1} << 52U;
+
 struct RawError {
   std::size_t word = 0;  ///< index within what was given to decode()
   std::string problem;

@@ -130,6 +130,28 @@ TEST_F(Numpy, ClaimedSizesAreNotAllocated) {
       HasSubstr("ends within row 0 of the 99999999999999"));
 }
 
+TEST_F(Numpy, TextAndRawBytesAreNoNumbers) {
+  for (const char* type : {"|V3", "<U1", "|V8"})
+    EXPECT_THAT(
+        error(npy(std::string("{'descr': '") + type + "', 'fortran_order': False, 'shape': (2, 4)}",
+                  std::string(256, 'a'))),
+        HasSubstr("holds text or raw bytes"));
+  // A column that has no bytes is missing, not read from what lies behind it.
+  EXPECT_THAT(error(npy("{'descr': [('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '<U0')], "
+                        "'fortran_order': False, 'shape': (1,)}",
+                        std::string(12, 'a'))),
+              HasSubstr("p"));
+}
+
+TEST_F(Numpy, ClaimedRowsAreNotAllocated) {
+  std::string fields = "[('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '|b1')";
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    fields += std::string(", ('") + name + "', '<U65536')";
+  EXPECT_THAT(
+      error(npy("{'descr': " + fields + "], 'fortran_order': False, 'shape': (9,)}", "abc")),
+      HasSubstr("for a row"));
+}
+
 TEST_F(Numpy, DamagedFilesAreReportedOrRead) {
   const std::string file = npy(kFields, row(5, 10, 20, 1) + row(6, 11, 21, 0));
   testing::expect_damage_is_reported(file, file.size(), [&](const std::string& bytes) {
