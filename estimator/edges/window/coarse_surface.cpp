@@ -64,7 +64,9 @@ auto CoarseSurface::cell_at(const Eigen::Vector2d& pixel) const -> Cell {
 }
 
 void CoarseSurface::add_to(WindowBundle& bundle) {
-  bundle.keep(nodes_);
+  // Row by row: an edge couples two of them, and the whole surface of a large sensor has thousands of
+  // nodes.
+  for (int y = 0; y < rows_; ++y) bundle.keep({node(0, y), static_cast<std::size_t>(columns_)});
   const double sigma = kRoughness * inverse_depth_;
   for (int y = 0; y < rows_; ++y)
     for (int x = 0; x < columns_; ++x) {
