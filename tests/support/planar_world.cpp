@@ -124,6 +124,18 @@ ImageF patch_texture(int width, int height, std::uint64_t seed) {
   return soften(image);
 }
 
+PlanarWorld wall_world(int width, int height, double focal_px, double depth_m, int columns,
+                       int rows) {
+  PinholeCamera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = focal_px;
+  camera.cx = (width - 1) / 2.0;
+  camera.cy = (height - 1) / 2.0;
+  return {camera,
+          {{{-2.4, -1.8, depth_m}, {4.8, 0, 0}, {0, 3.6, 0}, patch_texture(columns, rows, 4)}}};
+}
+
 PlanarWorld corner_world(int width, int height) {
   PinholeCamera camera;
   camera.width = width;

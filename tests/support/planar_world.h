@@ -59,6 +59,11 @@ class PlanarWorld {
 /// focal length = 0.83 width.
 [[nodiscard]] PlanarWorld corner_world(int width, int height);
 
+/// One wall across the optical axis, 4.8 m x 3.6 m in patches of `columns` x `rows` texels, before a
+/// camera of width x height pixels.
+[[nodiscard]] PlanarWorld wall_world(int width, int height, double focal_px, double depth_m,
+                                     int columns, int rows);
+
 /// What corner_world() shows from the origin is typically this far away [m].
 constexpr double kCornerDepth_m = 2.2;
 

@@ -22,7 +22,7 @@ struct BatchAdjustmentOptions {
   double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
   double window_s = 1.6;            ///< of the events around a view in which its edges are found
   int edges = 1500;                 ///< of a view, at most, evenly chosen
-  int all_edges = 100000;           ///< of all views: some seven million events, 2 GB
+  int all_edges = 100000;           ///< of all views: some seven million events, 2 to 3 GB
   int events_per_edge = 30;         ///< at most, evenly in time
   int given_events_per_edge = 100;  ///< beside them, while poses are given: the scale is theirs
   int reobserved_keyframes = 4;     ///< later ones that observe an edge again, at most

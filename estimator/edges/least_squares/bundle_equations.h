@@ -214,8 +214,7 @@ class BundleEquations {
     product.matrix.setZero(chunk.size, chunk.size);
     product.gradient.setZero(chunk.size);
     // Sums over the events of one stretch of the path, small enough for the nearest cache.
-    std::vector<MotionMatrix, Eigen::aligned_allocator<MotionMatrix>> squares(chunk.blocks.size(),
-                                                                              MotionMatrix::Zero());
+    std::vector<MotionMatrix> squares(chunk.blocks.size(), MotionMatrix::Zero());
     for (std::size_t e = chunk.first; e < chunk.last; ++e) {
       const Edge& edge = rows_.bundle().edges()[e];
       auto rows = cross.middleRows(kUnknowns * static_cast<Eigen::Index>(e - chunk.first),

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "core/check.h"
 #include "core/process/parallel.h"
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/least_squares/edge_bundle.h"
@@ -98,9 +97,14 @@ class BundleRows {
           for (std::size_t i = edge.first_lanes; i < edge.last_lanes; ++i) {
             const EventLanes<kSupport>& lanes = bundle_.lanes()[i];
             RowLanes<kUnknowns>& rows = rows_[i];
+            // The cost at the point is finite, so that an event whose ray leads away is one by the
+            // rounding of its last bit: it is an outlier, and says nothing.
             const bool is_whole =
                 event_rows(lanes, state, bundle_.camera(), motion_of(lanes, path_of(point)), rows);
-            SACCADE_CHECK(is_whole);
+            if (!is_whole) {
+              rows = RowLanes<kUnknowns>{};
+              continue;
+            }
             DoubleLanes weight;
             for (std::size_t lane = 0; lane < kEventLanes; ++lane)
               weight[lane] = cauchy_root_weight(rows.residual[lane] * rows.residual[lane],
@@ -164,6 +168,7 @@ class BundleRows {
     if (edge.prior.is_robust) {
       twice += cauchy_loss(prior.template head<2>().squaredNorm(), EdgeNoise::kCauchyScale);
       twice += cauchy_loss(prior.template segment<2>(2).squaredNorm(), EdgeNoise::kCauchyScale);
+      twice += prior.template tail<kUnknowns - 4>().squaredNorm();
     } else {
       twice += prior.squaredNorm();
     }

@@ -147,6 +147,10 @@ class CeresBundle {
       add_cost(std::make_unique<LinearPriorCost<kUnknowns, 2>>(root.template middleRows<2>(first),
                                                                edge.prior.mean),
                new ceres::CauchyLoss(EdgeNoise::kCauchyScale), {edge.unknowns});
+    if constexpr (kUnknowns == 5)
+      add_cost(
+          std::make_unique<LinearPriorCost<5, 1>>(root.template bottomRows<1>(), edge.prior.mean),
+          nullptr, {edge.unknowns});
   }
 
   /// The path's twists behind the edges, and all others behind them: within a group Ceres orders by

@@ -17,7 +17,8 @@ struct SolverIteration {
 /// What a solver did.
 struct SolverSummary {
   std::vector<SolverIteration> iterations;
-  bool is_usable = false;  ///< false: the problem could not be evaluated, and nothing is changed
+  bool is_usable =
+      false;  ///< false: the problem has no value, or no step could be found, and nothing is changed
 };
 
 /// One iteration of a refinement.

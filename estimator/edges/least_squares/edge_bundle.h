@@ -39,7 +39,7 @@ class EdgeBundle {
   using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
   using Event = BundleEvent<kSupport>;
 
-  /// Independent Gaussians. `is_robust`: with Cauchy's loss on (rho, c) and on (m, h).
+  /// Independent Gaussians. `is_robust`: with Cauchy's loss on (rho, c) and on (m, h); k has none.
   struct Prior {
     Unknowns mean, sigma;
     bool is_robust = false;

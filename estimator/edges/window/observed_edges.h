@@ -7,11 +7,18 @@
 #include "core/camera.h"
 #include "core/rigid3.h"
 #include "estimator/depth/rays/ray_depth.h"
+#include "estimator/edges/edge_residual.h"
 #include "estimator/edges/window/node_correction.h"
-#include "estimator/edges/window/window_costs.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
+
+/// An event of an edge between two nodes of a path's correction.
+struct ObservedEvent {
+  EdgeObservation observation;
+  int node = 0;         ///< the earlier
+  double fraction = 0;  ///< s of the later, 0..1
+};
 
 /// The edges of a window with the events that are their observations.
 class ObservedEdges {

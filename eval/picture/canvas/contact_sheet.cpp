@@ -1,6 +1,8 @@
 #include "eval/picture/canvas/contact_sheet.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <sstream>
 
 #include "eval/picture/canvas/canvas.h"
 
@@ -9,9 +11,47 @@ namespace {
 
 constexpr int kSheetMargin = 16;
 constexpr int kTitleHeight = 40;
-constexpr int kRowCaptionHeight = 22;
+constexpr int kLineHeight = 14;
+constexpr int kBelowCaption = 8;
 constexpr double kTitleText = 13;
 constexpr double kCaptionText = 8;
+
+/// A text in lines of at most `width` pixels; a word that is wider has a line for itself.
+std::vector<std::string> wrapped(const std::string& text, int width) {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::string& line = lines.back();
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (line.empty() || Canvas::text_width(longer, kCaptionText) <= width)
+      line = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
+/// A row as it is drawn: the pictures' captions in lines.
+struct Row {
+  const std::vector<CaptionedPicture>& pictures;
+  std::vector<std::vector<std::string>> captions;
+  int caption_height = 0;
+  int width = kSheetMargin, height = 0;  ///< with the captions and margins
+
+  Row(const std::string& label, const std::vector<CaptionedPicture>& of) : pictures(of) {
+    int picture_height = 0;
+    std::size_t lines = 1;
+    for (const CaptionedPicture& picture : pictures) {
+      const std::string caption = label.empty() ? picture.caption : label + ": " + picture.caption;
+      captions.push_back(wrapped(caption, picture.image.width()));
+      lines = std::max(lines, captions.back().size());
+      width += picture.image.width() + kSheetMargin;
+      picture_height = std::max(picture_height, picture.image.height());
+    }
+    caption_height = static_cast<int>(lines) * kLineHeight + kBelowCaption;
+    height = caption_height + picture_height + kSheetMargin;
+  }
+};
 
 }  // namespace
 
@@ -20,33 +60,29 @@ void ContactSheet::add_row(std::string label, std::vector<CaptionedPicture> pict
 }
 
 ImageRgb8 ContactSheet::draw() const {
+  std::vector<Row> rows;
   int width = Canvas::text_width(title_, kTitleText) + 2 * kSheetMargin;
   int height = kTitleHeight;
   for (const auto& [label, pictures] : rows_) {
-    int row_width = kSheetMargin;
-    int row_height = 0;
-    for (const CaptionedPicture& picture : pictures) {
-      row_width += picture.image.width() + kSheetMargin;
-      row_height = std::max(row_height, picture.image.height());
-    }
-    width = std::max(width, row_width);
-    height += kRowCaptionHeight + row_height + kSheetMargin;
+    const Row& row = rows.emplace_back(label, pictures);
+    width = std::max(width, row.width);
+    height += row.height;
   }
   Canvas canvas(width, height, theme_.background);
   canvas.text(title_, {kSheetMargin, 26}, theme_.text, kTitleText);
+  const Rgb8 colour = mix(theme_.faint, theme_.text, 0.75);
   int y = kTitleHeight;
-  for (const auto& [label, pictures] : rows_) {
+  for (const Row& row : rows) {
     int x = kSheetMargin;
-    int row_height = 0;
-    for (const CaptionedPicture& picture : pictures) {
-      const std::string caption = label.empty() ? picture.caption : label + "  " + picture.caption;
-      canvas.text(caption, Eigen::Vector2d(x, y + 14), mix(theme_.faint, theme_.text, 0.75),
-                  kCaptionText);
-      canvas.paste(picture.image, x, y + kRowCaptionHeight);
-      x += picture.image.width() + kSheetMargin;
-      row_height = std::max(row_height, picture.image.height());
+    for (std::size_t i = 0; i < row.pictures.size(); ++i) {
+      for (std::size_t line = 0; line < row.captions[i].size(); ++line)
+        canvas.text(row.captions[i][line],
+                    Eigen::Vector2d(x, y + kLineHeight * (static_cast<int>(line) + 1)), colour,
+                    kCaptionText);
+      canvas.paste(row.pictures[i].image, x, y + row.caption_height);
+      x += row.pictures[i].image.width() + kSheetMargin;
     }
-    y += kRowCaptionHeight + row_height + kSheetMargin;
+    y += row.height;
   }
   return canvas.image();
 }

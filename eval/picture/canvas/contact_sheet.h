@@ -17,7 +17,8 @@ struct CaptionedPicture {
   ImageRgb8 image;
 };
 
-/// Rows of captioned pictures below a title. The label of a row precedes its captions.
+/// Rows of captioned pictures below a title. The label of a row precedes its captions, which go on in
+/// further lines where their picture is narrower.
 class ContactSheet {
  public:
   ContactSheet(std::string title, const Theme& theme) : title_(std::move(title)), theme_(theme) {}

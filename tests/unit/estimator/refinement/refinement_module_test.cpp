@@ -38,16 +38,7 @@ constexpr double kWall_m = 1.5;
 constexpr double kRunEnd_s = 0.4;
 
 /// One textured wall at kWall_m that fills the view of a small camera.
-PlanarWorld wall() {
-  PinholeCamera camera;
-  camera.width = 120;
-  camera.height = 90;
-  camera.fx = camera.fy = 100;
-  camera.cx = 59.5;
-  camera.cy = 44.5;
-  return {camera,
-          {{{-2.4, -1.8, kWall_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(240, 180, 4)}}};
-}
+PlanarWorld wall() { return testing::wall_world(120, 90, 100, kWall_m, 240, 180); }
 
 Rigid3 sweep(double t_s) {
   return {so3_exp({0.05 * t_s, -0.1 * t_s, 0.2 * t_s}),

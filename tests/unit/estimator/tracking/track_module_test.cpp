@@ -33,17 +33,7 @@ constexpr double kDepth_m = 1.5;
 constexpr double kWallEnd_s = 0.4;
 
 /// One textured wall at kDepth_m that fills the view of a small camera.
-PlanarWorld wall() {
-  PinholeCamera camera;
-  camera.width = 80;
-  camera.height = 60;
-  camera.fx = camera.fy = 66;
-  camera.cx = 39.5;
-  camera.cy = 29.5;
-  return {
-      camera,
-      {{{-2.4, -1.8, kDepth_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(210, 158, 4)}}};
-}
+PlanarWorld wall() { return testing::wall_world(80, 60, 66, kDepth_m, 210, 158); }
 
 Rigid3 motion(double t_s) {
   return {so3_exp({0, 0, 0.15 * t_s}), {0.3 * t_s, 0.1 * std::sin(8 * t_s), 0.05 * t_s}};

@@ -144,6 +144,20 @@ TEST(TrajectoryPicture, DrawsNothingStandingAndStraight) {
   EXPECT_EQ(draw_trajectory({}, {}, 200, 150, kLightTheme).height(), 150);
 }
 
+TEST(ContactSheet, LongCaptionsGoOnInFurtherLines) {
+  const auto sheet_of = [](const std::string& caption) {
+    ContactSheet sheet("t", kLightTheme);
+    sheet.add_row("", {{caption, ImageRgb8(120, 40)}, {"short", ImageRgb8(120, 40)}});
+    return sheet.draw();
+  };
+  const ImageRgb8 one = sheet_of("short");
+  const ImageRgb8 several = sheet_of("a caption of many words that is far wider than its picture");
+  EXPECT_EQ(several.width(), one.width());
+  EXPECT_GT(several.height(), one.height());
+  // Nothing is written between the pictures, beside the one that the caption is of.
+  for (int y = 40; y < several.height(); ++y) EXPECT_EQ(several(16 + 120 + 8, y), several(2, y));
+}
+
 TEST(ContactSheet, HoldsItsRows) {
   ContactSheet sheet("title", kLightTheme);
   sheet.add_row("a", {{"one", ImageRgb8(100, 50)}, {"two", ImageRgb8(100, 70)}});

@@ -14,12 +14,9 @@
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "tests/support/synthetic_bundle.h"
-#include "tests/unit/estimator/uneven_camera.h"
 
 namespace saccade {
 namespace {
-
-using testing::uneven_camera;
 
 constexpr std::size_t kEdges = 150;
 
@@ -74,6 +71,11 @@ TEST(BundleSolver, OfASplineFindsWhatCeresFinds) {
   expect_the_solution_of_ceres(ours, reference);
 }
 
+TEST(BundleSolver, WithRobustPriorsOfASplineFindsWhatCeresFinds) {
+  SyntheticProblem<4, 5> ours({.twists = 11}), reference({.twists = 11});
+  expect_the_solution_of_ceres(ours, reference);
+}
+
 TEST(BundleSolver, OfALongPathFindsWhatCeresFinds) {
   // More unknowns than are solved as a dense matrix, most of which do not couple.
   SyntheticProblem<4, 5> ours({.twists = 230, .has_surface = false, .is_robust = false}),
@@ -116,7 +118,7 @@ Eigen::MatrixXd dense_covariance(const SyntheticProblem<4, 5>& problem) {
         unknowns[1] += event.run_offset * problem.edges[e][4];
         EdgeDerivatives by;
         const double residual =
-            edge_residual(event.observation, uneven_camera(), twist, unknowns, &by) /
+            edge_residual(event.observation, problem.bundle.camera(), twist, unknowns, &by) /
             event.sigma_px;
         Eigen::Matrix<double, 1, 29> row;
         for (Eigen::Index k = 0; k < 4; ++k) row.segment<6>(6 * k) = event.weight[k] * by.motion;

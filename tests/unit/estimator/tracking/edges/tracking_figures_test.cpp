@@ -22,17 +22,7 @@ constexpr double kDepth_m = 1.5;
 constexpr int kSamples = 40;
 
 /// One textured wall that fills the view of a small camera.
-PlanarWorld wall() {
-  PinholeCamera camera;
-  camera.width = 80;
-  camera.height = 60;
-  camera.fx = camera.fy = 66;
-  camera.cx = 39.5;
-  camera.cy = 29.5;
-  return {
-      camera,
-      {{{-2.4, -1.8, kDepth_m}, {4.8, 0, 0}, {0, 3.6, 0}, testing::patch_texture(210, 158, 4)}}};
-}
+PlanarWorld wall() { return testing::wall_world(80, 60, 66, kDepth_m, 210, 158); }
 
 Rigid3 motion(double t_s) { return {Eigen::Quaterniond::Identity(), {0.9 * t_s, 0.3 * t_s, 0}}; }
 

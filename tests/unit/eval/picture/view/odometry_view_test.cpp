@@ -18,6 +18,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr int kKeyframeWidth = 80, kKeyframeHeight = 60;
+constexpr int kKeyframeUpscale =
+    4;  // of pictures so wide that their captions fit into a line or two
 
 class OdometryViewTest : public testing::FakeFolders {
  protected:
@@ -38,12 +40,12 @@ TEST_F(OdometryViewTest, FourPicturesOfOneMoment) {
   const RunFolder run_folder = RunFolder::open(odometry);
   const Dataset data = run_folder.open_dataset();
   const KeyframeHistory history = KeyframeHistory::load(run_folder).value();
-  const OdometryView view(run_folder, data, history, {0.1, 0.1}, {.upscale = 2});
+  const OdometryView view(run_folder, data, history, {0.1, 0.1}, {.upscale = kKeyframeUpscale});
   const std::vector<CaptionedPicture> pictures = view.pictures(0.1);
   ASSERT_EQ(pictures.size(), 4U);
   for (const CaptionedPicture& picture : pictures) {
-    EXPECT_EQ(picture.image.width(), 2 * kKeyframeWidth);
-    EXPECT_EQ(picture.image.height(), 2 * kKeyframeHeight);
+    EXPECT_EQ(picture.image.width(), kKeyframeUpscale * kKeyframeWidth);
+    EXPECT_EQ(picture.image.height(), kKeyframeUpscale * kKeyframeHeight);
   }
   EXPECT_THAT(pictures[1].caption, StartsWith("depth of keyframe 3, 0.080 s"));
   EXPECT_THAT(pictures[2].caption, StartsWith("image of keyframe 3"));
@@ -53,16 +55,16 @@ TEST_F(OdometryViewTest, FourPicturesOfOneMoment) {
 
 TEST_F(OdometryViewTest, SheetsAndMoments) {
   const fs::path file = folder.path() / "sheet.png";
-  render(odometry, file, {.upscale = 2});
+  render(odometry, file, {.upscale = kKeyframeUpscale});
   const ImageRgb8 sheet = read_image_rgb(file);
-  EXPECT_GT(sheet.width(), 4 * 2 * kKeyframeWidth);
-  EXPECT_GT(sheet.height(), 4 * 2 * kKeyframeHeight);
-  render(odometry, file, {.time_s = 0.1, .upscale = 2});
+  EXPECT_GT(sheet.width(), 4 * kKeyframeUpscale * kKeyframeWidth);
+  EXPECT_GT(sheet.height(), 4 * kKeyframeUpscale * kKeyframeHeight);
+  render(odometry, file, {.time_s = 0.1, .upscale = kKeyframeUpscale});
   const ImageRgb8 moment = read_image_rgb(file);
-  EXPECT_GT(moment.width(), 2 * 2 * kKeyframeWidth);
-  EXPECT_LT(moment.width(), 3 * 2 * kKeyframeWidth);
-  EXPECT_GT(moment.height(), 2 * 2 * kKeyframeHeight);
-  EXPECT_LT(moment.height(), 3 * 2 * kKeyframeHeight);
+  EXPECT_GT(moment.width(), 2 * kKeyframeUpscale * kKeyframeWidth);
+  EXPECT_LT(moment.width(), 3 * kKeyframeUpscale * kKeyframeWidth);
+  EXPECT_GT(moment.height(), 2 * kKeyframeUpscale * kKeyframeHeight);
+  EXPECT_LT(moment.height(), 3 * kKeyframeUpscale * kKeyframeHeight);
 }
 
 TEST_F(OdometryViewTest, AFilmOfThem) {

@@ -28,6 +28,7 @@ using ::testing::IsEmpty;
 using testing::TemporaryFolder;
 
 constexpr int kWidth = 80, kHeight = 60;
+constexpr int kUpscale = 4;  // of pictures so wide that their captions fit into a line
 
 /// Runs of depth and reconstruction over the corner, with the truth as their result.
 class ViewPicturesTest : public testing::FakeFolders {
@@ -63,7 +64,8 @@ class ViewPicturesTest : public testing::FakeFolders {
     write_png(run / "growth" / ("growth_" + events + ".png"), ImageU8(kWidth, kHeight, 90));
   }
 
-  [[nodiscard]] ImageRgb8 sheet(const fs::path& run, RenderOptions options = {.upscale = 2}) {
+  [[nodiscard]] ImageRgb8 sheet(const fs::path& run,
+                                RenderOptions options = {.upscale = kUpscale}) {
     const fs::path picture = folder.path() / "sheet.png";
     render(run, picture, options);
     return read_image_rgb(picture);
@@ -72,23 +74,23 @@ class ViewPicturesTest : public testing::FakeFolders {
   TemporaryFolder folder;
 };
 
-int rows_of(const ImageRgb8& sheet) { return sheet.height() / (2 * kHeight); }
+int rows_of(const ImageRgb8& sheet) { return sheet.height() / (kUpscale * kHeight); }
 
 TEST_F(ViewPicturesTest, ARowPerView) {
   for (const bool image : {false, true}) {
     const ImageRgb8 drawn = sheet(write_run(image ? "image" : "depth", 2, image));
-    EXPECT_GT(drawn.width(), 4 * 2 * kWidth) << "events, result, truth, error";
-    EXPECT_LT(drawn.width(), 5 * 2 * kWidth);
+    EXPECT_GT(drawn.width(), 4 * kUpscale * kWidth) << "events, result, truth, error";
+    EXPECT_LT(drawn.width(), 5 * kUpscale * kWidth);
     EXPECT_EQ(rows_of(drawn), 2);
   }
 }
 
 TEST_F(ViewPicturesTest, AtMostSixRows) {
   const fs::path run = write_run("many", 9, false);
-  EXPECT_LT(sheet(run).height(), 7 * (2 * kHeight + 38) + 40);
+  EXPECT_LT(sheet(run).height(), 7 * (kUpscale * kHeight + 38) + 40);
   EXPECT_EQ(sheet(run).height(), sheet(write_run("six", 6, false)).height());
-  EXPECT_EQ(rows_of(sheet(run, {.time_s = 0.1, .upscale = 2})), 1);
-  EXPECT_EQ(rows_of(sheet(run, {.start_s = 0.03, .duration_s = 0.04, .upscale = 2})), 2);
+  EXPECT_EQ(rows_of(sheet(run, {.time_s = 0.1, .upscale = kUpscale})), 1);
+  EXPECT_EQ(rows_of(sheet(run, {.start_s = 0.03, .duration_s = 0.04, .upscale = kUpscale})), 2);
   EXPECT_THAT(error_of([&] { return sheet(run, {.start_s = 0.021, .duration_s = 0.01}); }),
               HasSubstr("no view"));
 }

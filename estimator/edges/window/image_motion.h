@@ -1,19 +1,10 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-
-#include <ceres/sized_cost_function.h>
+#include <Eigen/Core>
 
 #include "core/camera.h"
 #include "core/rigid3.h"
-#include "estimator/edges/edge_noise.h"
-#include "estimator/edges/edge_residual.h"
-#include "estimator/edges/least_squares/jacobian_block.h"
-#include "estimator/edges/window/node_correction.h"
 
 namespace saccade {
 
@@ -43,12 +34,5 @@ namespace saccade {
       }
   return (information / count).llt().matrixU();
 }
-
-/// An event of an edge between two nodes of a path's correction.
-struct ObservedEvent {
-  EdgeObservation observation;
-  int node = 0;         ///< the earlier
-  double fraction = 0;  ///< s of the later, 0..1
-};
 
 }  // namespace saccade
