@@ -56,8 +56,15 @@ void score_rotation(const RunFolder& run, const Dataset& dataset, Metrics& metri
     merge(metrics, score_orientation(input), "");
   }
   const std::filesystem::path rates = run.folder / "angular_velocity.txt";
-  if (std::filesystem::exists(rates) && std::filesystem::exists(dataset.folder() / "twist.txt"))
-    merge(metrics, score_rates(read_angular_velocities(rates), dataset.load_twists()), "");
+  if (std::filesystem::exists(rates)) {
+    if (std::filesystem::exists(dataset.folder() / "twist.txt"))
+      merge(metrics, score_rates(read_angular_velocities(rates), dataset.load_twists()), "");
+    else if (dataset.has_imu())
+      merge(metrics,
+            score_rates_by_gyroscope(read_angular_velocities(rates), dataset.load_imu(),
+                                     dataset.camera_from_imu().value_or(Rigid3())),
+            "");
+  }
   if (std::filesystem::exists(run.folder / "stabilized" / "windows.csv"))
     merge(metrics, score_stabilization(load_stabilized(run.folder / "stabilized"), dataset), "");
 }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/io/calibration_file.h"
 #include "core/io/imu_file.h"
 
 namespace saccade {
@@ -22,12 +21,10 @@ ImuInput load_imu_input(const Dataset& dataset, const std::string& consumer) {
   input.samples = dataset.load_imu();
   if (input.samples.empty())
     throw InputError(folder, "holds an imu.txt without readings; " + consumer + " needs them");
-  const std::filesystem::path camera_chain = dataset.folder() / "camera.yaml";
-  if (std::filesystem::exists(camera_chain))
-    if (const auto camera_from_imu = read_camera_chain(camera_chain).front().camera_from_imu) {
-      input.camera_from_imu = camera_from_imu->rotation_matrix();
-      input.imu_in_camera = camera_from_imu->translation();
-    }
+  if (const auto camera_from_imu = dataset.camera_from_imu()) {
+    input.camera_from_imu = camera_from_imu->rotation_matrix();
+    input.imu_in_camera = camera_from_imu->translation();
+  }
   return input;
 }
 

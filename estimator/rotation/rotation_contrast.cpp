@@ -6,10 +6,8 @@
 namespace saccade {
 
 RotationContrast::RotationContrast(const PinholeCamera& camera, double blur_px,
-                                   double burst_fraction, std::size_t max_events)
-    : camera_(camera.undistorted()),
-      filter_(camera, burst_fraction, max_events),
-      image_(camera, blur_px) {}
+                                   const BurstLimits& bursts, std::size_t max_events)
+    : camera_(camera.undistorted()), filter_(camera, bursts, max_events), image_(camera, blur_px) {}
 
 void RotationContrast::load(std::span<const Event> events) {
   rays_ = filter_.rays_of(events);
@@ -27,29 +25,18 @@ void RotationContrast::set_times() {
   }
   const double variance = moments[1] - moments[0] * moments[0];
   const double slope = variance > 0 ? (moments[2] - moments[1] * moments[0]) / variance : 0;
-  rate_per_acceleration_ = slope / 2;
+  reference_after_middle_s_ = slope / 2;
   const double offset = (moments[1] - slope * moments[0]) / 2;
   s_.clear();
   double squares = 0;
   for (const float time : rays_.t) {
     const auto t = static_cast<double>(time);
-    const double s = t * t / 2 - rate_per_acceleration_ * t - offset;  // (d)
+    const double s = t * t / 2 - reference_after_middle_s_ * t - offset;  // (d)
     s_.push_back(static_cast<float>(s));
     squares += s * s;
   }
   px_per_rate_ = camera_.fx * std::sqrt(std::max(variance, 0.0));
   px_per_acceleration_ = camera_.fx * std::sqrt(squares / count);
-}
-
-auto RotationContrast::to_parameters(const AngularMotion& motion) const -> Parameters {
-  Parameters parameters;
-  parameters << motion.rate + rate_per_acceleration_ * motion.acceleration, motion.acceleration;
-  return parameters;
-}
-
-AngularMotion RotationContrast::to_motion(const Parameters& parameters) const {
-  const Eigen::Vector3d acceleration = parameters.tail<3>();
-  return {parameters.head<3>() - rate_per_acceleration_ * acceleration, acceleration};
 }
 
 void RotationContrast::warp(const Parameters& parameters) {

@@ -28,20 +28,19 @@ struct AngularMotion {
 /// so that no derivative image is drawn. t is the time since the middle of the window and
 ///   s = t^2 / 2 - c t - d                                                                   (d)
 /// is orthogonal to 1 and t over the events, which decouples w and a: a is the acceleration, and
-/// w - c a the rate in the middle. The contrast is invariant to a common shift, as by d. BurstFilter
-/// selects the events: without it the rate is 4 % low where a window is seven pixels long.
+/// w the rate at the time c, near the mean of the events' times. The contrast is invariant to a common
+/// shift, as by d. BurstFilter selects the events: without it the rate of ideal pixels is 4 % low
+/// where a window is seven pixels long.
 class RotationContrast {
  public:
-  /// `camera` with its lens; `burst_fraction` and `max_events` of BurstFilter.
-  RotationContrast(const PinholeCamera& camera, double blur_px, double burst_fraction,
+  /// `camera` with its lens; `bursts` and `max_events` of BurstFilter.
+  RotationContrast(const PinholeCamera& camera, double blur_px, const BurstLimits& bursts,
                    std::size_t max_events);
 
   /// The events of a window, in order of time, at least one.
   void load(std::span<const Event> events);
 
   using Parameters = Eigen::Matrix<double, 6, 1>;  ///< w [rad/s], a [rad/s^2]
-  [[nodiscard]] Parameters to_parameters(const AngularMotion& motion) const;
-  [[nodiscard]] AngularMotion to_motion(const Parameters& parameters) const;
 
   struct Value {
     double contrast = 0;                       ///< f / N^2 for N events
@@ -50,6 +49,8 @@ class RotationContrast {
   [[nodiscard]] Value evaluate(const Parameters& parameters);
 
   [[nodiscard]] double middle_s() const { return rays_.middle_s; }  ///< of the window
+  /// Of the rate w: the middle + c.
+  [[nodiscard]] double reference_s() const { return rays_.middle_s + reference_after_middle_s_; }
   /// RMS displacement of the events at 1 rad/s across the viewing direction [px], and at 1 rad/s^2.
   [[nodiscard]] double px_per_rate() const { return px_per_rate_; }
   [[nodiscard]] double px_per_acceleration() const { return px_per_acceleration_; }
@@ -65,9 +66,9 @@ class RotationContrast {
   WarpedImage image_;
   WindowRays rays_;
   double px_per_rate_ = 0, px_per_acceleration_ = 0;
-  double rate_per_acceleration_ = 0;  ///< c [s]
-  std::vector<float> s_;              ///< of each event, by (d) [s^2]
-  std::vector<float> x_, y_;          ///< warped, in image_; x < 0 outside
+  double reference_after_middle_s_ = 0;  ///< c
+  std::vector<float> s_;                 ///< of each event, by (d) [s^2]
+  std::vector<float> x_, y_;             ///< warped, in image_; x < 0 outside
 };
 
 }  // namespace saccade

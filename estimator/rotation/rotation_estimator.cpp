@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/time_search.h"
 
@@ -18,7 +19,7 @@ constexpr double kTolerance_px = 0.01;
 
 RotationEstimator::RotationEstimator(const PinholeCamera& camera, const RotationOptions& options)
     : options_(options),
-      contrast_(camera, options.blur_px, options.burst_fraction,
+      contrast_(camera, options.blur_px, options.bursts,
                 static_cast<std::size_t>(options.samples)) {}
 
 RotationEstimate RotationEstimator::estimate(std::span<const Event> events,
@@ -27,8 +28,9 @@ RotationEstimate RotationEstimator::estimate(std::span<const Event> events,
   using Square = Eigen::Matrix<double, 6, 6>;
   contrast_.load(events);
   RotationEstimate result;
-  result.t_s = contrast_.middle_s();
-  result.turning = guess;
+  result.t_s = contrast_.reference_s();
+  result.turning = {guess.rate + (result.t_s - contrast_.middle_s()) * guess.acceleration,
+                    guess.acceleration};
   result.px_per_rate = contrast_.px_per_rate();
   if (events.size() < static_cast<std::size_t>(options_.min_events) ||
       !(contrast_.px_per_acceleration() > 0))
@@ -37,7 +39,9 @@ RotationEstimate RotationEstimator::estimate(std::span<const Event> events,
   Parameters px;
   px << Eigen::Vector3d::Constant(contrast_.px_per_rate()),
       Eigen::Vector3d::Constant(contrast_.px_per_acceleration());
-  Parameters at = contrast_.to_parameters(guess).cwiseProduct(px);
+  Parameters at;
+  at << result.turning.rate, result.turning.acceleration;
+  at = at.cwiseProduct(px).eval();
   const auto evaluate = [&](const Parameters& p) {
     RotationContrast::Value value = contrast_.evaluate(p.cwiseQuotient(px));
     value.gradient = value.gradient.cwiseQuotient(px).eval();
@@ -77,7 +81,8 @@ RotationEstimate RotationEstimator::estimate(std::span<const Event> events,
     value = next;
     if (step.norm() < kTolerance_px) break;
   }
-  result.turning = contrast_.to_motion(at.cwiseQuotient(px));
+  at = at.cwiseQuotient(px).eval();
+  result.turning = {at.head<3>(), at.tail<3>()};
   result.contrast = value.contrast;
   result.is_valid = at.allFinite();
   return result;
@@ -90,12 +95,35 @@ AngularMotion RotationEstimator::predict(const RotationEstimate& last, double t_
           last.turning.acceleration};
 }
 
-std::size_t next_window_size(std::span<const Event> events, const RotationOptions& options) {
+double window_duration(const PinholeCamera& camera, const Eigen::Vector3d& rate,
+                       const RotationOptions& options) {
+  // About the viewing axis a pixel moves by its distance from it, whose mean square is that of a
+  // rectangle.
+  const double about_axis =
+      rate.z() * rate.z() * (camera.width * camera.width + camera.height * camera.height) / 12.0;
+  const double across = camera.fx * camera.fx * (rate.x() * rate.x() + rate.y() * rate.y());
+  const double speed_px = std::sqrt(across + about_axis);
+  return std::clamp(options.window_motion_px / std::max(speed_px, 1e-9), options.min_window_s,
+                    options.max_window_s);
+}
+
+std::size_t next_window_size(std::span<const Event> events, double duration_s,
+                             const RotationOptions& options) {
   const auto whole = static_cast<std::size_t>(options.window_events);
   const std::size_t count = events.size() < whole + whole / 2 ? events.size() : whole;
   if (count == 0) return 0;
-  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(options.max_window_s);
+  // What is left after a window may be too short for one of its own.
+  const double left_s = seconds_from_ns(events[count - 1].t_ns - events.front().t_ns);
+  if (count == events.size() && left_s < 1.5 * duration_s) return count;
+  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(duration_s);
   return count_before(events.first(count), end_ns);
+}
+
+std::size_t window_step(std::span<const Event> window) {
+  if (window.empty()) return 0;
+  const double duration_s = seconds_from_ns(window.back().t_ns - window.front().t_ns);
+  const TimeNs next_ns = window.front().t_ns + ns_from_seconds(std::sqrt(0.6) * duration_s);
+  return std::max<std::size_t>(1, count_before(window, next_ns));
 }
 
 }  // namespace saccade

@@ -30,18 +30,37 @@ double middle_of(std::span<const Event> window) {
   return seconds_from_ns((window.front().t_ns + window.back().t_ns) / 2);
 }
 
+/// The last window is that which reaches the end.
+std::size_t step_of(std::span<const Event> window, std::span<const Event> events) {
+  return window.size() == events.size() ? events.size() : window_step(window);
+}
+
 /// From events alone, window by window.
 Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
                const RotationOptions& options, Progress& progress) {
   Rates rates;
   RotationEstimator estimator(camera, options);
   RotationEstimate last;
+  double duration_s = options.min_window_s;
   while (!events.empty()) {
-    const std::span<const Event> window = events.first(next_window_size(events, options));
-    last = estimator.estimate(window, RotationEstimator::predict(last, middle_of(window)));
+    std::span<const Event> window;
+    RotationEstimate found;
+    // A window is as long as its own motion wants it, to a factor of two: once more where the motion
+    // was another than before.
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const std::size_t before = window.size();
+      window = events.first(next_window_size(events, duration_s, options));
+      if (window.size() == before) break;
+      found = estimator.estimate(window, RotationEstimator::predict(last, middle_of(window)));
+      const double used_s = duration_s;
+      if (found.is_valid) duration_s = window_duration(camera, found.turning.rate, options);
+      if (duration_s < 2 * used_s && used_s < 2 * duration_s) break;
+    }
+    last = found;
     if (last.is_valid) rates.push_back(rate_at(last.t_s, last.turning.rate));
-    events = events.subspan(window.size());
-    progress.add(window.size());
+    const std::size_t done = step_of(window, events);
+    events = events.subspan(done);
+    progress.add(done);
   }
   return rates;
 }
@@ -70,20 +89,28 @@ Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
   RotationEstimator estimator(camera, config.events);
   RateFusion fusion(config.gyroscope);
   while (!events.empty()) {
-    const std::span<const Event> window = events.first(next_window_size(events, config.events));
+    const AngularMotion now =
+        motion_of(gyroscope, events.front().t_ns,
+                  events.front().t_ns + ns_from_seconds(config.events.min_window_s));
+    const double duration_s = window_duration(camera, now.rate - fusion.bias(), config.events);
+    const std::span<const Event> window =
+        events.first(next_window_size(events, duration_s, config.events));
     const TimeNs start_ns = window.front().t_ns, end_ns = window.back().t_ns;
     const AngularMotion measured = motion_of(gyroscope, start_ns, end_ns);
     const RotationEstimate found =
         estimator.estimate(window, {measured.rate - fusion.bias(), measured.acceleration});
     const double averaged_s = kAveragedFraction * seconds_from_ns(end_ns - start_ns);
+    const double middle_s = middle_of(window);
     // Before the first estimate from events the bias is unknown.
     if (found.is_valid)
-      rates.push_back(rate_at(found.t_s, fusion.fuse({found.t_s, averaged_s, found.px_per_rate,
-                                                      measured.rate, found.turning.rate})));
+      rates.push_back(
+          rate_at(middle_s, fusion.fuse({middle_s, averaged_s, found.px_per_rate, measured.rate,
+                                         RotationEstimator::predict(found, middle_s).rate})));
     else if (!rates.empty())
-      rates.push_back(rate_at(found.t_s, fusion.without_events(measured.rate)));
-    events = events.subspan(window.size());
-    progress.add(window.size());
+      rates.push_back(rate_at(middle_s, fusion.without_events(measured.rate)));
+    const std::size_t done = window.size();
+    events = events.subspan(done);
+    progress.add(done);
   }
   return rates;
 }

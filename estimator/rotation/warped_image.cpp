@@ -83,29 +83,36 @@ double WarpedImage::sum_of_squares() const {
   return sum;
 }
 
-BurstFilter::BurstFilter(const PinholeCamera& camera, double burst_fraction, std::size_t max_events)
+BurstFilter::BurstFilter(const PinholeCamera& camera, const BurstLimits& limits,
+                         std::size_t max_events)
     : camera_(camera.undistorted()),
       undistortion_(camera),
-      burst_fraction_(burst_fraction),
+      limits_(limits),
       max_events_(max_events),
-      last_ns_(2 * static_cast<std::size_t>(camera.width) *
-               static_cast<std::size_t>(camera.height)) {
-  SACCADE_CHECK(max_events > 0 && burst_fraction >= 0);
+      bursts_(2 * static_cast<std::size_t>(camera.width) *
+              static_cast<std::size_t>(camera.height)) {
+  SACCADE_CHECK(max_events > 0 && limits.gap >= 0 && limits.longest >= 0);
 }
 
 void BurstFilter::select(std::span<const Event> events) {
   const auto window_ns = static_cast<double>(events.back().t_ns - events.front().t_ns);
-  const auto burst_ns = static_cast<TimeNs>(burst_fraction_ * window_ns);
-  last_ns_.assign(last_ns_.size(), std::numeric_limits<TimeNs>::min() / 2);
+  const auto gap_ns = static_cast<TimeNs>(limits_.gap * window_ns);
+  const auto longest_ns = static_cast<TimeNs>(limits_.longest * window_ns);
+  constexpr TimeNs kNever = std::numeric_limits<TimeNs>::min() / 2;
+  bursts_.assign(bursts_.size(), {kNever, kNever});
   selected_.clear();
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     const std::size_t pixel =
         static_cast<std::size_t>(event.y) * static_cast<std::size_t>(camera_.width) +
         static_cast<std::size_t>(event.x);
-    TimeNs& last_ns = last_ns_[2 * pixel + (event.polarity > 0 ? 1 : 0)];
-    if (event.t_ns - last_ns >= burst_ns) selected_.push_back(i);
-    last_ns = event.t_ns;
+    Burst& burst = bursts_[2 * pixel + (event.polarity > 0 ? 1 : 0)];
+    const bool goes_on =
+        event.t_ns - burst.last_ns < gap_ns && event.t_ns - burst.first_ns < longest_ns;
+    burst.last_ns = event.t_ns;
+    if (goes_on) continue;
+    burst.first_ns = event.t_ns;
+    selected_.push_back(i);
   }
 }
 

@@ -43,15 +43,20 @@ struct WindowRays {
   double middle_s = 0;
 };
 
+/// What a burst of events is, in fractions of the window's length, >= 0.
+struct BurstLimits {
+  double gap;  ///< an event belongs to the burst of its pixel's and polarity's last event if ...
+  double longest;  ///< ... it follows it within `gap`, and the burst's first event within this
+};
+
 /// Selects the events of a window for an image of warped events. An edge that passes a pixel fires
 /// a burst of events there. Without any warp these lie on one another, which biases every motion
 /// towards zero: only the first event of a burst is used.
 class BurstFilter {
  public:
-  /// `camera` with its lens. An event continues the burst of the previous event of its pixel and
-  /// polarity if it follows within `burst_fraction` >= 0 of the window's length. Of the remaining
-  /// events at most about `max_events` > 0 are used, evenly spread.
-  BurstFilter(const PinholeCamera& camera, double burst_fraction, std::size_t max_events);
+  /// `camera` with its lens. Of the remaining events at most about `max_events` > 0 are used, evenly
+  /// spread.
+  BurstFilter(const PinholeCamera& camera, const BurstLimits& limits, std::size_t max_events);
 
   /// `events` in order of time, at least one.
   [[nodiscard]] WindowRays rays_of(std::span<const Event> events);
@@ -61,9 +66,12 @@ class BurstFilter {
 
   PinholeCamera camera_;  ///< undistorted
   UndistortionTable undistortion_;
-  double burst_fraction_;
+  BurstLimits limits_;
   std::size_t max_events_;
-  std::vector<TimeNs> last_ns_;        ///< of the last event, by pixel and polarity
+  struct Burst {
+    TimeNs first_ns, last_ns;
+  };
+  std::vector<Burst> bursts_;          ///< the last one, by pixel and polarity
   std::vector<std::size_t> selected_;  ///< the first events of bursts
 };
 

@@ -47,6 +47,28 @@ void score_bias(const GyroBiasEstimate& estimate, const std::vector<ImuTruth>& t
   metrics.set("orientation.bias_error_rad_s", error.norm() / std::sqrt(3));
 }
 
+/// An estimated angular velocity and the true one [rad/s].
+struct RatePair {
+  Eigen::Vector3d estimate, truth;
+};
+using RatePairs = std::vector<RatePair>;
+
+Metrics score_pairs(const RatePairs& pairs) {
+  Metrics metrics;
+  if (pairs.empty()) return metrics;
+  double squares = 0, peak = 0;
+  for (const RatePair& pair : pairs) {
+    squares += (pair.estimate - pair.truth).squaredNorm();
+    peak = std::max(peak, pair.truth.norm());
+  }
+  const double rmse = std::sqrt(squares / static_cast<double>(pairs.size()));
+  metrics.set("orientation.rate_rmse_rad_s", rmse);
+  metrics.set("orientation.rate_peak_rad_s", peak);
+  metrics.set("orientation.rate_rmse_percent",
+              peak > 0 ? std::optional(100 * rmse / peak) : std::nullopt);
+  return metrics;
+}
+
 }  // namespace
 
 std::vector<OrientationError> orientation_errors(const Trajectory& estimate,
@@ -94,8 +116,7 @@ Metrics score_orientation(const OrientationScoreInput& input) {
 }
 
 Metrics score_rates(std::span<const StampedTwist> estimate, std::span<const StampedTwist> truth) {
-  Metrics metrics;
-  double squares = 0, peak = 0, count = 0;
+  RatePairs pairs;
   for (const StampedTwist& one : estimate) {
     const std::size_t after = count_until(truth, one.t_s, &StampedTwist::t_s);
     if (after == 0 || after == truth.size()) continue;
@@ -103,17 +124,36 @@ Metrics score_rates(std::span<const StampedTwist> estimate, std::span<const Stam
     const double weight = (one.t_s - a.t_s) / (b.t_s - a.t_s);
     const Eigen::Vector3d rate =
         a.angular_velocity + weight * (b.angular_velocity - a.angular_velocity);
-    squares += (one.angular_velocity - rate).squaredNorm();
-    peak = std::max(peak, rate.norm());
-    ++count;
+    pairs.push_back({one.angular_velocity, rate});
   }
-  if (!(count > 0)) return metrics;
-  const double rmse = std::sqrt(squares / count);
-  metrics.set("orientation.rate_rmse_rad_s", rmse);
-  metrics.set("orientation.rate_peak_rad_s", peak);
-  metrics.set("orientation.rate_rmse_percent",
-              peak > 0 ? std::optional(100 * rmse / peak) : std::nullopt);
-  return metrics;
+  return score_pairs(pairs);
+}
+
+Metrics score_rates_by_gyroscope(std::span<const StampedTwist> estimate,
+                                 std::span<const ImuSample> gyroscope,
+                                 const Rigid3& camera_from_imu) {
+  if (estimate.size() < 2 || gyroscope.empty()) return {};
+  const auto readings_before = [&](double t_s) {
+    return count_before(gyroscope, ns_from_seconds(t_s), &ImuSample::t_ns);
+  };
+  const Eigen::Matrix3d rotation = camera_from_imu.rotation_matrix();
+  RatePairs pairs;
+  Eigen::Vector3d mean_difference = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    const double t_s = estimate[i].t_s;
+    const double before_s = i > 0 ? (t_s - estimate[i - 1].t_s) / 2 : 0;
+    const double after_s = i + 1 < estimate.size() ? (estimate[i + 1].t_s - t_s) / 2 : before_s;
+    const std::size_t begin = readings_before(t_s - (i > 0 ? before_s : after_s));
+    const std::size_t end = readings_before(t_s + after_s);
+    if (begin >= end) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const ImuSample& one : gyroscope.subspan(begin, end - begin)) sum += one.angular_velocity;
+    const Eigen::Vector3d rate = rotation * sum / static_cast<double>(end - begin);
+    pairs.push_back({estimate[i].angular_velocity, rate});
+    mean_difference += estimate[i].angular_velocity - rate;
+  }
+  for (RatePair& pair : pairs) pair.truth += mean_difference / static_cast<double>(pairs.size());
+  return score_pairs(pairs);
 }
 
 }  // namespace saccade

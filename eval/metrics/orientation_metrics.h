@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/imu_sample.h"
+#include "core/rigid3.h"
 #include "core/trajectory.h"
 #include "eval/metrics/metrics.h"
 
@@ -41,5 +42,14 @@ struct OrientationError {
 /// orientation.rate_rmse_percent (of that). The truth is linear between its entries.
 [[nodiscard]] Metrics score_rates(std::span<const StampedTwist> estimate,
                                   std::span<const StampedTwist> truth);
+
+/// The same where only a gyroscope tells, as in a recording. An estimate stands for the time from
+/// half-way to the one before it to half-way to the next, over which the readings are averaged: single
+/// ones have the noise and the vibration of milliseconds. The gyroscope's bias is unknown, so the mean
+/// difference of each axis is removed. Estimates at the ends stand for as long on either side.
+/// `camera_from_imu`: only its rotation counts. Nothing is scored with fewer than two estimates.
+[[nodiscard]] Metrics score_rates_by_gyroscope(std::span<const StampedTwist> estimate,
+                                               std::span<const ImuSample> gyroscope,
+                                               const Rigid3& camera_from_imu);
 
 }  // namespace saccade

@@ -208,6 +208,12 @@ bool Dataset::has_imu() const { return fs::exists(folder_ / "imu.txt"); }
 
 std::vector<ImuSample> Dataset::load_imu() const { return read_imu(folder_ / "imu.txt"); }
 
+std::optional<Rigid3> Dataset::camera_from_imu() const {
+  const std::filesystem::path camera_chain = folder_ / "camera.yaml";
+  if (!std::filesystem::exists(camera_chain)) return std::nullopt;
+  return read_camera_chain(camera_chain).front().camera_from_imu;
+}
+
 std::vector<ImuTruth> Dataset::load_imu_truth() const {
   return read_imu_truth(folder_ / "imu_groundtruth.txt");
 }

@@ -74,6 +74,8 @@ class Dataset {
       double start_s = -std::numeric_limits<double>::infinity(),
       double end_s = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] std::vector<ImuSample> load_imu() const;
+  /// Pose of the IMU in the camera, T_cam_imu of camera.yaml; nullopt where it is not stated.
+  [[nodiscard]] std::optional<Rigid3> camera_from_imu() const;
   /// Of simulated datasets: what is behind the readings, and the camera's motion
   /// (imu_groundtruth.txt, twist.txt).
   [[nodiscard]] std::vector<ImuTruth> load_imu_truth() const;

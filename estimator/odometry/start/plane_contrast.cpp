@@ -10,11 +10,9 @@ constexpr float kLeastInverseDepth = 0.1F;
 
 }  // namespace
 
-PlaneContrast::PlaneContrast(const PinholeCamera& camera, double blur_px, double burst_fraction,
+PlaneContrast::PlaneContrast(const PinholeCamera& camera, double blur_px, const BurstLimits& bursts,
                              std::size_t max_events)
-    : camera_(camera.undistorted()),
-      filter_(camera, burst_fraction, max_events),
-      image_(camera, blur_px) {}
+    : camera_(camera.undistorted()), filter_(camera, bursts, max_events), image_(camera, blur_px) {}
 
 void PlaneContrast::load(std::span<const Event> events) {
   rays_ = filter_.rays_of(events);

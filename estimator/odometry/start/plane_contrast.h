@@ -22,8 +22,8 @@ namespace saccade {
 /// direction gains nothing by shrinking the picture, to first order.
 class PlaneContrast {
  public:
-  /// `camera` with its lens; `burst_fraction` and `max_events` of BurstFilter.
-  PlaneContrast(const PinholeCamera& camera, double blur_px, double burst_fraction,
+  /// `camera` with its lens; `bursts` and `max_events` of BurstFilter.
+  PlaneContrast(const PinholeCamera& camera, double blur_px, const BurstLimits& bursts,
                 std::size_t max_events);
 
   /// The events of a window, in order of time, at least one.

@@ -64,6 +64,10 @@ Parameters px_per_parameter(const PlaneContrast& contrast, const PlaneMotion& mo
   return scale;
 }
 
+/// However long an edge takes to pass a pixel, the first of its events counts: with eight unknowns
+/// pixels that say "no motion" do more harm than in RotationEstimator.
+constexpr BurstLimits kBursts{.gap = 0.15, .longest = 1};
+
 }  // namespace
 
 PlaneSearch::PlaneSearch(double max_window_s, const PinholeCamera& camera,
@@ -71,7 +75,7 @@ PlaneSearch::PlaneSearch(double max_window_s, const PinholeCamera& camera,
     : max_window_s_(max_window_s),
       camera_(camera),
       gyroscope_(gyroscope),
-      contrast_(camera, RotationOptions().blur_px, RotationOptions().burst_fraction,
+      contrast_(camera, RotationOptions().blur_px, kBursts,
                 static_cast<std::size_t>(RotationOptions().samples)) {}
 
 std::span<const Event> PlaneSearch::window(std::span<const Event> events, double duration_s) const {
@@ -100,7 +104,9 @@ double PlaneSearch::image_motion_px(const PlaneFit& fit) const {
 }
 
 PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
-  RotationEstimator estimator(camera_, {});
+  RotationOptions options;
+  options.bursts = kBursts;
+  RotationEstimator estimator(camera_, options);
   const double most = kEventsPerPixel * camera_.width * camera_.height;
   std::span<const Event> part =
       events.first(std::min(events.size(), static_cast<std::size_t>(most)));

@@ -94,5 +94,29 @@ TEST(OrientationMetrics, RatesAreScoredAgainstTheTruthBetweenItsEntries) {
   EXPECT_TRUE(score_rates({}, truth).empty());
 }
 
+TEST(OrientationMetrics, WithoutTruthRatesAreScoredAgainstTheGyroscope) {
+  // A ramp of 1 rad/s^2 about the camera's x axis, which is the sensor's y axis, with a vibration
+  // that averages out, and a bias.
+  const Rigid3 camera_from_imu(
+      Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitZ())),
+      Eigen::Vector3d::Zero());
+  std::vector<ImuSample> gyroscope;
+  for (int i = 0; i < 1000; ++i) {
+    const double vibration = i % 2 == 0 ? 0.5 : -0.5;
+    gyroscope.push_back({i * 1'000'000, Eigen::Vector3d::Zero(), {0.3, 1e-3 * i + vibration, 0.2}});
+  }
+  std::vector<StampedTwist> estimate;
+  for (int i = 0; i < 9; ++i) {
+    const double t_s = 0.1 * i + 0.1;
+    const double error = i % 2 == 0 ? 0.01 : -0.01;
+    estimate.push_back({t_s, Eigen::Vector3d::Zero(), {t_s + 0.1, error, 0}});
+  }
+  const Metrics m = score_rates_by_gyroscope(estimate, gyroscope, camera_from_imu);
+  // The mean of the errors is 0.01 / 9.
+  EXPECT_NEAR(*m.get("orientation.rate_rmse_rad_s"), 0.01 * std::sqrt(1 - 1.0 / 81), 1e-5);
+  EXPECT_TRUE(score_rates_by_gyroscope({}, gyroscope, camera_from_imu).empty());
+  EXPECT_TRUE(score_rates_by_gyroscope(estimate, {}, camera_from_imu).empty());
+}
+
 }  // namespace
 }  // namespace saccade

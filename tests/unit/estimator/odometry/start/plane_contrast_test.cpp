@@ -52,7 +52,7 @@ Parameters px_per_parameter(const PlaneContrast& contrast) {
 }
 
 TEST(PlaneContrast, GradientIsThatOfTheContrast) {
-  PlaneContrast contrast(kCamera, 1, 0, 5000);
+  PlaneContrast contrast(kCamera, 1, {0, 0}, 5000);
   contrast.load(before_plane(kTruth));
   const Parameters px = px_per_parameter(contrast);
   for (const PlaneMotion& at : {PlaneMotion{}, PlaneMotion{{1, -0.4, 0.9}, {0.7, 1, 0.5}, {0, 0.3}},
@@ -76,7 +76,7 @@ TEST(PlaneContrast, GradientIsThatOfTheContrast) {
 }
 
 TEST(PlaneContrast, IsGreatestAtTheTruth) {
-  PlaneContrast contrast(kCamera, 1, 0, 5000);
+  PlaneContrast contrast(kCamera, 1, {0, 0}, 5000);
   contrast.load(before_plane(kTruth));
   const Parameters truth = PlaneContrast::parameters_of(kTruth);
   const Parameters px = px_per_parameter(contrast);
