@@ -122,6 +122,7 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   RunRecord record;
   record.module = module;
   record.method_class = class_with_sources(method_class_, request);
+  record.contrast = contrast_;
   record.external = external;
   record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
   record.dataset_sha256 = dataset_hash(dataset);

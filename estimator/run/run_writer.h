@@ -53,6 +53,9 @@ class RunWriter {
   /// request names is added by finish(); where one of them does not state it, neither does this.
   void set_class(const MethodClass& method_class) { method_class_ = method_class; }
 
+  /// States the contrast thresholds that the module found itself [log units].
+  void set_contrast(const RunRecord::Contrast& contrast) { contrast_ = contrast; }
+
   /// Writes run.yaml and timing.json and gives the folder its name. Contract: set_class() before,
   /// but of an external program.
   void finish(const std::string& module, const RunRequest& request, const Dataset& dataset,
@@ -62,6 +65,7 @@ class RunWriter {
  private:
   AtomicFolder folder_;
   std::optional<MethodClass> method_class_;
+  std::optional<RunRecord::Contrast> contrast_;
 };
 
 }  // namespace saccade

@@ -60,12 +60,13 @@ void describe_intensity_method(config::Fields& fields, TrackConfig& config) {
   fields
       .value(
           "contrast_on", config.contrast_on,
-          "Contrast threshold of ON events in log units; ~ takes the dataset's. An error of a few "
-          "percent costs accuracy, see the sweep tracking_contrast.")
+          "Contrast threshold of ON events in log units; ~ takes the dataset's, or where it states "
+          "none, one that is found from the first events and the edges of the map. An error of a "
+          "few percent costs accuracy, see the sweep tracking_contrast.")
       .above(0);
   fields
       .value("contrast_off", config.contrast_off,
-             "Contrast threshold of OFF events in log units; ~ takes the dataset's.")
+             "Contrast threshold of OFF events in log units; ~ as with contrast_on.")
       .above(0);
 }
 
@@ -124,7 +125,6 @@ constexpr TrackMethod kTrackMethods[] = {
      .help = "Log intensity of the map against that of the pixels at their events.",
      .describe = describe_intensity_method,
      .make = make_intensity,
-     .needs_contrast = true,
      .smooths_map = true},
     {.name = "polarity",
      .help = "Brightness increments against the signs of the events.",

@@ -42,8 +42,8 @@ struct TrackWorld {
   PinholeCamera camera;   ///< with its lens
   MapPoints edge_points;  ///< in the frame of the first reference view
   IntensityMap intensity_map;
-  EventContrast contrast;  ///< of methods that need it
-  Gyroscope gyroscope;     ///< empty unless it is needed
+  std::optional<EventContrast> contrast;  ///< nullopt where nobody states it
+  Gyroscope gyroscope;                    ///< empty unless it is needed
 };
 
 /// A method of tracking. A new one is a pair of files, its options in TrackConfig, and a row in
@@ -54,7 +54,6 @@ struct TrackMethod {
   void (*describe)(config::Fields&, TrackConfig&) = nullptr;
   std::unique_ptr<Tracker> (*make)(const TrackConfig&, const TrackWorld&);
   bool takes_frames = false;      ///< the dataset's grey frames in place of its events
-  bool needs_contrast = false;    ///< TrackConfig::contrast_on, contrast_off, or the dataset's
   bool needs_prediction = false;  ///< motion.prediction: none is an error
   bool smooths_map = false;       ///< at its edges, by intensity.map_blur_px
   /// Abrupt at high speed, which carries a tracker through a shaken camera, and smooth at low speed;

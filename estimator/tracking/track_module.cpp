@@ -35,8 +35,8 @@ struct TrackInput {
   RunRecord::Window window;
   std::vector<ReferenceView> references;
   Rigid3 initial_world_from_camera;
-  EventContrast contrast;
-  Gyroscope gyroscope;  ///< empty unless it is needed
+  std::optional<EventContrast> contrast;  ///< nullopt: nobody states it
+  Gyroscope gyroscope;                    ///< empty unless it is needed
 };
 
 /// `measurements`: events or frames, at least one.
@@ -70,18 +70,13 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
                           request.duration_s ? start_s + *request.duration_s : infinity);
 }
 
-EventContrast contrast_of(const TrackConfig& config, const Dataset& dataset) {
-  if (!method_of(config).needs_contrast) return {};
+/// Those of the configuration, else the dataset's; nullopt where neither states both.
+std::optional<EventContrast> contrast_of(const TrackConfig& config, const Dataset& dataset) {
   const DatasetFacts& facts = dataset.facts();
   const auto on = config.contrast_on ? config.contrast_on : facts.contrast_on;
   const auto off = config.contrast_off ? config.contrast_off : facts.contrast_off;
-  if (!on || !off)
-    throw InputError(
-        dataset.folder().string(),
-        fmt::format("does not state its contrast thresholds; state {0}.contrast_on and "
-                    "{0}.contrast_off",
-                    config.method));
-  return {*on, *off};
+  if (!on || !off) return std::nullopt;
+  return EventContrast{*on, *off};
 }
 
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,
@@ -206,11 +201,17 @@ RunSummary run_track(const RunRequest& request) {
     if (config.figures) write_figures(writer.path(), config, input, world, poses);
   }
   writer.set_class(class_of(config, input));
+  const std::optional<EventContrast> contrast = tracker->found_contrast();
+  if (contrast) writer.set_contrast({contrast->on, contrast->off});
   writer.finish("track", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
   const std::size_t lost = count_lost(poses);
-  RunSummary summary = summary_of(timing, fmt::format("{} poses ({} lost)", poses.size(), lost));
+  std::string found = fmt::format("{} poses ({} lost)", poses.size(), lost);
+  if (contrast)
+    found += fmt::format(", contrast thresholds {:.2f} (ON) and {:.2f} (OFF) found", contrast->on,
+                         contrast->off);
+  RunSummary summary = summary_of(timing, found);
   summary.lost_poses = lost;
   summary.lost_since_s = poses.empty() ? std::optional(input.window.start_s) : lost_since_s(poses);
   return summary;

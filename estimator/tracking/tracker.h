@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/image.h"
 #include "core/rigid3.h"
 #include "estimator/tracking/check/pose_evidence.h"
+#include "estimator/tracking/event_contrast.h"
 #include "estimator/tracking/motion_model.h"
 
 namespace saccade {
@@ -90,6 +92,9 @@ class Tracker {
   /// none.
   [[nodiscard]] virtual std::vector<TrackedPose> track(const Recording& recording,
                                                        const TrackProgress& progress = {}) = 0;
+
+  /// The contrast thresholds that track() found, where it needed them and nobody stated them.
+  [[nodiscard]] virtual std::optional<EventContrast> found_contrast() const { return std::nullopt; }
 
   /// Where the camera is, how it moves, and how well that is known; in the map's frame.
   [[nodiscard]] const MotionModel& motion() const { return motion_; }

@@ -5,6 +5,11 @@
 
 namespace saccade {
 
+void describe(config::Fields& fields, RunRecord::Contrast& contrast) {
+  fields.value("on", contrast.on, "of ON events").required().above(0);
+  fields.value("off", contrast.off, "of OFF events").required().above(0);
+}
+
 void describe(config::Fields& fields, RunRecord::Window& window) {
   fields.value("start_s", window.start_s, "first instant").required();
   fields.value("end_s", window.end_s, "instant after the last event").required();
@@ -42,6 +47,9 @@ void describe(config::Fields& fields, RunRecord& record) {
   if (fields.has("class") || (!fields.reading() && record.method_class))
     fields.section("class", record.method_class,
                    "what it was given, with that of the runs above, and how far it looks ahead");
+  if (fields.has("contrast") || (!fields.reading() && record.contrast))
+    fields.section("contrast", record.contrast,
+                   "contrast thresholds that were found, as nobody stated them [log units]");
   fields.section("window", record.window, "part of the dataset [s]; ~ is the whole");
   fields.value("seed", record.seed, "of every random number");
   fields.value("threads", record.threads, "it ran on; 0 is not stated").at_least(0);

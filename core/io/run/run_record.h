@@ -28,6 +28,11 @@ struct RunRecord {
     std::string reason;  ///< what went wrong
   };
 
+  /// Contrast thresholds that the module found, because nobody stated them [log units].
+  struct Contrast {
+    double on = 0, off = 0;
+  };
+
   int format_version = 1;
   std::string module;                ///< "track", "depth", ...
   std::filesystem::path dataset;     ///< folder; in the file relative to run.yaml, or absolute
@@ -37,6 +42,7 @@ struct RunRecord {
   std::filesystem::path from;        ///< run that was refined; empty: none
   std::optional<External> external;  ///< nullopt: one of this program's modules
   std::optional<MethodClass> method_class;  ///< what it was given in all; nullopt: not known
+  std::optional<Contrast> contrast;         ///< nullopt: stated, or not needed
   std::optional<Window> window;             ///< nullopt: the whole dataset
   std::uint64_t seed = 0;
   int threads = 0;           ///< 0: not stated

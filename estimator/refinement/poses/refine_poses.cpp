@@ -18,12 +18,15 @@
 namespace saccade {
 namespace {
 
+/// Those of the configuration, of the run's, of the dataset, or those that the run found.
 EventContrast contrast_of(const RefinementConfig& config, const TrackConfig& tracked,
-                          const Dataset& dataset) {
+                          const SourceRun& run, const Dataset& dataset) {
   const DatasetFacts& facts = dataset.facts();
   std::optional<double> on = config.contrast_on, off = config.contrast_off;
   if (!on) on = tracked.contrast_on ? tracked.contrast_on : facts.contrast_on;
   if (!off) off = tracked.contrast_off ? tracked.contrast_off : facts.contrast_off;
+  if (!on && run.record.contrast) on = run.record.contrast->on;
+  if (!off && run.record.contrast) off = run.record.contrast->off;
   if (!on || !off)
     throw InputError(dataset.folder().string(),
                      "does not state its contrast thresholds; state poses.contrast_on and "
@@ -74,7 +77,7 @@ RunSummary refine_poses(const RunRequest& asked, const RefinementConfig& config,
   const PinholeCamera camera = tracked.camera.of(dataset.camera());
   const auto references =
       load_references(dataset, camera, tracked.reference, window.start_s, window.end_s);
-  const EventContrast contrast = contrast_of(config, tracked, dataset);
+  const EventContrast contrast = contrast_of(config, tracked, run, dataset);
   io.reset();
 
   const IntensityMap map(camera.undistorted(), references, IntensityMap::kEdgeBlur_px);

@@ -30,10 +30,17 @@ class EdgeFallback {
   std::size_t follow(std::span<const Event> events, std::vector<TrackedPose>& poses,
                      TrackTiming& timing) {
     constexpr std::size_t kFrames = 6;
-    const TrackTiming before = edges_.timing();
     const std::size_t count = kFrames * edges_.next_frame_events();
     if (count > events.size()) return 0;
-    std::vector<TrackedPose> found = edges_.track({.events = events.first(count)});
+    follow_all(events.first(count), poses, timing);
+    return count;
+  }
+
+  /// The same with all frames of `events`.
+  void follow_all(std::span<const Event> events, std::vector<TrackedPose>& poses,
+                  TrackTiming& timing) {
+    const TrackTiming before = edges_.timing();
+    std::vector<TrackedPose> found = edges_.track({.events = events});
     timing.view_s += edges_.timing().view_s - before.view_s;
     timing.load_s += edges_.timing().load_s - before.load_s;
     timing.align_s += edges_.timing().align_s - before.align_s;
@@ -44,7 +51,6 @@ class EdgeFallback {
     if (!fits_)
       for (TrackedPose& pose : found) pose.status = TrackStatus::kLost;
     poses.insert(poses.end(), found.begin(), found.end());
-    return count;
   }
 
   /// Whether the frames of the last follow() had enough inliers, on average.

@@ -172,6 +172,10 @@ float EventResidualBatch::residual(int i) const {
   return visible_[k] > 0 ? residual_[k] : std::numeric_limits<float>::quiet_NaN();
 }
 
+float EventResidualBatch::log_intensity(int i) const {
+  return log_intensity_[static_cast<std::size_t>(i)];
+}
+
 float EventResidualBatch::map_variance(int i) const {
   return map_variance_[static_cast<std::size_t>(i)];
 }

@@ -76,6 +76,7 @@ class EventResidualBatch {
   /// Of observation `i`, after weigh(): the residual, NaN where the map is not visible; the variance
   /// R of the map; and what it holds per px^2 of a position's.
   [[nodiscard]] float residual(int i) const;
+  [[nodiscard]] float log_intensity(int i) const;  ///< l
   [[nodiscard]] float map_variance(int i) const;
   [[nodiscard]] float variance_per_px2(int i) const;
 

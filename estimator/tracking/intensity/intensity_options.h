@@ -25,9 +25,4 @@ struct IntensityOptions {
 
 void describe(config::Fields& fields, IntensityOptions& options);
 
-/// The part of a sensor's model that the tracker knows.
-struct EventContrast {
-  double on = 0.2, off = 0.2;  ///< thresholds [log units]
-};
-
 }  // namespace saccade

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "core/time_search.h"
 #include "estimator/mean_time.h"
 #include "estimator/tracking/pose_solver.h"
 
@@ -30,11 +31,10 @@ constexpr double kMaxMotionWithoutEvents_px = 2;
 
 void describe(config::Fields& fields, IntensityOptions& options) {
   fields
-      .value(
-          "events", options.events,
-          "Events per pose; ~ takes as many as come from 1000 pixels, times (width / 240 px)^1.5 "
-          "on a wider sensor, or from up to 3000 while the image moves by half a pixel. More of "
-          "them cost less time per second of recording and follow the motion more coarsely.")
+      .value("events", options.events,
+             "Events per pose; ~ takes as many as come from 500 pixels, times (width / 240 px)^1.5 "
+             "on a wider sensor, or from up to 3000 while the image moves by half a pixel. More of "
+             "them cost less time per second of recording and follow the motion more coarsely.")
       .range(1, 1e6);
   fields
       .value("no_event_ratio", options.no_event_ratio,
@@ -57,20 +57,29 @@ void describe(config::Fields& fields, IntensityOptions& options) {
 }
 
 IntensityTracker::IntensityTracker(const IntensityOptions& options,
-                                   const MotionModelOptions& motion, const EventContrast& contrast,
+                                   const MotionModelOptions& motion,
+                                   const std::optional<EventContrast>& contrast,
                                    const PinholeCamera& camera, const IntensityMap& map,
                                    EdgeTracker edges)
     : Tracker(motion, camera.fx, map.world_from_map()),
       options_(options),
       camera_(camera.undistorted()),
-      residuals_(options, contrast, camera, map),
+      knows_contrast_(contrast.has_value()),
+      residuals_(options, camera, map),
       fallback_(std::move(edges)),
       last_batch_(static_cast<std::size_t>(camera.width) *
-                  static_cast<std::size_t>(camera.height)) {}
+                  static_cast<std::size_t>(camera.height)) {
+  if (contrast) residuals_.set_contrast(*contrast);
+}
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
-  motion_.reset(t_ns, world_from_map_.inverse() * world_from_camera);
   timing_ = {};
+  residuals_.reset();
+  start_at(t_ns, world_from_map_.inverse() * world_from_camera);
+}
+
+void IntensityTracker::start_at(TimeNs t_ns, const Rigid3& map_from_camera) {
+  motion_.reset(t_ns, map_from_camera);
   last_event_ns_ = t_ns;
   mean_inlier_ratio_ = 0;
   low_inlier_batches_ = 0;
@@ -78,7 +87,6 @@ void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   pending_events_ = 0;
   candidates_tried_ = 0;
   is_lost_ = false;
-  residuals_.reset();
   restart_pixels(kKnownSigma);
 }
 
@@ -91,24 +99,72 @@ std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
                                                  const TrackProgress& progress) {
   Poses poses;
   std::span<const Event> events = recording.events;
+  if (!knows_contrast_) learn_contrast(events);
   while (!events.empty()) {
-    std::size_t done = 0;
-    if (is_lost_) {
-      done = relocate(events, poses);
-      if (done == 0) break;  // too few events are left
-    } else {
-      const std::size_t count = next_batch(events);
-      if (count == 0) break;
-      done = events_before_gap(events.first(count));
-      if (done == count || done >= kMinEventsBeforeGap)
-        poses.push_back(track_batch(events.first(done)));
-      if (done < count) lose();
-    }
-    if (done > 0) last_event_ns_ = events[done - 1].t_ns;
-    events = events.subspan(done);
-    if (progress) progress(done);
+    const std::optional<std::size_t> done = track_next(events, poses);
+    if (!done) break;
+    events = events.subspan(*done);
+    if (progress) progress(*done);
   }
   return poses;
+}
+
+std::optional<std::size_t> IntensityTracker::track_next(std::span<const Event> events,
+                                                        Poses& poses) {
+  std::size_t done = 0;
+  if (is_lost_) {
+    done = relocate(events, poses);
+    if (done == 0) return std::nullopt;
+  } else {
+    const std::size_t count = next_batch(events);
+    if (count == 0) return std::nullopt;
+    done = events_before_gap(events.first(count));
+    if (done == count || done >= kMinEventsBeforeGap)
+      poses.push_back(track_batch(events.first(done)));
+    if (done < count) lose();
+  }
+  if (done > 0) last_event_ns_ = events[done - 1].t_ns;
+  return done;
+}
+
+void IntensityTracker::learn_contrast(std::span<const Event> events) {
+  // So many per pixel tell thresholds to some percent.
+  constexpr double kEventsPerPixel = 3;
+  const auto most = static_cast<std::size_t>(kEventsPerPixel * camera_.width * camera_.height);
+  const TimeNs start_ns = last_event_ns_;
+  const Rigid3 start = motion_.pose();
+  Poses poses;
+  fallback_.reset(start_ns, world_from_map_ * start);
+  const std::span<const Event> first = events.first(std::min(most, events.size()));
+  fallback_.follow_all(first, poses, timing_);
+  residuals_.begin_learning();
+  std::span<const Event> rest = first;
+  for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
+    const TimeNs end_ns = (poses[i].t_ns + poses[i + 1].t_ns) / 2;
+    const std::size_t count = count_before(rest, end_ns);
+    if (count == 0) continue;
+    learn_from(rest.first(count), poses[i - 1], poses[i], poses[i + 1]);
+    rest = rest.subspan(count);
+  }
+  residuals_.end_learning();
+  start_at(start_ns, start);
+}
+
+void IntensityTracker::learn_from(std::span<const Event> events, const TrackedPose& before,
+                                  const TrackedPose& pose, const TrackedPose& after) {
+  const double span_s = seconds_from_ns(after.t_ns - before.t_ns);
+  if (!(span_s > 0)) return;
+  EventResidualBatch::Motion motion = motion_at(world_from_map_.inverse() * pose.world_from_camera);
+  const Twist moved = (before.world_from_camera.inverse() * after.world_from_camera).log();
+  motion.velocity = (moved / span_s).cast<float>();
+  {
+    const ScopedTimer clock(timing_.view_s);
+    residuals_.prepare_view(world_from_map_.inverse() * pose.world_from_camera);
+  }
+  const ScopedTimer clock(timing_.load_s);
+  residuals_.load(events, pose.t_ns, 0, motion);
+  static_cast<void>(residuals_.evaluate(motion));
+  residuals_.correct(0);
 }
 
 std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
@@ -118,7 +174,7 @@ std::size_t IntensityTracker::next_batch(std::span<const Event> events) {
                : 0;
   // Enough pixels for a pose; more of them, until the image has moved by a fraction of a pixel, are as
   // good as simultaneous.
-  constexpr double kLeastPixels = 1000;
+  constexpr double kLeastPixels = 500;
   constexpr double kMostPixels = 3000;
   constexpr double kMotion_px = 0.5;
   constexpr double kWidth = 240;

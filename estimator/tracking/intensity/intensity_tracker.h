@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,21 +26,32 @@ namespace saccade {
 /// sought around the expected pose until they fit, and the pixels start anew there.
 class IntensityTracker : public Tracker {
  public:
-  /// `camera` may be distorted; `map` outlives the tracker, `edges` finds the pose again.
+  /// `camera` may be distorted; `map` outlives the tracker, `edges` finds the pose again. `contrast`:
+  /// nullopt where nobody states it; it is learned from the start of the recording then.
   IntensityTracker(const IntensityOptions& options, const MotionModelOptions& motion,
-                   const EventContrast& contrast, const PinholeCamera& camera,
+                   const std::optional<EventContrast>& contrast, const PinholeCamera& camera,
                    const IntensityMap& map, EdgeTracker edges);
 
   void reset(TimeNs t_ns, const Rigid3& world_from_camera) override;
   [[nodiscard]] std::vector<TrackedPose> track(const Recording& recording,
                                                const TrackProgress& progress = {}) override;
 
+  [[nodiscard]] std::optional<EventContrast> found_contrast() const override {
+    return knows_contrast_ ? std::nullopt : std::optional(residuals_.contrast());
+  }
   [[nodiscard]] std::size_t views_drawn() const { return residuals_.views_drawn(); }
 
  private:
   using Sums = EventResidualBatch::Sums;
   using Poses = std::vector<TrackedPose>;
 
+  /// From the first events, at the poses that the edges of the map tell.
+  void learn_contrast(std::span<const Event> events);
+  void learn_from(std::span<const Event> events, const TrackedPose& before, const TrackedPose& pose,
+                  const TrackedPose& after);
+  void start_at(TimeNs t_ns, const Rigid3& map_from_camera);
+  /// Tracks the next batch, or searches; how many events that took, nullopt: too few are left.
+  [[nodiscard]] std::optional<std::size_t> track_next(std::span<const Event> events, Poses& poses);
   [[nodiscard]] std::size_t events_before_gap(std::span<const Event> events) const;
   [[nodiscard]] bool fits_worse(const Sums& sums, std::size_t events);
   std::size_t relocate(std::span<const Event> events, Poses& poses);
@@ -59,6 +71,7 @@ class IntensityTracker : public Tracker {
 
   IntensityOptions options_;
   PinholeCamera camera_;  ///< undistorted
+  bool knows_contrast_;
   LogIntensityResiduals residuals_;
   EdgeFallback fallback_;
   TimeNs last_event_ns_ = 0;

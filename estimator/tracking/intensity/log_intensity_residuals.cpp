@@ -46,6 +46,13 @@ float no_event_variance(const EventContrast& contrast) {
   return static_cast<float>(threshold * threshold / 12);
 }
 
+/// 0..1: how much an observation says of the pose where the map varies so much per px^2.
+float pose_weight(float variance_per_px2) {
+  constexpr auto kSigma = static_cast<float>(LogIntensityResiduals::kSigma);
+  constexpr float kFlat = kSigma * kSigma / (kPositionSigma_px * kPositionSigma_px);
+  return variance_per_px2 / (kFlat + variance_per_px2);
+}
+
 /// 0 where the edges of a picture are those of pixels that average over their area (0.64 measured, on
 /// rectangles, photographs and print), 1 where they are those of point samples (0.84 to 0.95).
 float sharp_fraction(double edge_sharpness) {
@@ -56,16 +63,32 @@ float sharp_fraction(double edge_sharpness) {
 }  // namespace
 
 LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
-                                             const EventContrast& contrast,
                                              const PinholeCamera& camera, const IntensityMap& map)
     : options_(options),
       camera_(camera.undistorted()),
       undistortion_(camera),
       map_(map),
       view_(map, margin_of(options, camera), spacing_of(camera)),
-      pixels_(camera.width, camera.height, contrast.on, contrast.off),
-      no_event_variance_(no_event_variance(contrast)),
-      threshold_(static_cast<float>(0.5 * (contrast.on + contrast.off))) {}
+      pixels_(camera.width, camera.height) {
+  set_contrast(ThresholdEstimator::kExpected);
+}
+
+void LogIntensityResiduals::begin_learning() {
+  thresholds_.emplace(static_cast<std::size_t>(camera_.width) *
+                      static_cast<std::size_t>(camera_.height));
+}
+
+void LogIntensityResiduals::end_learning() {
+  set_contrast(thresholds_->contrast());
+  thresholds_.reset();
+}
+
+void LogIntensityResiduals::set_contrast(const EventContrast& contrast) {
+  contrast_ = contrast;
+  pixels_.set_thresholds(contrast.on, contrast.off);
+  no_event_variance_ = no_event_variance(contrast);
+  threshold_ = static_cast<float>(0.5 * (contrast.on + contrast.off));
+}
 
 void LogIntensityResiduals::reset() {
   intervals_ = {};
@@ -152,7 +175,9 @@ void LogIntensityResiduals::add_to_burst(const Event& event, float time_s) {
     burst.before = pixels_.between_events(pixel);
     burst.first_s = time_s;
     bursts_.push_back(burst);
+    if (thresholds_) thresholds_->begin_level(pixel);
   }
+  if (thresholds_) thresholds_->add_event(pixel, event.polarity);
   Burst& burst = bursts_[slot];
   burst.sum += pixels_.add_event(pixel, event.polarity, event.t_ns);
   burst.sum_s += time_s;
@@ -179,6 +204,7 @@ void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
   const MapSample* at = find_sample(observation.pixel, observation.time_s, motion);
   if (at == nullptr) return;
   const bool is_step = observe_step(burst.polarity, pixel, *at, motion, observation);
+  if (thresholds_ && (is_step || is_jump)) thresholds_->forget(pixel);
   add(observation, *at, is_step ? kNotCorrected : static_cast<std::uint32_t>(pixel));
 }
 
@@ -331,6 +357,9 @@ void LogIntensityResiduals::correct(double image_speed_px) {
   const auto blind_px2 = static_cast<float>(std::min(1.0, blind_px * blind_px));
   for_each_measured_pixel(
       [&](std::size_t pixel, float excess, const EventResidualBatch& batch, int j) {
+        if (thresholds_)
+          thresholds_->measure(pixel, batch.log_intensity(j) - excess,
+                               pose_weight(batch.variance_per_px2(j)));
         pixels_.correct(pixel, excess, batch.map_variance(j));
         pixels_.move(pixel, 0, blind_px2 * batch.variance_per_px2(j));
       });

@@ -12,6 +12,7 @@
 #include "estimator/tracking/intensity/event_residual_batch.h"
 #include "estimator/tracking/intensity/intensity_options.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
+#include "estimator/tracking/intensity/threshold_estimator.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/map_view.h"
 
@@ -32,8 +33,8 @@ class LogIntensityResiduals {
   static constexpr double kSigma = 0.05;
 
   /// `camera` may be distorted; `map` outlives this.
-  LogIntensityResiduals(const IntensityOptions& options, const EventContrast& contrast,
-                        const PinholeCamera& camera, const IntensityMap& map);
+  LogIntensityResiduals(const IntensityOptions& options, const PinholeCamera& camera,
+                        const IntensityMap& map);
 
   /// Forgets what the events told of the sensor.
   void reset();
@@ -60,6 +61,14 @@ class LogIntensityResiduals {
   /// Pixels of which little is known are read from the map at a pose: between its events a pixel is
   /// within a threshold of its last value.
   void update_pixels_without_events(const EventResidualBatch::Motion& motion);
+
+  /// Those in use.
+  [[nodiscard]] const EventContrast& contrast() const { return contrast_; }
+  void set_contrast(const EventContrast& contrast);
+  /// correct() also learns thresholds from the poses that evaluate() was given, until ...
+  void begin_learning();
+  /// ... here, where they are taken over.
+  void end_learning();
 
   [[nodiscard]] double typical_depth_m() const { return view_.typical_depth_m(); }
   [[nodiscard]] std::size_t views_drawn() const { return views_drawn_; }
@@ -121,6 +130,8 @@ class LogIntensityResiduals {
   UndistortionTable undistortion_;
   const IntensityMap& map_;
   MapView view_;
+  EventContrast contrast_;
+  std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
   float no_event_variance_;
   float threshold_;  ///< mean of ON and OFF

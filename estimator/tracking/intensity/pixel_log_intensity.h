@@ -17,11 +17,8 @@ namespace saccade {
 /// Kalman filter of a random walk for each pixel).
 class PixelLogIntensity {
  public:
-  /// Thresholds of an ON and an OFF event [log units], and the variance that an event adds.
-  PixelLogIntensity(int width, int height, double contrast_on, double contrast_off)
+  PixelLogIntensity(int width, int height)
       : width_(width),
-        on_(static_cast<float>(contrast_on)),
-        off_(static_cast<float>(contrast_off)),
         pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   [[nodiscard]] std::size_t index(const Event& event) const {
@@ -33,6 +30,12 @@ class PixelLogIntensity {
   void set(std::size_t i, float log_intensity, float variance) {
     pixels_[i] = {log_intensity, variance, 0, kNoSlot, pixels_[i].last_ns};
   }
+  /// Thresholds of an ON and an OFF event [log units], > 0, of the events to come.
+  void set_thresholds(double on, double off) {
+    on_ = static_cast<float>(on);
+    off_ = static_cast<float>(off);
+  }
+  /// That an event adds.
   void set_event_variance(float variance) { event_variance_ = variance; }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&pixels_[i]); }
@@ -90,7 +93,7 @@ class PixelLogIntensity {
   };
 
   int width_;
-  float on_, off_;
+  float on_ = 0, off_ = 0;
   float event_variance_ = 0;
   std::vector<Pixel> pixels_;
 };

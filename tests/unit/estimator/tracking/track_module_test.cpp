@@ -11,6 +11,7 @@
 #include "core/io/imu_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/tables/csv_reader.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
 #include "core/srgb.h"
 #include "tests/support/command.h"
@@ -240,9 +241,16 @@ TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
         << pose.t_s;
 }
 
-TEST_F(TrackModule, WithoutContrastNamesTheCure) {
-  EXPECT_THAT(error(request("run", "{method: intensity, reference: {planar_depth_m: 1.5}}")),
-              HasSubstr("intensity.contrast_on"));
+TEST_F(TrackModule, FindsAContrastThatNobodyStatesAndSaysSo) {
+  const RunSummary summary = run_track(
+      request("found", "{method: intensity, reference: {planar_depth_m: 1.5}, motion: {prediction: "
+                       "constant_velocity}}"));
+  EXPECT_EQ(summary.lost_poses, 0U);
+  EXPECT_THAT(summary.found, HasSubstr("contrast thresholds 0."));
+  const RunRecord record = read_run_record(folder_.path() / "found/run.yaml");
+  ASSERT_TRUE(record.contrast);
+  EXPECT_NEAR(record.contrast->on, 0.12, 0.04);
+  EXPECT_NEAR(record.contrast->off, 0.12, 0.04);
 }
 
 TEST_F(TrackModule, FramesJoinTheMapWhereTheViewHasTurned) {

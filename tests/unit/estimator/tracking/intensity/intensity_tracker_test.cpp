@@ -27,15 +27,14 @@ double resolved_error_px(const TrackedPose& pose) { return resolved_recording().
 class IntensityTracking {
  public:
   explicit IntensityTracking(const TrackConfig& config = best(),
-                             double contrast = kRecordedContrast,
+                             std::optional<double> contrast = kRecordedContrast,
                              const ReferenceView& view = resolved_recording().view)
       : map_(resolved_recording().world.camera(), std::span(&view, 1),
              config.intensity.map_blur_px),
         points_(extract_map(view.log_intensity, view.depth, map_.camera(), config.map)),
         edges_(testing::fallback_options(config), map_.camera(), points_, map_.world_from_map(),
                config.seed),
-        tracker_(config.intensity, config.motion, {contrast, contrast}, map_.camera(), map_,
-                 edges_) {
+        tracker_(config.intensity, config.motion, both(contrast), map_.camera(), map_, edges_) {
     tracker_.reset(0, view.world_from_reference);
   }
 
@@ -43,6 +42,10 @@ class IntensityTracking {
   IntensityTracker* operator->() { return &tracker_; }
 
  private:
+  static std::optional<EventContrast> both(const std::optional<double>& contrast) {
+    return contrast ? std::optional(EventContrast{*contrast, *contrast}) : std::nullopt;
+  }
+
   IntensityMap map_;
   MapPoints points_;
   EdgeTracker edges_;
@@ -83,6 +86,16 @@ TEST(IntensityTracker, RecoversEveryPoseAndBeatsTheEdges) {
   tracker.reset(0, view.world_from_reference);
   const Errors by_edges = resolved_errors(tracker.track({resolved_recording().events}));
   EXPECT_LT(3 * errors.mean, by_edges.mean);
+}
+
+TEST(IntensityTracker, FindsThresholdsThatNobodyStates) {
+  IntensityTracking tracking(best(), std::nullopt);
+  const Errors errors = resolved_errors(tracking->track({resolved_recording().events}));
+  EXPECT_LT(errors.mean, 0.15);
+  ASSERT_TRUE(tracking->found_contrast());
+  EXPECT_NEAR(tracking->found_contrast()->on, kRecordedContrast, 0.3 * kRecordedContrast);
+  EXPECT_NEAR(tracking->found_contrast()->off, kRecordedContrast, 0.3 * kRecordedContrast);
+  EXPECT_FALSE(IntensityTracking()->found_contrast());
 }
 
 TEST(IntensityTracker, PosesFollowOneAnotherInTime) {

@@ -14,7 +14,11 @@ constexpr float kOn = 0.2F;
 constexpr float kOff = 0.3F;
 constexpr std::size_t kPixel = 5;
 
-PixelLogIntensity some_pixels() { return {4, 3, 0.2, 0.3}; }
+PixelLogIntensity some_pixels() {
+  PixelLogIntensity pixels(4, 3);
+  pixels.set_thresholds(0.2, 0.3);
+  return pixels;
+}
 
 TEST(PixelLogIntensity, PixelsAreCountedRowByRow) {
   EXPECT_EQ(some_pixels().index({0, 3, 2, 1}), 11U);
