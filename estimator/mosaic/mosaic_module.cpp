@@ -127,7 +127,7 @@ void write(const std::filesystem::path& folder, const MosaicRun& run,
 }  // namespace
 
 RunSummary run_mosaic(const RunRequest& request) {
-  const auto config = read_config<MosaicConfig>(request);
+  auto config = read_config<MosaicConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
@@ -138,7 +138,8 @@ RunSummary run_mosaic(const RunRequest& request) {
     source = load_source(request, dataset);
   }
   const ContrastThresholds thresholds =
-      contrast_thresholds(config.contrast_on, config.contrast_off, dataset);
+      contrast_thresholds(config.contrast_on, config.contrast_off, dataset, source.events);
+  if (thresholds.is_found) adapt_to_found_thresholds(config.mosaic.equations);
   const RunRecord::Window window = window_of(request, seconds_from_ns(source.events.front().t_ns),
                                              seconds_from_ns(source.events.back().t_ns));
   MosaicRun run;
@@ -168,10 +169,11 @@ RunSummary run_mosaic(const RunRequest& request) {
   MethodClass method_class{{MethodInput::kEvents}, Processing::kBatch};
   if (source.imu) method_class.inputs.insert(MethodInput::kImu);
   writer.set_class(method_class);
+  if (thresholds.is_found) writer.set_contrast({thresholds.on, thresholds.off});
   writer.finish("mosaic", request, dataset, window, config.seed, config::print(config), timing);
 
-  return summary_of(timing,
-                    fmt::format("a mosaic of {} x {} px", run.panorama.width, run.panorama.height));
+  return summary_of(timing, fmt::format("a mosaic of {} x {} px{}", run.panorama.width,
+                                        run.panorama.height, found_text(thresholds)));
 }
 
 }  // namespace saccade

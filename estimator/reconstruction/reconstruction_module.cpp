@@ -20,9 +20,8 @@ namespace {
 
 std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dataset& dataset,
                                                const DepthSource& depth,
-                                               const ReconstructionConfig& config) {
-  const ContrastThresholds thresholds =
-      contrast_thresholds(config.contrast_on, config.contrast_off, dataset);
+                                               const ReconstructionConfig& config,
+                                               const ContrastThresholds& thresholds) {
   std::vector<ReconstructionWindow> windows;
   for (const ViewWindow& part :
        cut_windows(input.events(), input.trajectory, config.window, dataset.frames()))
@@ -33,17 +32,20 @@ std::vector<ReconstructionWindow> make_windows(const ViewInput& input, const Dat
 }  // namespace
 
 RunSummary run_reconstruction(const RunRequest& request) {
-  const auto config = read_config<ReconstructionConfig>(request);
+  auto config = read_config<ReconstructionConfig>(request);
   RunWriter writer(request);
 
   RunTiming timing;
   const Dataset dataset = Dataset::open(request.dataset);
   const ViewInput input = load_view_input(request, dataset, timing);
+  const ContrastThresholds thresholds =
+      contrast_thresholds(config.contrast_on, config.contrast_off, dataset, input.events());
+  if (thresholds.is_found) adapt_to_found_thresholds(config.equations);
   std::vector<ReconstructionWindow> windows;
   {
     const ScopedTimer clock(timing.io_s);
     const DepthSource depth(dataset, request.depth_from, input.trajectory, config.depth);
-    windows = make_windows(input, dataset, depth, config);
+    windows = make_windows(input, dataset, depth, config, thresholds);
   }
   const auto estimator = make_image_estimator(config, dataset.camera());
   const auto results = estimate_views<Reconstruction>(
@@ -63,10 +65,11 @@ RunSummary run_reconstruction(const RunRequest& request) {
   MethodClass method_class = class_of_views(request, config.window);
   if (!request.depth_from) method_class.inputs.insert(MethodInput::kDepth);
   writer.set_class(method_class);
+  if (thresholds.is_found) writer.set_contrast({thresholds.on, thresholds.off});
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
-  return summary_of(timing, fmt::format("{} views", windows.size()));
+  return summary_of(timing, fmt::format("{} views{}", windows.size(), found_text(thresholds)));
 }
 
 }  // namespace saccade

@@ -22,7 +22,9 @@ constexpr int kIterations = 60;
 constexpr float kOutlierSigmas = 3;
 /// Difference of neighbours from which on the prior is their absolute difference (total variation).
 constexpr float kHuberThreshold = 0.02F;
-/// As smoothness_sigma, across an occluding contour: next to no prior.
+/// EquationOptions::smoothness_sigma.
+constexpr double kSmoothnessSigma = 0.05;
+/// As that, across an occluding contour: next to no prior.
 constexpr double kContourSigma = 20;
 
 float value_at(const ImageF& image, const GridPoint& point) {
@@ -92,7 +94,8 @@ void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const 
 /// variation) by reweighting.
 void add_smoothness(IntensitySystem& system, const ReferenceGrid& grid,
                     const EquationOptions& options, const ImageF& image) {
-  const auto within = static_cast<float>(1 / (options.smoothness_sigma * options.smoothness_sigma));
+  const double sigma = options.smoothness_sigma.value_or(kSmoothnessSigma);
+  const auto within = static_cast<float>(1 / (sigma * sigma));
   const auto across = static_cast<float>(1 / (kContourSigma * kContourSigma));
   const auto add = [&](int i, int j, float shape) {
     if (j < 0) return;
@@ -163,8 +166,13 @@ void describe(config::Fields& fields, EquationOptions& options) {
   fields
       .value("smoothness_sigma", options.smoothness_sigma,
              "Standard deviation of the difference of neighbouring pixels where nothing else is "
-             "known, in log units; smaller values give smoother images.")
+             "known, in log units; smaller values give smoother images. ~ is 0.05, or 0.1 where "
+             "nobody states the contrast thresholds.")
       .range(1e-4, 1e4);
+}
+
+void adapt_to_found_thresholds(EquationOptions& options) {
+  if (!options.smoothness_sigma) options.smoothness_sigma = 2 * kSmoothnessSigma;
 }
 
 Reconstruction EquationReconstruction::solve(ObservationSource& source,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/config/fields.h"
 #include "estimator/reconstruction/image_solver.h"
 
@@ -18,15 +20,21 @@ struct EquationOptions {
       .no_event_stride = 4,
       .dense_events_per_px = 40,
       .expected_fraction = 0.4,
+      .first_event_sigma = 0.8,
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
   double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged
-  double smoothness_sigma = 0.05;
+  /// By default 0.05, or twice that where the thresholds are not known: then nor is their noise, and
+  /// a prior that is as firm flattens what few events say.
+  std::optional<double> smoothness_sigma;
   double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]
   double tolerance = 0.005;  ///< of the relative residual of conjugate gradients
 };
 
 void describe(config::Fields& fields, EquationOptions& options);
+
+/// Sets what depends on whether thresholds are stated and what the configuration leaves open.
+void adapt_to_found_thresholds(EquationOptions& options);
 
 /// Every event is one linear equation of the reference view's log intensity: at the instant of its
 /// k-th event a pixel observes it exactly, but for an offset of its own,

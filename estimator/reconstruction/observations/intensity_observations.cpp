@@ -91,6 +91,7 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
   const float contrast = (contrast_on_ + contrast_off_) / 2;
   const float expected = contrast * static_cast<float>(options.expected_fraction);
   kinds_[kEvent] = {sigma, 0, 0};
+  kinds_[kStart] = {contrast * static_cast<float>(std::max(options.first_event_sigma, 1e-3)), 0, 0};
   kinds_[kJumpOn] = {std::hypot(sigma, contrast_on_), 0, 0};
   kinds_[kJumpOff] = {std::hypot(sigma, contrast_off_), 0, 0};
   kinds_[kNoEvent] = {contrast / std::sqrt(3.0F), contrast, 0};
@@ -116,6 +117,7 @@ void ReprojectedObservations<Path>::observe(std::span<const Event> events,
   if (events.empty()) return;
   if (constrained_ == 0) {
     path_.start(world_from_camera, events.front().t_ns);
+    if (options_.first_event_sigma > 0) note_starts();
     add_no_event_constraints(observations);
   }
   const TimeNs last_ns = events.back().t_ns;
@@ -131,6 +133,16 @@ void ReprojectedObservations<Path>::observe(std::span<const Event> events,
         path_.moved_px(constrained_from_reference_) >= 0.9 * options_.no_event_spacing_px)
       add_no_event_constraints(observations);
   }
+}
+
+template <class Path>
+void ReprojectedObservations<Path>::note_starts() {
+  for (int y = 0; y < pixels_.height(); ++y)
+    for (int x = 0; x < pixels_.width(); ++x)
+      if (const auto reprojection = path_.at_end(x, y)) {
+        pixels_(x, y).start_x = reprojection->x;
+        pixels_(x, y).start_y = reprojection->y;
+      }
 }
 
 template <class Path>
@@ -152,6 +164,9 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
                               IntensityObservation::tag(pixel.run, kEvent)});
     pixel.events = 0;
   }
+  if (pixel.last_polarity == 0 && pixel.start_x != kNowhere)
+    observations.push_back(
+        {pixel.start_x, pixel.start_y, 0, IntensityObservation::tag(pixel.run, kStart)});
   const Kind kind = !is_jump ? kEvent : is_on ? kJumpOn : kJumpOff;
   observations.push_back({reprojection.x, reprojection.y, pixel.log_intensity,
                           IntensityObservation::tag(pixel.run, kind)});

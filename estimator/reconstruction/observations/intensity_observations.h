@@ -57,6 +57,10 @@ struct ObservationOptions {
   /// After its last event a pixel's log intensity goes on beyond it: expected by this fraction of a
   /// threshold, since what passes a pixel most often are edges.
   double expected_fraction = 0.5;
+  /// A pixel's first event lies a threshold above or below what it saw at the start, with this
+  /// standard deviation in thresholds: how far it had come since an event before is not known. 0: the
+  /// first event says nothing.
+  double first_event_sigma = 0;
   ReprojectionOptions reprojection{.redraw_motion_px = 4};
 };
 
@@ -103,6 +107,7 @@ class ReprojectedObservations : public ObservationSource {
   /// Indices of kinds_.
   enum Kind : std::uint32_t {
     kEvent,
+    kStart,
     kJumpOn,
     kJumpOff,
     kNoEvent,
@@ -111,6 +116,8 @@ class ReprojectedObservations : public ObservationSource {
     kKinds
   };
 
+  static constexpr float kNowhere = -1;
+
   struct Pixel {
     float log_intensity = 0;               ///< sum of p C of its events
     float inverse_depth = 0;               ///< of the last reprojection; 0: none so far
@@ -118,10 +125,12 @@ class ReprojectedObservations : public ObservationSource {
     float observed_x = 0, observed_y = 0;  ///< reprojection at its last observation
     TimeNs t_ns = 0;                       ///< of the last event
     std::uint32_t run = 0;
-    int events = 0;         ///< of its run
-    int last_polarity = 0;  ///< of the last event, 0: none so far
+    int events = 0;                                ///< of its run
+    int last_polarity = 0;                         ///< of the last event, 0: none so far
+    float start_x = kNowhere, start_y = kNowhere;  ///< reprojection before all events
   };
 
+  void note_starts();
   void add_event(const Event& event, const Reprojection& reprojection,
                  std::vector<IntensityObservation>& observations);
   void add_no_event_constraints(std::vector<IntensityObservation>& observations);

@@ -8,8 +8,10 @@
 
 #include "core/io/dataset/dataset.h"
 #include "core/io/images/exr_file.h"
+#include "core/io/run/run_record.h"
 #include "core/io/run/view_list.h"
 #include "core/process/parallel.h"
+#include "estimator/reconstruction/contrast_thresholds.h"
 #include "estimator/registry.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -137,6 +139,32 @@ TEST_F(ReconstructionModule, TakesTheDepthOfARun) {
   (void)run_module("reconstruct", run);
   EXPECT_GT(correlation("with_depth"), 0.75);
   EXPECT_THAT(read_file(path("with_depth") / "run.yaml"), HasSubstr("depth_from"));
+}
+
+TEST_F(ReconstructionModule, WithoutStatedThresholdsTheEventsAreBalanced) {
+  const fs::path bare = path("unstated");
+  fs::create_directories(bare);
+  fs::copy(dataset(), bare, fs::copy_options::recursive);
+  fs::remove(bare / "dataset.yaml");
+  const Dataset recording = Dataset::open(bare);
+  Events events;
+  for (int i = 0; i < 30000; ++i)
+    events.push_back({i, 0, 0, static_cast<std::int8_t>(i % 3 == 0 ? 1 : -1)});
+  const ContrastThresholds found = contrast_thresholds({}, {}, recording, events);
+  EXPECT_TRUE(found.is_found);
+  EXPECT_NEAR(found.on / found.off, 2, 0.02);
+  const ContrastThresholds one = contrast_thresholds({}, 0.3, recording, events);
+  EXPECT_NEAR(one.on, 0.6, 0.006);
+  EXPECT_DOUBLE_EQ(one.off, 0.3);
+  EXPECT_FALSE(contrast_thresholds(0.1, 0.3, recording, events).is_found);
+  EXPECT_NEAR(contrast_thresholds({}, {}, recording, {}).off, 0.2, 1e-12);
+
+  RunRequest run = request("found", kBest);
+  run.dataset = bare;
+  const RunSummary summary = run_reconstruction(run);
+  EXPECT_THAT(summary.found, HasSubstr("by the balance of the events"));
+  EXPECT_TRUE(read_run_record(path("found") / "run.yaml").contrast);
+  EXPECT_GT(correlation("found"), 0.8);
 }
 
 TEST_F(ReconstructionModule, BadInputIsAnErrorThatNamesItsSource) {

@@ -42,5 +42,32 @@ TEST(SurfaceObservations, ConstrainsPixelsWithoutEventsInTurn) {
   }
 }
 
+TEST(SurfaceObservations, TheFirstEventIsAThresholdFromWhatThePixelSawAtTheStart) {
+  const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
+  const ImageF reference(24, 18, 1);
+  const Trajectory motion(
+      {{0, Rigid3()}, {0.1, Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.2, 0, 0))}});
+  const Events events{{0, 1, 1, 1}, {50'000'000, 12, 9, -1}, {100'000'000, 12, 9, -1}};
+  ObservationOptions options;
+  options.no_event_constraints = false;
+  options.first_event_sigma = 0.8;
+  SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.3}, options);
+  std::vector<IntensityObservation> observations;
+  source.observe(events, motion, observations);
+  // Of the first pixel two, of the other three, its start at its place before the motion.
+  ASSERT_EQ(observations.size(), 5U);
+  const IntensityObservation& start = observations[2];
+  EXPECT_FLOAT_EQ(start.x, 12);
+  EXPECT_FLOAT_EQ(start.y, 9);
+  EXPECT_FLOAT_EQ(start.log_intensity, 0);
+  EXPECT_FLOAT_EQ(source.kinds()[start.kind()].sigma, 0.8F * 0.25F);
+  EXPECT_NEAR(observations[3].x, 14, 0.01);
+  EXPECT_FLOAT_EQ(observations[3].log_intensity, -0.3F);
+  EXPECT_EQ(observations[3].run(), start.run());
+  EXPECT_FLOAT_EQ(observations[4].log_intensity, -0.6F);
+}
+
 }  // namespace
 }  // namespace saccade
