@@ -51,11 +51,16 @@ void show(const SweepVerbOptions& options, const SweepSummary& summary, bool gen
 
 void sweep(const SweepVerbOptions& options) {
   set_progress_quiet(options.quiet);
-  const SweepConfig config = load(options);
+  SweepConfig config = load(options);
   const std::unique_ptr<Launcher> launcher =
       make_launcher(options.launcher, {{}, options.output, options.slurm});
   if (options.print_config) {
     fmt::print("{}", config::print_documented(config));
+    return;
+  }
+  for (const std::string& message : leave_out_absent(config)) fmt::print(stderr, "{}\n", message);
+  if (config.datasets.empty() && !config.generate) {
+    fmt::print("{}: none of its datasets is here, nothing is run\n", options.file);
     return;
   }
   if (options.output.empty()) throw InputError("-o", "name the folder of the sweep: -o DIR");

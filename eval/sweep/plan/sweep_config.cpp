@@ -154,8 +154,12 @@ bool SweepConfiguration::runs_over(const std::string& dataset) const {
 void describe(config::Fields& fields, SweepDataset& dataset) {
   fields.value("name", dataset.name,
                "Name of the dataset in tables and folders. Default: that of the folder or file.");
-  fields.path("path", dataset.path, "A dataset folder that exists. Excludes 'simulate'.")
-      .must_exist();
+  fields.value("optional", dataset.is_optional,
+               "Whether the sweep goes on without this dataset where 'path' does not exist, as of "
+               "recordings that not everybody has.");
+  config::Rule path = fields.path("path", dataset.path, "A dataset folder. Excludes 'simulate'.");
+  if (!dataset.is_optional) path.must_exist();
+  fields.expect(!dataset.is_optional || dataset.path, "optional", "belongs to 'path'");
   fields.path("simulate", dataset.simulate, "A simulation configuration that makes the dataset.")
       .must_exist();
   fields
@@ -336,6 +340,34 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   check_truths(fields, sweep);
   check_configurations(fields, sweep);
   check_expected(fields, sweep);
+}
+
+std::vector<std::string> leave_out_absent(SweepConfig& sweep) {
+  std::vector<std::string> messages;
+  std::set<std::string> absent;
+  for (const SweepDataset& dataset : sweep.datasets)
+    if (dataset.is_optional && !std::filesystem::exists(*dataset.path)) {
+      absent.insert(dataset.name);
+      messages.push_back(fmt::format("{} is left out: {} does not exist", dataset.name,
+                                     dataset.path->lexically_normal().string()));
+    }
+  std::erase_if(sweep.datasets, [&](const SweepDataset& d) { return absent.contains(d.name); });
+  // An empty list of datasets would mean all of them.
+  const auto is_of_absent_alone = [&](auto& one) {
+    const bool had_some = !one.datasets.empty();
+    std::erase_if(one.datasets, [&](const std::string& name) { return absent.contains(name); });
+    return had_some && one.datasets.empty();
+  };
+  std::set<std::string> left_out;
+  std::erase_if(sweep.configurations, [&](SweepConfiguration& configuration) {
+    const bool is_left_out = is_of_absent_alone(configuration);
+    if (is_left_out) left_out.insert(configuration.name);
+    return is_left_out;
+  });
+  std::erase_if(sweep.expected, [&](ExpectedMetric& expected) {
+    return is_of_absent_alone(expected) || left_out.contains(expected.configuration);
+  });
+  return messages;
 }
 
 }  // namespace saccade

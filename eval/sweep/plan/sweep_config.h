@@ -17,6 +17,7 @@ namespace saccade {
 struct SweepDataset {
   std::string name;
   std::optional<std::filesystem::path> path;
+  bool is_optional = false;  ///< the sweep goes on without it where `path` does not exist
   std::optional<std::filesystem::path> simulate;
   std::optional<std::filesystem::path> adapter;  ///< runs over `against`
   std::string against;  ///< earlier dataset whose events are the truth of these; empty: none
@@ -84,5 +85,9 @@ struct SweepConfig {
 };
 
 void describe(config::Fields& fields, SweepConfig& sweep);
+
+/// Removes the optional datasets that do not exist, with the configurations and expected metrics of
+/// theirs alone. Returns a sentence for each.
+std::vector<std::string> leave_out_absent(SweepConfig& sweep);
 
 }  // namespace saccade

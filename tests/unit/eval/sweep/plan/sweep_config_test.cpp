@@ -172,5 +172,36 @@ TEST(SweepConfig, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error(runs + "repeat: 0\n"), HasSubstr("repeat"));
 }
 
+TEST(SweepConfig, GoesOnWithoutOptionalDatasetsThatAreNotHere) {
+  const TemporaryFolder folder;
+  SweepConfig sweep = read_sweep(folder,
+                                 "datasets:\n"
+                                 "  - {name: here, path: recorded/, optional: true}\n"
+                                 "  - {name: gone, path: nowhere/, optional: true}\n"
+                                 "configurations:\n"
+                                 "  - {name: all}\n"
+                                 "  - {name: both, datasets: [here, gone]}\n"
+                                 "  - {name: one, datasets: [gone]}\n"
+                                 "expected:\n"
+                                 "  - {configuration: one, metric: success, at_least: 1}\n"
+                                 "  - {configuration: all, datasets: [gone], metric: success, "
+                                 "at_least: 1}\n"
+                                 "  - {configuration: all, metric: success, at_least: 1}\n");
+  const auto messages = leave_out_absent(sweep);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_THAT(messages[0], HasSubstr("gone is left out: "));
+  EXPECT_THAT(sweep.dataset_names(), ElementsAre("here"));
+  ASSERT_EQ(sweep.configurations.size(), 2U);
+  EXPECT_TRUE(sweep.configurations[0].datasets.empty());
+  EXPECT_THAT(sweep.configurations[1].datasets, ElementsAre("here"));
+  ASSERT_EQ(sweep.expected.size(), 1U);
+  EXPECT_TRUE(sweep.expected[0].datasets.empty());
+  EXPECT_THAT(
+      error_of([&] {
+        return read_sweep(folder, "datasets: [{simulate: walls.yaml, optional: true}]").title;
+      }),
+      HasSubstr("belongs to 'path'"));
+}
+
 }  // namespace
 }  // namespace saccade
