@@ -145,8 +145,9 @@ std::vector<const MessageTopic*> BagFile::topics() const {
   return list;
 }
 
-void BagFile::fail(const Message& message, const std::string& problem) const {
-  bytes_.fail(message.place, "in the record that begins here: " + problem);
+InputError BagFile::error_in(const Message& message, const std::string& problem) const {
+  return {fmt::format("{}:byte {}", name(), message.place),
+          "in the record that begins here: " + problem};
 }
 
 }  // namespace saccade

@@ -159,8 +159,9 @@ std::vector<const MessageTopic*> McapFile::topics() const {
   return list;
 }
 
-void McapFile::fail(const Message& message, const std::string& problem) const {
-  bytes_.fail(message.place, "in the record that begins here: " + problem);
+InputError McapFile::error_in(const Message& message, const std::string& problem) const {
+  return {fmt::format("{}:byte {}", name(), message.place),
+          "in the record that begins here: " + problem};
 }
 
 }  // namespace saccade

@@ -65,7 +65,8 @@ class McapFile final : public MessageFile {
   [[nodiscard]] const std::string& name() const override { return bytes_.name(); }
   [[nodiscard]] std::uint64_t size() const override { return bytes_.size(); }
   /// At the record, or at the chunk that holds it.
-  [[noreturn]] void fail(const Message& message, const std::string& problem) const override;
+  [[nodiscard]] InputError error_in(const Message& message,
+                                    const std::string& problem) const override;
 
  private:
   struct Record {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/event.h"
 #include "core/io/files/byte_reader.h"
 
@@ -45,8 +46,12 @@ class MessageFile {
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// Of the file [bytes].
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// InputError at the message: "FILE:byte 5", "FILE:message 5".
-  [[noreturn]] virtual void fail(const Message& message, const std::string& problem) const = 0;
+  /// What is thrown for a message: at "FILE:byte 5" or "FILE:message 5".
+  [[nodiscard]] virtual InputError error_in(const Message& message,
+                                            const std::string& problem) const = 0;
+  [[noreturn]] void fail(const Message& message, const std::string& problem) const {
+    throw error_in(message, problem);
+  }
 };
 
 /// A bag of ROS 1, an MCAP file, a SQLite file of rosbag2 or its folder with metadata.yaml.

@@ -106,9 +106,14 @@ void Rosbag2File::read_topics() {
 }
 
 std::optional<Message> Rosbag2File::next() {
+  // Another step behind the last row would begin anew.
+  if (!database_->messages) return std::nullopt;
   sqlite3_stmt* row = database_->messages.get();
   const int code = sqlite3_step(row);
-  if (code == SQLITE_DONE) return std::nullopt;
+  if (code == SQLITE_DONE) {
+    database_->messages.reset();
+    return std::nullopt;
+  }
   if (code != SQLITE_ROW) fail_of_sqlite();
   Message message;
   message.place = static_cast<std::uint64_t>(sqlite3_column_int64(row, 0));
@@ -137,8 +142,8 @@ std::vector<const MessageTopic*> Rosbag2File::topics() const {
 
 std::uint64_t Rosbag2File::size() const { return std::filesystem::file_size(name_); }
 
-void Rosbag2File::fail(const Message& message, const std::string& problem) const {
-  throw InputError(fmt::format("{}:message {}", name_, message.place), problem);
+InputError Rosbag2File::error_in(const Message& message, const std::string& problem) const {
+  return {fmt::format("{}:message {}", name_, message.place), problem};
 }
 
 bool is_rosbag2_folder(const std::filesystem::path& folder) {
@@ -184,9 +189,9 @@ std::uint64_t Rosbag2Folder::size() const {
   return size;
 }
 
-void Rosbag2Folder::fail(const Message& message, const std::string& problem) const {
+InputError Rosbag2Folder::error_in(const Message& message, const std::string& problem) const {
   SACCADE_CHECK(current_ < files_.size());
-  files_[current_]->fail(message, problem);
+  return files_[current_]->error_in(message, problem);
 }
 
 }  // namespace saccade

@@ -26,7 +26,8 @@ class Rosbag2File final : public MessageFile {
   [[nodiscard]] std::vector<const MessageTopic*> topics() const override;
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::uint64_t size() const override;
-  [[noreturn]] void fail(const Message& message, const std::string& problem) const override;
+  [[nodiscard]] InputError error_in(const Message& message,
+                                    const std::string& problem) const override;
 
  private:
   struct Database;
@@ -51,7 +52,8 @@ class Rosbag2Folder final : public MessageFile {
   [[nodiscard]] std::vector<const MessageTopic*> topics() const override;
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::uint64_t size() const override;
-  [[noreturn]] void fail(const Message& message, const std::string& problem) const override;
+  [[nodiscard]] InputError error_in(const Message& message,
+                                    const std::string& problem) const override;
 
  private:
   std::string name_;

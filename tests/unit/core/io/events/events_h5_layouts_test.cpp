@@ -75,12 +75,14 @@ TEST_F(H5Layouts, M3edHasTwoCamerasWithTheirResolution) {
   const Columns left(events_);
   const Events others = some_events(100, 5'000'000);
   const Columns right(others);
-  H5Content content(file_);
-  for (const auto& [side, columns] : {std::pair{"left", &left}, std::pair{"right", &right}}) {
-    const std::string group = std::string("/prophesee/") + side;
-    content.column(group + "/x", columns->x).column(group + "/y", columns->y);
-    content.column(group + "/p", columns->signed_p).column(group + "/t", columns->t);
-    content.column(group + "/calib/resolution", std::vector<std::int64_t>{240, 180});
+  {
+    H5Content content(file_);
+    for (const auto& [side, columns] : {std::pair{"left", &left}, std::pair{"right", &right}}) {
+      const std::string group = std::string("/prophesee/") + side;
+      content.column(group + "/x", columns->x).column(group + "/y", columns->y);
+      content.column(group + "/p", columns->signed_p).column(group + "/t", columns->t);
+      content.column(group + "/calib/resolution", std::vector<std::int64_t>{240, 180});
+    }
   }
   EXPECT_EQ(read_events(file_, {}), events_);
   EXPECT_EQ(read_events(file_.string() + "!/prophesee/right", {}), others);
