@@ -343,10 +343,11 @@ void EventH5Reader::State::read(const Column& column, hid_t type, Range range,
     H5Tinsert(field, column.field.c_str(), 0, type);
     type = field;
   }
-  if (H5Dread(column.dataset, type, memory, space, H5P_DEFAULT, values.data()) < 0)
-    fail_at(column.path.c_str(), range.begin,
-            "cannot be read: damaged, or its compression filter is not installed (HDF5: " +
-                h5_reason() + ")" + h5_filter_hint(column.dataset));
+  if (H5Dread(column.dataset, type, memory, space, H5P_DEFAULT, values.data()) >= 0) return;
+  const std::string reason = h5_reason();  // before the hint, which asks HDF5 other things
+  fail_at(column.path.c_str(), range.begin,
+          "cannot be read: damaged, or its compression filter is not installed (HDF5: " + reason +
+              ")" + h5_filter_hint(column.dataset));
 }
 
 /// Seconds as whole microseconds, which is what cameras measure.

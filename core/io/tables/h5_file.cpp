@@ -26,6 +26,11 @@ void H5File::fail(const std::string& path, const std::string& problem) const {
   throw InputError(location(path), problem);
 }
 
+void H5File::fail_to_read(const std::string& path, hid_t dataset) const {
+  const std::string reason = h5_reason();  // before the hint, which asks HDF5 other things
+  fail(path, "cannot be read (HDF5: " + reason + ")" + h5_filter_hint(dataset));
+}
+
 bool H5File::has(const std::string& path) const {
   const H5Lock lock;
   return has_h5_link(file_, path);
@@ -58,7 +63,7 @@ std::vector<double> H5File::numbers(const std::string& path) const {
   std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
   if (!values.empty() &&
       H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    fail(path, "cannot be read (HDF5: " + h5_reason() + ")" + h5_filter_hint(set));
+    fail_to_read(path, set);
   return values;
 }
 
@@ -98,8 +103,7 @@ std::vector<T> H5File::slice(const std::string& path, std::uint64_t index, hid_t
   const H5Handle memory = {H5Screate_simple(1, &count, nullptr), H5Sclose};
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
   if (H5Dread(set, type, memory, space, H5P_DEFAULT, values.data()) < 0)
-    fail(fmt::format("{}[{}]", path, index),
-         "cannot be read (HDF5: " + h5_reason() + ")" + h5_filter_hint(set));
+    fail_to_read(fmt::format("{}[{}]", path, index), set);
   return values;
 }
 

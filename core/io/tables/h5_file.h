@@ -32,6 +32,7 @@ class H5File {
   [[noreturn]] void fail(const std::string& path, const std::string& problem) const;
 
  private:
+  [[noreturn]] void fail_to_read(const std::string& path, hid_t dataset) const;
   [[nodiscard]] H5Handle dataset(const std::string& path) const;
   template <class T>
   [[nodiscard]] std::vector<T> slice(const std::string& path, std::uint64_t index,
