@@ -68,7 +68,7 @@ std::string convert_poses(const PoseConversion& conversion) {
   if (is_text && is_colmap_images(conversion.input)) return convert_colmap(conversion);
   if (!conversion.dataset.empty())
     throw InputError("--data", "belongs to poses of COLMAP (images.txt) that become a .txt");
-  if (is_text && conversion.input.extension() == ".csv") return convert_csv(conversion);
+  if (is_text && is_csv_trajectory(conversion.input)) return convert_csv(conversion);
   if (conversion.output.extension() == ".json" && fs::is_directory(conversion.input))
     return convert_to_nerfstudio(conversion);
   if (conversion.output.extension().empty() && is_run_folder(conversion.input))

@@ -93,7 +93,7 @@ std::span<const Event> EventStream::next() {
     if (is_over_) break;
     const TimeNs last_ns = events_.back().t_ns;
     while (given_ > 0 && events_[given_ - 1].t_ns == last_ns) --given_;
-    if (given_ == 0 && events_.size() > kMostTies) return next_of_run();
+    if (given_ == 0 && events_.size() > TieRun::kMostHeld) return next_of_run();
   }
   const std::span<Event> complete = std::span(events_).first(given_);
   sort_ties(complete);

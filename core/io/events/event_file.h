@@ -70,12 +70,10 @@ constexpr std::size_t kEventBlock = std::size_t{1} << 16U;
 /// file.
 class EventStream {
  public:
-  static constexpr std::size_t kMostTies = std::size_t{1} << 21U;
-
   explicit EventStream(const std::filesystem::path& file, SensorSize size = {},
                        TimeWindow window = {});
   /// The next events, valid until the next call; none at the end. Those of equal time come
-  /// together, unless there are more than kMostTies: then in several calls, still in EventOrder.
+  /// together, unless there are more than TieRun::kMostHeld: then in several calls, still in EventOrder.
   [[nodiscard]] std::span<const Event> next();
   [[nodiscard]] SensorSize sensor() const { return reader_->sensor(); }
   [[nodiscard]] TimestampUnit unit() const { return reader_->unit(); }

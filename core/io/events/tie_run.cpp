@@ -28,6 +28,7 @@ void TieRun::add(std::span<const Event> events) {
   for (; known != counts_.end(); ++known) append(*known);
   merged.shrink_to_fit();
   counts_ = std::move(merged);
+  size_ += events.size();
 }
 
 void TieRun::take(std::size_t most, std::vector<Event>& events) {
@@ -38,6 +39,7 @@ void TieRun::take(std::size_t most, std::vector<Event>& events) {
     events.insert(events.end(), taken, event_of_tie_key(count.key, t_ns_));
     count.events -= taken;
     most -= taken;
+    size_ -= taken;
     if (count.events == 0) ++next_;
   }
   if (next_ < counts_.size()) return;

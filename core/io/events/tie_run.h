@@ -23,6 +23,9 @@ namespace saccade {
 /// with each polarity, and gives them out in EventOrder.
 class TieRun {
  public:
+  /// A run that is longer is counted rather than held.
+  static constexpr std::size_t kMostHeld = std::size_t{1} << 21U;
+
   /// More events, all of the same time (contract).
   void add(std::span<const Event> events);
   /// There will be no more; they can be taken.
@@ -30,6 +33,10 @@ class TieRun {
   [[nodiscard]] bool is_complete() const { return is_complete_; }
   /// Whether none is left.
   [[nodiscard]] bool empty() const { return counts_.empty(); }
+  /// Their time, where there are some.
+  [[nodiscard]] TimeNs t_ns() const { return t_ns_; }
+  /// How many are left.
+  [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Appends the next events, at most `most`; after the last one the run may be used anew.
   void take(std::size_t most, std::vector<Event>& events);
 
@@ -42,6 +49,7 @@ class TieRun {
   TimeNs t_ns_ = 0;
   std::vector<Count> counts_;  ///< by their keys
   std::size_t next_ = 0;
+  std::uint64_t size_ = 0;
   bool is_complete_ = false;
 };
 

@@ -22,8 +22,12 @@ class MessageEventWriter final : public EventWriter {
         rounded_(unit) {}
 
   void append(std::span<const Event> events) override {
-    rounded_.add(events);
-    write_complete();
+    while (!events.empty()) {
+      const std::span<const Event> part = events.first(std::min(events.size(), kEventBlock));
+      events = events.subspan(part.size());
+      rounded_.add(part);
+      write_complete();
+    }
   }
 
   void close() override {
@@ -37,9 +41,11 @@ class MessageEventWriter final : public EventWriter {
 
  private:
   void write_complete() {
-    const std::span<const Event> events = rounded_.complete();
-    messages_.append(events);
-    rounded_.drop(events.size());
+    while (!rounded_.complete().empty()) {
+      const std::span<const Event> events = rounded_.complete();
+      messages_.append(events);
+      rounded_.drop(events.size());
+    }
   }
 
   std::unique_ptr<MessageFileWriter> writer_;
