@@ -33,11 +33,12 @@ enum class McapOp : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
-/// The fields of a record, one after the other; CompressionError-like problems are thrown as
-/// McapError, to which the reader adds the place.
+/// What a record is refused for; the reader adds where it stands.
 struct McapError {
   std::string problem;
 };
+
+/// The fields of a record from front to back. What lies behind its end is a McapError.
 class McapFields {
  public:
   explicit McapFields(std::span<const std::byte> bytes) : rest_(bytes) {}

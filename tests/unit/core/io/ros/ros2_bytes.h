@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 #include <zlib.h>
+#include <zstd.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -75,12 +76,19 @@ inline std::string mcap_message(std::uint16_t channel, const std::string& data) 
       0x05, bytes_of(channel, std::uint32_t{0}, std::uint64_t{0}, std::uint64_t{0}) + data);
 }
 
+inline std::string zstd_frame(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 3));
+  return packed;
+}
+
 inline std::string mcap_chunk(const std::string& compression, const std::string& records) {
   std::string packed = records;
   if (compression == "lz4") {
     const auto bytes = pack_lz4(std::as_bytes(std::span(records)));
     packed.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }
+  if (compression == "zstd") packed = zstd_frame(records);
   const auto checksum = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(records.data()), static_cast<uInt>(records.size())));
   return mcap_record(0x06, bytes_of(std::uint64_t{0}, std::uint64_t{0},
