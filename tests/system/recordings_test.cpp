@@ -27,9 +27,11 @@ TEST(Recordings, AnAedat4BecomesADatasetAndARecordingOfRos) {
   for (const char* name : {"r.mcap", "r.bag"}) {
     const std::string file = (folder.path() / name).string();
     saccade_ok({"convert", data, file});
-    saccade_ok({"convert", file, data + name});
+    const std::string back =
+        (folder.path() / fs::path(name).extension().string().substr(1)).string();
+    saccade_ok({"convert", file, back});
     const Dataset before = Dataset::open(data);
-    const Dataset after = Dataset::open(data + name);
+    const Dataset after = Dataset::open(back);
     EXPECT_EQ(after.load_events(), before.load_events());
     ASSERT_EQ(after.frames().size(), 4U);
     EXPECT_EQ(after.load_frame(3), before.load_frame(3));
