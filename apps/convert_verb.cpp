@@ -8,14 +8,17 @@
 
 #include "apps/common_options.h"
 #include "apps/convert_grids.h"
+#include "apps/convert_poses.h"
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/event_file.h"
 #include "core/io/events/event_formats.h"
+#include "core/io/export/ros_export.h"
 #include "core/io/import/public_sequence.h"
-#include "core/io/import/ros_bag.h"
+#include "core/io/import/ros_recording.h"
+#include "core/io/ros/message_writer.h"
 #include "core/process/progress.h"
 
 namespace saccade {
@@ -26,6 +29,8 @@ struct ConvertOptions {
   std::filesystem::path output;
   std::string unit;    ///< empty: the coarsest that keeps every time
   std::string format;  ///< empty: the first of the ending
+  std::filesystem::path calibration;
+  std::filesystem::path dataset;  ///< whose frames COLMAP's pictures are
   ImportWindow window;
   GridRequest grids;
   CommonOptions common;
@@ -38,7 +43,7 @@ struct EventInput {
 };
 
 EventInput find_events(const std::filesystem::path& input) {
-  if (!std::filesystem::is_directory(input)) return {input, {}};
+  if (!std::filesystem::is_directory(input) || is_ros_recording(input)) return {input, {}};
   const Dataset dataset = Dataset::open(input);
   if (dataset.events_file().empty())
     throw InputError(input.string(), "holds no events (" + event_file_names() + ")");
@@ -83,22 +88,33 @@ std::uint64_t convert_events(const ConvertOptions& options) {
 void convert_sequence(const PublicSequence& sequence, const ConvertOptions& options) {
   if (!options.unit.empty())
     throw InputError("--unit", "belongs to event files; a dataset keeps the sequence's unit");
-  const std::uint64_t events = write_as_dataset(sequence, options.output, options.window);
+  const ImportCounts counts = write_as_dataset(sequence, options.output, options.window);
   if (options.common.quiet) return;
-  fmt::print("{}: {} events of a {} sequence\n", options.output.string(), events, sequence.layout);
-  if (sequence.camera_residual_px > 0)
+  fmt::print("{}: {} of {}\n", options.output.string(), counts.text(), sequence.layout);
+  if (sequence.camera.residual_px > 0)
     fmt::print("the lens model was replaced by one that differs by at most {:.2g} px\n",
-               sequence.camera_residual_px);
+               sequence.camera.residual_px);
 }
 
-void convert_bag(const ConvertOptions& options) {
+void convert_ros(const ConvertOptions& options) {
   if (!options.unit.empty())
-    throw InputError("--unit", "belongs to event files; a dataset keeps the unit of the bag, ns");
-  const BagCounts counts = write_bag_as_dataset(options.input, options.output, options.window);
-  if (options.common.quiet) return;
-  fmt::print("{}: {} events, {} frames, {} inertial samples and {} poses of a bag\n",
-             options.output.string(), counts.events, counts.frames, counts.imu_samples,
-             counts.poses);
+    throw InputError("--unit",
+                     "belongs to event files; a dataset keeps the unit of the recording, ns");
+  const ImportCounts counts =
+      write_ros_recording(options.input, options.output, options.window, options.calibration);
+  if (!options.common.quiet)
+    fmt::print("{}: {} of a recording of ROS\n", options.output.string(), counts.text());
+}
+
+/// A folder whose events alone would be less than what it holds.
+bool is_dataset_folder(const std::filesystem::path& input) {
+  return std::filesystem::is_directory(input) && !is_ros_recording(input);
+}
+
+void export_ros(const ConvertOptions& options) {
+  if (!options.unit.empty()) throw InputError("--unit", "recordings of ROS hold times in ns");
+  const ImportCounts counts = write_ros_export(options.input, options.output);
+  if (!options.common.quiet) fmt::print("{}: {}\n", options.output.string(), counts.text());
 }
 
 void convert(const ConvertOptions& options) {
@@ -113,19 +129,29 @@ void convert(const ConvertOptions& options) {
     if (!options.common.quiet) fmt::print("{}", text);
     return;
   }
+  if (const std::string text = convert_poses({options.input, options.output, options.dataset});
+      !text.empty()) {
+    if (!options.common.quiet) fmt::print("{}", text);
+    return;
+  }
   if (find_written_format(options.output) == nullptr) {
-    if (is_bag(options.input)) return convert_bag(options);
-    if (std::filesystem::is_directory(options.input))
-      if (const auto sequence = open_public_sequence(options.input))
-        return convert_sequence(*sequence, options);
+    if (is_ros_recording(options.input)) return convert_ros(options);
+    if (const auto sequence = open_public_sequence(options.input, options.calibration))
+      return convert_sequence(*sequence, options);
     throw InputError(
         options.output.string(),
         "cannot tell the format from the ending; valid endings: " + event_file_endings(true) +
-            "; a folder, where IN is a bag or a sequence of DSEC or TUM-VIE (a folder in the "
-            "layout of the Event Camera Dataset is read as it is)");
+            "; .json for nerfstudio, where IN is a dataset or a run; a folder, where IN is a "
+            "recording of "
+            "ROS, an AEDAT4 file, a run, or a sequence of DSEC, TUM-VIE, M3ED, MVSEC, VECtor, EDS "
+            "or "
+            "EuRoC (a folder in the layout of the Event Camera Dataset is read as it is)");
   }
-  if (options.window.start_s != 0 || options.window.duration_s)
-    throw InputError("--start-s", "belongs to the conversion of whole sequences");
+  if (options.window.start_s != 0 || options.window.duration_s || !options.calibration.empty())
+    throw InputError(options.calibration.empty() ? "--start-s" : "--calibration",
+                     "belongs to the conversion of whole sequences");
+  if (is_written_recording(options.output) && is_dataset_folder(options.input))
+    return export_ros(options);
   const std::uint64_t count = convert_events(options);
   if (!options.common.quiet) fmt::print("{}: {} events\n", options.output.string(), count);
 }
@@ -148,19 +174,25 @@ void add_grid_options(CLI::App& verb, GridRequest& request) {
 
 void add_convert_verb(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* verb = command.add_subcommand(
-      "convert",
-      "Convert events between formats or into grids, or a public sequence into a dataset.");
+  CLI::App* verb = command.add_subcommand("convert",
+                                          "Convert events between formats or into grids, "
+                                          "recordings and public sequences into datasets, "
+                                          "datasets into recordings of ROS, and poses.");
   verb->add_option(
           "IN", options->input,
-          "Event file of any format (docs/formats.md), recognised by its content; dataset folder; "
-          "or folder of a sequence of DSEC or TUM-VIE. BAG!/topic names one of several topics.")
+          "Event file of any format (docs/formats.md), recognised by its content; dataset or run "
+          "folder; sequence of DSEC, TUM-VIE, M3ED, MVSEC, VECtor, EDS or EuRoC; or poses of "
+          "COLMAP. "
+          "BAG!/topic names one of several topics, FILE.h5!/group one of several cameras.")
       ->required();
   verb->add_option(
           "OUT", options->output,
           "Event file, whose extension selects the format (" + event_file_endings(true) +
-              "); file of grids (.h5, .npy) or, for event frames, a folder of pictures; or the "
-              "dataset folder for a sequence or a bag.")
+              "; of a whole dataset a .bag or .mcap holds everything); file of grids (.h5, .npy) "
+              "or, "
+              "for event frames, a folder of pictures; the dataset folder for a sequence or a "
+              "recording; or poses (.txt, .json of nerfstudio, a folder for "
+              "rpg_trajectory_evaluation).")
       ->required();
   verb->add_option(
           "--unit", options->unit,
@@ -175,6 +207,15 @@ void add_convert_verb(CLI::App& command) {
       ->check(number_between(0, 1e9));
   verb->add_option("--duration-s", options->window.duration_s, "Length of that part in seconds.")
       ->check(positive_number());
+  verb->add_option(
+          "--calibration", options->calibration,
+          "Calibration of the camera for a sequence or bag that holds none, or in place of "
+          "its own: calib.txt, a camchain of Kalibr (CHAIN.yaml!/cam1 names one of its "
+          "cameras), or a camera_info of ROS.")
+      ->type_name("FILE");
+  verb->add_option("--data", options->dataset,
+                   "Dataset whose frames are the pictures of COLMAP's images.txt.")
+      ->type_name("DATASET");
   add_grid_options(*verb, options->grids);
   add_common_options(*verb, options->common);
   verb->footer(
@@ -183,6 +224,9 @@ void add_convert_verb(CLI::App& command) {
       "  saccade convert recording.raw recording.aedat4\n"
       "  saccade convert data/walls grids.h5 --voxel-grid bins=5,duration_s=0.05\n"
       "  saccade convert data/walls frames --event-frame kind=polarity,events=20000\n"
+      "  saccade convert data/walls walls.mcap\n"
+      "  saccade convert recording.bag data/mine --calibration camchain.yaml\n"
+      "  saccade convert runs/walls evaluation\n"
       "  saccade convert dsec/interlaken_00_c data/interlaken_00_c\n"
       "  saccade convert tum_vie/mocap-desk2 data/mocap-desk2 --duration-s 10");
   verb->callback([options] { convert(*options); });

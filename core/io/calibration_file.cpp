@@ -12,6 +12,7 @@
 #include "core/config/rigid3_node.h"
 #include "core/config/yaml_emit.h"
 #include "core/error.h"
+#include "core/fisheye_camera.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/tables/text_table.h"
 
@@ -37,34 +38,59 @@ void expect_text(const config::Node& node, const std::string& key,
                                                      key, text, fmt::join(allowed, ", ")));
 }
 
-void read_distortion(const config::Node& cam, PinholeCamera& camera) {
-  const config::Node& model = require(cam, "distortion_model");
-  expect_text(model, "distortion_model", {"radtan", "none"});
-  if (model.text == "none") return;
+std::vector<double> read_coefficients(const config::Node& cam, std::size_t least, std::size_t most,
+                                      const char* names) {
   const config::Node& node = require(cam, "distortion_coeffs");
   std::vector<double> values;
   config::from_node(node, "distortion_coeffs", values);
-  if (values.size() != 4 && values.size() != 5)
-    throw InputError(node.location.text(), "distortion_coeffs holds k1, k2, p1, p2 and perhaps k3");
-  std::copy(values.begin(), values.end(), camera.distortion.begin());
+  if (values.size() < least || values.size() > most)
+    throw InputError(node.location.text(), std::string("distortion_coeffs holds ") + names);
+  return values;
 }
 
-PinholeCamera read_camera(const config::Node& cam) {
+/// Turns `chained.camera`, which has no distortion yet, into the nearest one to the lens.
+void fit_equidistant(const config::Node& cam, ChainCamera& chained) {
+  const std::vector<double> values = read_coefficients(cam, 4, 4, "k1, k2, k3, k4");
+  const PinholeCamera& pinhole = chained.camera;
+  FisheyeCamera lens{pinhole.width, pinhole.height, pinhole.fx, pinhole.fy,
+                     pinhole.cx,    pinhole.cy,     {}};
+  std::copy(values.begin(), values.end(), lens.k.begin());
+  const FisheyeFit fit = fit_pinhole(lens, cam.location.text());
+  if (fit.residual_px > kMostFitResidual_px)
+    throw InputError(cam.location.text(),
+                     fmt::format("no radial-tangential model is nearer to this lens than {:.2g} px",
+                                 fit.residual_px));
+  chained.camera = fit.camera;
+  chained.residual_px = fit.residual_px;
+}
+
+void read_distortion(const config::Node& cam, ChainCamera& chained) {
+  const config::Node& model = require(cam, "distortion_model");
+  expect_text(model, "distortion_model", {"radtan", "equidistant", "none"});
+  if (model.text == "none") return;
+  if (model.text == "equidistant") return fit_equidistant(cam, chained);
+  const std::vector<double> values = read_coefficients(cam, 4, 5, "k1, k2, p1, p2 and perhaps k3");
+  std::copy(values.begin(), values.end(), chained.camera.distortion.begin());
+}
+
+ChainCamera read_camera(const config::Node& cam) {
   expect_text(require(cam, "camera_model"), "camera_model", {"pinhole"});
   std::array<double, 4> intrinsics{};
   config::from_node(require(cam, "intrinsics"), "intrinsics", intrinsics);
   std::array<int, 2> resolution{};
   config::from_node(require(cam, "resolution"), "resolution", resolution);
-  PinholeCamera camera;
+  ChainCamera chained;
+  PinholeCamera& camera = chained.camera;
   camera.width = resolution[0];
   camera.height = resolution[1];
   camera.fx = intrinsics[0];
   camera.fy = intrinsics[1];
   camera.cx = intrinsics[2];
   camera.cy = intrinsics[3];
-  read_distortion(cam, camera);
   camera.check(cam.location.text());
-  return camera;
+  read_distortion(cam, chained);
+  camera.check(cam.location.text());
+  return chained;
 }
 
 std::optional<Rigid3> read_transform(const config::Node& cam, const std::string& key) {
@@ -128,11 +154,11 @@ void write_calib_txt(const std::filesystem::path& file, const PinholeCamera& cam
 
 PinholeCamera read_camera_yaml(const std::filesystem::path& file) {
   const config::Document document = config::load(file);
-  return read_camera(require(document.root(), "cam0"));
+  return read_camera(require(document.root(), "cam0")).camera;
 }
 
 void write_camera_yaml(const std::filesystem::path& file, const PinholeCamera& camera) {
-  write_camera_chain(file, std::vector<ChainCamera>{{camera, {}, {}}});
+  write_camera_chain(file, std::vector<ChainCamera>{{.camera = camera}});
 }
 
 std::vector<ChainCamera> read_camera_chain(const std::filesystem::path& file) {
@@ -141,8 +167,11 @@ std::vector<ChainCamera> read_camera_chain(const std::filesystem::path& file) {
   std::vector<ChainCamera> cameras;
   while (const config::Entry* entry = document.root().find(camera_key(cameras.size()))) {
     const config::Node& cam = entry->value;
-    cameras.push_back(
-        {read_camera(cam), read_transform(cam, "T_cam_imu"), read_transform(cam, "T_cn_cnm1")});
+    ChainCamera& chained = cameras.emplace_back(read_camera(cam));
+    chained.camera_from_imu = read_transform(cam, "T_cam_imu");
+    chained.camera_from_previous = read_transform(cam, "T_cn_cnm1");
+    if (const config::Entry* shift = cam.find("timeshift_cam_imu"))
+      config::from_node(shift->value, "timeshift_cam_imu", chained.timeshift_s);
   }
   return cameras;
 }

@@ -70,13 +70,17 @@ std::optional<PoseColumns> parse_columns(std::string_view line) {
   return columns;
 }
 
-/// The names of the columns in the first line that is not blank.
-PoseColumns read_columns(const std::filesystem::path& file) {
+/// The columns that the first line that is not blank names; nullopt where it does not.
+std::optional<PoseColumns> find_columns(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
   while (std::getline(stream, line) && plain_name(line).empty()) {
   }
-  if (const auto columns = parse_columns(line)) return *columns;
+  return parse_columns(line);
+}
+
+PoseColumns read_columns(const std::filesystem::path& file) {
+  if (const auto columns = find_columns(file)) return *columns;
   throw InputError(file.string() + ":1",
                    "the first line must name the columns, because programs differ in the order of "
                    "the quaternion: \"# timestamp, x, y, z, qx, qy, qz, qw\" (rpg_esim), or with "
@@ -97,6 +101,12 @@ StampedPose read_row(TextRow& row, const PoseColumns& columns) {
 }
 
 }  // namespace
+
+bool is_csv_trajectory(const std::filesystem::path& file) {
+  // A line of another kind of file may be as long as the file.
+  const bool may_be = file.extension() == ".csv" || file.extension() == ".txt";
+  return may_be && std::filesystem::is_regular_file(file) && find_columns(file).has_value();
+}
 
 Trajectory read_csv_trajectory(const std::filesystem::path& file) {
   const PoseColumns columns = read_columns(file);

@@ -22,6 +22,9 @@ namespace saccade {
 /// says which line to add.
 [[nodiscard]] Trajectory read_csv_trajectory(const std::filesystem::path& file);
 
+/// Whether the first line that is not blank names the columns of such a file.
+[[nodiscard]] bool is_csv_trajectory(const std::filesystem::path& file);
+
 /// Either of them: CSV when the first line with numbers holds a comma.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
 

@@ -34,7 +34,7 @@ TEST(EventFormatsOfTheCommand, ConvertGoesAroundAllOfThemWithoutLoss) {
   const auto writer = make_event_writer(last, TimestampUnit::kMicroseconds, {64, 48});
   writer->append(events_in_us());
   writer->close();
-  for (const char* name : {"a.raw", "b.aedat4", "c.npz", "d.txt", "e.h5"}) {
+  for (const char* name : {"a.raw", "b.aedat4", "c.npz", "d.txt", "e.bag", "f.mcap", "g.h5"}) {
     const fs::path next = folder.path() / name;
     const CommandResult result =
         run_command(SACCADE_COMMAND, {"convert", last.string(), next.string()});

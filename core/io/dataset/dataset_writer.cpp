@@ -185,7 +185,7 @@ DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   write_list_if_any(folder_ / "depth.txt", depth_maps_);
   write_list_if_any(folder_ / "flow.txt", flow_maps_);
   write_calib_txt(folder_ / "calib.txt", camera_);
-  const std::vector<ChainCamera> alone = {{camera_, {}, {}}};
+  const std::vector<ChainCamera> alone = {{.camera = camera_}};
   write_camera_chain(folder_ / "camera.yaml", options_.chain.empty() ? alone : options_.chain);
   counts_.frames = static_cast<std::int64_t>(frames_.size());
   counts_.depth_maps = static_cast<std::int64_t>(depth_maps_.size());

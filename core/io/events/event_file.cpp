@@ -37,22 +37,13 @@ bool read_within(EventReader& reader, TimeWindow window, Events& events) {
   return false;
 }
 
-/// Of events of the same time: their place in EventOrder, and all that tells them apart.
-std::uint64_t tie_key(const Event& event) {
-  return std::uint64_t{event.y} << 17U | std::uint64_t{event.x} << 1U |
-         static_cast<std::uint64_t>(event.polarity > 0);
-}
-
 /// Sorts events of the same time, by their keys: several times as fast as event by event.
 void sort_run(std::span<Event> events, std::vector<std::uint64_t>& keys) {
   keys.resize(events.size());
   std::transform(events.begin(), events.end(), keys.begin(), tie_key);
   std::sort(keys.begin(), keys.end());
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    events[i].y = static_cast<std::uint16_t>(keys[i] >> 17U);
-    events[i].x = static_cast<std::uint16_t>(keys[i] >> 1U);
-    events[i].polarity = static_cast<std::int8_t>((keys[i] & 1U) != 0 ? 1 : -1);
-  }
+  for (std::size_t i = 0; i < events.size(); ++i)
+    events[i] = event_of_tie_key(keys[i], events[i].t_ns);
 }
 
 }  // namespace
@@ -94,6 +85,7 @@ EventStream::EventStream(const std::filesystem::path& file, SensorSize size, Tim
 std::span<const Event> EventStream::next() {
   events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(given_));
   given_ = 0;
+  if (!run_.empty()) return next_of_run();
   while (given_ == 0) {
     is_over_ = is_over_ || !read_within(*reader_, window_, events_);
     // The last run of equal times may go on in the next block.
@@ -101,10 +93,31 @@ std::span<const Event> EventStream::next() {
     if (is_over_) break;
     const TimeNs last_ns = events_.back().t_ns;
     while (given_ > 0 && events_[given_ - 1].t_ns == last_ns) --given_;
+    if (given_ == 0 && events_.size() > TieRun::kMostHeld) return next_of_run();
   }
   const std::span<Event> complete = std::span(events_).first(given_);
   sort_ties(complete);
   return complete;
+}
+
+/// A run of equal times that fills the memory is counted rather than held: first all of it is read,
+/// then it is given out block by block. It stands at the front of events_.
+std::span<const Event> EventStream::next_of_run() {
+  if (!run_.is_complete()) {
+    const TimeNs t_ns = events_.front().t_ns;
+    while (true) {
+      const auto end = std::find_if(events_.begin(), events_.end(),
+                                    [&](const Event& event) { return event.t_ns != t_ns; });
+      run_.add({events_.begin(), end});
+      events_.erase(events_.begin(), end);
+      if (!events_.empty() || is_over_) break;
+      is_over_ = !read_within(*reader_, window_, events_);
+    }
+    run_.complete();
+  }
+  run_events_.clear();
+  run_.take(kEventBlock, run_events_);
+  return run_events_;
 }
 
 std::unique_ptr<EventWriter> make_event_writer(const std::filesystem::path& file,

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/event.h"
+#include "core/io/events/tie_run.h"
 
 namespace saccade {
 
@@ -72,17 +73,21 @@ class EventStream {
   explicit EventStream(const std::filesystem::path& file, SensorSize size = {},
                        TimeWindow window = {});
   /// The next events, valid until the next call; none at the end. Those of equal time come
-  /// together.
+  /// together, unless there are more than TieRun::kMostHeld: then in several calls, still in EventOrder.
   [[nodiscard]] std::span<const Event> next();
   [[nodiscard]] SensorSize sensor() const { return reader_->sensor(); }
   [[nodiscard]] TimestampUnit unit() const { return reader_->unit(); }
 
  private:
+  [[nodiscard]] std::span<const Event> next_of_run();
+
   std::unique_ptr<EventReader> reader_;
   TimeWindow window_;
   Events events_;
   std::size_t given_ = 0;  ///< of events_, by the last call
   bool is_over_ = false;
+  TieRun run_;         ///< of equal times, that is too long to be held
+  Events run_events_;  ///< of it, by the last call
 };
 
 /// Writes a stream of events in order of time, span by span. Nothing stands under the final name

@@ -17,8 +17,11 @@
 #include "core/io/events/prophesee/evt2.h"
 #include "core/io/events/prophesee/evt3.h"
 #include "core/io/events/prophesee/raw_header.h"
-#include "core/io/ros/bag_events.h"
 #include "core/io/ros/bag_file.h"
+#include "core/io/ros/event_messages.h"
+#include "core/io/ros/mcap_file.h"
+#include "core/io/ros/message_events.h"
+#include "core/io/ros/rosbag2_file.h"
 
 namespace saccade {
 namespace {
@@ -40,6 +43,10 @@ bool is_text(const EventFileHead& head) {
     const auto byte = static_cast<unsigned char>(c);
     return byte == 0x7F || (byte < 0x20 && c != '\t' && c != '\n' && c != '\r');
   });
+}
+
+bool is_rosbag2(const EventFileHead& head) {
+  return head.bytes.starts_with(kSqliteMagic) || is_rosbag2_folder(head.file);
 }
 
 template <RawEncoding kEncoding>
@@ -161,11 +168,29 @@ constexpr EventFormat kEventFormats[] = {
      .make_writer = nullptr},
     {.name = "ROS bag",
      .ending = ".bag",
-     .help = "A bag of ROS 1 with messages dvs_msgs/EventArray.",
+     .help = "A bag of ROS 1 with messages dvs_msgs/EventArray or EventPacket.",
      .states_sensor = true,
      .finest = TimestampUnit::kNanoseconds,
      .recognises = begins_with<kBagMagic>,
-     .open = open_bag_events,
+     .open = open_message_events,
+     .read_info = nullptr,
+     .make_writer = make_message_event_writer},
+    {.name = "MCAP",
+     .ending = ".mcap",
+     .help = "An MCAP of ROS 1 or 2 with messages EventPacket or EventArray.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = begins_with<kMcapMagic>,
+     .open = open_message_events,
+     .read_info = nullptr,
+     .make_writer = make_message_event_writer},
+    {.name = "rosbag2",
+     .ending = ".db3",
+     .help = "A SQLite file of rosbag2, or its folder, with messages EventPacket or EventArray.",
+     .states_sensor = true,
+     .finest = TimestampUnit::kNanoseconds,
+     .recognises = is_rosbag2,
+     .open = open_message_events,
      .read_info = nullptr,
      .make_writer = nullptr},
     {.name = "text",
@@ -236,7 +261,7 @@ const EventFormat& recognise_event_format(const std::filesystem::path& path) {
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file) &&
       !std::filesystem::is_directory(file))
     return *std::rbegin(kEventFormats);
-  const std::string bytes = read_head(file);
+  const std::string bytes = is_rosbag2_folder(file) ? "" : read_head(file);
   const EventFileHead head{file, bytes};
   for (const EventFormat& format : kEventFormats)
     if (format.recognises(head)) return format;

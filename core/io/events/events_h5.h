@@ -10,7 +10,13 @@
 
 namespace saccade {
 
-/// Events in the DSEC layout: /events/x and y (u16), /events/p (0/1), /events/t (integers,
+/// Events of HDF5 files. Where the path names no member ("FILE!/prophesee/right"), they are looked for
+/// in /events (the layout of DSEC and TUM-VIE, below), /CD/events (Prophesee: a table of x, y, p and
+/// t [us]; attribute "geometry" of the file), /prophesee/left (M3ED: columns x, y, p and t [us]),
+/// /davis/left/events (MVSEC: a matrix of double precision with rows x, y, t [s] and p), and in the
+/// columns /x, /y, /p and /t [us] (e2calib). Polarities are 1 for ON, and 0 or -1 for OFF.
+///
+/// The DSEC layout: /events/x and y (u16), /events/p (0/1), /events/t (integers,
 /// attribute "unit" = "us" or "ns", us without it), /ms_to_idx (index of the first event at or
 /// after each millisecond) and /t_offset, which is added to all times. Beside the layout the group
 /// may state the sensor's size, attributes "width" and "height" [px]. Opening checks types and

@@ -99,7 +99,7 @@ void EventH5Writer::State::add(std::span<const Event> events) {
     const std::span<const Event> part = events.first(std::min(events.size(), kH5BatchValues));
     events = events.subspan(part.size());
     pending.add(part);
-    if (pending.complete().size() >= kH5BatchValues) write_chunks(kH5BatchValues);
+    while (pending.complete().size() >= kH5BatchValues) write_chunks(kH5BatchValues);
   }
 }
 
@@ -137,7 +137,7 @@ void EventH5Writer::State::index(std::span<const Event> events) {
 
 void EventH5Writer::State::finish() {
   pending.finish();
-  write_chunks(pending.size());
+  while (pending.complete().size() >= kH5ChunkValues) write_chunks(pending.complete().size());
   const std::span<const Event> rest = pending.complete();
   index(rest);
   const H5Lock lock;

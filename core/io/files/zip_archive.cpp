@@ -33,12 +33,25 @@ ZipArchive::ZipArchive(const std::filesystem::path& file) : name_(file.string())
   }
 }
 
+bool ZipArchive::contains(const std::string& member) const {
+  return zip_name_locate(archive_.get(), member.c_str(), 0) >= 0;
+}
+
+std::string ZipArchive::find_ignoring_case(const std::string& member) const {
+  const zip_int64_t index = zip_name_locate(archive_.get(), member.c_str(), ZIP_FL_NOCASE);
+  return index < 0 ? "" : zip_get_name(archive_.get(), static_cast<zip_uint64_t>(index), 0);
+}
+
 ZipMember::ZipMember(ZipArchive& archive, const std::string& member)
     : location_(archive.location(member)),
       file_(zip_fopen(archive.archive_.get(), member.c_str(), 0)) {
   if (file_ == nullptr)
     throw InputError(location_, fmt::format("cannot be read in this archive: {}",
                                             zip_strerror(archive.archive_.get())));
+  zip_stat_t stat;
+  if (zip_stat(archive.archive_.get(), member.c_str(), 0, &stat) == 0 &&
+      (stat.valid & ZIP_STAT_SIZE) != 0)
+    stated_size_ = stat.size;
 }
 
 std::size_t ZipMember::read(std::span<std::byte> bytes) {

@@ -21,6 +21,9 @@ class ZipArchive {
   /// In the order of the archive; folders end in '/'.
   [[nodiscard]] const std::vector<std::string>& members() const { return members_; }
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// The member as it is called here, "" where there is none; names from Windows may differ in case.
+  [[nodiscard]] bool contains(const std::string& member) const;
+  [[nodiscard]] std::string find_ignoring_case(const std::string& member) const;
   /// "archive!/member", as locations of errors.
   [[nodiscard]] std::string location(const std::string& member) const {
     return name_ + "!/" + member;
@@ -45,6 +48,8 @@ class ZipMember {
   /// Fills `bytes`; returns how many there were, fewer only at the end. InputError with the
   /// location where the archive is damaged.
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes);
+  /// Of the whole member, as the archive states it [bytes].
+  [[nodiscard]] std::uint64_t stated_size() const { return stated_size_; }
 
  private:
   struct Close {
@@ -53,6 +58,7 @@ class ZipMember {
 
   std::string location_;
   std::unique_ptr<zip_file, Close> file_;
+  std::uint64_t stated_size_ = 0;
 };
 
 /// Writes a zip archive of files without compressing them; `files`: name in the archive and path.

@@ -9,8 +9,10 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/image.h"
+#include "core/io/files/file_list.h"
 #include "core/io/images/image_file.h"
-#include "core/io/import/public_sequence.h"
+#include "core/io/import/camera_files.h"
+#include "core/io/import/layouts.h"
 #include "core/io/tables/text_table.h"
 #include "core/io/trajectory_file.h"
 
@@ -132,7 +134,11 @@ ImageF depth_from_disparity(const fs::path& file, const DsecCalibration& calibra
 
 }  // namespace
 
-PublicSequence open_dsec(const fs::path& folder) {
+bool is_dsec(const fs::path& folder) {
+  return fs::is_directory(folder) && fs::exists(folder / "events" / "left" / "events.h5");
+}
+
+PublicSequence open_dsec(const fs::path& folder, const fs::path& chosen) {
   const fs::path below = folder / "calibration" / "cam_to_cam.yaml";
   const fs::path calibration_file = fs::exists(below) ? below : folder / "cam_to_cam.yaml";
   if (!fs::exists(calibration_file))
@@ -145,9 +151,13 @@ PublicSequence open_dsec(const fs::path& folder) {
   sequence.events = folder / "events" / "left" / "events.h5";
   sequence.camera.camera = camera_of(calibration);
   sequence.camera.camera.check(calibration_file.string());
-  sequence.depths = disparities_in(folder / "disparity");
-  sequence.load_depth = [calibration](const fs::path& file) {
-    return depth_from_disparity(file, calibration);
+  if (!chosen.empty())
+    sequence.camera =
+        read_any_calibration(chosen, {calibration.resolution[0], calibration.resolution[1]});
+  const std::vector<StampedFile> disparities = disparities_in(folder / "disparity");
+  for (const StampedFile& disparity : disparities) sequence.depth_times_s.push_back(disparity.t_s);
+  sequence.load_depth = [calibration, disparities](std::size_t index) {
+    return depth_from_disparity(disparities[index].file, calibration);
   };
   if (const fs::path poses = folder / "groundtruth.txt"; fs::exists(poses)) {
     const Trajectory truth = read_tum_trajectory(poses);

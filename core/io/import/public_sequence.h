@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -9,51 +10,55 @@
 #include "core/image.h"
 #include "core/imu_sample.h"
 #include "core/io/calibration_file.h"
-#include "core/io/files/file_list.h"
 #include "core/trajectory.h"
+#include "core/trigger.h"
 
 namespace saccade {
 
-/// A sequence of a public benchmark as its publisher lays it out, for conversion into a dataset
-/// (docs/public_datasets.md). Times are those of the publisher's clock [s].
+/// A recording as its publisher or the camera's program lays it out, for conversion into a dataset
+/// (docs/public_datasets.md). Times are those of its own clock [s].
 struct PublicSequence {
-  std::string layout;                    ///< "DSEC", "TUM-VIE"
-  std::filesystem::path events;          ///< of the left camera (events_h5.h)
+  std::string layout;                    ///< "DSEC", "TUM-VIE", "AEDAT4"
+  std::filesystem::path events;          ///< of one camera, or FILE!/member; empty: none
   ChainCamera camera;                    ///< that one
-  double camera_residual_px = 0;         ///< what its model was changed by at most
   std::vector<StampedPose> groundtruth;  ///< world_from_camera; empty: none
   std::vector<ImuSample> imu;            ///< empty: none
-  std::vector<StampedFile> depths;       ///< pictures that load_depth() reads
+  std::vector<Trigger> triggers;
+  std::vector<double> frame_times_s;  ///< increasing; of what load_frame() reads
+  std::function<ImageU8(std::size_t)> load_frame;
+  std::vector<double> depth_times_s;  ///< likewise
   /// z depth [m] at the sensor's pixels, 0 = unknown.
-  std::function<ImageF(const std::filesystem::path&)> load_depth;
+  std::function<ImageF(std::size_t)> load_depth;
 };
 
-/// nullopt where the folder has the layout of neither; InputError where it has, and something is
-/// missing or malformed.
+/// nullopt where `path` is a folder or a file of none of the layouts below; InputError where it has
+/// one, and something is missing or malformed. `calibration`: read in place of the layout's own
+/// (camera_files.h); empty: none.
 [[nodiscard]] std::optional<PublicSequence> open_public_sequence(
-    const std::filesystem::path& folder);
+    const std::filesystem::path& path, const std::filesystem::path& calibration = {});
 
-/// A sequence of DSEC (Gehrig et al., RA-L 2021): events/left/events.h5,
-/// calibration/cam_to_cam.yaml or cam_to_cam.yaml, and disparity/timestamps.txt with
-/// disparity/event/*.png where it has them; poses, which DSEC does not publish, from
-/// groundtruth.txt (TUM) if somebody put them there. The camera keeps its lens distortion;
-/// disparities become depth in its raw view.
-[[nodiscard]] PublicSequence open_dsec(const std::filesystem::path& folder);
-
-/// A sequence of TUM-VIE (Klenk et al., IROS 2021): *events_left.h5 and the
-/// camera-calibration*.json that belongs to it; imu_data.txt and, with mocap-imu-calibration*.json,
-/// mocap_data.txt where it has them, here or in a folder below. Its fisheye model becomes the
-/// nearest radial-tangential one; InputError where that differs by more than a tenth of a pixel.
-[[nodiscard]] PublicSequence open_tum_vie(const std::filesystem::path& folder);
-
-/// A part of a sequence, in seconds from its first event.
+/// A part of a sequence, in seconds from its first event, or its first frame where it has no events.
 struct ImportWindow {
   double start_s = 0;
   std::optional<double> duration_s;
 };
 
-/// Writes it as a dataset folder, a second of events at a time; how many events there are.
-std::uint64_t write_as_dataset(const PublicSequence& sequence, const std::filesystem::path& folder,
-                               const ImportWindow& window = {});
+/// What became a dataset.
+struct ImportCounts {
+  std::uint64_t events = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t depth_maps = 0;
+  std::uint64_t imu_samples = 0;
+  std::uint64_t poses = 0;
+  std::uint64_t triggers = 0;
+
+  /// "5 events, 2 frames and 3 poses"; what is 0 is left out, but for the events.
+  [[nodiscard]] std::string text() const;
+};
+
+/// Writes it as a dataset folder, block by block. Without a start, what comes before the first event
+/// is written as well.
+ImportCounts write_as_dataset(const PublicSequence& sequence, const std::filesystem::path& folder,
+                              const ImportWindow& window = {});
 
 }  // namespace saccade

@@ -5,49 +5,63 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
+#include "core/check.h"
 #include "core/io/images/picture_bytes.h"
 #include "core/io/images/rgb_grey.h"
 
 namespace saccade {
 namespace {
 
-Eigen::Vector3d read_vector(BagMessageReader& message) {
+constexpr std::string_view kTransform = "geometry_msgs/TransformStamped";
+constexpr std::string_view kOdometry = "nav_msgs/Odometry";
+
+Eigen::Vector3d read_vector(MessageReader& message) {
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) v[i] = message.number<double>();
   if (!v.allFinite()) message.fail("a vector is not finite");
   return v;
 }
 
-void skip_covariance(BagMessageReader& message) {
-  static_cast<void>(message.take(9 * sizeof(double)));
+void skip_numbers(MessageReader& message, int count) {
+  for (int i = 0; i < count; ++i) static_cast<void>(message.number<double>());
 }
 
-/// Codes of three colours -> grey, whichever comes first.
-ImageU8 grey_of_colours(const ImageU8& codes, bool is_bgr) {
-  ImageRgb8 colours(codes.width() / 3, codes.height());
-  for (std::size_t i = 0; i < colours.size(); ++i) {
-    const std::uint8_t* code = codes.data() + 3 * i;
-    colours.data()[i] = is_bgr ? Rgb8{code[2], code[1], code[0]} : Rgb8{code[0], code[1], code[2]};
-  }
-  return grey_from(colours);
+std::size_t channels_of(ImageMessage::Kind kind) {
+  return kind == ImageMessage::Kind::kColour ? 3 : 1;
+}
+
+std::size_t pixel_bytes(const ImageMessage& image) {
+  if (image.kind() != ImageMessage::Kind::kDepth) return channels_of(image.kind());
+  return image.encoding == "16UC1" ? 2 : 4;
+}
+
+const std::byte* row_of(const ImageMessage& image, int y) {
+  return image.data.data() + std::size_t{image.row_bytes} * static_cast<std::size_t>(y);
 }
 
 }  // namespace
 
-ImuSample read_imu_message(BagMessageReader& message) {
+ImuSample read_imu_message(MessageReader& message) {
   ImuSample sample;
   sample.t_ns = message.header();
-  static_cast<void>(message.take(4 * sizeof(double)));  // an orientation
-  skip_covariance(message);
+  skip_numbers(message, 4 + 9);  // an orientation and its covariance
   sample.angular_velocity = read_vector(message);
-  skip_covariance(message);
+  skip_numbers(message, 9);
   sample.specific_force = read_vector(message);
   return sample;
 }
 
-StampedPose read_pose_message(BagMessageReader& message) {
+bool holds_poses(const MessageTopic& topic) {
+  return topic.type == "geometry_msgs/PoseStamped" || topic.type == kTransform ||
+         topic.type == kOdometry;
+}
+
+StampedPose read_pose_message(const MessageTopic& topic, MessageReader& message) {
   const double t_s = seconds_from_ns(message.header());
+  // The name of the frame that moves.
+  if (topic.type == kTransform || topic.type == kOdometry) static_cast<void>(message.text());
   const Eigen::Vector3d position = read_vector(message);
   std::array<double, 4> q{};
   for (double& part : q) part = message.number<double>();
@@ -59,7 +73,7 @@ StampedPose read_pose_message(BagMessageReader& message) {
   return {t_s, {rotation, position}};
 }
 
-std::optional<PinholeCamera> read_camera_message(BagMessageReader& message) {
+std::optional<PinholeCamera> read_camera_message(MessageReader& message) {
   PinholeCamera camera;
   static_cast<void>(message.header());
   const auto height = message.number<std::uint32_t>();
@@ -90,33 +104,67 @@ std::optional<PinholeCamera> read_camera_message(BagMessageReader& message) {
   return camera;
 }
 
-StampedPicture read_image_message(BagMessageReader& message) {
-  StampedPicture picture;
-  picture.t_ns = message.header();
-  const auto height = message.number<std::uint32_t>();
-  const auto width = message.number<std::uint32_t>();
-  const std::string_view encoding = message.text();
-  static_cast<void>(message.number<std::uint8_t>());  // whether numbers are big-endian: bytes
-  const auto row_bytes = message.number<std::uint32_t>();
-  const bool is_grey = encoding == "mono8" || encoding == "8UC1";
-  const bool is_bgr = encoding == "bgr8";
-  if (!is_grey && !is_bgr && encoding != "rgb8")
-    message.fail(
-        fmt::format("pictures of the encoding '{}' cannot be read; mono8, 8UC1, rgb8 and "
-                    "bgr8 can",
-                    encoding));
-  check_picture_size(width, height, "sensor_msgs/Image");
-  const std::uint64_t used_bytes = std::uint64_t{width} * (is_grey ? 1U : 3U);
-  const std::span<const std::byte> data = message.take(message.number<std::uint32_t>());
-  if (row_bytes < used_bytes || data.size() < std::uint64_t{row_bytes} * height)
-    message.fail(fmt::format("{} bytes in rows of {} are no picture of {} x {} px", data.size(),
-                             row_bytes, width, height));
-  ImageU8 codes(static_cast<int>(used_bytes), static_cast<int>(height));
-  for (std::uint32_t y = 0; y < height; ++y)
-    std::memcpy(codes.data() + y * used_bytes, data.data() + std::uint64_t{y} * row_bytes,
-                used_bytes);
-  picture.grey = is_grey ? std::move(codes) : grey_of_colours(codes, is_bgr);
-  return picture;
+ImageMessage::Kind ImageMessage::kind() const {
+  if (encoding == "mono8" || encoding == "8UC1") return Kind::kGrey;
+  if (encoding == "rgb8" || encoding == "bgr8") return Kind::kColour;
+  if (encoding == "32FC1" || encoding == "16UC1") return Kind::kDepth;
+  return Kind::kOther;
+}
+
+ImageMessage read_image_message(MessageReader& message) {
+  ImageMessage image;
+  image.t_ns = message.header();
+  image.height = message.number<std::uint32_t>();
+  image.width = message.number<std::uint32_t>();
+  image.encoding = message.text();
+  const bool is_big = message.flag();
+  image.row_bytes = message.number<std::uint32_t>();
+  image.data = message.byte_array();
+  if (image.kind() == ImageMessage::Kind::kOther) return image;
+  if (is_big && image.kind() == ImageMessage::Kind::kDepth)
+    message.fail("its depth is big-endian; little-endian numbers can be read");
+  check_picture_size(image.width, image.height, "sensor_msgs/Image");
+  if (image.row_bytes < std::uint64_t{image.width} * pixel_bytes(image) ||
+      image.data.size() < std::uint64_t{image.row_bytes} * image.height)
+    message.fail(fmt::format("{} bytes in rows of {} are no picture of {} x {} px",
+                             image.data.size(), image.row_bytes, image.width, image.height));
+  return image;
+}
+
+ImageU8 grey_of(const ImageMessage& image) {
+  SACCADE_CHECK(image.is_picture());
+  const auto width = static_cast<int>(image.width);
+  const auto height = static_cast<int>(image.height);
+  if (image.kind() == ImageMessage::Kind::kGrey) {
+    ImageU8 grey(width, height);
+    for (int y = 0; y < height; ++y)
+      std::memcpy(&grey.pixels()[static_cast<std::size_t>(y) * image.width], row_of(image, y),
+                  image.width);
+    return grey;
+  }
+  const bool is_bgr = image.encoding == "bgr8";
+  ImageRgb8 colours(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::byte* code = row_of(image, y) + 3 * static_cast<std::size_t>(x);
+      for (std::size_t c = 0; c < 3; ++c)
+        colours(x, y)[c] = std::to_integer<std::uint8_t>(code[is_bgr ? 2 - c : c]);
+    }
+  return grey_from(colours);
+}
+
+ImageF depth_of(const ImageMessage& image) {
+  SACCADE_CHECK(image.kind() == ImageMessage::Kind::kDepth);
+  constexpr float kMetresPerMillimetre = 1e-3F;
+  ImageF depth(static_cast<int>(image.width), static_cast<int>(image.height));
+  const std::size_t bytes = pixel_bytes(image);
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x) {
+      const std::byte* at = row_of(image, y) + bytes * static_cast<std::size_t>(x);
+      const float z = bytes == 2 ? kMetresPerMillimetre * load<std::uint16_t>(at) : load<float>(at);
+      depth(x, y) = z > 0 && std::isfinite(z) ? z : 0;
+    }
+  return depth;
 }
 
 }  // namespace saccade

@@ -5,8 +5,9 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
-#include "core/io/import/fisheye_camera.h"
-#include "core/io/import/public_sequence.h"
+#include "core/fisheye_camera.h"
+#include "core/io/import/camera_files.h"
+#include "core/io/import/layouts.h"
 #include "core/io/tables/text_table.h"
 
 namespace saccade {
@@ -160,7 +161,14 @@ std::vector<StampedPose> read_mocap(const fs::path& file, const Rigid3& marker_f
 
 }  // namespace
 
-PublicSequence open_tum_vie(const fs::path& folder) {
+bool is_tum_vie(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().ends_with("events_left.h5")) return true;
+  return false;
+}
+
+PublicSequence open_tum_vie(const fs::path& folder, const fs::path& chosen) {
   const fs::path calibration_file = find_one(folder, "camera-calibration", ".json");
   if (calibration_file.empty())
     throw InputError(folder.string(),
@@ -171,8 +179,7 @@ PublicSequence open_tum_vie(const fs::path& folder) {
   lens.width = calibration.resolution[kLeftEvents][0];
   lens.height = calibration.resolution[kLeftEvents][1];
   const FisheyeFit fit = fit_pinhole(lens, calibration_file.string());
-  constexpr double kMostPx = 0.1;
-  if (fit.residual_px > kMostPx)
+  if (fit.residual_px > kMostFitResidual_px)
     throw InputError(calibration_file.string(),
                      fmt::format("no radial-tangential model is nearer to this lens than {:.2g} px",
                                  fit.residual_px));
@@ -183,7 +190,11 @@ PublicSequence open_tum_vie(const fs::path& folder) {
   sequence.camera.camera = fit.camera;
   sequence.camera.camera.check(calibration_file.string());
   sequence.camera.camera_from_imu = imu_from_camera.inverse();
-  sequence.camera_residual_px = fit.residual_px;
+  sequence.camera.residual_px = fit.residual_px;
+  if (!chosen.empty()) {
+    sequence.camera = read_any_calibration(chosen, {lens.width, lens.height});
+    sequence.camera.camera_from_imu = imu_from_camera.inverse();
+  }
   if (const fs::path imu = find_one(folder, "imu_data", ".txt"); !imu.empty())
     sequence.imu = read_tum_vie_imu(imu);
   const fs::path mocap = find_one(folder, "mocap_data", ".txt");

@@ -31,7 +31,7 @@ BagFile::BagFile(const std::filesystem::path& file) : bytes_(file) {
   unpackers_.try_emplace("bz2", Unpacker::Method::kBzip2);
 }
 
-std::optional<BagMessage> BagFile::next() {
+std::optional<Message> BagFile::next() {
   while (true) {
     if (const auto inner = read_record_of_chunk()) {
       if (auto message = take(*inner)) return message;
@@ -60,10 +60,10 @@ BagFile::Record BagFile::read_record() {
 std::optional<BagFile::Record> BagFile::read_record_of_chunk() {
   if (chunk_.empty()) return std::nullopt;
   const auto part = [&] {
-    if (chunk_.size() < sizeof(std::uint32_t)) fail("the chunk ends within a record");
+    if (chunk_.size() < sizeof(std::uint32_t)) fail_here("the chunk ends within a record");
     const auto size = load<std::uint32_t>(chunk_.data());
     chunk_ = chunk_.subspan(sizeof size);
-    if (size > chunk_.size()) fail("the chunk ends within a record");
+    if (size > chunk_.size()) fail_here("the chunk ends within a record");
     return std::exchange(chunk_, chunk_.subspan(size)).first(size);
   };
   const auto header = part();
@@ -74,26 +74,26 @@ void BagFile::open_chunk(const Record& record) {
   const std::string_view compression = as_text(field(record.header, "compression"));
   const auto unpacker = unpackers_.find(compression);
   if (unpacker == unpackers_.end())
-    fail(fmt::format("the chunk is compressed by '{}'; none, bz2 and lz4 can be unpacked",
-                     compression));
+    fail_here(fmt::format("the chunk is compressed by '{}'; none, bz2 and lz4 can be unpacked",
+                          compression));
   try {
     chunk_ = unpacker->second.unpack(record.data);
   } catch (const CompressionError& error) {
-    fail("in the chunk that begins here: " + error.problem);
+    fail_here("in the chunk that begins here: " + error.problem);
   }
   if (compression != "none") return;
   plain_.assign(chunk_.begin(), chunk_.end());
   chunk_ = plain_;
 }
 
-std::optional<BagMessage> BagFile::take(const Record& record) {
+std::optional<Message> BagFile::take(const Record& record) {
   switch (static_cast<Op>(number<std::uint8_t>(record.header, "op"))) {
     case Op::kMessage: {
       const auto connection = number<std::uint32_t>(record.header, "conn");
       const auto topic = topics_.find(connection);
       if (topic == topics_.end())
-        fail(fmt::format("a message of the unknown connection {}", connection));
-      return BagMessage{&topic->second, record.data, offset_};
+        fail_here(fmt::format("a message of the unknown connection {}", connection));
+      return Message{&topic->second, record.data, offset_};
     }
     case Op::kConnection:
       connect(record);
@@ -103,14 +103,16 @@ std::optional<BagMessage> BagFile::take(const Record& record) {
     case Op::kChunkInfo:
       return std::nullopt;
     default:
-      fail("a record of an unknown kind; the file is damaged");
+      fail_here("a record of an unknown kind; the file is damaged");
   }
 }
 
 void BagFile::connect(const Record& record) {
   const auto connection = number<std::uint32_t>(record.header, "conn");
-  topics_.insert_or_assign(connection, BagTopic{std::string(as_text(field(record.header, "topic"))),
-                                                std::string(as_text(field(record.data, "type")))});
+  // A repetition of a connection keeps the address of its topic.
+  topics_.try_emplace(connection, MessageTopic{std::string(as_text(field(record.header, "topic"))),
+                                               std::string(as_text(field(record.data, "type"))),
+                                               Serialisation::kRos1});
 }
 
 std::span<const std::byte> BagFile::field(std::span<const std::byte> header,
@@ -125,32 +127,27 @@ std::span<const std::byte> BagFile::field(std::span<const std::byte> header,
       return header.subspan(equals + 1, size - equals - 1);
     header = header.subspan(size);
   }
-  fail(fmt::format("a record without the field '{}'; the file is damaged", name));
+  fail_here(fmt::format("a record without the field '{}'; the file is damaged", name));
 }
 
 template <class T>
 T BagFile::number(std::span<const std::byte> header, std::string_view name) const {
   const auto value = field(header, name);
   if (value.size() != sizeof(T))
-    fail(fmt::format("the field '{}' has {} bytes instead of {}", name, value.size(), sizeof(T)));
+    fail_here(
+        fmt::format("the field '{}' has {} bytes instead of {}", name, value.size(), sizeof(T)));
   return load<T>(value.data());
 }
 
-TimeNs BagMessageReader::header() {
-  static_cast<void>(number<std::uint32_t>());  // a count
-  const TimeNs t_ns = time();
-  static_cast<void>(text());  // the frame
-  return t_ns;
+std::vector<const MessageTopic*> BagFile::topics() const {
+  std::vector<const MessageTopic*> list;
+  for (const auto& [connection, topic] : topics_) list.push_back(&topic);
+  return list;
 }
 
-std::span<const std::byte> BagMessageReader::take(std::size_t count) {
-  if (count > rest_.size()) fail("it ends too early");
-  return std::exchange(rest_, rest_.subspan(count)).first(count);
-}
-
-void BagMessageReader::fail(const std::string& problem) const {
-  bytes_.fail(message_.offset, fmt::format("in a message of {} in the record that begins here: {}",
-                                           message_.topic->name, problem));
+InputError BagFile::error_in(const Message& message, const std::string& problem) const {
+  return {fmt::format("{}:byte {}", name(), message.place),
+          "in the record that begins here: " + problem};
 }
 
 }  // namespace saccade

@@ -1,7 +1,6 @@
 #include "simulator/scene/mesh/file_source.h"
 
 #include <fmt/format.h>
-#include <zip.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/io/files/input_log.h"
+#include "core/io/files/zip_archive.h"
 
 namespace saccade {
 namespace {
@@ -41,10 +41,6 @@ constexpr PackageFiles kPackages[] = {
     {"/usr/share/games/openarena/baseoa/pak1-maps", "openarena-081-maps"},
     {"/usr/share/games/openarena/baseoa/pak4-textures", "openarena-081-textures"},
     {"/usr/share/games/torcs/", "torcs-data"},
-};
-
-struct CloseFile {
-  void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
 /// Name of an archive's member: archives always separate by '/', and know no "..".
@@ -80,30 +76,12 @@ std::string FileLocation::text() const {
                          : archive.string() + std::string(kInside) + file.generic_string();
 }
 
-struct FileSource::Zip {
-  explicit Zip(const fs::path& file) {
-    int code = 0;
-    archive = zip_open(file.c_str(), ZIP_RDONLY, &code);
-    if (archive != nullptr) return;
-    zip_error_t error;
-    zip_error_init_with_code(&error, code);
-    const std::string problem = zip_error_strerror(&error);
-    zip_error_fini(&error);
-    throw InputError(file.string(), "cannot be opened as a zip archive: " + problem);
-  }
-  ~Zip() { zip_discard(archive); }
-  Zip(const Zip&) = delete;
-  Zip& operator=(const Zip&) = delete;
-
-  zip_t* archive = nullptr;
-};
-
 FileSource::FileSource(const fs::path& archive, Reporting reporting)
     : reporting_(reporting), archive_(archive) {
   if (archive.empty()) return;
   const std::string problem = missing_file_problem(archive);
   if (!problem.empty()) throw InputError(archive.string(), problem);
-  zip_ = std::make_unique<Zip>(archive);
+  zip_ = std::make_unique<ZipArchive>(archive);
 }
 
 FileSource::~FileSource() = default;
@@ -112,16 +90,15 @@ FileSource& FileSource::operator=(FileSource&&) noexcept = default;
 
 bool FileSource::contains(const fs::path& file) const {
   if (!zip_) return fs::is_regular_file(file);
-  return zip_name_locate(zip_->archive, member_name(file).c_str(), 0) >= 0;
+  return zip_->contains(member_name(file));
 }
 
 std::optional<fs::path> FileSource::find(const fs::path& file) const {
   if (contains(file)) return file;
   if (zip_) {
-    const zip_int64_t index =
-        zip_name_locate(zip_->archive, member_name(file).c_str(), ZIP_FL_NOCASE);
-    if (index < 0) return std::nullopt;
-    return fs::path(zip_get_name(zip_->archive, static_cast<zip_uint64_t>(index), 0));
+    const std::string found = zip_->find_ignoring_case(member_name(file));
+    if (found.empty()) return std::nullopt;
+    return fs::path(found);
   }
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code none;
@@ -147,14 +124,11 @@ std::optional<Bytes> FileSource::read(const fs::path& file) const {
 std::optional<Bytes> FileSource::read_unreported(const fs::path& file) const {
   if (!zip_) return read_from_disk(file);
   const std::string name = member_name(file);
-  zip_stat_t stat;
-  if (zip_stat(zip_->archive, name.c_str(), 0, &stat) != 0) return std::nullopt;
-  const std::unique_ptr<zip_file_t, CloseFile> member(
-      zip_fopen_index(zip_->archive, stat.index, 0));
-  Bytes bytes(stat.size);
-  if (!member ||
-      zip_fread(member.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()))
-    throw InputError(FileLocation{archive_, name}.text(), "is damaged in its archive");
+  if (!zip_->contains(name)) return std::nullopt;
+  ZipMember member(*zip_, name);
+  Bytes bytes(member.stated_size());
+  if (member.read(std::as_writable_bytes(std::span(bytes))) != bytes.size())
+    throw InputError(zip_->location(name), "is damaged in its archive");
   return bytes;
 }
 

@@ -8,6 +8,8 @@
 
 namespace saccade {
 
+class ZipArchive;
+
 /// A file on disk, or a member of a zip archive: "furniture.sh3f!/desk/desk.obj".
 struct FileLocation {
   std::filesystem::path archive;  ///< empty: on disk
@@ -40,12 +42,11 @@ class FileSource {
   [[nodiscard]] const std::filesystem::path& archive() const { return archive_; }
 
  private:
-  struct Zip;
   [[nodiscard]] std::optional<Bytes> read_unreported(const std::filesystem::path& file) const;
 
   Reporting reporting_;
   std::filesystem::path archive_;
-  std::unique_ptr<Zip> zip_;
+  std::unique_ptr<ZipArchive> zip_;
 };
 
 /// What is wrong when nothing is at `path` (of an archive's member: no archive), with the way to

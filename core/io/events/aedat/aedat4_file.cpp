@@ -93,6 +93,7 @@ Aedat4File::Aedat4File(const std::filesystem::path& file)
     bytes_.fail(bytes_.size(), fmt::format("the file ends early: its packets end at byte {} by its "
                                            "header",
                                            header_.table));
+  first_ = bytes_.offset();
   end_ = header_.table < 0 ? bytes_.size() : static_cast<std::uint64_t>(header_.table);
 }
 

@@ -41,6 +41,9 @@ class Aedat4File {
   [[nodiscard]] const std::vector<Aedat4Stream>& streams() const { return header_.streams; }
   /// The next packet of the stream, valid until the next call; nullopt at the end.
   [[nodiscard]] std::optional<Aedat4Packet> next(int stream_id);
+  /// next() goes on with the packet of this offset, or with the first one.
+  void seek(std::uint64_t offset) { bytes_.seek(offset); }
+  void rewind() { bytes_.seek(first_); }
   [[nodiscard]] const ByteReader& bytes() const { return bytes_; }
 
  private:
@@ -52,7 +55,8 @@ class Aedat4File {
   [[nodiscard]] Header read_header();
   ByteReader bytes_;
   Header header_;
-  std::uint64_t end_ = 0;  ///< of the packets
+  std::uint64_t first_ = 0;  ///< where the packets begin
+  std::uint64_t end_ = 0;    ///< and end
   Unpacker unpacker_;
 };
 

@@ -11,27 +11,12 @@
 #include "core/io/events/aedat/aedat4_file.h"
 #include "core/io/events/rounded_events.h"
 #include "core/io/files/atomic_file.h"
+#include "core/io/files/byte_builder.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kPacketEvents = std::size_t{1} << 14U;
-
-/// Bytes that are put together front to back.
-class ByteBuilder {
- public:
-  template <class T>
-  void put(T value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void put_text(std::string_view text) { bytes_.append(text); }
-  [[nodiscard]] std::span<const std::byte> bytes() const {
-    return std::as_bytes(std::span(bytes_));
-  }
-
- private:
-  std::string bytes_;
-};
 
 /// "<attr key="KEY" type="TYPE">VALUE</attr>".
 std::string xml_attribute(std::string_view key, std::string_view type, std::string_view value) {

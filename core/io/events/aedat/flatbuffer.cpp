@@ -54,6 +54,17 @@ std::span<const std::byte> FlatTable::structs(unsigned field, std::size_t item_b
   return part(vector + sizeof(Offset), value<Offset>(vector) * item_bytes);
 }
 
+std::vector<FlatTable> FlatTable::tables(unsigned field) const {
+  const std::span<const std::byte> offsets = structs(field, sizeof(Offset));
+  std::vector<FlatTable> list;
+  list.reserve(offsets.size() / sizeof(Offset));
+  for (std::size_t i = 0; i < offsets.size(); i += sizeof(Offset)) {
+    const auto from = static_cast<std::size_t>(offsets.data() + i - buffer_.data());
+    list.push_back(FlatTable(buffer_, from + load<Offset>(offsets.data() + i)));
+  }
+  return list;
+}
+
 std::string_view FlatTable::text(unsigned field) const {
   const std::span<const std::byte> bytes = structs(field, 1);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/io/files/byte_reader.h"
 
@@ -34,6 +35,8 @@ class FlatTable {
   [[nodiscard]] std::string_view text(unsigned field) const;
   /// The items of a vector of structs of `item_bytes`; empty where it is left out.
   [[nodiscard]] std::span<const std::byte> structs(unsigned field, std::size_t item_bytes) const;
+  /// The tables of a vector of tables; likewise.
+  [[nodiscard]] std::vector<FlatTable> tables(unsigned field) const;
 
  private:
   FlatTable(std::span<const std::byte> buffer, std::size_t at);

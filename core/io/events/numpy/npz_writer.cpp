@@ -84,6 +84,10 @@ class NpzWriter final : public EventWriter {
   }
 
   void write_complete() {
+    while (!events_.complete().empty()) write_block();
+  }
+
+  void write_block() {
     const std::span<const Event> events = events_.complete();
     const TimeNs ns_per_unit = unit_ == TimestampUnit::kNanoseconds ? 1 : 1000;
     write<std::int64_t>(0, events, [=](const Event& e) { return e.t_ns / ns_per_unit; });

@@ -46,8 +46,11 @@ void RawEventWriter::close() {
 }
 
 void RawEventWriter::write_complete() {
+  while (!events_.complete().empty()) write_block();
+}
+
+void RawEventWriter::write_block() {
   const std::span<const Event> events = events_.complete();
-  if (events.empty()) return;
   if (!has_header_) write_header(events.front().t_ns);
   for (std::size_t begin = 0; begin < events.size();) {
     std::size_t end = begin;

@@ -32,6 +32,7 @@ class RawEventWriter : public EventWriter {
 
  private:
   void write_complete();
+  void write_block();
   void write_header(TimeNs first_ns);
   void check(const Event& event) const;
   void flush();

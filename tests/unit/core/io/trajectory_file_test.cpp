@@ -187,5 +187,14 @@ TEST(TrajectoryFile, ReadsHandHeldMotion) {
   EXPECT_NEAR(t.end_s() - t.start_s(), 59.8, 0.1);
 }
 
+TEST(CsvTrajectory, IsToldByTheNamesOfItsColumns) {
+  const testing::TemporaryFolder folder;
+  EXPECT_TRUE(is_csv_trajectory(
+      folder.write("a.csv", "\n# timestamp, x, y, z, qx, qy, qz, qw\n1,0,0,0,0,0,0,1\n")));
+  EXPECT_FALSE(is_csv_trajectory(folder.write("b.csv", "0.5,1,2,1\n")));
+  EXPECT_FALSE(is_csv_trajectory(folder.path() / "none.csv"));
+  EXPECT_FALSE(is_csv_trajectory(folder.path()));
+}
+
 }  // namespace
 }  // namespace saccade

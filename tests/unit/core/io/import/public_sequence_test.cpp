@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "core/fisheye_camera.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/events/events_h5.h"
 #include "core/io/images/image_file.h"
-#include "core/io/import/fisheye_camera.h"
 #include "core/process/progress.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -67,7 +67,7 @@ TEST(Dsec, BecomesADatasetWithDepthInTheRawView) {
   ASSERT_TRUE(sequence);
   EXPECT_EQ(sequence->layout, "DSEC");
   const TemporaryFolder out;
-  EXPECT_EQ(write_as_dataset(*sequence, out.path() / "data"), 2000U);
+  EXPECT_EQ(write_as_dataset(*sequence, out.path() / "data").events, 2000U);
   const Dataset dataset = Dataset::open(out.path() / "data");
   EXPECT_EQ(dataset.load_events(), some_events(50000.5, 2000, 64, 48));
   EXPECT_EQ(dataset.camera().width, 64);
@@ -84,9 +84,8 @@ TEST(Dsec, TakesAPartOfTheSequence) {
   const TemporaryFolder folder;
   write_dsec(folder);
   const TemporaryFolder out;
-  EXPECT_EQ(
-      write_as_dataset(*open_public_sequence(folder.path()), out.path() / "data", {0.55, 0.2}),
-      200U);
+  const auto sequence = open_public_sequence(folder.path());
+  EXPECT_EQ(write_as_dataset(*sequence, out.path() / "data", {0.55, 0.2}).events, 200U);
   EXPECT_EQ(Dataset::open(out.path() / "data").depth_maps().size(), 1U);
 }
 
@@ -155,9 +154,9 @@ TEST(TumVie, BecomesADatasetWithThePosesOfTheEventCamera) {
   const auto sequence = open_public_sequence(folder.path());
   ASSERT_TRUE(sequence);
   EXPECT_EQ(sequence->layout, "TUM-VIE");
-  EXPECT_LT(sequence->camera_residual_px, 0.1);
+  EXPECT_LT(sequence->camera.residual_px, 0.1);
   const TemporaryFolder out;
-  EXPECT_EQ(write_as_dataset(*sequence, out.path() / "data"), 1500U);
+  EXPECT_EQ(write_as_dataset(*sequence, out.path() / "data").events, 1500U);
   const Dataset dataset = Dataset::open(out.path() / "data");
   EXPECT_EQ(dataset.load_events(), some_events(0.5, 1500, 320, 180));
   for (const StampedPose& pose : dataset.groundtruth().poses())

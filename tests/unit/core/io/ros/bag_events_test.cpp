@@ -97,7 +97,7 @@ TEST_F(BagEvents, NamesTheByteOfWhatIsWrong) {
               HasSubstr(at + "a message of the unknown connection 3"));
   EXPECT_THAT(
       error(kBagHead + bag_chunk("none", events_ + bag_message(4, "short"))),
-      HasSubstr(at + "in a message of /dvs/events in the record that begins here: it ends"));
+      HasSubstr(at + "in the record that begins here: in a message of /dvs/events: it ends"));
   EXPECT_THAT(
       error(kBagHead +
             bag_chunk("none", events_ + bag_message(4, event_array(Events{{0, 240, 0, 1}})))),

@@ -1,4 +1,4 @@
-#include "core/io/import/fisheye_camera.h"
+#include "core/fisheye_camera.h"
 
 #include <Eigen/QR>
 
