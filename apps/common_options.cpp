@@ -8,6 +8,16 @@
 #include "core/process/progress.h"
 
 namespace saccade {
+namespace {
+
+/// As a single-quoted YAML scalar, so that a path is text whatever it looks like.
+std::string yaml_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
 
 void CommonOptions::apply() const {
   if (threads > 0) set_thread_count(threads);
@@ -17,6 +27,7 @@ void CommonOptions::apply() const {
 config::Document CommonOptions::load(const std::string& config_file) const {
   std::vector<std::string> all = overrides;
   if (seed) all.push_back("seed=" + std::to_string(*seed));
+  if (!sensor.empty()) all.push_back("sensor=" + yaml_quoted(sensor));
   return config_file.empty() ? config::Document::empty(all) : config::load(config_file, all);
 }
 
@@ -44,6 +55,13 @@ void add_config_options(CLI::App& command, CommonOptions& options) {
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   command.add_flag("--print-config", options.print_config,
                    "Print every key with its value, help and range, and stop.");
+}
+
+void add_sensor_option(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("--sensor", options.sensor,
+                  "Calibrated sensor (`saccade calibrate`); the same as --set sensor=FILE.")
+      ->type_name("FILE");
 }
 
 void add_reference_option(CLI::App& command, const std::string& page) {

@@ -14,7 +14,8 @@ namespace saccade {
 struct CommonOptions {
   std::vector<std::string> overrides;  ///< "key.path=value"
   std::optional<std::uint64_t> seed;
-  int threads = 0;  ///< 0: all cores
+  std::string sensor;  ///< sensor.yaml, as key `sensor`; empty: none stated
+  int threads = 0;     ///< 0: all cores
   bool quiet = false;
   bool print_config = false;
 
@@ -31,6 +32,8 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 void add_override_option(CLI::App& command, CommonOptions& options);
 /// --set, --seed and --print-config, for verbs that read a configuration.
 void add_config_options(CLI::App& command, CommonOptions& options);
+/// --sensor, for verbs whose configuration has the key `sensor`.
+void add_sensor_option(CLI::App& command, CommonOptions& options);
 /// --reference, for verbs whose page has this name: prints it in place of everything else.
 void add_reference_option(CLI::App& command, const std::string& page);
 

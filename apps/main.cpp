@@ -40,6 +40,7 @@ void describe_command(CLI::App& command) {
   add_render_verb(command);
   add_info_verb(command);
   add_statistics_verb(command);
+  add_calibrate_verb(command);
   add_convert_verb(command);
 }
 

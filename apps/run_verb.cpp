@@ -111,6 +111,7 @@ void add_run_verb(CLI::App& command) {
       "--reference", options->reference,
       "Print every key of the module's configuration as a page of docs/reference/, and stop.");
   add_config_options(*verb, options->common);
+  add_sensor_option(*verb, options->common);
   add_common_options(*verb, options->common);
   verb->footer(
       "Examples:\n"

@@ -95,6 +95,7 @@ void add_simulate_verb(CLI::App& command) {
                  "Simulate into the cache ($SACCADE_CACHE, see `saccade cache`) unless the dataset "
                  "is there already; DATASET becomes a link to it.");
   add_config_options(*verb, options->common);
+  add_sensor_option(*verb, options->common);
   add_reference_option(*verb, "simulate");
   add_common_options(*verb, options->common);
   verb->footer(

@@ -16,6 +16,7 @@ void add_cache_verb(CLI::App& command);
 void add_render_verb(CLI::App& command);
 void add_info_verb(CLI::App& command);
 void add_statistics_verb(CLI::App& command);
+void add_calibrate_verb(CLI::App& command);
 void add_convert_verb(CLI::App& command);
 
 }  // namespace saccade

@@ -137,6 +137,13 @@ void describe(config::Fields& fields, SimulationConfig& config) {
   if (fields.reading() && config.trajectory.source == MotionSource::kModelCamera &&
       model.sets_focal_length && !model.file.empty())
     config.camera.fx = config.camera.fy = model_focal_length_px(model, config.camera.height);
+  fields
+      .path("sensor", config.sensor,
+            "File of a calibrated sensor (`saccade calibrate`), whose known values are the "
+            "defaults of the keys of events, before those of events.preset; ~ takes none.")
+      .must_exist();
+  if (fields.has("sensor") && config.sensor)
+    config.events.sensor = read_sensor_file(*config.sensor).events;
   fields.section("events", config.events, "Event pixels and their imperfections.");
   const bool is_animated = std::ranges::any_of(
       config.scene.meshes, [](const MeshOptions& mesh) { return mesh.animation.has_value(); });

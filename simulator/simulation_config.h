@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -62,6 +63,7 @@ struct SimulationConfig {
   double start_s = 0;
   std::optional<double> duration_s;
   PinholeCamera camera{240, 180, 200, 200, 119.5, 89.5, {}};
+  std::optional<std::filesystem::path> sensor;  ///< sensor.yaml, the defaults of `events`
   EventOptions events;
   std::vector<RigCameraOptions> rig;  ///< unless stated with the first camera's lens and pixels
   ImuOptions imu;

@@ -2,6 +2,7 @@
 
 #include "core/config/method_table.h"
 #include "estimator/odometry/presets.h"
+#include "estimator/run/sensor_input.h"
 
 namespace saccade {
 namespace {
@@ -156,6 +157,11 @@ void describe(config::Fields& fields, OdometryConfig& config) {
                                      "below.",
                                      odometry_methods()));
   if (fields.reading()) odometry = odometry_preset(config.method);
+  if (const auto sensor = describe_sensor(fields, config.sensor)) {
+    ReconstructionConfig& images = odometry.mapping.reconstruction;
+    if (const auto on = sensor->estimator_contrast_on()) images.contrast_on = on;
+    if (const auto off = sensor->estimator_contrast_off()) images.contrast_off = off;
+  }
   fields.section("camera", config.camera,
                  "How the camera is assumed to differ from its calibration.");
   fields.group(

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/config/fields.h"
@@ -22,6 +24,7 @@ struct StartOptions {
 /// Nothing comes from the dataset but its events, its calibration, the poses of the start, if
 /// there are any, and, where asked for, the samples of its inertial sensor.
 struct OdometryConfig {
+  std::optional<std::filesystem::path> sensor;  ///< sensor.yaml, default of mapping.contrast_*
   CameraCorrection camera;
   StartOptions start;
   std::string method = "edges";  ///< a row of odometry_methods()

@@ -1,11 +1,32 @@
 #include "estimator/reconstruction/reconstruction_config.h"
 
+#include <algorithm>
+
 #include "estimator/reconstruction/contrast_thresholds.h"
 #include "estimator/reconstruction/reconstruction_output.h"
+#include "estimator/run/sensor_input.h"
 
 namespace saccade {
+namespace {
+
+/// A pixel whose threshold is off by sigma is off by as much of the log intensity at each event.
+void take_mismatch(const SensorFile& sensor, ReconstructionConfig& config) {
+  if (!sensor.events.mismatch_sigma || !config.contrast_on || !config.contrast_off) return;
+  const double sigma =
+      *sensor.events.mismatch_sigma * (*config.contrast_on + *config.contrast_off) / 2;
+  for (ObservationOptions* options :
+       {&config.gradient.observations, &config.equations.observations})
+    options->event_sigma = std::max(options->event_sigma, sigma);
+}
+
+}  // namespace
 
 void describe(config::Fields& fields, ReconstructionConfig& config) {
+  if (const auto sensor = describe_sensor(fields, config.sensor)) {
+    config.contrast_on = sensor->estimator_contrast_on();
+    config.contrast_off = sensor->estimator_contrast_off();
+    take_mismatch(*sensor, config);
+  }
   describe(fields, config, true);
   fields.section("depth", config.depth, "Propagation of the known depth to the poses of events.");
   describe_contrast(fields, config.contrast_on, config.contrast_off);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,7 +22,8 @@ struct ReconstructionConfig : ImageMethodOptions {
                            .events = std::nullopt,
                            .reference = ViewWindowOptions::Reference::kFrame};
   DepthSourceOptions depth;
-  std::optional<double> contrast_on;  ///< nullopt: the dataset's
+  std::optional<std::filesystem::path> sensor;  ///< sensor.yaml, default of the thresholds
+  std::optional<double> contrast_on;            ///< nullopt: the dataset's
   std::optional<double> contrast_off;
   std::vector<std::int64_t> snapshot_events;
   bool figures = false;

@@ -1,5 +1,6 @@
 #include "estimator/tracking/track_config.h"
 
+#include "estimator/run/sensor_input.h"
 #include "estimator/tracking/frames/frame_tracker.h"
 
 namespace saccade {
@@ -147,6 +148,12 @@ const TrackMethod& method_of(const TrackConfig& config) {
 
 void describe(config::Fields& fields, TrackConfig& config) {
   using config::Fields;
+  if (const auto sensor = describe_sensor(fields, config.sensor)) {
+    config.contrast_on = sensor->estimator_contrast_on();
+    config.contrast_off = sensor->estimator_contrast_off();
+    if (sensor->events.mismatch_sigma)
+      config.intensity.mismatch_sigma = sensor->events.mismatch_sigma;
+  }
   config::describe_method(fields, "method", config.method, track_methods(), config,
                           "What is compared with the map.");
   const TrackMethod& method = method_of(config);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +21,7 @@ namespace saccade {
 
 /// The configuration of `saccade run track`; describe() names the keys, ranges and defaults.
 struct TrackConfig {
+  std::optional<std::filesystem::path> sensor;  ///< sensor.yaml, default of what follows
   std::string method = "edges";
   CameraCorrection camera;
   ReferenceOptions reference;

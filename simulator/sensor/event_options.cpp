@@ -1,24 +1,27 @@
 #include "simulator/sensor/event_options.h"
 
 #include "core/check.h"
+#include "simulator/sensor/sensor_parameters.h"
 
 namespace saccade {
 namespace {
 
-// Where no source is named the value is an estimate.
+// Where no source is named the value is an estimate. "Fitted": by `saccade calibrate` to recordings
+// (docs/realism.md).
 SensorPreset davis240c() {
   SensorPreset preset;
   NoiseOptions& noise = preset.noise;
-  preset.contrast = {0.2, 0.2};      // v2e's default; depends on the bias settings
-  noise.mismatch.sigma = 0.175;      // 3.5 % contrast (Brandli et al. 2014) over 0.2
-  noise.refractory.period_us = 500;  // v2e's default; depends on the bias settings
-  noise.leak.rate_hz = 0.1;          // v2e's noisy setting, after Nozaki and Delbruck 2017
-  noise.leak.sigma = 0.2;            // v2e: 0.1 decades between pixels
-  noise.shot.rate_hz = 0.1;          // v2e: 0.001 in good light, 5 in its noisy setting
+  preset.contrast = {0.45, 0.34};     // fitted, with a dark current of 2 % of the frame's white
+  noise.mismatch.sigma = 0.09;        // 3.5 % contrast (Brandli et al. 2014) over the thresholds
+  noise.refractory.period_us = 1500;  // fitted: 1250; floors of gaps: 1500 to 2400
+  noise.leak.rate_hz = 0.01;          // counted: 0 to 0.04 before what does not change
+  noise.leak.sigma = 0.2;             // v2e: 0.1 decades between pixels
+  noise.shot.rate_hz = 0.05;         // counted: 0.02 to 0.1 in bright rooms; v2e's noisy setting: 5
   noise.bandwidth.cutoff_hz = 3000;  // some kHz in bright light (Lichtsteiner et al. 2008)
   noise.bandwidth.order = 2;         // photoreceptor and source follower
-  noise.hot.fraction = 1e-4;         // four pixels of the sensor
-  noise.hot.rate_hz = 100;
+  noise.hot.fraction = 5e-4;         // counted: 22 of 43,200 pixels in three seconds
+  noise.hot.rate_hz = 5.5;           // their geometric mean
+  noise.hot.sigma = 0.7;
   noise.latency.mean_us = 3;  // the least latency (Brandli et al. 2014)
   noise.latency.jitter_us = 1;
   noise.readout.rate_hz = 12e6;        // Brandli et al. 2014
@@ -27,19 +30,36 @@ SensorPreset davis240c() {
   return preset;
 }
 
+SensorPreset davis346() {
+  SensorPreset preset = davis240c();  // the same pixel but for what follows
+  NoiseOptions& noise = preset.noise;
+  preset.contrast = {0.134, 0.255};  // ln 1.143 and -ln(1 - 0.225): half of the pixels respond to
+                                     // 14.3 % ON and 22.5 % OFF (data sheet)
+  noise.mismatch.sigma = 0.18;       // 3.5 % contrast, as of the DAVIS240C, over their mean
+  noise.refractory.period_us = 550;  // floor of the gaps of a camera at rest: 350 to 810
+  noise.leak.rate_hz = 0.005;        // counted before a still scene
+  noise.shot.rate_hz = 0.003;        // likewise
+  noise.hot.fraction = 1e-5;         // none of 89,960 pixels in 0.17 s
+  noise.hot.rate_hz = 100;
+  noise.hot.sigma = 0.5;
+  noise.readout.capacity = 346 * 260;
+  return preset;
+}
+
 SensorPreset dvxplorer() {
   SensorPreset preset;
   NoiseOptions& noise = preset.noise;
   preset.contrast = {0.122, 0.122};  // ln 1.13: half of the pixels respond (data sheet)
   noise.mismatch.sigma = 0.22;       // all respond at 27.5 %: 4.5 sigma of 307 200 pixels
-  noise.refractory.period_us = 200;  // temporal resolution 65 to 200 us (data sheet)
-  noise.leak.rate_hz = 0.05;
+  noise.refractory.period_us = 390;  // floor of the gaps of a camera at rest: 391 to 395
+  noise.leak.rate_hz = 0.007;        // counted before a still scene: 0.004 to 0.011
   noise.leak.sigma = 0.2;
-  noise.shot.rate_hz = 0.1;
+  noise.shot.rate_hz = 0.045;        // likewise: 0.041 to 0.049
   noise.bandwidth.cutoff_hz = 1000;  // latency below 1 ms (data sheet)
   noise.bandwidth.order = 1;
-  noise.hot.fraction = 1e-5;  // three pixels of the sensor
-  noise.hot.rate_hz = 100;
+  noise.hot.fraction = 1e-3;  // counted: 73 of 76,800 pixels of a camera at rest
+  noise.hot.rate_hz = 58;     // their geometric mean
+  noise.hot.sigma = 1;        // their logarithms: 1.3, more than the model takes
   noise.latency.mean_us = 50;
   noise.latency.jitter_us = 20;
   noise.readout.rate_hz = 165e6;  // data sheet
@@ -56,6 +76,8 @@ SensorPreset sensor_preset(SensorModel sensor) {
       return {};
     case SensorModel::kDavis240c:
       return davis240c();
+    case SensorModel::kDavis346:
+      return davis346();
     case SensorModel::kDvxplorer:
       return dvxplorer();
   }
@@ -66,12 +88,17 @@ void describe(config::Fields& fields, EventOptions& options) {
   fields.choice("preset", options.preset,
                 {{"ideal", SensorModel::kIdeal},
                  {"davis240c", SensorModel::kDavis240c},
+                 {"davis346", SensorModel::kDavis346},
                  {"dvxplorer", SensorModel::kDvxplorer}},
                 "Sensor whose thresholds and noise are the defaults of the other keys.");
   if (fields.has("preset")) {
     const SensorPreset preset = sensor_preset(options.preset);
     options.contrast = preset.contrast;
     options.noise = preset.noise;
+  }
+  if (fields.reading() && options.sensor) {
+    apply(*options.sensor, options);
+    options.sensor.reset();  // the cameras of a rig start from the result
   }
   fields
       .value(

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <optional>
+
 #include "core/config/fields.h"
 #include "core/event.h"
 #include "core/io/events/event_file.h"
+#include "core/io/sensor_file.h"
 #include "simulator/sensor/noise/noise_options.h"
 #include "simulator/sensor/pixel/event_pixel.h"
 
 namespace saccade {
 
 /// Sensors whose values are known (key `events.preset`).
-enum class SensorModel { kIdeal, kDavis240c, kDvxplorer };
+enum class SensorModel { kIdeal, kDavis240c, kDavis346, kDvxplorer };
 
 /// What a preset states: the defaults of these keys, which every stated key overrides.
 struct SensorPreset {
@@ -58,6 +61,9 @@ struct EventOptions {
   /// Side of the square that a pixel sees, in distances to the next pixel. No key: it is less than
   /// 1 where every second pixel of a sensor is simulated.
   double pixel_side = 1;
+  /// Of a calibrated sensor: describe() puts them behind the preset's values and before stated keys.
+  /// No key: SimulationConfig has the file's.
+  std::optional<SensorParameters> sensor;
 
   [[nodiscard]] TimeNs timestamp_unit_ns() const {
     return timestamp_unit == TimestampUnit::kMicroseconds ? 1000 : 1;

@@ -47,7 +47,7 @@ std::vector<std::string> verbs() {
 TEST(Command, EveryVerbExplainsItselfWithAnExample) {
   const std::vector<std::string> all = verbs();
   for (const char* verb : {"simulate", "run", "eval", "report", "gate", "sweep", "results", "cache",
-                           "render", "info", "statistics", "convert"})
+                           "render", "info", "statistics", "calibrate", "convert"})
     EXPECT_THAT(all, Contains(verb));
   for (const std::string& verb : all)
     EXPECT_THAT(saccade_ok({verb, "--help"}),

@@ -22,13 +22,16 @@ namespace {
 constexpr double kSparse_px = 0.5;
 constexpr double kDense_px = 0.05;
 
-/// A DAVIS240C that leaks and is lit so badly that every model counts within a short recording.
+/// A DAVIS240C that is set so sensitive, leaks and is lit so badly that every model counts within a
+/// short recording.
 EventOptions lively_davis240c(const std::tuple<int, double>& low_pass) {
   const SensorPreset preset = sensor_preset(SensorModel::kDavis240c);
   EventOptions options;
   options.timestamp_unit = TimestampUnit::kNanoseconds;
-  options.contrast = preset.contrast;
   options.noise = preset.noise;
+  options.contrast = {0.2, 0.2};
+  options.noise.mismatch.sigma = 0.175;
+  options.noise.refractory.period_us = 500;
   options.noise.leak.rate_hz = 3;
   options.noise.shot.rate_hz = 20;
   std::tie(options.noise.bandwidth.order, options.noise.bandwidth.cutoff_hz) = low_pass;

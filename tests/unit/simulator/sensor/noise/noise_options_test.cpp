@@ -24,7 +24,7 @@ TEST(NoiseOptions, AreAllOffByDefault) {
 }
 
 TEST(NoiseOptions, PresetsSwitchOnEveryModel) {
-  for (const char* name : {"davis240c", "dvxplorer"}) {
+  for (const char* name : {"davis240c", "davis346", "dvxplorer"}) {
     const EventOptions options = read(std::string("preset: ") + name);
     for (const NoiseModel& model : noise_models())
       EXPECT_TRUE(model.is_on(options.noise)) << name << " " << model.name;
