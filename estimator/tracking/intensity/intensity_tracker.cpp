@@ -223,6 +223,7 @@ std::size_t IntensityTracker::relocate(std::span<const Event> events, Poses& pos
   fallback_.reset_near(t_ns, world_from_map_ * candidate_pose(t_ns));
   const std::size_t known = poses.size();
   const std::size_t done = fallback_.follow(events, poses, timing_);
+  if (done == 0) --candidates_tried_;  // it is tried when there are more events
   for (std::size_t i = known; i < poses.size(); ++i) poses[i].status = TrackStatus::kLost;
   if (done == 0 || !fallback_.fits()) return done;
   is_lost_ = false;
