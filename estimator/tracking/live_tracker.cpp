@@ -14,7 +14,7 @@ const TrackConfig& checked(const TrackConfig& config) {
     throw InputError("method", "frames takes no events; state edges, intensity or polarity");
   if (config.method == "edges" &&
       config.edges.event_frame.window == EventFrameOptions::Window::kSliding)
-    throw InputError("event_window", "sliding frames need all events at once; state disjoint");
+    throw InputError("edges.event_window", "sliding frames need all events at once; state disjoint");
   return config;
 }
 

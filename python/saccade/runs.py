@@ -175,7 +175,7 @@ def run(estimator: Any, dataset: Union[Dataset, PathLike], output: Optional[Path
     progress
         As of :func:`saccade.simulate`.
     **overrides
-        Keys in place of the configuration's, ``__`` for each dot: ``align__samples=200``.
+        Keys in place of the configuration's, ``__`` for each dot: ``edges__samples=200``.
 
     Returns
     -------

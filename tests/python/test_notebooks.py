@@ -1,8 +1,10 @@
 """The notebooks run from their first cell to their last; skipped where nbconvert is not installed."""
 import os
+import pathlib
 
 import pytest
 
+import saccade
 from conftest import ROOT
 
 nbconvert = pytest.importorskip("nbconvert")
@@ -19,6 +21,7 @@ def test_there_are_five():
 @pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
 def test_it_runs(file, tmp_path, monkeypatch):
     from nbconvert.preprocessors import ExecutePreprocessor
+    monkeypatch.setenv("PYTHONPATH", str(pathlib.Path(saccade.__file__).resolve().parents[1]))
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     os.symlink(ROOT / "configs", tmp_path / "configs")
     os.symlink(ROOT / "scenes", tmp_path / "scenes")
