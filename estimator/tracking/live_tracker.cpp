@@ -14,7 +14,8 @@ const TrackConfig& checked(const TrackConfig& config) {
     throw InputError("method", "frames takes no events; state edges, intensity or polarity");
   if (config.method == "edges" &&
       config.edges.event_frame.window == EventFrameOptions::Window::kSliding)
-    throw InputError("edges.event_window", "sliding frames need all events at once; state disjoint");
+    throw InputError("edges.event_window",
+                     "sliding frames need all events at once; state disjoint");
   return config;
 }
 
@@ -30,32 +31,43 @@ LiveTracker::LiveTracker(const TrackConfig& config, const Dataset& dataset, doub
   monitor_.set_map(world_.edge_points, world_.intensity_map.world_from_map());
 }
 
-void LiveTracker::check(std::span<const Event> events) const {
-  TimeNs last_ns = events_.empty() ? events.front().t_ns : events_.back().t_ns;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const Event& event = events[i];
+void LiveTracker::check_new_events() const {
+  TimeNs last_ns = fed_ > 0 ? events_[fed_ - 1].t_ns : events_[fed_].t_ns;
+  for (std::size_t i = fed_; i < events_.size(); ++i) {
+    const Event& event = events_[i];
     if (event.t_ns < last_ns)
-      throw InputError(fmt::format("events[{}]", i),
+      throw InputError(fmt::format("events[{}]", i - fed_),
                        fmt::format("t = {} ns comes after {} ns; events are fed in order of time",
                                    event.t_ns, last_ns));
     if (event.x >= start_.camera.width || event.y >= start_.camera.height)
-      throw InputError(fmt::format("events[{}]", i),
+      throw InputError(fmt::format("events[{}]", i - fed_),
                        fmt::format("pixel ({}, {}) is not on the sensor of {} x {} pixels", event.x,
                                    event.y, start_.camera.width, start_.camera.height));
     last_ns = event.t_ns;
   }
 }
 
-std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
-  if (events.empty()) return {};
-  check(events);
-  if (!has_begun_) tracker_->reset(events.front().t_ns, start_.world_from_camera);
-  has_begun_ = true;
+std::span<Event> LiveTracker::room(std::size_t count) {
   const std::size_t kept = std::min(used_, monitor_.history());
-  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(used_ - kept));
-  events_.insert(events_.end(), events.begin(), events.end());
+  const std::size_t dropped = used_ - kept;
+  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(dropped));
   used_ = kept;
+  fed_ -= dropped;
+  events_.resize(fed_ + count);
+  return std::span(events_).subspan(fed_);
+}
 
+std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
+  std::copy(events.begin(), events.end(), room(events.size()).begin());
+  return feed();
+}
+
+std::vector<TrackedPose> LiveTracker::feed() {
+  if (events_.size() == fed_) return {};
+  check_new_events();
+  if (!has_begun_) tracker_->reset(events_[fed_].t_ns, start_.world_from_camera);
+  has_begun_ = true;
+  fed_ = events_.size();
   std::vector<TrackedPose> poses = tracker_->track({.events = std::span(events_).subspan(used_)},
                                                    [&](std::size_t count) { used_ += count; });
   monitor_.set_recording({.events = events_});

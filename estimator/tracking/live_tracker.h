@@ -30,20 +30,26 @@ class LiveTracker {
   /// last call (InputError otherwise), within the sensor.
   [[nodiscard]] std::vector<TrackedPose> feed(std::span<const Event> events);
 
+  /// The same of events that are written in place: room for the next `count`, all of which are
+  /// written before feed() takes them.
+  [[nodiscard]] std::span<Event> room(std::size_t count);
+  [[nodiscard]] std::vector<TrackedPose> feed();
+
   /// Events that wait for a pose.
-  [[nodiscard]] std::size_t waiting() const { return events_.size() - used_; }
+  [[nodiscard]] std::size_t waiting() const { return fed_ - used_; }
   [[nodiscard]] const TrackWorld& world() const { return world_; }
 
  private:
-  void check(std::span<const Event> events) const;
+  void check_new_events() const;
 
   TrackConfig config_;
   TrackStart start_;
   TrackWorld world_;
   std::unique_ptr<Tracker> tracker_;
   PoseMonitor monitor_;
-  Events events_;         ///< those that wait, behind those that the monitor may need
-  std::size_t used_ = 0;  ///< of events_
+  Events events_;  ///< those that wait, behind those that the monitor may need, then new ones
+  std::size_t used_ = 0;  ///< of events_, by the tracker
+  std::size_t fed_ = 0;   ///< of events_, before the new ones
   bool has_begun_ = false;
 };
 

@@ -35,18 +35,31 @@ py::array events_array(Events events) {
   return py::array(event_dtype(), {count}, {static_cast<py::ssize_t>(sizeof(Event))}, data, owner);
 }
 
-Events events_from(const py::array& array) {
+std::size_t event_count(const py::array& array) {
   if (array.ndim() != 1 || !array.dtype().equal(event_dtype()))
     throw InputError("events",
                      "must be a one-dimensional array of saccade.EVENT_DTYPE (fields x, y, p, t); "
                      "saccade.Events(...) makes one of other arrays");
-  Events events(static_cast<std::size_t>(array.shape(0)));
+  return static_cast<std::size_t>(array.shape(0));
+}
+
+void copy_events(const py::array& array, std::span<Event> events) {
   const auto* at = static_cast<const std::byte*>(array.data());
-  for (Event& event : events) {
-    std::memcpy(&event, at, sizeof(Event));  // a view may lie anywhere
-    event.polarity = event.polarity != 0 ? 1 : -1;
-    at += array.strides(0);
-  }
+  const py::ssize_t stride = array.strides(0);
+  // Bytes, since a view may lie anywhere.
+  if (stride == sizeof(Event))
+    std::memcpy(static_cast<void*>(events.data()), at, events.size_bytes());
+  else
+    for (Event& event : events) {
+      std::memcpy(static_cast<void*>(&event), at, sizeof(Event));
+      at += stride;
+    }
+  for (Event& event : events) event.polarity = event.polarity != 0 ? 1 : -1;
+}
+
+Events events_from(const py::array& array) {
+  Events events(event_count(array));
+  copy_events(array, events);
   return events;
 }
 

@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +28,11 @@ using PoseArray = py::array_t<double, py::array::c_style | py::array::forcecast>
 /// A one-dimensional array of event_dtype() that owns the events; nothing is copied.
 [[nodiscard]] py::array events_array(Events events);
 
-/// Copies an array of event_dtype(). Throws InputError for another type or shape.
+/// Length of an array of event_dtype(). Throws InputError for another type or shape.
+[[nodiscard]] std::size_t event_count(const py::array& array);
+/// Copies all of such an array; `events` is as long.
+void copy_events(const py::array& array, std::span<Event> events);
+/// Both.
 [[nodiscard]] Events events_from(const py::array& array);
 
 /// Poses as rows t x y z qx qy qz qw, seconds and metres, (N, 8) float64.

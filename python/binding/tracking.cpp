@@ -1,7 +1,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -38,40 +37,31 @@ std::unique_ptr<LiveTracker> make_tracker(const config::Document& document,
   return std::make_unique<LiveTracker>(config, dataset, from_s, to_s);
 }
 
-template <class Value>
-auto column(const std::vector<TrackedPose>& poses, const Value& value) {
-  std::vector<decltype(value(poses.front()))> values;
-  for (const TrackedPose& pose : poses) values.push_back(value(pose));
-  return values_array(std::move(values));
-}
-
-py::dict poses_dict(const std::vector<TrackedPose>& poses) {
+/// Rows of poses, and of what says how good they are: is_lost, probability, inlier_ratio, residual,
+/// position_sigma_m, rotation_sigma_rad. Two arrays, because making one takes as long as a pose.
+py::tuple pose_arrays(const std::vector<TrackedPose>& poses) {
   std::vector<StampedPose> stamped;
-  for (const TrackedPose& pose : poses)
+  stamped.reserve(poses.size());
+  py::array_t<double> evidence({static_cast<py::ssize_t>(poses.size()), py::ssize_t{6}});
+  double* row = evidence.mutable_data();
+  for (const TrackedPose& pose : poses) {
     stamped.push_back({seconds_from_ns(pose.t_ns), pose.world_from_camera});
-  py::dict dict;
-  dict["poses"] = poses_array(stamped);
-  dict["t_ns"] = column(poses, [](const TrackedPose& p) { return p.t_ns; });
-  dict["is_lost"] = column(poses, [](const TrackedPose& p) {
-    return static_cast<std::uint8_t>(p.status == TrackStatus::kLost);
-  });
-  dict["probability"] = column(poses, [](const TrackedPose& p) { return p.probability; });
-  dict["inlier_ratio"] = column(poses, [](const TrackedPose& p) { return p.inlier_ratio; });
-  dict["residual"] = column(poses, [](const TrackedPose& p) { return p.residual; });
-  dict["position_sigma_m"] = column(poses, [](const TrackedPose& p) { return p.position_sigma_m; });
-  dict["rotation_sigma_rad"] =
-      column(poses, [](const TrackedPose& p) { return p.rotation_sigma_rad; });
-  return dict;
+    for (const double value :
+         {pose.status == TrackStatus::kLost ? 1.0 : 0.0, pose.probability, pose.inlier_ratio,
+          pose.residual, pose.position_sigma_m, pose.rotation_sigma_rad})
+      *row++ = value;
+  }
+  return py::make_tuple(poses_array(stamped), evidence);
 }
 
-py::dict feed(LiveTracker& tracker, const py::array& array) {
-  const Events events = events_from(array);
+py::tuple feed(LiveTracker& tracker, const py::array& array) {
+  copy_events(array, tracker.room(event_count(array)));
   std::vector<TrackedPose> poses;
   {
     const py::gil_scoped_release release;
-    poses = tracker.feed(events);
+    poses = tracker.feed();
   }
-  return poses_dict(poses);
+  return pose_arrays(poses);
 }
 
 py::array_t<double> map_array(const LiveTracker& tracker) {

@@ -263,9 +263,9 @@ class Tracker:
         The interpreter's lock is released during the work.
         """
         data = events.data if isinstance(events, Events) else events
-        found = self._native.feed(data)
-        return Poses(found["poses"], found["is_lost"].astype(bool), found["probability"], found["inlier_ratio"],
-                     found["residual"], found["position_sigma_m"], found["rotation_sigma_rad"])
+        rows, evidence = self._native.feed(data)
+        is_lost, *others = evidence.T
+        return Poses(rows, is_lost != 0, *others)
 
     @property
     def waiting(self) -> int:
