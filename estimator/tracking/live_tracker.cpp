@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "core/error.h"
 
@@ -32,29 +33,44 @@ LiveTracker::LiveTracker(const TrackConfig& config, const Dataset& dataset, doub
 }
 
 void LiveTracker::check_new_events() const {
-  TimeNs last_ns = fed_ > 0 ? events_[fed_ - 1].t_ns : events_[fed_].t_ns;
-  for (std::size_t i = fed_; i < events_.size(); ++i) {
-    const Event& event = events_[i];
-    if (event.t_ns < last_ns)
-      throw InputError(fmt::format("events[{}]", i - fed_),
-                       fmt::format("t = {} ns comes after {} ns; events are fed in order of time",
-                                   event.t_ns, last_ns));
-    if (event.x >= start_.camera.width || event.y >= start_.camera.height)
-      throw InputError(fmt::format("events[{}]", i - fed_),
-                       fmt::format("pixel ({}, {}) is not on the sensor of {} x {} pixels", event.x,
-                                   event.y, start_.camera.width, start_.camera.height));
+  const int width = start_.camera.width, height = start_.camera.height;
+  TimeNs last_ns = events_[fed_ > 0 ? fed_ - 1 : 0].t_ns;
+  // Without branches, since this passes over all events that there are.
+  bool is_good = true;
+  for (const Event& event : buffered().subspan(fed_)) {
+    is_good &= (event.t_ns >= last_ns) & (event.x < width) & (event.y < height);
     last_ns = event.t_ns;
   }
+  if (!is_good) report_new_events();
+}
+
+void LiveTracker::report_new_events() const {
+  TimeNs last_ns = events_[fed_ > 0 ? fed_ - 1 : 0].t_ns;
+  std::size_t i = fed_;
+  for (; events_[i].t_ns >= last_ns && events_[i].x < start_.camera.width &&
+         events_[i].y < start_.camera.height;
+       ++i)
+    last_ns = events_[i].t_ns;
+  const Event& event = events_[i];
+  const std::string location = fmt::format("events[{}]", i - fed_);
+  if (event.t_ns < last_ns)
+    throw InputError(location,
+                     fmt::format("t = {} ns comes after {} ns; events are fed in order of time",
+                                 event.t_ns, last_ns));
+  throw InputError(location,
+                   fmt::format("pixel ({}, {}) is not on the sensor of {} x {} pixels", event.x,
+                               event.y, start_.camera.width, start_.camera.height));
 }
 
 std::span<Event> LiveTracker::room(std::size_t count) {
-  const std::size_t kept = std::min(used_, monitor_.history());
-  const std::size_t dropped = used_ - kept;
-  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(dropped));
-  used_ = kept;
+  const std::size_t dropped = used_ - std::min(used_, monitor_.history());
+  std::copy(events_.begin() + static_cast<std::ptrdiff_t>(dropped),
+            events_.begin() + static_cast<std::ptrdiff_t>(fed_), events_.begin());
+  used_ -= dropped;
   fed_ -= dropped;
-  events_.resize(fed_ + count);
-  return std::span(events_).subspan(fed_);
+  end_ = fed_ + count;
+  if (events_.size() < end_) events_.resize(end_);
+  return std::span(events_).subspan(fed_, count);
 }
 
 std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
@@ -63,14 +79,14 @@ std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
 }
 
 std::vector<TrackedPose> LiveTracker::feed() {
-  if (events_.size() == fed_) return {};
+  if (end_ == fed_) return {};
   check_new_events();
   if (!has_begun_) tracker_->reset(events_[fed_].t_ns, start_.world_from_camera);
   has_begun_ = true;
-  fed_ = events_.size();
-  std::vector<TrackedPose> poses = tracker_->track({.events = std::span(events_).subspan(used_)},
+  fed_ = end_;
+  std::vector<TrackedPose> poses = tracker_->track({.events = buffered().subspan(used_)},
                                                    [&](std::size_t count) { used_ += count; });
-  monitor_.set_recording({.events = events_});
+  monitor_.set_recording({.events = buffered()});
   for (TrackedPose& pose : poses) monitor_.judge(pose);
   return poses;
 }

@@ -40,16 +40,21 @@ class LiveTracker {
   [[nodiscard]] const TrackWorld& world() const { return world_; }
 
  private:
+  [[nodiscard]] std::span<const Event> buffered() const { return std::span(events_).first(end_); }
   void check_new_events() const;
+  [[noreturn]] void report_new_events() const;
 
   TrackConfig config_;
   TrackStart start_;
   TrackWorld world_;
   std::unique_ptr<Tracker> tracker_;
   PoseMonitor monitor_;
-  Events events_;  ///< those that wait, behind those that the monitor may need, then new ones
+  /// Those that wait, behind those that the monitor may need, then new ones; never made smaller, as
+  /// making room costs more than filling it.
+  Events events_;
   std::size_t used_ = 0;  ///< of events_, by the tracker
   std::size_t fed_ = 0;   ///< of events_, before the new ones
+  std::size_t end_ = 0;   ///< of events_, with the new ones
   bool has_begun_ = false;
 };
 

@@ -46,15 +46,13 @@ std::size_t event_count(const py::array& array) {
 void copy_events(const py::array& array, std::span<Event> events) {
   const auto* at = static_cast<const std::byte*>(array.data());
   const py::ssize_t stride = array.strides(0);
-  // Bytes, since a view may lie anywhere.
-  if (stride == sizeof(Event))
-    std::memcpy(static_cast<void*>(events.data()), at, events.size_bytes());
-  else
-    for (Event& event : events) {
-      std::memcpy(static_cast<void*>(&event), at, sizeof(Event));
-      at += stride;
-    }
-  for (Event& event : events) event.polarity = event.polarity != 0 ? 1 : -1;
+  for (Event& event : events) {
+    Event copied;
+    std::memcpy(static_cast<void*>(&copied), at, sizeof(Event));  // a view may lie anywhere
+    copied.polarity = static_cast<std::int8_t>(copied.polarity != 0 ? 1 : -1);
+    event = copied;
+    at += stride;
+  }
 }
 
 Events events_from(const py::array& array) {
