@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -13,9 +16,12 @@
 namespace saccade::python {
 
 static_assert(sizeof(Event) == 16 && offsetof(Event, t_ns) == 0 && offsetof(Event, x) == 8 &&
-              offsetof(Event, y) == 10 && offsetof(Event, polarity) == 12);
+              offsetof(Event, y) == 10 && offsetof(Event, polarity) == 12 &&
+              std::endian::native == std::endian::little);
 
-py::dtype event_dtype() {
+namespace {
+
+py::dtype make_event_dtype() {
   const auto list = [](auto... items) {
     py::list all;
     (all.append(items), ...);
@@ -23,6 +29,14 @@ py::dtype event_dtype() {
   };
   return py::dtype(list("x", "y", "p", "t"), list("<u2", "<u2", "?", "<i8"), list(8, 10, 12, 0),
                    sizeof(Event));
+}
+
+}  // namespace
+
+py::dtype event_dtype() {
+  // Made once, as that takes longer than tracking some hundred events; lives as long as numpy.
+  static const py::handle made = make_event_dtype().release();
+  return py::reinterpret_borrow<py::dtype>(made);
 }
 
 py::array events_array(Events events) {
@@ -36,7 +50,7 @@ py::array events_array(Events events) {
 }
 
 std::size_t event_count(const py::array& array) {
-  if (array.ndim() != 1 || !array.dtype().equal(event_dtype()))
+  if (array.ndim() != 1 || !(array.dtype().is(event_dtype()) || array.dtype().equal(event_dtype())))
     throw InputError("events",
                      "must be a one-dimensional array of saccade.EVENT_DTYPE (fields x, y, p, t); "
                      "saccade.Events(...) makes one of other arrays");
@@ -46,11 +60,14 @@ std::size_t event_count(const py::array& array) {
 void copy_events(const py::array& array, std::span<Event> events) {
   const auto* at = static_cast<const std::byte*>(array.data());
   const py::ssize_t stride = array.strides(0);
+  // By words: a byte that is written and then read with its neighbours waits for the cache.
+  constexpr std::uint64_t kPolarity = std::uint64_t{0xFF} << 32;
+  constexpr std::uint64_t kOn = std::uint64_t{1} << 32;
   for (Event& event : events) {
-    Event copied;
-    std::memcpy(static_cast<void*>(&copied), at, sizeof(Event));  // a view may lie anywhere
-    copied.polarity = static_cast<std::int8_t>(copied.polarity != 0 ? 1 : -1);
-    event = copied;
+    std::array<std::uint64_t, 2> words;
+    std::memcpy(words.data(), at, sizeof(Event));  // a view may lie anywhere
+    words[1] = (words[1] & ~kPolarity) | ((words[1] & kPolarity) != 0 ? kOn : kPolarity);
+    std::memcpy(static_cast<void*>(&event), words.data(), sizeof(Event));
     at += stride;
   }
 }
