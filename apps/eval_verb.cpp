@@ -9,7 +9,6 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/evaluate_events.h"
 #include "eval/store/result_store.h"
@@ -70,16 +69,6 @@ void evaluate_foreign(const EvalOptions& options) {
   const Metrics metrics = evaluate_trajectory(options.trajectory, *options.evaluate.dataset,
                                               options.output, options.evaluate.mean_depth_m);
   show(options, metrics, options.trajectory.string());
-}
-
-/// The scores are in metrics.json whatever becomes of the store, for which the folder above the run
-/// must be writable.
-void keep_result(const std::filesystem::path& run) {
-  try {
-    store_result(run);
-  } catch (const InputError& error) {
-    show_notice(std::string("not stored for `saccade results`: ") + error.what());
-  }
 }
 
 /// Options that make sense beside --events alone, or not beside it.

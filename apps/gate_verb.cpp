@@ -36,24 +36,10 @@ struct GateVerbOptions {
   bool quiet = false;
 };
 
-/// The runs given, and with --partial those of the old baseline that are not among them.
-std::vector<GateRun> updated(const GateVerbOptions& options, std::vector<GateRun> runs) {
-  if (!options.gate.partial || !std::filesystem::exists(options.baseline)) return runs;
-  const std::size_t given = runs.size();
-  for (const GateRun& old : read_baseline(options.baseline)) {
-    bool is_given = false;
-    for (std::size_t i = 0; i < given; ++i) is_given = is_given || runs[i].key == old.key;
-    if (!is_given) runs.push_back(old);
-  }
-  return runs;
-}
-
 void update(const GateVerbOptions& options, const std::vector<GateRun>& runs) {
-  const std::vector<GateRun> kept = updated(options, runs);
-  write_baseline(options.baseline, kept);
+  const std::size_t count = update_baseline(options.baseline, runs, options.gate.partial);
   if (!options.quiet)
-    fmt::print("wrote {}: {} {}\n", options.baseline.string(), kept.size(),
-               kept.size() == 1 ? "run" : "runs");
+    fmt::print("wrote {}: {} {}\n", options.baseline.string(), count, count == 1 ? "run" : "runs");
 }
 
 /// Shows and writes the result. A gate that tripped is a failure.
@@ -75,9 +61,7 @@ void gate_runs(const GateVerbOptions& options) {
   if (folders.empty()) throw InputError("gate", "name at least one run folder");
   const std::vector<GateRun> runs = read_gate_runs(folders);
   if (options.update) return update(options, runs);
-  if (!std::filesystem::exists(options.baseline))
-    throw InputError(options.baseline.string(), "does not exist; --update writes it");
-  finish(options, compare_runs(read_baseline(options.baseline), runs, options.gate));
+  finish(options, compare_with_baseline(options.baseline, runs, options.gate));
 }
 
 void benchmark_builds(const GateVerbOptions& options) {

@@ -42,14 +42,6 @@ ResultFormat format_of(const ResultsOptions& options) {
   return kFormats.at(options.format);
 }
 
-/// The store that a path names: itself, in the folder, or in the folder's runs/, as a sweep has it.
-fs::path find_store(const fs::path& named) {
-  if (fs::is_regular_file(named)) return named;
-  for (const fs::path& folder : {named, named / "runs"})
-    if (fs::exists(folder / kResultStoreName)) return folder / kResultStoreName;
-  return named / kResultStoreName;
-}
-
 /// Every run folder below `folder`, or itself.
 std::vector<fs::path> runs_below(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder (--scan)");
@@ -86,7 +78,7 @@ void show_results(const ResultsOptions& options) {
     runs.insert(runs.end(), found.begin(), found.end());
   }
   if (!runs.empty()) return add_runs(runs);
-  ResultReader reader(find_store(options.store.empty() ? "." : options.store));
+  ResultReader reader(find_result_store(options.store.empty() ? "." : options.store));
   if (!options.fill.empty()) {
     std::ifstream file(options.fill);
     if (!file) throw InputError(options.fill.string(), "cannot be read (--fill)");

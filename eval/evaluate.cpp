@@ -137,17 +137,22 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
                             const std::filesystem::path& dataset_folder,
                             const std::optional<std::filesystem::path>& output,
                             const std::optional<double>& mean_depth_m) {
+  const Metrics metrics =
+      score_estimate(read_estimate(estimate_file), Dataset::open(dataset_folder), mean_depth_m);
+  if (output) write_atomically(*output, to_json(metrics));
+  return metrics;
+}
+
+Metrics score_estimate(const Trajectory& estimate, const Dataset& dataset,
+                       const std::optional<double>& mean_depth_m) {
   check_depth(mean_depth_m);
-  const Dataset dataset = Dataset::open(dataset_folder);
   TrajectoryScoreInput input;
-  input.estimate = read_estimate(estimate_file);
+  input.estimate = estimate;
   input.truth = dataset.groundtruth();
   input.mean_depth_m = mean_depth_m ? mean_depth_m : dataset.facts().mean_depth_m;
   Metrics metrics;
   score_path(input, metrics);
-  metrics = catalogued(std::move(metrics));
-  if (output) write_atomically(*output, to_json(metrics));
-  return metrics;
+  return catalogued(std::move(metrics));
 }
 
 Metrics evaluate_depth(const ExternalDepth& depth, const std::filesystem::path& dataset_folder,

@@ -35,6 +35,10 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
                             const std::optional<std::filesystem::path>& output = std::nullopt,
                             const std::optional<double>& mean_depth_m = std::nullopt);
 
+/// The same of a trajectory in memory.
+[[nodiscard]] Metrics score_estimate(const Trajectory& estimate, const Dataset& dataset,
+                                     const std::optional<double>& mean_depth_m = std::nullopt);
+
 /// Depth that an external program estimated.
 struct ExternalDepth {
   /// A point cloud in the world (PLY), a depth map (EXR), or a folder with depth maps that

@@ -1,45 +1,31 @@
 #include "simulator/record_events.h"
 
+#include <memory>
 #include <optional>
 
-#include "core/error.h"
 #include "core/io/events/labels_h5.h"
 #include "core/process/progress.h"
+#include "simulator/event_source.h"
 #include "simulator/recording_loop.h"
-#include "simulator/sensor/adaptive/adaptive_camera.h"
-#include "simulator/sensor/bayer/bayer_camera.h"
-#include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/event_labels.h"
-#include "simulator/sensor/frame_camera.h"
 
 namespace saccade {
 namespace {
 
 std::uint64_t microseconds(double t_s) { return static_cast<std::uint64_t>(1e6 * t_s); }
 
-/// Records what the log does not hold yet with a camera of any kind.
-template <class Camera>
-void fill(const CameraRecording& recording, Camera&& camera) {
+/// Records what the log does not hold yet.
+void fill(const CameraRecording& recording) {
+  const std::unique_ptr<EventSource> camera =
+      make_event_source(recording.events, recording.seed, recording.scene, recording.colours,
+                        recording.world_from_camera, recording.camera);
   double shown_s = recording.log.reached_s();
   Progress progress("events", microseconds(recording.duration_s()), "simulated us",
                     microseconds(shown_s));
-  record_into(recording.log, camera, recording.duration_s(), [&](double t_s) {
+  record_into(recording.log, *camera, recording.duration_s(), [&](double t_s) {
     progress.add(microseconds(t_s) - microseconds(shown_s));
     shown_s = t_s;
   });
-}
-
-/// The same in the colours that the configuration asks for.
-template <class Camera>
-void fill(const CameraRecording& recording) {
-  const auto make = [&]<class AnyCamera>(const auto& scene) {
-    return AnyCamera(scene, recording.world_from_camera, recording.camera, recording.events,
-                     recording.seed);
-  };
-  if (recording.events.colour_filter == ColourFilter::kNone)
-    fill(recording, make.template operator()<Camera>(recording.scene));
-  else
-    fill(recording, make.template operator()<BayerCamera<Camera>>(*recording.colours));
 }
 
 /// Events that are labelled together: whole packets of rays.
@@ -70,43 +56,10 @@ void write(const CameraRecording& recording) {
   labels->close();
 }
 
-/// From so many triangles on the exact search for what may come into view costs more than the rays
-/// that it saves.
-constexpr std::size_t kManyTriangles = 10'000;
-
 }  // namespace
 
-Sampling chosen_sampling(Sampling sampling, const Scene& scene) {
-  if (sampling == Sampling::kExact && scene.is_animated())
-    throw InputError("events.sampling",
-                     "exact cannot be combined with an animated mesh: its proofs hold for rigid "
-                     "motion; state adaptive, auto or frames");
-  if (sampling != Sampling::kAuto) return sampling;
-  if (scene.is_animated()) return Sampling::kAdaptive;
-  return scene.is_lit() && scene.triangle_count() >= kManyTriangles ? Sampling::kAdaptive
-                                                                    : Sampling::kExact;
-}
-
-std::string sampling_reason(Sampling sampling, const Scene& scene) {
-  if (sampling != Sampling::kAuto) return "stated";
-  if (scene.is_animated()) return "animated meshes";
-  return chosen_sampling(sampling, scene) == Sampling::kAdaptive ? "lights and many triangles"
-                                                                 : "rigid motion";
-}
-
 EventStatistics record_events(const CameraRecording& recording) {
-  if (!recording.log.statistics()) {
-    switch (chosen_sampling(recording.events.sampling, recording.scene)) {
-      case Sampling::kFrames:
-        fill<FrameCamera>(recording);
-        break;
-      case Sampling::kAdaptive:
-        fill<AdaptiveCamera>(recording);
-        break;
-      default:
-        fill<EventCamera>(recording);
-    }
-  }
+  if (!recording.log.statistics()) fill(recording);
   write(recording);
   return *recording.log.statistics();
 }

@@ -10,6 +10,8 @@
 #include "core/io/dataset/dataset_writer.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
+#include "simulator/colour_scenes.h"
+#include "simulator/event_source.h"
 #include "simulator/motion/motion.h"
 #include "simulator/record_events.h"
 #include "simulator/record_groundtruth.h"
@@ -75,18 +77,6 @@ DatasetRecord facts(const CameraRecording& recording, const EventStatistics& eve
   return record;
 }
 
-/// Where something asks for colours.
-std::optional<ColourScenes> colour_scenes(const SimulationConfig& config,
-                                          std::span<const RigCamera> cameras) {
-  const bool has_filter = std::ranges::any_of(cameras, [](const RigCamera& camera) {
-    return camera.events.colour_filter != ColourFilter::kNone;
-  });
-  if (!has_filter && config.frames.colour == FrameOptions::Colour::kGrey) return std::nullopt;
-  return ColourScenes{build_scene(config.scene, ColourChannel::kRed),
-                      build_scene(config.scene, ColourChannel::kGreen),
-                      build_scene(config.scene, ColourChannel::kBlue)};
-}
-
 /// Records what one camera sees; the first one carries the IMU.
 CameraReport record_camera(const CameraRecording& recording, bool is_first,
                            const std::string& name) {
@@ -131,7 +121,7 @@ SimulationReport simulate(const SimulationConfig& config, const std::filesystem:
           aliasing_warning(texels_per_ray(scene, motion, cameras.front().camera, events), events);
       !warning.empty())
     show_warning(warning);
-  const std::optional<ColourScenes> colours = colour_scenes(config, cameras);
+  const std::optional<ColourScenes> colours = build_colour_scenes(config, cameras);
   report.load_s = watch.seconds();
 
   ResumableFolder folder(output, "dataset.yaml", fingerprint_of(config, inputs));

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <utility>
+
+#include "core/process/progress_observer.h"
 
 namespace saccade {
 namespace {
@@ -19,6 +22,11 @@ constexpr std::chrono::seconds kFirstLine{5};
 constexpr int kBarWidth = 24;
 
 std::atomic<bool> quiet{false};
+
+ProgressObserver& observer() {
+  static ProgressObserver instance;
+  return instance;
+}
 
 /// 1234567 -> "1.23 M ", to be followed by the unit.
 std::string with_prefix(double value) {
@@ -43,6 +51,10 @@ std::string bar(double fraction) {
 }  // namespace
 
 void set_progress_quiet(bool now_quiet) { quiet = now_quiet; }
+
+void set_progress_observer(ProgressObserver now_observing) {
+  observer() = std::move(now_observing);
+}
 
 void show_notice(const std::string& line) {
   if (!quiet) std::fputs((line + "\n").c_str(), stderr);
@@ -87,12 +99,20 @@ Progress::Progress(std::string label, std::uint64_t total, std::string unit, std
 Progress::~Progress() { finish(); }
 
 void Progress::add(std::uint64_t units) {
-  const std::scoped_lock lock(mutex_);
-  done_ += units;
-  const Clock::time_point now = Clock::now();
-  if (finished_ || now < next_) return;
-  show(now, false);
-  next_ = terminal_ ? now + kRedraw : now + (now - start_);
+  ProgressState reached;
+  {
+    const std::scoped_lock lock(mutex_);
+    done_ += units;
+    const Clock::time_point now = Clock::now();
+    if (!finished_ && now >= next_) {
+      show(now, false);
+      next_ = terminal_ ? now + kRedraw : now + (now - start_);
+    }
+    if (!observer()) return;
+    reached = {label_,    unit_, done_,   total_, Seconds(now - start_).count(),
+               terminal_, false, resumed_};
+  }
+  observer()(reached);
 }
 
 void Progress::report(const std::string& line) {

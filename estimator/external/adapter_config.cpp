@@ -1,6 +1,13 @@
 #include "estimator/external/adapter_config.h"
 
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
 #include "core/io/events/event_formats.h"
+#include "core/process/program.h"
+#include "core/process/shell.h"
 #include "estimator/external/command_template.h"
 
 namespace saccade {
@@ -76,12 +83,51 @@ void check_class(config::Fields& fields, const AdapterConfig& config) {
       "must hold `events` among its inputs: the command takes {events}");
 }
 
+/// The interpreter, with the module of this build where there is one.
+std::string python_words() {
+  const char* stated = std::getenv("SACCADE_PYTHON");
+  const std::string interpreter = stated != nullptr && *stated != '\0' ? stated : "python3";
+  std::error_code unknown;
+  const std::filesystem::path module =
+      std::filesystem::read_symlink(program_file(), unknown).parent_path() / "python";
+  if (!std::filesystem::exists(module / "saccade")) return shell_line(std::array{interpreter});
+  const char* path = std::getenv("PYTHONPATH");
+  const std::string folders =
+      module.string() + (path != nullptr && *path != '\0' ? ":" + std::string(path) : "");
+  return shell_line(std::array<std::string, 3>{"env", "PYTHONPATH=" + folders, interpreter});
+}
+
+/// The words of a line, in which no brace opens a placeholder.
+std::string without_placeholders(const std::string& line) {
+  std::string text;
+  for (const char c : line) text += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
+  return text;
+}
+
 }  // namespace
+
+std::string command_of(const AdapterConfig& config) {
+  if (!config.python) return config.command;
+  const bool takes_imu =
+      config.method_class && config.method_class->inputs.contains(MethodInput::kImu);
+  return without_placeholders(python_words()) +
+         " -m saccade.method {program} --events {events} --calib {calib} --width {width} "
+         "--height {height} --seed {seed} --out {out}" +
+         (config.truth_s > 0 ? " --start {groundtruth_start}" : "") +
+         (takes_imu ? " --imu {imu}" : "");
+}
 
 void describe(config::Fields& fields, AdapterConfig& config) {
   fields.value("name", config.name, "Name of the method in tables and reports.");
   fields.value("command", config.command,
                "Command line with placeholders in braces. It is run without a shell.");
+  fields
+      .path("python", config.python,
+            "Python file with a method (docs/python.md), in place of a command. It runs by "
+            "$SACCADE_PYTHON, default python3; its time is that of the method alone.")
+      .must_exist();
+  fields.expect(!config.python || config.command.empty(), "python",
+                "must not be stated beside 'command'");
   fields.value("version_command", config.version_command,
                "Command that prints the version of the program. Empty: none.");
   fields.value("files", config.files,

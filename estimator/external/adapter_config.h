@@ -38,6 +38,7 @@ struct AdapterOutput {
 struct AdapterConfig {
   std::string name = "external";
   std::string command;
+  std::optional<std::filesystem::path> python;  ///< a method of the Python module, for `command`
   std::string version_command;
   std::map<std::string, std::filesystem::path> files;  ///< by placeholder
   std::string events = "txt";                          ///< ending of the file
@@ -50,5 +51,8 @@ struct AdapterConfig {
 };
 
 void describe(config::Fields& fields, AdapterConfig& config);
+
+/// The command line that runs the program: `command`, or one that runs the method in `python`.
+[[nodiscard]] std::string command_of(const AdapterConfig& config);
 
 }  // namespace saccade

@@ -47,19 +47,26 @@ fs::path write_events(const fs::path& folder, const AdapterConfig& config,
   return file;
 }
 
-void write_imu_window(const fs::path& file, const Dataset& dataset,
-                      const RunRecord::Window& window) {
+/// From the first event on where the request leaves it open, to the last one.
+RunRecord::Window window_over_events(const RunRequest& request, std::span<const Event> events) {
+  return window_of(request, seconds_from_ns(events.front().t_ns),
+                   seconds_from_ns(events.back().t_ns));
+}
+
+}  // namespace
+
+std::vector<ImuSample> imu_window(const RunRequest& request, const Dataset& dataset,
+                                  std::span<const Event> events) {
   if (!dataset.has_imu())
     throw InputError(dataset.folder().string(), "holds no imu.txt, which {imu} asks for");
+  const RunRecord::Window window = window_over_events(request, events);
   std::vector<ImuSample> samples = dataset.load_imu();
   std::erase_if(samples, [&](const ImuSample& sample) {
     const double t_s = seconds_from_ns(sample.t_ns);
     return t_s < window.start_s || t_s > window.end_s;
   });
-  write_imu(file, samples);
+  return samples;
 }
-
-}  // namespace
 
 Trajectory groundtruth_start(const Dataset& dataset, double from_s, double truth_s) {
   std::vector<StampedPose> start;
@@ -83,7 +90,7 @@ ExternalInput write_external_input(const fs::path& folder, const AdapterConfig& 
   ExternalInput input;
   const double first_s = seconds_from_ns(events.front().t_ns);
   RunRecord::Window& window = input.window;
-  window = window_of(request, first_s, seconds_from_ns(events.back().t_ns));
+  window = window_over_events(request, events);
   const PinholeCamera& camera = dataset.camera();
   write_calib_txt(folder / "calib.txt", camera);
   write_camera_yaml(folder / "camera.yaml", camera);
@@ -99,8 +106,8 @@ ExternalInput write_external_input(const fs::path& folder, const AdapterConfig& 
                   {"threads", std::to_string(request.threads)},
                   {"width", std::to_string(camera.width)},
                   {"height", std::to_string(camera.height)}};
-  if (uses_placeholder(config.command, "imu")) {
-    write_imu_window(folder / "imu.txt", dataset, window);
+  if (uses_placeholder(command_of(config), "imu")) {
+    write_imu(folder / "imu.txt", imu_window(request, dataset, events));
     input.values["imu"] = folder / "imu.txt";
   }
   if (config.truth_s > 0) {

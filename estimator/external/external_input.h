@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <span>
+#include <vector>
 
+#include "core/imu_sample.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/run/run_record.h"
 #include "core/trajectory.h"
@@ -21,6 +23,10 @@ struct ExternalInput {
 /// The true poses from `from_s` to `from_s + truth_s`, and the one before. Throws
 /// InputError where there is none.
 [[nodiscard]] Trajectory groundtruth_start(const Dataset& dataset, double from_s, double truth_s);
+
+/// The inertial samples of the window; InputError where the dataset has none.
+[[nodiscard]] std::vector<ImuSample> imu_window(const RunRequest& request, const Dataset& dataset,
+                                                std::span<const Event> events);
 
 /// Writes events and calibration into `folder`, and what else the adapter's placeholders ask for: the
 /// start of the ground truth, inertial samples. Times are those of the dataset. The folder contains

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/io/tables/text_table.h"
+#include "core/io/trajectory_file.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
 #include "core/stopwatch.h"
@@ -53,6 +57,14 @@ std::string version_of(const AdapterConfig& config, const Placeholders& values,
   return version;
 }
 
+/// The time that a method of the Python module stated beside its results.
+double stated_wall_s(const fs::path& out) {
+  TextReader reader(out / "wall_s.txt");
+  std::string_view line;
+  if (!reader.next(line)) throw InputError("wall_s.txt", "holds no time");
+  return reader.row(line).number("wall_s");
+}
+
 /// Runs the program `repeat` times or until it fails; its status.
 RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfig& config,
                                     int repeat, RunTiming& timing) {
@@ -63,7 +75,8 @@ RunRecord::External run_repetitions(const ExternalCall& call, const AdapterConfi
     fs::remove_all(call.working_folder);
     fs::create_directories(call.working_folder);
     const ExternalEnd end = run_external_program(call);
-    timing.wall_s.push_back(end.wall_s);
+    const bool is_method = config.python && !end.timed_out && end.end.exit_code == 0;
+    timing.wall_s.push_back(is_method ? stated_wall_s(call.working_folder) : end.wall_s);
     timing.cpu_s.push_back(end.end.cpu_s);
     timing.peak_memory_mb = std::max(timing.peak_memory_mb.value_or(0), end.peak_memory_mb);
     progress.add(1);
@@ -100,23 +113,25 @@ ExternalFound take_output(const fs::path& run, const AdapterConfig& config,
 
 /// Throws InputError where there is nothing to run.
 void check_program(const AdapterConfig& config) {
-  if (shell_words(config.command).empty())
+  if (shell_words(command_of(config)).empty())
     throw InputError("command", "the adapter must state the program's command line (-c ADAPTER)");
   for (const auto& [name, file] : config.files)
     if (!fs::exists(file))
       throw InputError("files." + name, "no such file '" + file.string() + "'");
 }
 
-}  // namespace
+/// Does the work of a run as often as it is to be repeated, and leaves its results in
+/// RUN/output.
+using Work = std::function<RunRecord::External(const fs::path& run, const Dataset& dataset,
+                                               std::span<const Event> events,
+                                               const Placeholders& values, RunTiming& timing)>;
 
-RunSummary run_external(const RunRequest& request) {
-  const AdapterConfig config = read_config<AdapterConfig>(request);
+RunSummary run_adapter(const RunRequest& request, const AdapterConfig& config, const Work& work) {
   RunWriter writer(request);
   const fs::path run = fs::absolute(writer.path());
   RunTiming timing;
   std::optional<ScopedTimer> io(timing.io_s);
   const Dataset dataset = Dataset::open(request.dataset);
-  check_program(config);
   const Events events = load_events(request, dataset);
   ExternalInput input = write_external_input(run / "input", config, request, dataset, events);
   for (const auto& [name, file] : config.files) input.values[name] = fs::absolute(file);
@@ -126,10 +141,7 @@ RunSummary run_external(const RunRequest& request) {
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
-  const std::string version = version_of(config, input.values, run);
-  RunRecord::External external = run_repetitions(call_of(config, config.command, input.values, run),
-                                                 config, request.repeat, timing);
-  external.version = version;
+  RunRecord::External external = work(run, dataset, events, input.values, timing);
   io.emplace(timing.io_s);
   const ExternalFound found = take_output(run, config, dataset.camera(), external);
   timing.poses = found.poses;
@@ -143,6 +155,60 @@ RunSummary run_external(const RunRequest& request) {
   if (external.status != "ok")
     show_notice(fmt::format("{} {}: {}", config.name, external.status, external.reason));
   return summary;
+}
+
+/// The configuration of a program, with the file of a method among its files.
+AdapterConfig read_adapter(const RunRequest& request) {
+  AdapterConfig config = read_config<AdapterConfig>(request);
+  if (!config.python) return config;
+  config.files["program"] = *config.python;
+  // Binary, and exact: the text of millions of events takes longer to read than most methods.
+  config.events = "h5";
+  config.event_unit = StampUnit::kNanoseconds;
+  return config;
+}
+
+}  // namespace
+
+RunSummary run_external(const RunRequest& request) {
+  const AdapterConfig config = read_adapter(request);
+  check_program(config);
+  return run_adapter(request, config,
+                     [&](const fs::path& run, const Dataset&, std::span<const Event>,
+                         const Placeholders& values, RunTiming& timing) {
+                       const std::string version = version_of(config, values, run);
+                       RunRecord::External external =
+                           run_repetitions(call_of(config, command_of(config), values, run), config,
+                                           request.repeat, timing);
+                       external.version = version;
+                       return external;
+                     });
+}
+
+RunSummary run_method(const RunRequest& request,
+                      const std::function<MethodResult(const MethodInputs&)>& method) {
+  const AdapterConfig config = read_config<AdapterConfig>(request);
+  const bool takes_imu =
+      config.method_class && config.method_class->inputs.contains(MethodInput::kImu);
+  return run_adapter(
+      request, config,
+      [&](const fs::path& run, const Dataset& dataset, std::span<const Event> events,
+          const Placeholders&, RunTiming& timing) {
+        MethodInputs inputs{dataset.camera(), events, {}, {}, config.seed};
+        if (config.truth_s > 0)
+          inputs.start =
+              groundtruth_start(dataset, seconds_from_ns(events.front().t_ns), config.truth_s);
+        if (takes_imu) inputs.imu = imu_window(request, dataset, events);
+        MethodResult result;
+        for (int i = 0; i < request.repeat; ++i) {
+          result = method(inputs);
+          timing.wall_s.push_back(result.wall_s);
+        }
+        write_tum_trajectory(run / "output" / config.output.trajectory.file, result.poses);
+        RunRecord::External external;
+        external.name = config.name;
+        return external;
+      });
 }
 
 }  // namespace saccade

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -23,20 +22,17 @@
 #include "estimator/tracking/frames/grey_frames.h"
 #include "estimator/tracking/pose_output.h"
 #include "estimator/tracking/track_config.h"
+#include "estimator/tracking/track_start.h"
 
 namespace saccade {
 namespace {
 
 /// Everything that tracking needs, read from the dataset.
 struct TrackInput {
-  PinholeCamera camera;
   Events events;                  ///< none where frames are tracked
   std::vector<GreyFrame> frames;  ///< none where events are
   RunRecord::Window window;
-  std::vector<ReferenceView> references;
-  Rigid3 initial_world_from_camera;
-  std::optional<EventContrast> contrast;  ///< nullopt: nobody states it
-  Gyroscope gyroscope;                    ///< empty unless it is needed
+  TrackStart start;
 };
 
 /// `measurements`: events or frames, at least one.
@@ -44,21 +40,6 @@ template <class Measurements>
 RunRecord::Window window_over(const RunRequest& request, const Measurements& measurements) {
   return window_of(request, seconds_from_ns(measurements.front().t_ns),
                    seconds_from_ns(measurements.back().t_ns));
-}
-
-Rigid3 initial_pose(const TrackConfig& config, const Dataset& dataset, double start_s) {
-  if (config.initial_pose) {
-    const auto& p = *config.initial_pose;
-    const Eigen::Quaterniond q(p[6], p[3], p[4], p[5]);
-    if (std::abs(q.norm() - 1) > 1e-3)
-      throw InputError("initial_pose",
-                       fmt::format("the quaternion has length {}, not 1", q.norm()));
-    return {q, {p[0], p[1], p[2]}};
-  }
-  if (dataset.groundtruth().empty())
-    throw InputError(dataset.folder().string(),
-                     "holds no groundtruth.txt to start from; state initial_pose");
-  return dataset.groundtruth().at_clamped(start_s);
 }
 
 std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Dataset& dataset,
@@ -70,52 +51,20 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
                           request.duration_s ? start_s + *request.duration_s : infinity);
 }
 
-/// Those of the configuration, else the dataset's; nullopt where neither states both.
-std::optional<EventContrast> contrast_of(const TrackConfig& config, const Dataset& dataset) {
-  const DatasetFacts& facts = dataset.facts();
-  const auto on = config.contrast_on ? config.contrast_on : facts.contrast_on;
-  const auto off = config.contrast_off ? config.contrast_off : facts.contrast_off;
-  if (!on || !off) return std::nullopt;
-  return EventContrast{*on, *off};
-}
-
+/// The measurements of the window, and what tracking starts from.
 TrackInput load_input(const RunRequest& request, const TrackConfig& config,
                       const Dataset& dataset) {
   TrackInput input;
-  input.camera = config.camera.of(dataset.camera());
+  const PinholeCamera camera = config.camera.of(dataset.camera());
   if (method_of(config).takes_frames) {
-    input.frames = load_frame_window(request, dataset, input.camera);
+    input.frames = load_frame_window(request, dataset, camera);
     input.window = window_over(request, input.frames);
   } else {
     input.events = load_events(request, dataset);
     input.window = window_over(request, input.events);
   }
-  input.references = load_references(dataset, input.camera, config.reference, input.window.start_s,
-                                     input.window.end_s);
-  input.initial_world_from_camera = initial_pose(config, dataset, input.window.start_s);
-  input.gyroscope = load_gyroscope(config.motion, dataset);
-  input.contrast = contrast_of(config, dataset);
+  input.start = load_track_start(config, dataset, input.window.start_s, input.window.end_s);
   return input;
-}
-
-/// The map points of all views, in the frame of the first.
-MapPoints edge_points_of(const TrackConfig& config, const PinholeCamera& camera,
-                         const std::vector<ReferenceView>& views) {
-  MapPoints all;
-  const Rigid3 map_from_world = views.front().world_from_reference.inverse();
-  for (const ReferenceView& view : views) {
-    const MapPoints points = extract_map(view.log_intensity, view.depth, camera, config.map);
-    append(all, transformed(map_from_world * view.world_from_reference, points));
-  }
-  return all;
-}
-
-TrackWorld world_of(const TrackConfig& config, const TrackInput& input) {
-  const PinholeCamera undistorted = input.camera.undistorted();
-  const double map_blur_px = method_of(config).smooths_map ? config.intensity.map_blur_px : 0;
-  return {input.camera, edge_points_of(config, undistorted, input.references),
-          IntensityMap(undistorted, input.references, map_blur_px), input.contrast,
-          input.gyroscope};
 }
 
 /// The tracker over the whole recording, its poses judged, `repeat` times.
@@ -131,12 +80,12 @@ std::vector<TrackedPose> track(Tracker& tracker, const TrackInput& input, const 
   std::vector<TrackedPose> poses;
   double check_s = 0;
   repeat_timed(repeat, timing.wall_s, [&] {
-    tracker.reset(start_ns, input.initial_world_from_camera);
+    tracker.reset(start_ns, input.start.world_from_camera);
     poses = tracker.track(recording, [&](std::size_t n) { progress.add(n); });
     check_s = 0;
     const ScopedTimer clock(check_s);
-    judge_poses(input.camera, recording, world.edge_points, world.intensity_map.world_from_map(),
-                poses);
+    judge_poses(input.start.camera, recording, world.edge_points,
+                world.intensity_map.world_from_map(), poses);
     report_gaps(end_ns, poses);
   });
   timing.stages_s.insert(timing.stages_s.end(), {{"template", tracker.timing().view_s},
@@ -162,9 +111,9 @@ void write_figures(const std::filesystem::path& folder, const TrackConfig& confi
                                       [](const Event& e, TimeNs t_ns) { return e.t_ns < t_ns; });
   const auto last = std::upper_bound(first, input.events.end(), moment->last_ns,
                                      [](TimeNs t_ns, const Event& e) { return t_ns < e.t_ns; });
-  const ReferenceView& reference = input.references.front();
+  const ReferenceView& reference = input.start.references.front();
   write_tracking_figures(
-      folder, config.edges, input.camera, reference, world.edge_points,
+      folder, config.edges, input.start.camera, reference, world.edge_points,
       {{first, last}, reference.world_from_reference.inverse() * moment->world_from_camera});
 }
 
@@ -172,7 +121,7 @@ MethodClass class_of(const TrackConfig& config, const TrackInput& input) {
   MethodClass method{{MethodInput::kMap}};
   method.inputs.insert(method_of(config).takes_frames ? MethodInput::kFrames
                                                       : MethodInput::kEvents);
-  if (!input.gyroscope.is_empty()) method.inputs.insert(MethodInput::kImu);
+  if (!input.start.gyroscope.is_empty()) method.inputs.insert(MethodInput::kImu);
   return method;
 }
 
@@ -189,7 +138,7 @@ RunSummary run_track(const RunRequest& request) {
   timing.io_s = reading.seconds();
 
   const Stopwatch mapping;
-  const TrackWorld world = world_of(config, input);
+  const TrackWorld world = world_of(config, input.start);
   timing.stages_s = {{"map", mapping.seconds()}};
   const std::unique_ptr<Tracker> tracker = method_of(config).make(config, world);
   const std::vector<TrackedPose> poses = track(*tracker, input, world, request.repeat, timing);

@@ -93,6 +93,10 @@ class Tracker {
   [[nodiscard]] virtual std::vector<TrackedPose> track(const Recording& recording,
                                                        const TrackProgress& progress = {}) = 0;
 
+  /// So many events are to be given to the first track() after reset() at once, where there are as
+  /// many.
+  [[nodiscard]] virtual std::size_t first_events() const { return 0; }
+
   /// The contrast thresholds that track() found, where it needed them and nobody stated them.
   [[nodiscard]] virtual std::optional<EventContrast> found_contrast() const { return std::nullopt; }
 

@@ -1,6 +1,8 @@
 #include "eval/gate/baseline_file.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "core/config/config.h"
 #include "core/error.h"
@@ -55,6 +57,26 @@ std::vector<GateRun> read_baseline(const std::filesystem::path& file) {
 void write_baseline(const std::filesystem::path& file, std::vector<GateRun> runs) {
   sort_by_key(runs);
   write_atomically(file, config::print(Baseline{1, std::move(runs)}));
+}
+
+GateResult compare_with_baseline(const std::filesystem::path& file, std::span<const GateRun> runs,
+                                 const GateOptions& options) {
+  if (!std::filesystem::exists(file))
+    throw InputError(file.string(), "does not exist; --update writes it");
+  return compare_runs(read_baseline(file), runs, options);
+}
+
+std::size_t update_baseline(const std::filesystem::path& file, std::vector<GateRun> runs,
+                            bool partial) {
+  if (partial && std::filesystem::exists(file)) {
+    std::set<GateKey> given;
+    for (const GateRun& run : runs) given.insert(run.key);
+    for (const GateRun& old : read_baseline(file))
+      if (!given.contains(old.key)) runs.push_back(old);
+  }
+  const std::size_t count = runs.size();
+  write_baseline(file, std::move(runs));
+  return count;
 }
 
 }  // namespace saccade

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/process/progress.h"
 #include "eval/store/where_expression.h"
 
 namespace saccade {
@@ -178,6 +179,13 @@ fs::path result_store_beside(const fs::path& run_folder) {
   return run.parent_path() / kResultStoreName;
 }
 
+fs::path find_result_store(const fs::path& named) {
+  if (fs::is_regular_file(named)) return named;
+  for (const fs::path& folder : {named, named / "runs"})
+    if (fs::exists(folder / kResultStoreName)) return folder / kResultStoreName;
+  return named / kResultStoreName;
+}
+
 std::vector<fs::path> without_store(std::span<const fs::path> named) {
   std::vector<fs::path> runs(named.begin(), named.end());
   // Its journal, while somebody writes, is called "results.sqlite-...".
@@ -204,6 +212,14 @@ void ResultStore::add(std::span<const ResultRow> rows) {
 void store_result(const fs::path& run_folder) {
   const ResultRow row = read_result(run_folder);
   ResultStore(result_store_beside(run_folder)).add({&row, 1});
+}
+
+void keep_result(const fs::path& run_folder) {
+  try {
+    store_result(run_folder);
+  } catch (const InputError& error) {
+    show_notice(std::string("not stored for `saccade results`: ") + error.what());
+  }
 }
 
 ResultReader::ResultReader(const fs::path& file) : database_(open_for_reading(file)) {

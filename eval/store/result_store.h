@@ -19,6 +19,9 @@ constexpr const char* kResultStoreName = "results.sqlite";
 /// results.sqlite beside a run folder.
 [[nodiscard]] std::filesystem::path result_store_beside(const std::filesystem::path& run_folder);
 
+/// The store that a path names: itself, in the folder, or in the folder's runs/, as a sweep has it.
+[[nodiscard]] std::filesystem::path find_result_store(const std::filesystem::path& named);
+
 /// The run folders as `runs/*` names them: without the store that lies among them.
 [[nodiscard]] std::vector<std::filesystem::path> without_store(
     std::span<const std::filesystem::path> named);
@@ -38,6 +41,9 @@ class ResultStore {
 
 /// Adds the run to the store beside it.
 void store_result(const std::filesystem::path& run_folder);
+/// The same of a run whose scores count whatever becomes of the store, for which the folder above
+/// the run must be writable: where they are not stored, a notice says so.
+void keep_result(const std::filesystem::path& run_folder);
 
 /// Metrics of stored runs: a row for each run, a column for each name.
 class MetricTable {

@@ -64,10 +64,19 @@ void EventCamera::record(double duration_s, const Sink& sink) {
 }
 
 void EventCamera::step(double duration_s, const Sink& sink) {
-  sense_slice(duration_s);
+  take_slice(duration_s);
+  delivery_.deliver(t_s_, t_s_ == duration_s, sink);
+}
+
+void EventCamera::step_until(double until_s, const Sink& sink) {
+  take_slice(until_s);
+  delivery_.deliver(t_s_, false, sink);
+}
+
+void EventCamera::take_slice(double until_s) {
+  sense_slice(until_s);
   for (const auto& tile : tiles_)
     if (tile != nullptr) tile->take_events(delivery_.pending());
-  delivery_.deliver(t_s_, t_s_ == duration_s, sink);
 }
 
 void EventCamera::advance(double duration_s, const Take& take) {

@@ -44,6 +44,9 @@ class EventCamera {
   void record(double duration_s, const Sink& sink);
   /// The first slice of record() that is not recorded yet.
   void step(double duration_s, const Sink& sink);
+  /// The same of a recording that goes on after `until_s` along a motion that is known up to there:
+  /// the motion that the camera refers to may be replaced by one that is the same until then.
+  void step_until(double until_s, const Sink& sink);
 
   /// The first slice of record() that is not sensed yet, without a delivery: the events of tile `i`
   /// go to take(i, events) in the order in which they were found.
@@ -64,7 +67,8 @@ class EventCamera {
   template <class Work>
   void for_each_tile(const Work& work);
   void make_tiles(std::span<const std::size_t> only);
-  /// The next slice.
+  /// The next slice, and its events in the delivery.
+  void take_slice(double until_s);
   void sense_slice(double duration_s);
   /// The tiles in reach of one, itself among them.
   template <class Use>

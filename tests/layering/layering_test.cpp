@@ -1,4 +1,4 @@
-// The direction of the house: apps -> eval, simulator, estimator -> core. Reads every source of the
+// The direction of the house: python -> apps -> eval, simulator, estimator -> core. Reads every source of the
 // tree; the checker itself is tested on samples that break each rule.
 
 #include <algorithm>
@@ -26,6 +26,7 @@ const std::map<std::string, Libraries> kMayInclude{
     {"estimator", {"core", "estimator"}},
     {"eval", {"core", "eval"}},
     {"apps", {"core", "simulator", "estimator", "eval", "apps"}},
+    {"python", {"core", "simulator", "estimator", "eval", "apps", "python"}},
     {"tests", {"core", "simulator", "estimator", "eval", "apps", "tests"}},
 };
 
@@ -203,6 +204,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Sample{"core/a.h", "#include <vector>\n#include \"core/event.h\"\n", false, ""},
         Sample{"apps/main.cpp", "#include \"eval/a.h\"\n", false, ""},
+        Sample{"python/binding/a.cpp", "#include \"simulator/a.h\"\n", false, ""},
         Sample{"tests/unit/core/a_test.cpp", "#include \"tests/support/b.h\"\n", false, ""},
         Sample{"core/a.h", "\n#include \"simulator/a.h\"\n", false,
                "core/a.h:2: core must not include simulator"},
@@ -213,6 +215,8 @@ INSTANTIATE_TEST_SUITE_P(
         Sample{"eval/a.cpp", "#include\"simulator/a.h\" // why\n", false,
                "eval must not include simulator"},
         Sample{"eval/a.cpp", "#include \"apps/a.h\"\n", false, "eval must not include apps"},
+        Sample{"apps/a.cpp", "#include \"python/binding/a.h\"\n", false,
+               "apps must not include python"},
         Sample{"apps/a.cpp", "#include \"tests/support/a.h\"\n", false,
                "apps must not include tests"},
         Sample{"core/a.cpp", "#include \"event.h\"\n", false, "not written from the root"},

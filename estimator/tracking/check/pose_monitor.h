@@ -23,6 +23,12 @@ class PoseMonitor {
   /// The map from the next pose on; copied.
   void set_map(const MapPoints& map, const Rigid3& world_from_map);
 
+  /// Takes another piece of the recording, which outlives its use: it begins history() events or
+  /// more before those of the next pose, or with the recording.
+  void set_recording(const Recording& recording) { recording_ = recording; }
+  /// Events before those of a pose that may be needed to judge it.
+  [[nodiscard]] std::size_t history() const { return check_.events(); }
+
   /// Sets `evidence`, `probability` and `status` of the next pose, in order of time.
   void judge(TrackedPose& pose);
 

@@ -74,6 +74,7 @@ IntensityTracker::IntensityTracker(const IntensityOptions& options,
 
 void IntensityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
   timing_ = {};
+  has_learned_ = false;
   residuals_.reset();
   start_at(t_ns, world_from_map_.inverse() * world_from_camera);
 }
@@ -99,7 +100,7 @@ std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
                                                  const TrackProgress& progress) {
   Poses poses;
   std::span<const Event> events = recording.events;
-  if (!knows_contrast_) learn_contrast(events);
+  if (!knows_contrast_ && !has_learned_) learn_contrast(events);
   while (!events.empty()) {
     const std::optional<std::size_t> done = track_next(events, poses);
     if (!done) break;
@@ -127,15 +128,18 @@ std::optional<std::size_t> IntensityTracker::track_next(std::span<const Event> e
   return done;
 }
 
-void IntensityTracker::learn_contrast(std::span<const Event> events) {
-  // So many per pixel tell thresholds to some percent.
+std::size_t IntensityTracker::learning_events() const {
   constexpr double kEventsPerPixel = 3;
-  const auto most = static_cast<std::size_t>(kEventsPerPixel * camera_.width * camera_.height);
+  return static_cast<std::size_t>(kEventsPerPixel * camera_.width * camera_.height);
+}
+
+void IntensityTracker::learn_contrast(std::span<const Event> events) {
+  has_learned_ = true;
   const TimeNs start_ns = last_event_ns_;
   const Rigid3 start = motion_.pose();
   Poses poses;
   fallback_.reset(start_ns, world_from_map_ * start);
-  const std::span<const Event> first = events.first(std::min(most, events.size()));
+  const std::span<const Event> first = events.first(std::min(learning_events(), events.size()));
   fallback_.follow_all(first, poses, timing_);
   residuals_.begin_learning();
   std::span<const Event> rest = first;
@@ -279,6 +283,7 @@ std::size_t IntensityTracker::relocate(std::span<const Event> events, Poses& pos
   fallback_.reset_near(t_ns, world_from_map_ * candidate_pose(t_ns));
   const std::size_t known = poses.size();
   const std::size_t done = fallback_.follow(events, poses, timing_);
+  if (done == 0) --candidates_tried_;  // it is tried when there are more events
   for (std::size_t i = known; i < poses.size(); ++i) poses[i].status = TrackStatus::kLost;
   if (done == 0 || !fallback_.fits()) return done;
   is_lost_ = false;

@@ -36,6 +36,9 @@ class IntensityTracker : public Tracker {
   [[nodiscard]] std::vector<TrackedPose> track(const Recording& recording,
                                                const TrackProgress& progress = {}) override;
 
+  [[nodiscard]] std::size_t first_events() const override {
+    return knows_contrast_ ? 0 : learning_events();
+  }
   [[nodiscard]] std::optional<EventContrast> found_contrast() const override {
     return knows_contrast_ ? std::nullopt : std::optional(residuals_.contrast());
   }
@@ -45,6 +48,8 @@ class IntensityTracker : public Tracker {
   using Sums = EventResidualBatch::Sums;
   using Poses = std::vector<TrackedPose>;
 
+  /// So many tell thresholds to some percent.
+  [[nodiscard]] std::size_t learning_events() const;
   /// From the first events, at the poses that the edges of the map tell.
   void learn_contrast(std::span<const Event> events);
   void learn_from(std::span<const Event> events, const TrackedPose& before, const TrackedPose& pose,
@@ -72,6 +77,7 @@ class IntensityTracker : public Tracker {
   IntensityOptions options_;
   PinholeCamera camera_;  ///< undistorted
   bool knows_contrast_;
+  bool has_learned_ = false;  ///< the contrast, since reset()
   LogIntensityResiduals residuals_;
   EdgeFallback fallback_;
   TimeNs last_event_ns_ = 0;

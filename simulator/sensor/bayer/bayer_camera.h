@@ -38,13 +38,21 @@ class BayerCamera {
 
   /// Records from time 0, or from where a resumed camera was, to `duration_s` > 0. Call once.
   void record(double duration_s, const Sink& sink) {
-    double reached_s = slowest_s();
-    while (reached_s < duration_s) {
-      for (std::size_t k = 0; k < cameras_.size(); ++k)
-        if (cameras_[k]->reached_s() == reached_s) step(k, duration_s);
-      reached_s = slowest_s();
-      delivery_.deliver(reached_s, reached_s == duration_s, sink);
-    }
+    while (reached_s() < duration_s) step(duration_s, sink);
+  }
+  /// The slices of record() up to which the slowest part is not recorded yet.
+  void step(double duration_s, const Sink& sink) {
+    const double before_s = reached_s();
+    for (std::size_t k = 0; k < cameras_.size(); ++k)
+      if (cameras_[k]->reached_s() == before_s) step_part(k, duration_s);
+    const double now_s = reached_s();
+    delivery_.deliver(now_s, now_s == duration_s, sink);
+  }
+  /// Of the slowest part.
+  [[nodiscard]] double reached_s() const {
+    double slowest_s = cameras_.front()->reached_s();
+    for (const auto& camera : cameras_) slowest_s = std::min(slowest_s, camera->reached_s());
+    return slowest_s;
   }
 
   [[nodiscard]] std::string state() const {
@@ -101,7 +109,7 @@ class BayerCamera {
     return (std::uint64_t{bits[0]} << 32) | bits[1];
   }
 
-  void step(std::size_t k, double duration_s) {
+  void step_part(std::size_t k, double duration_s) {
     const BayerPart& part = kBayerParts[k];
     cameras_[k]->step(duration_s, [&](std::span<const SensedEvent> events, double) {
       for (SensedEvent event : events) {
@@ -110,12 +118,6 @@ class BayerCamera {
         delivery_.pending().push_back(event);
       }
     });
-  }
-
-  [[nodiscard]] double slowest_s() const {
-    double slowest_s = cameras_.front()->reached_s();
-    for (const auto& camera : cameras_) slowest_s = std::min(slowest_s, camera->reached_s());
-    return slowest_s;
   }
 
   std::uint64_t seed_;

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "core/process/progress_observer.h"
 
 namespace saccade {
 namespace {
@@ -44,6 +48,24 @@ TEST(Progress, ReportsWhatWentWrongQuietOrNot) {
   ::testing::internal::CaptureStderr();
   { Progress("work", 10, "steps").report("step 3 failed"); }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "step 3 failed\n");
+  set_progress_quiet(false);
+}
+
+TEST(Progress, AnObserverFollowsEveryStepAndMayEndTheWork) {
+  set_progress_quiet(true);
+  std::vector<std::uint64_t> seen;
+  set_progress_observer([&](const ProgressState& state) {
+    EXPECT_EQ(state.label, "work");
+    EXPECT_EQ(state.total, 10U);
+    seen.push_back(state.done);
+    if (state.done >= 7) throw std::runtime_error("enough");
+  });
+  Progress progress("work", 10, "steps");
+  progress.add(3);
+  EXPECT_THROW(progress.add(4), std::runtime_error);
+  set_progress_observer({});
+  progress.add(1);
+  EXPECT_EQ(seen, (std::vector<std::uint64_t>{3, 7}));
   set_progress_quiet(false);
 }
 

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/process/parallel.h"
 #include "core/random.h"
-#include "simulator/record_events.h"
+#include "simulator/event_source.h"
 #include "tests/support/closed_form_plane.h"
 #include "tests/unit/simulator/scene/plane_scene.h"
 

@@ -7,7 +7,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/process/parallel.h"
-#include "simulator/record_events.h"
+#include "simulator/event_source.h"
 #include "simulator/sensor/adaptive/adaptive_camera.h"
 #include "simulator/sensor/frame_camera.h"
 #include "simulator/simulation_config.h"
