@@ -43,9 +43,11 @@ EventFindings findings_of(const CalibrationRequest& request) {
     gaps.insert(gaps.end(), own.begin(), own.end());
     found.noise.push_back(noise_rates(events, recording.size));
     const NoiseRates& noise = found.noise.back();
-    on += noise.on.count;
-    off += noise.off.count;
-    found.pixel_seconds += noise.pixel_seconds;
+    if (noise.is_told) {
+      on += noise.on.count;
+      off += noise.off.count;
+      found.pixel_seconds += noise.pixel_seconds;
+    }
     found.pixels += static_cast<std::size_t>(recording.size.width) *
                     static_cast<std::size_t>(recording.size.height);
   }
@@ -89,6 +91,11 @@ void put_hot_pixels(const EventFindings& found, SensorFile& sensor) {
 
 /// `radiance`: mean of the frames, on which the model's shot noise depends; nullopt: not known.
 void put_noise(const EventFindings& found, std::optional<double> radiance, SensorFile& sensor) {
+  if (found.pixel_seconds <= 0) {
+    for (const char* name : {"shot.rate_hz", "leak.rate_hz"})
+      sensor.remarks[name] = "not told: something moves everywhere; record a camera at rest";
+    return;
+  }
   // Both count events that weak texture causes where the camera moves: not more than this.
   sensor.noise_on_hz = found.on.hz;
   sensor.noise_off_hz = found.off.hz;

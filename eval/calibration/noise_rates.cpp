@@ -16,8 +16,9 @@ struct Reach {
 };
 /// From the strictest on.
 constexpr Reach kReaches[] = {{4, 40'000'000}, {3, 20'000'000}, {2, 10'000'000}, {1, 5'000'000}};
-/// Isolated events with which a neighbourhood is taken, 5 % of the rate as one sigma, or at least 10 %.
-constexpr std::size_t kEnough[] = {400, 100};
+/// Isolated events with which a neighbourhood is taken: 10 % of the rate as one sigma, and of each
+/// polarity. More would ask for smaller neighbourhoods, in which weak texture counts as noise.
+constexpr std::size_t kEnough = 100, kEnoughOfEach = 20;
 constexpr std::size_t kLeastHot = 5;
 
 /// Where and when no other pixel nearby fires.
@@ -131,24 +132,20 @@ CountedRate counted_rate(std::size_t count, double seconds) {
 NoiseRates noise_rates(std::span<const Event> events, SensorSize size) {
   SACCADE_CHECK(events.size() >= 2 && events.front().t_ns < events.back().t_ns);
   const double duration_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
-  std::vector<NoiseRates> found;  // by the reaches, as far as they were tried
-  const auto count = [](const NoiseRates& r) { return r.on.count + r.off.count; };
+  NoiseRates rates;
   for (const Reach& reach : kReaches) {
     const QuietPart quiet = quiet_part(events, size, reach);
-    found.push_back(rates_of(isolated_counts(events, size, quiet), quiet.pixel_seconds));
-    found.back().reach_px = reach.px;
-    found.back().reach_s = seconds_from_ns(reach.ns);
-    if (count(found.back()) >= kEnough[0]) break;
+    rates = rates_of(isolated_counts(events, size, quiet), quiet.pixel_seconds);
+    rates.reach_px = reach.px;
+    rates.reach_s = seconds_from_ns(reach.ns);
+    if (rates.on.count + rates.off.count >= kEnough &&
+        std::min(rates.on.count, rates.off.count) >= kEnoughOfEach)
+      break;
   }
-  NoiseRates rates = found.back();
-  if (count(rates) < kEnough[0])
-    for (const NoiseRates& stricter : found)
-      if (count(stricter) >= kEnough[1]) {
-        rates = stricter;
-        break;
-      }
   rates.quiet_fraction =
       rates.pixel_seconds / (duration_s * static_cast<double>(size.width) * size.height);
+  constexpr double kMuch = 0.3;
+  rates.is_told = rates.reach_px > 1 || rates.quiet_fraction > kMuch;
   return rates;
 }
 

@@ -26,6 +26,9 @@ struct NoiseRates {
   double quiet_fraction = 0;  ///< of all pixels and times, that this is
   int reach_px = 0;           ///< no other pixel's event within this distance ...
   double reach_s = 0;         ///< ... and time
+  /// Whether a neighbourhood wider than the nearest pixels was left with enough events, or much of
+  /// all pixels and times is quiet; else texture is everywhere, and the rates are mostly its.
+  bool is_told = false;
   struct HotPixel {
     int x = 0, y = 0;
     double hz = 0;
