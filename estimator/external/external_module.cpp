@@ -172,6 +172,7 @@ AdapterConfig read_adapter(const RunRequest& request) {
 
 RunSummary run_external(const RunRequest& request) {
   const AdapterConfig config = read_adapter(request);
+  static_cast<void>(Dataset::open(request.dataset));  // what is missing first is said first
   check_program(config);
   return run_adapter(request, config,
                      [&](const fs::path& run, const Dataset&, std::span<const Event>,

@@ -15,9 +15,10 @@
 namespace saccade {
 
 /// A tracker that is fed with events as they come. Its poses are those of `saccade run track`,
-/// however the events are divided (a Tracker goes on where it was, but for sliding event frames), but for the poses that a run adds in gaps (report_gaps()). Where
-/// events of one time are divided the probability of a pose may differ. A tracker that has to find contrast thresholds first waits for Tracker::first_events(). Memory is that of the events
-/// that wait for a pose.
+/// however the events are divided (a Tracker goes on where it was, but for sliding event frames), but
+/// for the poses that a run adds in gaps (report_gaps()). Where events of one time are divided the
+/// probability of a pose may differ. A tracker that has to find contrast thresholds first waits for
+/// Tracker::first_events(). Memory is that of the events that wait for a pose.
 class LiveTracker {
  public:
   /// The map is that of `dataset`, for tracking from `start_s` to `end_s`. Throws InputError for what

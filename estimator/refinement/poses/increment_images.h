@@ -8,7 +8,7 @@
 
 #include "core/camera.h"
 #include "core/event.h"
-#include "estimator/tracking/intensity/intensity_options.h"
+#include "estimator/tracking/event_contrast.h"
 
 namespace saccade {
 

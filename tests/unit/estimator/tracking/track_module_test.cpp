@@ -10,8 +10,8 @@
 #include "core/io/images/image_file.h"
 #include "core/io/imu_file.h"
 #include "core/io/ply_file.h"
-#include "core/io/tables/csv_reader.h"
 #include "core/io/run/run_record.h"
+#include "core/io/tables/csv_reader.h"
 #include "core/io/trajectory_file.h"
 #include "core/srgb.h"
 #include "tests/support/command.h"
@@ -243,8 +243,9 @@ TEST_F(TrackModule, FollowsTheTrueMotionByPolarityWithoutAContrast) {
 
 TEST_F(TrackModule, FindsAContrastThatNobodyStatesAndSaysSo) {
   const RunSummary summary = run_track(
-      request("found", "{method: intensity, reference: {planar_depth_m: 1.5}, motion: {prediction: "
-                       "constant_velocity}}"));
+      request("found",
+              "{method: intensity, reference: {planar_depth_m: 1.5}, motion: {prediction: "
+              "constant_velocity}}"));
   EXPECT_EQ(summary.lost_poses, 0U);
   EXPECT_THAT(summary.found, HasSubstr("contrast thresholds 0."));
   const RunRecord record = read_run_record(folder_.path() / "found/run.yaml");

@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr SensorSize kSize{48, 32};
+constexpr SensorSize kFittedSize{48, 32};
 constexpr double kDuration_s = 0.12;
 
 /// A world without a simulator: every pixel sees a sum of two sines, sampled every 40 us.
@@ -19,8 +19,8 @@ struct SinePixels {
 
   [[nodiscard]] Events operator()(const SensorParameters& sensor) const {
     Events events;
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x) sense(x, y, seed, sensor, events);
+    for (int y = 0; y < kFittedSize.height; ++y)
+      for (int x = 0; x < kFittedSize.width; ++x) sense(x, y, seed, sensor, events);
     std::sort(events.begin(), events.end(), EventOrder{});
     return events;
   }
@@ -30,7 +30,7 @@ struct SinePixels {
                     Events& events) {
     constexpr TimeNs kStepNs = 40'000;
     const Random random(seed);
-    const auto stream = static_cast<std::uint64_t>(y * kSize.width + x);
+    const auto stream = static_cast<std::uint64_t>(y * kFittedSize.width + x);
     // Neighbours see nearly the same: waves that pass, of another kind in every part.
     const auto kind = static_cast<double>(seed % 97);
     const double amplitude = 0.9 + 0.5 * std::sin(0.11 * x + 0.17 * y + kind);
@@ -61,7 +61,7 @@ struct SinePixels {
 };
 
 RepeatedRecording recording_of(const SensorParameters& truth, std::uint64_t seed = 1) {
-  return {"sines", kSize, kDuration_s, SinePixels{seed}(truth), SinePixels{seed}};
+  return {"sines", kFittedSize, kDuration_s, SinePixels{seed}(truth), SinePixels{seed}};
 }
 
 SensorParameters start() {
