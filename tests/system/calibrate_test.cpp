@@ -41,8 +41,13 @@ TEST(Calibrate, WritesASensorThatTheOthersRead) {
   // As a person completes it.
   found.events.contrast_on = found.events.contrast_off = 0.21;
   write_sensor_file(sensor, found);
-  EXPECT_THAT(saccade_ok({"simulate", shipped_config("simulation/walls.yaml"), "--sensor", sensor,
-                          "--print-config"}),
+  // What a configuration states itself wins, and Walls states its thresholds.
+  const std::string bare =
+      folder
+          .write("bare.yaml", "include: " + source_path("scenes/walls/scene.yaml") +
+                                  "\ntrajectory: {source: circle}\n")
+          .string();
+  EXPECT_THAT(saccade_ok({"simulate", bare, "--sensor", sensor, "--print-config"}),
               AllOf(HasSubstr("contrast_on: 0.21"), HasSubstr("sensor.yaml")));
   const std::string run = (folder.path() / "run").string();
   saccade_ok({"run", "track", "--data", data, "-c", shipped_config("tracking/best.yaml"),
