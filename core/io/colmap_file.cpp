@@ -62,7 +62,8 @@ bool is_colmap_images(const std::filesystem::path& file) {
   std::string line;
   while (std::getline(stream, line))
     if (!line.starts_with('#') && line.find_first_not_of(" \t\r") != std::string::npos) break;
-  TextRow row(file.string(), 1, line);
+  const std::string name = file.string();
+  TextRow row(name, 1, line);
   try {
     static_cast<void>(read_image_line(row, ""));
     return true;

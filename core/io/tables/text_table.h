@@ -28,6 +28,9 @@ class TextRow {
         end_(text.data() + text.size()),
         readable_end_(end_ + readable) {}
 
+  TextRow(std::string&& file, std::size_t line, std::string_view text,
+          std::size_t readable = 0) = delete;  // the name outlives the row
+
   [[nodiscard]] bool at_end() {
     while (rest_ != end_ && is_space(*rest_)) ++rest_;
     return rest_ == end_;
