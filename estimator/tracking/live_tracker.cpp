@@ -84,7 +84,8 @@ std::vector<TrackedPose> LiveTracker::feed() {
   if (!has_begun_) tracker_->reset(events_[fed_].t_ns, start_.world_from_camera);
   has_begun_ = true;
   fed_ = end_;
-  if (used_ == 0 && waiting() < tracker_->first_events()) return {};
+  if (!is_tracking_ && waiting() < tracker_->first_events()) return {};
+  is_tracking_ = true;
   std::vector<TrackedPose> poses = tracker_->track({.events = buffered().subspan(used_)},
                                                    [&](std::size_t count) { used_ += count; });
   monitor_.set_recording({.events = buffered()});

@@ -53,10 +53,11 @@ class LiveTracker {
   /// Those that wait, behind those that the monitor may need, then new ones; never made smaller, as
   /// making room costs more than filling it.
   Events events_;
-  std::size_t used_ = 0;  ///< of events_, by the tracker
-  std::size_t fed_ = 0;   ///< of events_, before the new ones
-  std::size_t end_ = 0;   ///< of events_, with the new ones
-  bool has_begun_ = false;
+  std::size_t used_ = 0;      ///< of events_, by the tracker
+  std::size_t fed_ = 0;       ///< of events_, before the new ones
+  std::size_t end_ = 0;       ///< of events_, with the new ones
+  bool has_begun_ = false;    ///< to be fed
+  bool is_tracking_ = false;  ///< has had its first events
 };
 
 }  // namespace saccade
