@@ -102,8 +102,9 @@ SensorFile calibrated(const fs::path& dataset) {
 struct KnownSensor {
   std::string name;
   SensorParameters parameters;
-  /// Of the others the edges of this scene are too slow: the period came out 9 and 12 % too long.
-  bool tells_refractory = true;
+  /// Missed by two: the edges of this scene are too slow for them, and the period comes out 9 and 12 %
+  /// too long.
+  double refractory_tolerance = 0.05;
 };
 
 void PrintTo(const KnownSensor& sensor, std::ostream* stream) { *stream << sensor.name; }
@@ -135,8 +136,8 @@ TEST_P(CalibrationOf, FindsTheSensorWithinFivePercent) {
   EXPECT_NEAR(*found.events.contrast_on / *truth.contrast_on, 1, 0.05);
   EXPECT_NEAR(*found.events.contrast_off / *truth.contrast_off, 1, 0.05);
   ASSERT_TRUE(found.events.refractory_us);
-  if (!GetParam().tells_refractory) return;
-  EXPECT_NEAR(*found.events.refractory_us / *truth.refractory_us, 1, 0.05);
+  EXPECT_NEAR(*found.events.refractory_us / *truth.refractory_us, 1,
+              GetParam().refractory_tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -145,8 +146,8 @@ INSTANTIATE_TEST_SUITE_P(
                       KnownSensor{"davis346", preset_parameters(SensorModel::kDavis346)},
                       KnownSensor{"dvxplorer", preset_parameters(SensorModel::kDvxplorer)},
                       KnownSensor{"random1", random_sensor(1)},
-                      KnownSensor{"random2", random_sensor(2), false},
-                      KnownSensor{"random3", random_sensor(3), false}));
+                      KnownSensor{"random2", random_sensor(2), 0.15},
+                      KnownSensor{"random3", random_sensor(3), 0.15}));
 
 /// Stripes on the left, a grey wall on the right.
 ImageF half_a_wall() {
