@@ -57,6 +57,11 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
   if (start.status == Bootstrap::Status::kNoMotion)
     throw InputError(dataset.folder().string(),
                      "the events show no motion that odometry could start from");
+  if (start.status == Bootstrap::Status::kAmbiguous)
+    throw InputError(dataset.folder().string(),
+                     "the events do not tell in which direction the camera moves at the start: it "
+                     "rotates too fast, or moves too little, for odometry to start without poses "
+                     "(start.truth_s) or a gyroscope (tracker.motion)");
   if (start.status == Bootstrap::Status::kNoParallax)
     throw InputError(dataset.folder().string(),
                      "the events show no parallax that odometry could start from: the camera must "

@@ -1,12 +1,15 @@
 #include "estimator/odometry/start/bootstrap.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/time_search.h"
 #include "estimator/odometry/start/extrapolated_path.h"
+#include "estimator/odometry/start/flow_motion.h"
 #include "estimator/odometry/start/plane_search.h"
+#include "estimator/odometry/start/tile_flow.h"
 
 namespace saccade {
 namespace {
@@ -15,6 +18,12 @@ constexpr int kFirstRounds = 1;        ///< of every hypothesis, before the best
 constexpr int kRounds = 3;             ///< of the best
 constexpr double kMinGain = 1.1;       ///< of contrast: less is noise
 constexpr double kMinParallax_px = 5;  ///< of the path at the typical depth: less is a rotation
+/// Without a gyroscope the direction of motion must be known better than this.
+constexpr double kMaxDirection_deg = 25;
+constexpr double kMaxHalfDirection_deg = 45;  ///< by half of the window
+constexpr int kFlowRounds = 3;  ///< each with the motion of the one before as the rough one
+constexpr BurstLimits kFlowBursts{.gap = 0.15, .longest = 1};  ///< as of PlaneSearch
+constexpr std::size_t kFlowEvents = 100000;                    ///< of a window
 constexpr double kRetry_s = 0.1;  ///< where a window gives no start the next begins so much later
 
 /// The events with from_s <= t < to_s, as seconds.
@@ -65,6 +74,7 @@ class StartFinder {
         options_(options),
         gyroscope_(gyroscope),
         search_(options.max_search_s, camera, gyroscope),
+        flow_filter_(camera, kFlowBursts, kFlowEvents),
         refinement_(measuring_rotation(options.refinement, gyroscope), camera) {}
 
   Bootstrap from(std::span<const Event> events) {
@@ -72,7 +82,16 @@ class StartFinder {
     const std::vector<PlaneFit> fits = search_.find(events);
     if (fits.empty() || fits.front().gain < kMinGain) return start;
     start.status = Bootstrap::Status::kNoParallax;
-    const FreePath path = grown(events, best_of(events, fits));
+    std::vector<PlaneFit> candidates = fits;
+    if (gyroscope_.is_empty()) {
+      const std::optional<PlaneFit> by_flow = told_by_flow(events, fits.front());
+      if (!by_flow) {
+        start.status = Bootstrap::Status::kAmbiguous;
+        return start;
+      }
+      candidates = {*by_flow};
+    }
+    const FreePath path = grown(events, best_of(events, candidates));
     start.edges = path.edges;
     start.residual_px = path.residual_px;
     start.parallax_px = parallax_px(path.poses, camera_);
@@ -84,6 +103,38 @@ class StartFinder {
   }
 
  private:
+  /// What the flow of tiles makes of a fit; nullopt where it does not tell the direction of motion:
+  /// the whole window must, and so must each half. A rotation that changes within the window is
+  /// explained by a wrong translation, which hardly ever is one for both halves.
+  [[nodiscard]] std::optional<PlaneFit> told_by_flow(std::span<const Event> events, PlaneFit fit) {
+    const std::span<const Event> window = between(events, fit.start_s, fit.end_s + kPoseSpacing_s);
+    for (int i = 0; i < kFlowRounds; ++i) {
+      const std::optional<FlowMotion> found = motion_by_flow(window, fit.motion);
+      if (!found) return std::nullopt;
+      fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
+      if (i + 1 == kFlowRounds && found->direction_deg > kMaxDirection_deg) return std::nullopt;
+    }
+    const double middle_s = (fit.start_s + fit.end_s) / 2;
+    const std::pair<double, double> halves[] = {{fit.start_s, middle_s}, {middle_s, fit.end_s}};
+    for (const auto& [from_s, to_s] : halves) {
+      const std::optional<FlowMotion> half =
+          motion_by_flow(between(window, from_s, to_s), fit.motion);
+      if (!half || half->direction_deg > kMaxHalfDirection_deg ||
+          angle_deg(half->velocity, fit.motion.velocity) > kMaxHalfDirection_deg)
+        return std::nullopt;
+    }
+    return fit;
+  }
+
+  [[nodiscard]] std::optional<FlowMotion> motion_by_flow(std::span<const Event> window,
+                                                         const PlaneMotion& rough) {
+    if (window.empty()) return std::nullopt;
+    const std::vector<TileFlow> flows =
+        tile_flows(window, flow_filter_, camera_.undistorted(), rough);
+    if (flows.size() < kLeastTiles) return std::nullopt;
+    return fit_motion(flows);
+  }
+
   [[nodiscard]] FreePath best_of(std::span<const Event> events,
                                  const std::vector<PlaneFit>& fits) const {
     FreePath best;
@@ -114,6 +165,7 @@ class StartFinder {
   BootstrapOptions options_;
   const Gyroscope& gyroscope_;
   PlaneSearch search_;
+  BurstFilter flow_filter_;
   PathRefinement refinement_;
 };
 

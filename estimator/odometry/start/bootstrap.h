@@ -24,6 +24,7 @@ struct Bootstrap {
     kFound,
     kNoMotion,    ///< nothing but noise in all of the events
     kNoParallax,  ///< the camera only rotated, or its motion was never clear
+    kAmbiguous,   ///< several directions of motion explain the events
   };
   Status status = Status::kNoMotion;
   Trajectory path;         ///< world_from_camera, the identity at its first pose
