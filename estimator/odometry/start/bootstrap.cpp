@@ -14,9 +14,10 @@
 namespace saccade {
 namespace {
 
-constexpr int kFirstRounds = 1;        ///< of every hypothesis, before the best goes on
-constexpr int kRounds = 3;             ///< of the best
-constexpr double kMinGain = 1.1;       ///< of contrast: less is noise
+constexpr int kFirstRounds = 1;  ///< of every hypothesis, before the best goes on
+constexpr int kRounds = 3;       ///< of the best
+/// Of contrast: less may be noise, or a dense texture, of which the flow of tiles decides.
+constexpr double kMinGain = 1.1;
 constexpr double kMinParallax_px = 5;  ///< of the path at the typical depth: less is a rotation
 /// Without a gyroscope the direction of motion must be known better than this.
 constexpr double kMaxDirection_deg = 25;
@@ -55,6 +56,12 @@ double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
   return camera.fx * most;
 }
 
+/// From the first to the last pose of a fit's window, in the frame of its middle.
+Eigen::Vector3d direction_over(const Trajectory& path, const PlaneFit& fit) {
+  return path.at_clamped(fit.middle_s).rotation().conjugate() *
+         (path.at_clamped(fit.end_s).translation() - path.at_clamped(fit.start_s).translation());
+}
+
 /// From the first pose on, in the unit asked for.
 Trajectory in_world(const Trajectory& path, double depth_m) {
   const Rigid3 world_from_path = path.poses().front().world_from_camera.inverse();
@@ -80,21 +87,29 @@ class StartFinder {
   Bootstrap from(std::span<const Event> events) {
     Bootstrap start;
     const std::vector<PlaneFit> fits = search_.find(events);
-    if (fits.empty() || fits.front().gain < kMinGain) return start;
-    start.status = Bootstrap::Status::kNoParallax;
+    if (fits.empty()) return start;
+    const bool is_sharp = fits.front().gain >= kMinGain;
     std::vector<PlaneFit> candidates = fits;
     if (gyroscope_.is_empty()) {
       const std::optional<PlaneFit> by_flow = told_by_flow(events, fits.front());
-      if (!by_flow) {
-        start.status = Bootstrap::Status::kAmbiguous;
-        return start;
-      }
+      if (is_sharp) start.status = Bootstrap::Status::kAmbiguous;
+      if (!by_flow) return start;
       candidates = {*by_flow};
+    } else if (!is_sharp) {
+      return start;
     }
+    start.status = Bootstrap::Status::kNoParallax;
     const FreePath path = grown(events, best_of(events, candidates));
     start.edges = path.edges;
     start.residual_px = path.residual_px;
     start.parallax_px = parallax_px(path.poses, camera_);
+    // Edges that hardly tell may lead the path away from what the flow says.
+    if (gyroscope_.is_empty() && path.is_clear &&
+        angle_deg(direction_over(path.poses, candidates.front()),
+                  candidates.front().motion.velocity) > kMaxDirection_deg) {
+      start.status = Bootstrap::Status::kAmbiguous;
+      return start;
+    }
     if (path.is_clear && start.parallax_px >= kMinParallax_px) {
       start.status = Bootstrap::Status::kFound;
       start.path = in_world(path.poses, options_.depth_m);
