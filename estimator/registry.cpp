@@ -49,6 +49,7 @@ constexpr Module kModules[] = {
      .reference = config::reference<ReconstructionConfig>},
     {.name = "odometry",
      .help = "Poses and map from events and the poses of a short start (thesis chapter 7).",
+     .takes_poses = true,
      .run = run_odometry,
      .print_config = print_config<OdometryConfig>,
      .reference = config::reference<OdometryConfig>},

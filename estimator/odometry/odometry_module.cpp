@@ -23,15 +23,20 @@
 namespace saccade {
 namespace {
 
-/// The given poses of the start. None beyond is read.
-Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
-                       const StartOptions& options) {
+/// The given poses of the start, of the ground truth or of --poses-from. None beyond is used.
+Trajectory start_poses(const RunRequest& request, const Dataset& dataset,
+                       std::span<const Event> events, const StartOptions& options) {
+  if (!request.poses_from && dataset.groundtruth().empty())
+    throw InputError(dataset.folder().string(),
+                     "holds no groundtruth.txt, whose first poses start.truth_s asks for; give "
+                     "others (--poses-from FILE) or none (start.truth_s: 0)");
+  const Trajectory given = load_poses(request, dataset).trajectory;
   const double from_s = seconds_from_ns(events.front().t_ns);
   const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
   const double truth_s = std::min(options.truth_s, options.truth_fraction * whole_s);
   std::vector<StampedPose> start;
   std::optional<StampedPose> before;
-  for (StampedPose pose : dataset.groundtruth().poses()) {
+  for (StampedPose pose : given.poses()) {
     pose.t_s += options.time_offset_s;
     if (pose.t_s > from_s + truth_s) break;
     if (pose.t_s < from_s)
@@ -42,9 +47,9 @@ Trajectory start_poses(const Dataset& dataset, std::span<const Event> events,
   if (before && (start.empty() || start.front().t_s > from_s)) start.insert(start.begin(), *before);
   if (start.size() < 2)
     throw InputError(
-        dataset.folder().string(),
-        fmt::format("groundtruth.txt holds fewer than two poses of the first {:.4g} s, "
-                    "which start.truth_s asks for",
+        request.poses_from.value_or(dataset.folder() / "groundtruth.txt").string(),
+        fmt::format("holds fewer than two poses of the first {:.4g} s, which start.truth_s asks "
+                    "for",
                     truth_s));
   return Trajectory(std::move(start));
 }
@@ -77,15 +82,18 @@ struct Start {
   double seconds = 0;              ///< of work
 };
 
-Start start_of(const Dataset& dataset, const PinholeCamera& camera, std::span<const Event> events,
-               const StartOptions& options, const Gyroscope& gyroscope) {
+Start start_of(const RunRequest& request, const Dataset& dataset, const PinholeCamera& camera,
+               std::span<const Event> events, const StartOptions& options,
+               const Gyroscope& gyroscope) {
   Start start;
   if (options.truth_s > 0) {
-    start.path.poses = start_poses(dataset, events, options);
+    start.path.poses = start_poses(request, dataset, events, options);
     start.from_s = start.path.poses.end_s();
     start.path.fixed_until_s = start.path.given_until_s = start.from_s;
     return start;
   }
+  if (request.poses_from)
+    throw InputError("--poses-from", "gives the poses of the start, and start.truth_s is 0");
   const ScopedTimer clock(start.seconds);
   start.found = found_start(dataset, camera, events, options, gyroscope);
   start.from_s = start.found->path.start_s();
@@ -249,7 +257,8 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;
-  const Start start = start_of(input.dataset, input.camera, events, config.start, input.gyroscope);
+  const Start start =
+      start_of(request, input.dataset, input.camera, events, config.start, input.gyroscope);
   // What is scored begins where the given poses end, or where those that were found begin.
   RunRecord::Window window =
       window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));

@@ -126,6 +126,7 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   record.external = external;
   record.dataset = std::filesystem::absolute(request.dataset).lexically_normal();
   record.dataset_sha256 = dataset_hash(dataset);
+  record.smooth_poses_s = request.smooth_poses_s;
   if (request.poses_from)
     record.poses_from = std::filesystem::absolute(*request.poses_from).lexically_normal();
   if (request.depth_from)

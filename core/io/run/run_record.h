@@ -38,9 +38,11 @@ struct RunRecord {
   std::filesystem::path dataset;     ///< folder; in the file relative to run.yaml, or absolute
   std::string dataset_sha256;        ///< of its dataset.yaml, or of its events where it has none
   std::filesystem::path poses_from;  ///< run or trajectory file; empty: not in place of the truth's
-  std::filesystem::path depth_from;  ///< depth run; empty: not in place of the dataset's
-  std::filesystem::path from;        ///< run that was refined; empty: none
-  std::optional<External> external;  ///< nullopt: one of this program's modules
+  std::optional<double>
+      smooth_poses_s;  ///< spacing of the knots of a spline by which they were smoothed
+  std::filesystem::path depth_from;         ///< depth run; empty: not in place of the dataset's
+  std::filesystem::path from;               ///< run that was refined; empty: none
+  std::optional<External> external;         ///< nullopt: one of this program's modules
   std::optional<MethodClass> method_class;  ///< what it was given in all; nullopt: not known
   std::optional<Contrast> contrast;         ///< nullopt: stated, or not needed
   std::optional<Window> window;             ///< nullopt: the whole dataset

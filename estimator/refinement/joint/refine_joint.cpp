@@ -33,6 +33,16 @@ struct BatchRun {
   BatchInput batch;
 };
 
+/// Those that the run was given, none where it found its start.
+Trajectory start_poses(const RunRequest& request, const Dataset& dataset, const SourceRun& run,
+                       bool has_truth) {
+  if (!has_truth) return {};
+  RunRequest as_then = request;
+  if (!run.record.poses_from.empty()) as_then.poses_from = run.record.poses_from;
+  as_then.smooth_poses_s = run.record.smooth_poses_s;
+  return load_poses(as_then, dataset).trajectory;
+}
+
 BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun& run) {
   BatchRun input;
   input.odometry = run.config<OdometryConfig>();
@@ -42,7 +52,7 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
     throw InputError((run.folder / "keyframes.yaml").string(),
                      "holds no keyframe: nothing to refine");
   const bool has_truth = input.odometry.start.truth_s > 0;
-  if (!run.record.window || (has_truth && dataset.groundtruth().empty()))
+  if (!run.record.window)
     throw InputError(run.folder.string(), "does not say where its given start ends");
   // The run's window begins where the given start ends; the events of the start belong to it.
   input.events = load_events(request, dataset);
@@ -50,8 +60,7 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
   const double first_s = seconds_from_ns(input.events.front().t_ns);
   BatchInput& batch = input.batch;
   std::vector<StampedPose> given;
-  for (StampedPose pose : dataset.groundtruth().poses()) {
-    if (!has_truth) break;
+  for (StampedPose pose : start_poses(request, dataset, run, has_truth).poses()) {
     pose.t_s += input.odometry.start.time_offset_s;
     if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) given.push_back(pose);
   }

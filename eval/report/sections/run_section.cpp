@@ -215,6 +215,7 @@ std::string provenance(const RunData& data) {
   add("module", r.module);
   add("dataset", r.dataset.string());
   add("poses from", r.poses_from.string());
+  if (r.smooth_poses_s) add("poses smoothed by", fmt::format("{:g} s", *r.smooth_poses_s));
   add("depth from", r.depth_from.string());
   add("dataset hash", r.dataset_sha256);
   if (r.window)

@@ -312,6 +312,23 @@ keyframe: {distance: 1}
   EXPECT_TRUE(fs::is_regular_file(views.front().image));
 }
 
+TEST_F(OdometryModule, TakesTheGivenStartFromAnotherFile) {
+  (void)run_odometry(request("truth"));
+  write_tum_trajectory(folder_.path() / "given.txt", poses_until(0.21));
+  RunRequest run = request("given");
+  run.poses_from = folder_.path() / "given.txt";
+  (void)run_odometry(run);
+  EXPECT_EQ(read_file(folder_.path() / "given" / "trajectory.txt"),
+            read_file(folder_.path() / "truth" / "trajectory.txt"));
+  write_tum_trajectory(*run.poses_from, std::vector<StampedPose>{{5, {}}, {6, {}}});
+  EXPECT_THAT(error_of([&] { return run_odometry(run); }),
+              AllOf(HasSubstr("given.txt"), HasSubstr("fewer than two poses")));
+  std::string yaml = adjusted();
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33, "truth_s: 0");
+  run.config = request("none", yaml).config;
+  EXPECT_THAT(error_of([&] { return run_odometry(run); }), HasSubstr("--poses-from"));
+}
+
 TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   constexpr double kSteadyEnd_s = 0.4;
   const fs::path steady = folder_.path() / "steady";
