@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -25,13 +26,15 @@ class EdgeFallback {
     edges_.reset(t_ns, world_from_camera, kSigma_px);
   }
 
-  /// Follows the first frames of `events` and appends their poses, all of them lost where they do
-  /// not fit. Returns the number of events; 0, and nothing is appended, where too few are left.
+  /// Follows the first frames of `events`, fewer where the recording ends, and appends their poses,
+  /// all of them lost where they do not fit. Returns the number of events; 0, and nothing is
+  /// appended, where not even one frame is left.
   std::size_t follow(std::span<const Event> events, std::vector<TrackedPose>& poses,
                      TrackTiming& timing) {
     constexpr std::size_t kFrames = 6;
-    const std::size_t count = kFrames * edges_.next_frame_events();
-    if (count > events.size()) return 0;
+    const std::size_t frame = edges_.next_frame_events();
+    const std::size_t count = std::min(kFrames, events.size() / frame) * frame;
+    if (count == 0) return 0;
     follow_all(events.first(count), poses, timing);
     return count;
   }
