@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kReach = 2;  ///< neighbours on each side, through which the cubic goes
 constexpr double kSigmaPerMedian = 1.4826;  ///< of the absolute value of a normal variable
+/// Of poses farther apart a hand is no cubic through five of them.
+constexpr double kLongestSpacing_s = 0.02;
 constexpr double kSampling_s = 1e-3;  ///< within which a straight line follows any hand's motion
 
 constexpr double kLongestKnots = 4;  ///< without a pose: in longer gaps nothing holds the spline
@@ -75,9 +77,11 @@ double PoseNoise::poses_within(double duration_s) const {
 PoseNoise pose_noise_of(const Trajectory& trajectory) {
   const std::span<const StampedPose> poses = trajectory.poses();
   if (poses.size() <= 2 * kReach) return {};
+  const double spacing_s = median_spacing_s(poses);
+  if (spacing_s > kLongestSpacing_s) return {};
   Deviations deviations = deviations_of(poses);
   return {kSigmaPerMedian * median(std::move(deviations.rotation_rad)),
-          kSigmaPerMedian * median(std::move(deviations.position_m)), median_spacing_s(poses)};
+          kSigmaPerMedian * median(std::move(deviations.position_m)), spacing_s};
 }
 
 Trajectory smoothed(const Trajectory& trajectory, double knot_spacing_s) {

@@ -16,7 +16,7 @@ struct PoseNoise {
 };
 
 /// From each pose's distance from the cubic through its four neighbours, by the median; zero for
-/// fewer than five poses.
+/// fewer than five poses, and for poses more than 20 ms apart.
 [[nodiscard]] PoseNoise pose_noise_of(const Trajectory& trajectory);
 
 /// The same motion as a cubic spline with knots `knot_spacing_s` apart, fitted by least squares

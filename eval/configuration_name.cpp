@@ -50,6 +50,7 @@ std::string configuration_name(const RunRecord& record) {
   for (const std::string& setting : option_values(words, "--set"))
     if (!setting.starts_with("seed=")) name += " " + setting;
   if (!record.poses_from.empty()) name += ", estimated poses";
+  if (record.smooth_poses_s) name += ", smoothed poses";
   if (!record.depth_from.empty()) name += ", estimated depth";
   return name;
 }

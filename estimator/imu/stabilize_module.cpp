@@ -135,10 +135,12 @@ RunSummary run_stabilization(const RunRequest& request) {
   Events events;
   {
     const ScopedTimer clock(timing.io_s);
-    if (request.poses_from)
+    if (request.poses_from) {
       given_poses = load_poses(request, dataset).trajectory;
-    else
+    } else {
+      refuse_smoothing(request, "the orientation is the inertial sensor's; it is of --poses-from");
       imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
+    }
     if (!dataset.events_file().empty()) events = load_events_if_any(request, dataset);
   }
   timing.events = events.size();

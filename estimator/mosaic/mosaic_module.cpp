@@ -34,10 +34,12 @@ struct MosaicSource {
 
 MosaicSource load_source(const RunRequest& request, const Dataset& dataset) {
   MosaicSource source;
-  if (request.poses_from)
+  if (request.poses_from) {
     source.poses = load_poses(request, dataset).trajectory;
-  else
+  } else {
+    refuse_smoothing(request, "the orientation is the inertial sensor's; it is of --poses-from");
     source.imu = load_imu_input(dataset, "mosaic (or --poses-from RUN)");
+  }
   source.events = load_events(request, dataset);
   return source;
 }

@@ -14,6 +14,7 @@
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
+#include "estimator/odometry/start/given_poses.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/check/pose_monitor.h"
@@ -23,35 +24,20 @@
 namespace saccade {
 namespace {
 
-/// The given poses of the start, of the ground truth or of --poses-from. None beyond is used.
+/// The given poses of the start, of the ground truth or of --poses-from.
 Trajectory start_poses(const RunRequest& request, const Dataset& dataset,
                        std::span<const Event> events, const StartOptions& options) {
-  if (!request.poses_from && dataset.groundtruth().empty())
-    throw InputError(dataset.folder().string(),
-                     "holds no groundtruth.txt, whose first poses start.truth_s asks for; give "
-                     "others (--poses-from FILE) or none (start.truth_s: 0)");
-  const Trajectory given = load_poses(request, dataset).trajectory;
   const double from_s = seconds_from_ns(events.front().t_ns);
   const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
   const double truth_s = std::min(options.truth_s, options.truth_fraction * whole_s);
-  std::vector<StampedPose> start;
-  std::optional<StampedPose> before;
-  for (StampedPose pose : given.poses()) {
-    pose.t_s += options.time_offset_s;
-    if (pose.t_s > from_s + truth_s) break;
-    if (pose.t_s < from_s)
-      before = pose;
-    else
-      start.push_back(pose);
-  }
-  if (before && (start.empty() || start.front().t_s > from_s)) start.insert(start.begin(), *before);
+  Trajectory start = given_start(request, dataset, from_s, from_s + truth_s, options.time_offset_s);
   if (start.size() < 2)
     throw InputError(
         request.poses_from.value_or(dataset.folder() / "groundtruth.txt").string(),
         fmt::format("holds fewer than two poses of the first {:.4g} s, which start.truth_s asks "
                     "for",
                     truth_s));
-  return Trajectory(std::move(start));
+  return start;
 }
 
 /// The path at the start from events alone.
@@ -94,6 +80,7 @@ Start start_of(const RunRequest& request, const Dataset& dataset, const PinholeC
   }
   if (request.poses_from)
     throw InputError("--poses-from", "gives the poses of the start, and start.truth_s is 0");
+  refuse_smoothing(request, "it is of the poses of the start, and start.truth_s is 0");
   const ScopedTimer clock(start.seconds);
   start.found = found_start(dataset, camera, events, options, gyroscope);
   start.from_s = start.found->path.start_s();

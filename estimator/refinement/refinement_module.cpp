@@ -43,6 +43,8 @@ RunSummary run_refinement(const RunRequest& request) {
   config.method = method.name;
   if (config.method != "depth" && request.poses_from)
     throw InputError("--poses-from", "poses are refined here; it is of a run of depth");
+  if (config.method != "depth")
+    refuse_smoothing(request, "poses are refined here; it is of a run of depth");
   // A run that found its own start has a world of its own, and so has this one.
   if (const auto start = run.folder / "start.yaml"; std::filesystem::exists(start))
     std::filesystem::copy_file(start, writer.path() / "start.yaml");

@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
@@ -15,6 +17,9 @@ void check(const RunRequest& request) {
   if (request.repeat < 1) throw InputError("--repeat", "must be at least 1");
   if (request.duration_s && !(*request.duration_s > 0))
     throw InputError("--duration-s", "must be above 0");
+  if (request.smooth_poses_s &&
+      !(*request.smooth_poses_s > 0 && std::isfinite(*request.smooth_poses_s)))
+    throw InputError("--smooth-poses", "must be a number of seconds above 0");
 }
 
 Events load_events_if_any(const RunRequest& request, const Dataset& dataset) {
@@ -44,11 +49,6 @@ RunRecord::Window window_of(const RunRequest& request, double first_s, double la
   return window;
 }
 
-namespace {
-
-/// Of jitter, between one pose and the next: by less the events themselves are uncertain.
-constexpr double kVisibleJitter_px = 1.0 / 3;
-
 Trajectory recorded_poses(const RunRequest& request, const Dataset& dataset) {
   if (request.poses_from) {
     const std::filesystem::path& from = *request.poses_from;
@@ -64,24 +64,38 @@ Trajectory recorded_poses(const RunRequest& request, const Dataset& dataset) {
   return dataset.groundtruth();
 }
 
-void warn_of_noise(const PoseNoise& noise, const PinholeCamera& camera) {
-  const double jitter_px = camera.fx * noise.rotation_rad;
-  if (jitter_px > kVisibleJitter_px)
-    show_notice(
-        fmt::format("the poses jitter by {:.2g} mrad, {:.2g} px, from one to the next; "
-                    "--smooth-poses fits a smooth motion through them",
-                    1e3 * noise.rotation_rad, jitter_px));
+Trajectory smoothed_as_asked(const RunRequest& request, Trajectory poses) {
+  if (!request.smooth_poses_s || poses.size() < 2) return poses;
+  // Denser knots than poses follow their noise, and cost memory without bound.
+  const double spacing_s =
+      (poses.end_s() - poses.start_s()) / static_cast<double>(poses.size() - 1);
+  if (*request.smooth_poses_s < spacing_s)
+    throw InputError("--smooth-poses",
+                     fmt::format("{:.3g} s is less than the {:.3g} s from one pose to the next",
+                                 *request.smooth_poses_s, spacing_s));
+  try {
+    return smoothed(poses, *request.smooth_poses_s);
+  } catch (const InputError& error) {
+    throw InputError("--smooth-poses", error.what());
+  }
 }
 
-}  // namespace
+void refuse_smoothing(const RunRequest& request, const std::string& reason) {
+  if (request.smooth_poses_s) throw InputError("--smooth-poses", reason);
+}
 
 GivenPoses load_poses(const RunRequest& request, const Dataset& dataset) {
+  /// Of jitter, between one pose and the next: by less the events themselves are uncertain.
+  constexpr double kVisibleJitter_px = 1.0 / 3;
   GivenPoses given{recorded_poses(request, dataset), {}};
   given.noise = pose_noise_of(given.trajectory);
-  if (!request.smooth_poses_s)
-    warn_of_noise(given.noise, dataset.camera());
-  else if (given.trajectory.size() > 1)
-    given.trajectory = smoothed(given.trajectory, *request.smooth_poses_s);
+  const double jitter_px = dataset.camera().fx * given.noise.rotation_rad;
+  if (jitter_px > kVisibleJitter_px && !request.smooth_poses_s)
+    show_notice(
+        fmt::format("the poses jitter by {:.2g} mrad, {:.2g} px, from one to the next; "
+                    "--smooth-poses 0.04 fits a smooth motion through them",
+                    1e3 * given.noise.rotation_rad, jitter_px));
+  given.trajectory = smoothed_as_asked(request, std::move(given.trajectory));
   return given;
 }
 

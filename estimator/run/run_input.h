@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/config/config.h"
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
@@ -32,16 +34,26 @@ template <class Config>
 /// request leaves it open.
 [[nodiscard]] RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s);
 
+/// world_from_camera of the run or the trajectory file at `poses_from`, without one the ground
+/// truth, as recorded. Of a run that found orientations alone, these, at the origin. Throws
+/// InputError where there is none.
+[[nodiscard]] Trajectory recorded_poses(const RunRequest& request, const Dataset& dataset);
+
+/// The poses smoothed by a spline where the request asks for it. Throws InputError where its knots
+/// are too dense for them.
+[[nodiscard]] Trajectory smoothed_as_asked(const RunRequest& request, Trajectory poses);
+
+/// Throws InputError where --smooth-poses is asked for though no poses are read, with the reason.
+void refuse_smoothing(const RunRequest& request, const std::string& reason);
+
 /// What a module that takes poses was given.
 struct GivenPoses {
   Trajectory trajectory;  ///< world_from_camera
   PoseNoise noise;        ///< of the poses as they were recorded
 };
 
-/// Those of the run or the trajectory file at `poses_from`, without one the ground truth; smoothed
-/// where the request asks for it, and where it does not and they jitter by more than a third of a
-/// pixel, that is said. Of a run that found orientations alone, these, at the origin. Throws
-/// InputError where there is none.
+/// The recorded poses, smoothed as asked; where they jitter by more than a third of a pixel and are
+/// not smoothed, that is said. Throws InputError where there is none.
 [[nodiscard]] GivenPoses load_poses(const RunRequest& request, const Dataset& dataset);
 
 }  // namespace saccade

@@ -39,8 +39,10 @@ void describe(config::Fields& fields, RunRecord& record) {
   if (fields.has("poses_from") || (!fields.reading() && !record.poses_from.empty()))
     fields.value("poses_from", record.poses_from, "whose poses it took in place of the truth's");
   if (fields.has("smooth_poses_s") || (!fields.reading() && record.smooth_poses_s))
-    fields.value("smooth_poses_s", record.smooth_poses_s,
-                 "spacing of the knots of the spline by which its poses were smoothed");
+    fields
+        .value("smooth_poses_s", record.smooth_poses_s,
+               "spacing of the knots of the spline by which its poses were smoothed")
+        .above(0);
   if (fields.has("depth_from") || (!fields.reading() && !record.depth_from.empty()))
     fields.value("depth_from", record.depth_from, "whose depth it took in place of the dataset's");
   if (fields.has("from") || (!fields.reading() && !record.from.empty()))

@@ -88,11 +88,8 @@ class ParallaxSigma {
 
 class RidgeFinder {
  public:
-  RidgeFinder(const EventRays& rays, const PinholeCamera& camera, double least_parallax_px)
-      : rays_(rays),
-        parallax_(rays, camera),
-        least_parallax_px_(static_cast<float>(least_parallax_px)),
-        best_(camera.width, camera.height) {
+  RidgeFinder(const EventRays& rays, const PinholeCamera& camera)
+      : rays_(rays), parallax_(rays, camera), best_(camera.width, camera.height) {
     for (Plane& plane : planes_) {
       plane.votes = Image<Eigen::Vector2f>(camera.width, camera.height);
       plane.strength = ImageF(camera.width, camera.height);
@@ -100,7 +97,8 @@ class RidgeFinder {
   }
 
   /// The ridges of the planes [first, last) of a sweep.
-  FoundSeeds find(std::span<const SweepPlane> sweep, std::size_t first, std::size_t last) {
+  std::vector<EdgelSeed> find(std::span<const SweepPlane> sweep, std::size_t first,
+                              std::size_t last) {
     // A ridge must exceed the planes on both sides, which may belong to another part.
     const std::size_t begin = first > 0 ? first - 1 : 0;
     const std::size_t end = std::min(last + 1, sweep.size());
@@ -110,14 +108,14 @@ class RidgeFinder {
       std::swap(planes_[0], planes_[1]);
       std::swap(planes_[1], planes_[2]);
     }
-    return std::move(found_);
+    return std::move(seeds_);
   }
 
-  /// All ridges of one plane.
+  /// All ridges of one plane, whatever their parallax.
   std::vector<EdgelSeed> find_on(const SweepPlane& plane) {
     vote(plane, planes_[1]);
     collect();
-    return std::move(found_.seeds);
+    return std::move(seeds_);
   }
 
   /// Maximum over the planes at each pixel.
@@ -180,20 +178,15 @@ class RidgeFinder {
         Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
         std::abs(offset) * (gradient.dot(normal) > 0 ? normal : Eigen::Vector2f(-normal));
     const float parallax_px = parallax_.across(pixel, normal) * planes_[1].at.inverse_depth;
-    if (parallax_px < least_parallax_px_) {
-      ++found_.still;
-      return;
-    }
-    found_.seeds.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
-                            parallax_px, planes_[1].at});
+    seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
+                      parallax_px, planes_[1].at});
   }
 
   const EventRays& rays_;
   ParallaxSigma parallax_;
-  float least_parallax_px_;
   std::array<Plane, 3> planes_;  ///< the last three planes
   ImageF best_;                  ///< over all planes
-  FoundSeeds found_;
+  std::vector<EdgelSeed> seeds_;
 };
 
 float value_near(const ImageF& image, const Eigen::Vector2f& pixel) {
@@ -211,6 +204,14 @@ SweepPlane plane_over(const EventRays& rays, std::span<const double> parallax, d
   while (plane.first_slice > 0 && fits(plane.first_slice - 1)) --plane.first_slice;
   while (plane.last_slice < rays.slice_count() && fits(plane.last_slice)) ++plane.last_slice;
   return plane;
+}
+
+/// Largest parallax per inverse depth over the plane's slices [px m], above 0.
+double widest_over(const SweepPlane& plane, std::span<const double> parallax) {
+  double widest = 1e-9;
+  for (int k = plane.first_slice; k < plane.last_slice; ++k)
+    widest = std::max(widest, parallax[static_cast<std::size_t>(k)]);
+  return widest;
 }
 
 /// Bounds of parts of a sweep of about equal cost: 0, ..., its size.
@@ -244,14 +245,12 @@ std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera&
   std::vector<SweepPlane> planes;
   for (double rho = limits.min_inverse(); rho < limits.max_inverse();) {
     SweepPlane plane = plane_over(rays, parallax, rho, kVotingMotion_px / (2 * rho));
-    double widest = 1e-9;
-    for (int k = plane.first_slice; k < plane.last_slice; ++k)
-      widest = std::max(widest, parallax[static_cast<std::size_t>(k)]);
+    const double widest = widest_over(plane, parallax);
+    plane.motion_px = static_cast<float>(2 * widest * rho);
     // Little motion needs few planes, but enough to separate far from near.
     const double range = limits.max_inverse() - limits.min_inverse();
     const double spacing = std::min(kPlaneSpacing_px / (2 * widest), range / kMinPlanes);
     plane.spacing = static_cast<float>(spacing);
-    plane.motion_px = static_cast<float>(2 * widest * rho);
     planes.push_back(plane);
     rho += spacing;
   }
@@ -266,8 +265,8 @@ FoundSeeds find_seeds(const EventRays& rays, const PinholeCamera& camera, const 
   // same for any number of parts.
   const std::vector<std::size_t> cuts = cut(sweep, thread_count());
   const std::size_t parts = cuts.size() - 1;
-  std::vector<RidgeFinder> finders(parts, RidgeFinder(rays, camera, least_parallax_px));
-  std::vector<FoundSeeds> found(parts);
+  std::vector<RidgeFinder> finders(parts, RidgeFinder(rays, camera));
+  std::vector<std::vector<EdgelSeed>> found(parts);
   parallel_for(parts,
                [&](std::size_t i) { found[i] = finders[i].find(sweep, cuts[i], cuts[i + 1]); });
   ImageF best(camera.width, camera.height);
@@ -275,13 +274,15 @@ FoundSeeds find_seeds(const EventRays& rays, const PinholeCamera& camera, const 
     for (std::size_t i = 0; i < best.size(); ++i)
       best.pixels()[i] = std::max(best.pixels()[i], finder.best().pixels()[i]);
   FoundSeeds all;
-  for (const FoundSeeds& part : found) {
-    all.still += part.still;
-    for (EdgelSeed seed : part.seeds) {
+  for (const std::vector<EdgelSeed>& part : found)
+    for (EdgelSeed seed : part) {
       seed.vote_ratio = seed.score / value_near(best, seed.pixel);
-      if (seed.vote_ratio >= static_cast<float>(kMinSeedVoteRatio)) all.seeds.push_back(seed);
+      if (seed.vote_ratio < static_cast<float>(kMinSeedVoteRatio)) continue;
+      if (seed.parallax_px < static_cast<float>(least_parallax_px))
+        ++all.still;
+      else
+        all.seeds.push_back(seed);
     }
-  }
   return all;
 }
 
@@ -292,9 +293,9 @@ std::vector<EdgelSeed> find_seeds_at(const EventRays& rays, const PinholeCamera&
   const std::vector<double> parallax = parallax_of_slices(rays, camera);
   const double allowed = kMaxError_px / (relative_sigma * inverse_depth);
   if (parallax[static_cast<std::size_t>(rays.reference_slice())] > allowed) return {};
-  constexpr double kAnyParallax_px = 0;
-  return RidgeFinder(rays, camera, kAnyParallax_px)
-      .find_on(plane_over(rays, parallax, inverse_depth, allowed));
+  SweepPlane plane = plane_over(rays, parallax, inverse_depth, allowed);
+  plane.motion_px = static_cast<float>(2 * widest_over(plane, parallax) * inverse_depth);
+  return RidgeFinder(rays, camera).find_on(plane);
 }
 
 }  // namespace saccade

@@ -12,11 +12,14 @@ struct GateCounts {
   std::size_t scattered = 0;  ///< their events lie on no straight line within the range of depths
   std::size_t uncertain = 0;  ///< their depth's sigma is too large
   std::size_t alone = 0;      ///< their neighbours do not agree with them
+  std::size_t foreign = 0;    ///< their events are those of other edges
+  std::size_t hidden = 0;     ///< seen at other times than the view's, or outside of it
+  std::size_t jittered = 0;   ///< the noise of the poses makes their depth too uncertain
 
   GateCounts& operator+=(const GateCounts& other);
 };
 
-/// The gate that dropped most: "most of 512 candidates moved too little across their edge (480)".
+/// The gate that dropped most: "480 of 512 candidates are seen by too few events".
 [[nodiscard]] std::string main_gate(const GateCounts& dropped);
 
 }  // namespace saccade

@@ -79,8 +79,8 @@ std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
     const LocalPlane plane = planes.fit(point);
     if (!is_supported(point, plane, options)) continue;
     const float sigma = sigma_of(plane);
-    if (std::hypot(sigma, point.pose_sigma) >
-        static_cast<float>(options.max_sigma) * plane.inverse_depth)
+    if (!(std::hypot(sigma, point.pose_sigma) <=
+          static_cast<float>(options.max_sigma) * plane.inverse_depth))
       continue;
     const Eigen::Vector2f shift =
         kContourShift_px * static_cast<float>(planes.surface_side(point, plane)) * point.normal;

@@ -1,7 +1,6 @@
 #include "estimator/depth/rays/ray_depth.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -33,8 +32,6 @@ constexpr float kPropagationSpacing_px = 1;  ///< between edgels at the same dep
 constexpr float kMinNeighbours = 4;          ///< least sum of weights of a plane
 constexpr float kDepthTolerance = 0.15F;  ///< relative, between a seed's depth and the nearest one
 
-/// Gates are opened by these; by the last one depths that are known to 15 % pass best.yaml.
-constexpr std::array kOpenings = {3.0, 10.0};
 /// Relative: however far the gates are opened, a worse depth does not tell near from far.
 constexpr double kLargestSigma = 0.2;
 
@@ -115,19 +112,35 @@ RayDepthOptions RayDepthOptions::opened(double opening, const DepthLimits& limit
 
 float PoseError::sigma_of(const FittedEdgel& edgel) const {
   const float moved_px = std::hypot(rotation_px, position_px_m * edgel.edge.inverse_depth);
-  return moved_px > 0 ? edgel.sigma * std::sqrt(edgel.support) * moved_px / edgel.residual_px : 0;
+  // Events of an ideal sensor may lie on one line exactly.
+  constexpr float kLeastResidual_px = 0.01F;
+  return edgel.sigma * std::sqrt(edgel.support) * moved_px /
+         std::max(edgel.residual_px, kLeastResidual_px);
 }
 
 DepthResult RayDepth::estimate(const ViewWindow& window) const {
-  const auto few = static_cast<std::size_t>(options_.least_points);
-  DepthResult result = fuse(find_edgels(window));
-  for (const double opening : kOpenings) {
-    if (result.points.size() >= few) break;
-    RayDepth opened(*this);
-    opened.options_ = options_.opened(opening, limits_);
-    result = opened.fuse(opened.find_edgels(window));
-  }
+  std::vector<std::pair<std::string, double>> stages_s;
+  DepthResult result = with_open_gates<DepthResult>(
+      [&](const RayDepth& opened) {
+        DepthResult found = opened.fuse(opened.find_edgels(window));
+        // The time of all passes, whichever is taken.
+        if (stages_s.empty())
+          stages_s = found.stages_s;
+        else
+          for (std::size_t k = 0; k < stages_s.size(); ++k)
+            stages_s[k].second += found.stages_s[k].second;
+        return found;
+      },
+      [](const DepthResult& found) { return found.points.size(); });
+  result.stages_s = std::move(stages_s);
   return result;
+}
+
+std::size_t RayDepth::enough_points() const {
+  constexpr std::size_t kPixelsPerPoint = 100;  ///< of what a small sensor is asked for
+  const auto pixels =
+      static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  return std::min(static_cast<std::size_t>(options_.least_points), pixels / kPixelsPerPoint);
 }
 
 WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
@@ -157,7 +170,9 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
   });
   timed(regression_s, [&] { refine_seeds(rays, strips, found); });
   const auto assign = [&] {
+    const std::size_t before = found.edges.size();
     found.edges = assign_events(found.edges, found.events, rays.size(), kMinOwnEventFraction);
+    found.dropped.foreign += before - found.edges.size();
   };
   timed(assignment_s, assign);
   timed(propagation_s, [&] { propagate(rays, strips, found); });
@@ -181,7 +196,13 @@ DepthResult RayDepth::fuse(const WindowEdgels& found) const {
     result.points = fuse_planes(points, options_.fusion);
     if (result.points.empty()) {
       GateCounts dropped = found.dropped;
-      dropped.alone += points.size();
+      const std::vector<EdgePoint> supported = supported_points(points, options_.fusion);
+      dropped.hidden += found.edges.size() - points.size();
+      dropped.alone += points.size() - supported.size();
+      for (const EdgePoint& point : supported)
+        ++(point.pose_sigma > static_cast<float>(options_.fusion.max_sigma) * point.inverse_depth
+               ? dropped.jittered
+               : dropped.uncertain);
       result.why_empty = main_gate(dropped);
     }
   }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -87,11 +89,31 @@ class RayDepth : public DepthEstimator {
   /// events and short paths give coarse depths, and their sigmas say so.
   [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
+  /// What `estimate` makes of this, then of the same with gates opened step by step until `points_of`
+  /// it are enough; that with the most points.
+  template <class Result, class Estimate, class PointsOf>
+  [[nodiscard]] Result with_open_gates(const Estimate& estimate, const PointsOf& points_of) const {
+    Result best = estimate(*this);
+    for (const double opening : kOpenings) {
+      if (points_of(best) >= enough_points()) break;
+      RayDepth opened(*this);
+      opened.options_ = options_.opened(opening, limits_);
+      Result result = estimate(opened);
+      if (points_of(result) >= points_of(best)) best = std::move(result);
+    }
+    return best;
+  }
+
   /// The two halves of estimate(), for callers that adjust the edgels in between.
   [[nodiscard]] WindowEdgels find_edgels(const ViewWindow& window) const;
   [[nodiscard]] DepthResult fuse(const WindowEdgels& found) const;
 
  private:
+  /// Gates are opened by these; by the last one depths that are known to 15 % pass best.yaml.
+  static constexpr std::array kOpenings = {3.0, 10.0};
+
+  /// RayDepthOptions::least_points, but no more than a share of the pixels.
+  [[nodiscard]] std::size_t enough_points() const;
   void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void assume(const EventRays& rays, WindowEdgels& found) const;

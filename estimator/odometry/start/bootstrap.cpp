@@ -26,6 +26,9 @@ constexpr int kFlowRounds = 3;  ///< each with the motion of the one before as t
 constexpr BurstLimits kFlowBursts{.gap = 0.15, .longest = 1};  ///< as of PlaneSearch
 constexpr std::size_t kFlowEvents = 100000;                    ///< of a window
 constexpr double kRetry_s = 0.1;  ///< where a window gives no start the next begins so much later
+/// Each time that the camera moved and there still was none, the longer: the search of a long
+/// recording without a start takes a time that grows with the logarithm of its length.
+constexpr double kRetryGrowth = 1.2;
 
 /// The events with from_s <= t < to_s, as seconds.
 std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
@@ -91,10 +94,10 @@ class StartFinder {
     const bool is_sharp = fits.front().gain >= kMinGain;
     std::vector<PlaneFit> candidates = fits;
     if (gyroscope_.is_empty()) {
-      const std::optional<PlaneFit> by_flow = told_by_flow(events, fits.front());
-      if (is_sharp) start.status = Bootstrap::Status::kAmbiguous;
-      if (!by_flow) return start;
-      candidates = {*by_flow};
+      const FlowStart by_flow = told_by_flow(events, fits.front());
+      if (is_sharp || by_flow.has_tiles) start.status = Bootstrap::Status::kAmbiguous;
+      if (!by_flow.fit) return start;
+      candidates = {*by_flow.fit};
     } else if (!is_sharp) {
       return start;
     }
@@ -118,36 +121,47 @@ class StartFinder {
   }
 
  private:
-  /// What the flow of tiles makes of a fit; nullopt where it does not tell the direction of motion:
-  /// the whole window must, and so must each half. A rotation that changes within the window is
-  /// explained by a wrong translation, which hardly ever is one for both halves.
-  [[nodiscard]] std::optional<PlaneFit> told_by_flow(std::span<const Event> events, PlaneFit fit) {
+  struct FlowStart {
+    bool has_tiles = false;       ///< enough of them for a motion
+    std::optional<PlaneFit> fit;  ///< nullopt: they do not tell the direction of motion
+  };
+
+  /// What the flow of tiles makes of a fit. The whole window must tell the direction, and so must
+  /// each half: a rotation that changes within the window is explained by a wrong translation, which
+  /// hardly ever is one for both halves.
+  [[nodiscard]] FlowStart told_by_flow(std::span<const Event> events, PlaneFit fit) {
+    FlowStart start;
     const std::span<const Event> window = between(events, fit.start_s, fit.end_s + kPoseSpacing_s);
     for (int i = 0; i < kFlowRounds; ++i) {
-      const std::optional<FlowMotion> found = motion_by_flow(window, fit.motion);
-      if (!found) return std::nullopt;
+      const bool is_last = i + 1 == kFlowRounds;
+      const std::optional<FlowMotion> found = motion_by_flow(window, fit.motion, is_last);
+      if (!found) return start;
+      start.has_tiles = true;
       fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
-      if (i + 1 == kFlowRounds && found->direction_deg > kMaxDirection_deg) return std::nullopt;
+      if (is_last && found->direction_deg > kMaxDirection_deg) return start;
     }
-    const double middle_s = (fit.start_s + fit.end_s) / 2;
-    const std::pair<double, double> halves[] = {{fit.start_s, middle_s}, {middle_s, fit.end_s}};
-    for (const auto& [from_s, to_s] : halves) {
+    const double middle_s = (fit.start_s + fit.end_s) / 2,
+                 quarter_s = (fit.end_s - fit.start_s) / 4;
+    const auto agrees = [&](double from_s, double to_s, const PlaneMotion& expected) {
       const std::optional<FlowMotion> half =
-          motion_by_flow(between(window, from_s, to_s), fit.motion);
-      if (!half || half->direction_deg > kMaxHalfDirection_deg ||
-          angle_deg(half->velocity, fit.motion.velocity) > kMaxHalfDirection_deg)
-        return std::nullopt;
-    }
-    return fit;
+          motion_by_flow(between(window, from_s, to_s), expected, true);
+      return half && half->direction_deg <= kMaxHalfDirection_deg &&
+             angle_deg(half->velocity, expected.velocity) <= kMaxHalfDirection_deg;
+    };
+    if (agrees(fit.start_s, middle_s, fit.motion.seen_at(-quarter_s)) &&
+        agrees(middle_s, fit.end_s, fit.motion.seen_at(quarter_s)))
+      start.fit = fit;
+    return start;
   }
 
   [[nodiscard]] std::optional<FlowMotion> motion_by_flow(std::span<const Event> window,
-                                                         const PlaneMotion& rough) {
+                                                         const PlaneMotion& rough,
+                                                         bool is_spread_asked) {
     if (window.empty()) return std::nullopt;
     const std::vector<TileFlow> flows =
         tile_flows(window, flow_filter_, camera_.undistorted(), rough);
     if (flows.size() < kLeastTiles) return std::nullopt;
-    return fit_motion(flows);
+    return fit_motion(flows, is_spread_asked);
   }
 
   [[nodiscard]] FreePath best_of(std::span<const Event> events,
@@ -192,13 +206,14 @@ Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
   if (events.empty()) return start;
   StartFinder finder(camera, options, gyroscope);
   const double end_s = seconds_from_ns(events.back().t_ns);
-  double from_s = seconds_from_ns(events.front().t_ns);
+  double from_s = seconds_from_ns(events.front().t_ns), retry_s = kRetry_s;
   while (!events.empty()) {
     const Bootstrap found = finder.from(events);
     // Where the camera moved at some time, that is what there is to say.
     if (found.status != Bootstrap::Status::kNoMotion) start = found;
     if (found.status == Bootstrap::Status::kFound) break;
-    from_s += kRetry_s;
+    if (found.status != Bootstrap::Status::kNoMotion) retry_s *= kRetryGrowth;
+    from_s += retry_s;
     if (from_s >= end_s) break;
     events = between(events, from_s, end_s);
   }

@@ -34,8 +34,10 @@ struct Bootstrap {
 };
 
 /// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
-/// by contrast (PlaneSearch), then path and edges adjusted together (PathRefinement); the path by
-/// which most events lie on edges is taken and extrapolated at its last velocity: the longer the
+/// by contrast (PlaneSearch), the direction of motion by the flow of tiles (fit_motion), without
+/// which there is no start, then path and edges adjusted together (PathRefinement). With a
+/// gyroscope the flow is not needed: of the plane's motions the path by which most events lie on
+/// edges is taken. The path is extrapolated at its last velocity: the longer the
 /// path, the better it distinguishes rotation from translation, but constant velocity explains no
 /// long one. Where the camera rests, or only rotates, the start begins later. `events` in order of
 /// time; `camera` with its lens; `gyroscope`, where it is not empty, measures the rotation.

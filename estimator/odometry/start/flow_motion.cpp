@@ -11,6 +11,7 @@
 
 #include "core/check.h"
 #include "core/median.h"
+#include "core/process/parallel.h"
 #include "core/random.h"
 
 namespace saccade {
@@ -22,7 +23,7 @@ constexpr int kReweightings = 3;       ///< of signs and weights, for each of th
 constexpr std::size_t kStarts = 8;     ///< best directions that are refined
 constexpr double kStartsApart = 0.95;  ///< cosine of the angle between them, at most
 constexpr int kSteps = 12;             ///< of Levenberg and Marquardt
-constexpr int kResamples = 40;
+constexpr std::size_t kResamples = 40;
 constexpr double kAgreeing = 0.8;  ///< share of the resamples whose largest angle is stated
 
 Eigen::Matrix<double, 2, 3> by_velocity(const Eigen::Vector2d& at) {
@@ -203,19 +204,18 @@ double spread_deg(const std::vector<Tile>& tiles, const std::vector<Motion>& sta
   all.push_back(best);
   const Random random(1);
   std::vector<double> angles(kResamples);
-  for (int i = 0; i < kResamples; ++i) {
+  parallel_for(kResamples, [&](std::size_t i) {
     std::vector<Tile> drawn = tiles;
     for (Tile& tile : drawn) tile.count = 0;
     for (std::size_t k = 0; k < tiles.size(); ++k) {
-      const double u = random.uniform(static_cast<std::uint64_t>(i), k);
-      const auto index = static_cast<std::size_t>(u * static_cast<double>(tiles.size()));
+      const auto index =
+          static_cast<std::size_t>(random.uniform(i, k) * static_cast<double>(tiles.size()));
       drawn[std::min(tiles.size() - 1, index)].count += 1;
     }
-    angles[static_cast<std::size_t>(i)] =
-        angle_deg(best.direction, best_of(drawn, all, outlier).direction);
-  }
+    angles[i] = angle_deg(best.direction, best_of(drawn, all, outlier).direction);
+  });
   std::sort(angles.begin(), angles.end());
-  return angles[static_cast<std::size_t>(kAgreeing * kResamples)];
+  return angles[static_cast<std::size_t>(kAgreeing * static_cast<double>(kResamples))];
 }
 
 }  // namespace
@@ -224,7 +224,7 @@ double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
 }
 
-FlowMotion fit_motion(std::span<const TileFlow> flows) {
+FlowMotion fit_motion(std::span<const TileFlow> flows, bool is_spread_asked) {
   SACCADE_CHECK(flows.size() >= kLeastTiles);
   std::vector<Tile> tiles;
   for (const TileFlow& flow : flows)
@@ -245,7 +245,7 @@ FlowMotion fit_motion(std::span<const TileFlow> flows) {
   const double typical = std::max(1e-9, median(found.inverse_depth));
   found.velocity = typical * best.direction;
   for (double& inverse_depth : found.inverse_depth) inverse_depth /= typical;
-  found.direction_deg = spread_deg(tiles, starts, best, outlier);
+  if (is_spread_asked) found.direction_deg = spread_deg(tiles, starts, best, outlier);
   return found;
 }
 

@@ -30,6 +30,7 @@ struct FlowMotion {
 /// certainty): w and the depths follow from each by least squares. A wrong depth explains any speed of
 /// an edge across itself, so what decides are tiles with edges of several directions. How well v is
 /// known is found by drawing tiles with replacement. At least kLeastTiles tiles; deterministic.
-[[nodiscard]] FlowMotion fit_motion(std::span<const TileFlow> tiles);
+/// Without `is_spread_asked` that is left out, most of the time, and stays 180 degrees.
+[[nodiscard]] FlowMotion fit_motion(std::span<const TileFlow> tiles, bool is_spread_asked = true);
 
 }  // namespace saccade

@@ -4,14 +4,18 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include <Eigen/Dense>
+
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
 
 /// Across the sensor: a tile holds edges of several directions, yet hardly a change of depth.
 constexpr int kColumns = 8;
+constexpr int kLeastSide_px = 8;  ///< of a tile of a small sensor
 constexpr std::size_t kLeastEvents = 150;
 constexpr int kSearch_px = 8;  ///< of displacement over the window, to each side
 constexpr int kCoarseStep_px = 2;
@@ -119,7 +123,7 @@ Displacement sharpest(const TileEvents& events, TileContrast& contrast) {
       (eigen.eigenvectors().transpose() * fit.segment<2>(1)).cwiseQuotient(curvature);
   best.information =
       eigen.eigenvectors() * curvature.asDiagonal() * eigen.eigenvectors().transpose();
-  best.px += step.cwiseMax(-1).cwiseMin(1);
+  best.px += eigen.eigenvectors() * step.cwiseMax(-1).cwiseMin(1);
   best.ok = true;
   return best;
 }
@@ -139,15 +143,29 @@ Eigen::Vector2d plane_flow(const PlaneMotion& motion, const Eigen::Vector2d& at)
   return moved.head<2>() - moved.z() * at;
 }
 
-}  // namespace
+/// Tiles of equal size that cover the sensor, about square.
+struct TileGrid {
+  int columns, rows;
+  double width_px, height_px;
 
-std::vector<TileFlow> tile_flows(std::span<const Event> events, BurstFilter& filter,
-                                 const PinholeCamera& camera, const PlaneMotion& motion) {
-  const WindowRays rays = filter.rays_of(events);
-  const double window_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
-  const int tile_px = std::max(1, camera.width / kColumns);
-  const int columns = camera.width / tile_px, rows = camera.height / tile_px;
-  std::vector<TileEvents> tiles(static_cast<std::size_t>(columns * rows));
+  explicit TileGrid(const PinholeCamera& camera)
+      : columns(std::clamp(camera.width / kLeastSide_px, 1, kColumns)),
+        rows(std::clamp(static_cast<int>(std::lround(static_cast<double>(camera.height) * columns /
+                                                     camera.width)),
+                        1, std::max(1, camera.height / kLeastSide_px))),
+        width_px(static_cast<double>(camera.width) / columns),
+        height_px(static_cast<double>(camera.height) / rows) {}
+
+  [[nodiscard]] int side_px() const {
+    return static_cast<int>(std::ceil(std::max(width_px, height_px)));
+  }
+};
+
+/// The events by tile, where the motion warps them to in the middle of the window.
+std::vector<TileEvents> sorted_into_tiles(const WindowRays& rays, double window_s,
+                                          const PinholeCamera& camera, const PlaneMotion& motion,
+                                          const TileGrid& grid) {
+  std::vector<TileEvents> tiles(static_cast<std::size_t>(grid.columns * grid.rows));
   for (std::size_t i = 0; i < rays.t.size(); ++i) {
     const auto t_s = static_cast<double>(rays.t[i]);
     const Rigid3 pose = motion.reference_from_camera(t_s);
@@ -158,33 +176,50 @@ std::vector<TileFlow> tile_flows(std::span<const Event> events, BurstFilter& fil
     const Eigen::Vector3d point = pose.translation() + reach * ray;
     if (!(reach > 0) || !(point.z() > 0)) continue;
     const Eigen::Vector2d pixel = camera.project(point) + Eigen::Vector2d(0.5, 0.5);
-    if (!(pixel.x() >= 0) || !(pixel.y() >= 0)) continue;
-    const int column = static_cast<int>(pixel.x()) / tile_px;
-    const int row = static_cast<int>(pixel.y()) / tile_px;
-    if (column >= columns || row >= rows) continue;
-    TileEvents& tile = tiles[static_cast<std::size_t>(row * columns + column)];
-    tile.x_px.push_back(static_cast<float>(pixel.x() - column * tile_px));
-    tile.y_px.push_back(static_cast<float>(pixel.y() - row * tile_px));
+    if (!(pixel.x() >= 0) || !(pixel.y() >= 0) || !(pixel.x() < camera.width) ||
+        !(pixel.y() < camera.height))
+      continue;
+    const int column = std::min(grid.columns - 1, static_cast<int>(pixel.x() / grid.width_px));
+    const int row = std::min(grid.rows - 1, static_cast<int>(pixel.y() / grid.height_px));
+    TileEvents& tile = tiles[static_cast<std::size_t>(row * grid.columns + column)];
+    tile.x_px.push_back(static_cast<float>(pixel.x() - column * grid.width_px));
+    tile.y_px.push_back(static_cast<float>(pixel.y() - row * grid.height_px));
     tile.time.push_back(static_cast<float>(t_s / window_s));
   }
+  return tiles;
+}
+
+}  // namespace
+
+std::vector<TileFlow> tile_flows(std::span<const Event> events, BurstFilter& filter,
+                                 const PinholeCamera& camera, const PlaneMotion& motion) {
+  const double window_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
+  if (!(window_s > 0)) return {};
+  const TileGrid grid(camera);
+  const std::vector<TileEvents> tiles =
+      sorted_into_tiles(filter.rays_of(events), window_s, camera, motion, grid);
   const Eigen::Vector2d focal(camera.fx, camera.fy);
-  TileContrast contrast(tile_px);
+  std::vector<std::optional<TileFlow>> found(tiles.size());
+  parallel_for(tiles.size(), [&](std::size_t k) {
+    const TileEvents& tile = tiles[k];
+    if (tile.time.size() < kLeastEvents) return;
+    TileContrast contrast(grid.side_px());
+    const Displacement displacement = sharpest(tile, contrast);
+    if (!displacement.ok) return;
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    const Eigen::Vector2d corner(static_cast<double>(k % columns) * grid.width_px - 0.5,
+                                 static_cast<double>(k / columns) * grid.height_px - 0.5);
+    TileFlow flow;
+    flow.ray = camera.ray(corner + centre_of(tile)).head<2>();
+    flow.flow = plane_flow(motion, flow.ray) + displacement.px.cwiseQuotient(focal) / window_s;
+    const Eigen::Matrix2d px_per_flow = (window_s * focal).asDiagonal();
+    flow.information = static_cast<double>(tile.time.size()) * px_per_flow *
+                       displacement.information * px_per_flow;
+    if (flow.flow.allFinite() && flow.information.allFinite()) found[k] = flow;
+  });
   std::vector<TileFlow> flows;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const TileEvents& tile = tiles[static_cast<std::size_t>(row * columns + column)];
-      if (tile.time.size() < kLeastEvents) continue;
-      const Displacement found = sharpest(tile, contrast);
-      if (!found.ok) continue;
-      TileFlow flow;
-      const Eigen::Vector2d corner(column * tile_px - 0.5, row * tile_px - 0.5);
-      flow.ray = camera.ray(corner + centre_of(tile)).head<2>();
-      flow.flow = plane_flow(motion, flow.ray) + found.px.cwiseQuotient(focal) / window_s;
-      const Eigen::Matrix2d px_per_flow = (window_s * focal).asDiagonal();
-      flow.information =
-          static_cast<double>(tile.time.size()) * px_per_flow * found.information * px_per_flow;
-      flows.push_back(flow);
-    }
+  for (const std::optional<TileFlow>& flow : found)
+    if (flow) flows.push_back(*flow);
   return flows;
 }
 

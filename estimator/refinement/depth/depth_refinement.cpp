@@ -183,23 +183,27 @@ class PointsByPixel {
 
 RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint> start,
                              const PinholeCamera& camera, const RayDepth& depth) {
-  RefinedDepth refined;
-  WindowEdgels edges = depth.find_edgels(window);
   const PointsByPixel points(start, camera);
-  EdgeOptimizer optimizer(window, camera);
-  std::vector<FittedEdgel> kept;
-  for (FittedEdgel& fitted : edges.edges) {
-    const EdgePoint* point = points.near(fitted.edge);
-    if (point == nullptr) continue;
-    fitted.edge.inverse_depth = point->inverse_depth;
-    if (optimizer.optimize(std::span<const std::uint32_t>(edges.events.event)
-                               .subspan(fitted.first, fitted.last - fitted.first),
-                           fitted, refined))
-      kept.push_back(fitted);
-  }
-  edges.edges = std::move(kept);
-  refined.result = depth.fuse(edges);
-  return refined;
+  return depth.with_open_gates<RefinedDepth>(
+      [&](const RayDepth& opened) {
+        RefinedDepth refined;
+        WindowEdgels edges = opened.find_edgels(window);
+        EdgeOptimizer optimizer(window, camera);
+        std::vector<FittedEdgel> kept;
+        for (FittedEdgel& fitted : edges.edges) {
+          const EdgePoint* point = points.near(fitted.edge);
+          if (point == nullptr) continue;
+          fitted.edge.inverse_depth = point->inverse_depth;
+          if (optimizer.optimize(std::span<const std::uint32_t>(edges.events.event)
+                                     .subspan(fitted.first, fitted.last - fitted.first),
+                                 fitted, refined))
+            kept.push_back(fitted);
+        }
+        edges.edges = std::move(kept);
+        refined.result = opened.fuse(edges);
+        return refined;
+      },
+      [](const RefinedDepth& refined) { return refined.result.points.size(); });
 }
 
 }  // namespace saccade

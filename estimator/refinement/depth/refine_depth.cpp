@@ -47,12 +47,12 @@ std::vector<std::vector<EdgePoint>> points_of(const std::filesystem::path& folde
 
 /// The windows of the run's views, on the poses that it had.
 std::vector<ViewWindow> windows_of(const std::vector<RunView>& views, std::span<const Event> events,
-                                   const Trajectory& poses) {
+                                   const GivenPoses& poses) {
   std::vector<ViewWindow> windows;
   for (const RunView& view : views) {
     windows.push_back(
-        {events_within(events, ns_from_seconds(view.start_s), ns_from_seconds(view.end_s)), &poses,
-         view.t_s});
+        {events_within(events, ns_from_seconds(view.start_s), ns_from_seconds(view.end_s)),
+         &poses.trajectory, view.t_s, poses.noise});
   }
   return windows;
 }
@@ -74,12 +74,14 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
   RunRequest request = run.within(asked);
   if (!request.poses_from && !run.record.poses_from.empty())
     request.poses_from = run.record.poses_from;
+  if (!request.smooth_poses_s) request.smooth_poses_s = run.record.smooth_poses_s;
   const auto method = run.config<DepthConfig>();
-  const Trajectory poses = load_poses(request, dataset).trajectory;
+  const GivenPoses given = load_poses(request, dataset);
+  const Trajectory& poses = given.trajectory;
   const Events events = load_events(request, dataset);
   const std::vector<RunView> views = read_view_list(run.folder / "views.yaml");
   const auto points = points_of(run.folder, views.size());
-  const auto windows = windows_of(views, within(events, poses), poses);
+  const auto windows = windows_of(views, within(events, poses), given);
   for (const ViewWindow& window : windows)
     if (window.events.empty())
       throw InputError(

@@ -16,6 +16,7 @@
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
+#include "estimator/odometry/start/given_poses.h"
 #include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/tracking/pose_output.h"
@@ -33,14 +34,14 @@ struct BatchRun {
   BatchInput batch;
 };
 
-/// Those that the run was given, none where it found its start.
+/// The poses that the run was given until `until_s`; none where it found its start.
 Trajectory start_poses(const RunRequest& request, const Dataset& dataset, const SourceRun& run,
-                       bool has_truth) {
-  if (!has_truth) return {};
+                       const StartOptions& start, double from_s, double until_s) {
+  if (!(start.truth_s > 0)) return {};
   RunRequest as_then = request;
   if (!run.record.poses_from.empty()) as_then.poses_from = run.record.poses_from;
   as_then.smooth_poses_s = run.record.smooth_poses_s;
-  return load_poses(as_then, dataset).trajectory;
+  return given_start(as_then, dataset, from_s, until_s, start.time_offset_s);
 }
 
 BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun& run) {
@@ -60,10 +61,10 @@ BatchRun load(const RunRequest& request, const Dataset& dataset, const SourceRun
   const double first_s = seconds_from_ns(input.events.front().t_ns);
   BatchInput& batch = input.batch;
   std::vector<StampedPose> given;
-  for (StampedPose pose : start_poses(request, dataset, run, has_truth).poses()) {
-    pose.t_s += input.odometry.start.time_offset_s;
-    if (pose.t_s >= first_s && pose.t_s <= input.window.start_s) given.push_back(pose);
-  }
+  for (const StampedPose& pose :
+       start_poses(request, dataset, run, input.odometry.start, first_s, input.window.start_s)
+           .poses())
+    if (pose.t_s >= first_s) given.push_back(pose);
   std::vector<StampedPose> found =
       poses_not_lost(input.poses, input.window.start_s, seconds_from_ns(input.events.back().t_ns),
                      run.folder.string());

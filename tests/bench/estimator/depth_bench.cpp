@@ -131,7 +131,8 @@ BENCHMARK(regression)->Unit(benchmark::kMicrosecond);
 void seeds(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
-  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}).seeds.size());
+  for (auto _ : state)
+    benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}).seeds.size());
   items_per_second(state, rays.size());
 }
 BENCHMARK(seeds)->Unit(benchmark::kMillisecond);

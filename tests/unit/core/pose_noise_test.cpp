@@ -73,5 +73,22 @@ TEST(SmoothedPoses, HoldLessNoiseThanTheRecording) {
   EXPECT_LT(rms_rotation_error_rad(smooth, motion), 0.5 * rms_rotation_error_rad(noisy, motion));
 }
 
+TEST(SmoothedPoses, StayStraightWithinAGap) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 20; ++i) poses.push_back({0.005 * i, {{1, 0, 0, 0}, {0.005 * i, 0, 0}}});
+  for (int i = 0; i <= 20; ++i) poses.push_back({5 + 0.005 * i, {{1, 0, 0, 0}, {1, 0, 0}}});
+  const Trajectory smooth = smoothed(Trajectory(poses), 0.04);
+  EXPECT_NEAR(smooth.at_clamped(2.55).translation().x(), 0.55, 0.02);
+  EXPECT_LT(smooth.size(), 300U);
+  EXPECT_EQ(smoothed(Trajectory({{0, {}}, {0.01, {}}}), 0.04).start_s(), 0);
+}
+
+TEST(PoseNoise, OfPosesFarApartIsNotKnown) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 20; ++i)
+    poses.push_back({0.1 * i, {{1, 0, 0, 0}, {i % 2 == 0 ? 0.0 : 0.1, 0, 0}}});
+  EXPECT_EQ(pose_noise_of(Trajectory(poses)).position_m, 0);
+}
+
 }  // namespace
 }  // namespace saccade

@@ -320,6 +320,21 @@ TEST_F(OdometryModule, TakesTheGivenStartFromAnotherFile) {
   (void)run_odometry(run);
   EXPECT_EQ(read_file(folder_.path() / "given" / "trajectory.txt"),
             read_file(folder_.path() / "truth" / "trajectory.txt"));
+  // Nothing after the start is used, not even to smooth it.
+  run.smooth_poses_s = 0.04;
+  run.output = folder_.path() / "smooth";
+  (void)run_odometry(run);
+  run.poses_from.reset();
+  run.output = folder_.path() / "smooth_truth";
+  (void)run_odometry(run);
+  EXPECT_EQ(read_file(folder_.path() / "smooth" / "trajectory.txt"),
+            read_file(folder_.path() / "smooth_truth" / "trajectory.txt"));
+  for (const double wrong : {0.0, -1.0, 1e-9, std::nan("")}) {
+    run.smooth_poses_s = wrong;
+    EXPECT_THAT(error_of([&] { return run_odometry(run); }), HasSubstr("--smooth-poses"));
+  }
+  run.smooth_poses_s.reset();
+  run.poses_from = folder_.path() / "given.txt";
   write_tum_trajectory(*run.poses_from, std::vector<StampedPose>{{5, {}}, {6, {}}});
   EXPECT_THAT(error_of([&] { return run_odometry(run); }),
               AllOf(HasSubstr("given.txt"), HasSubstr("fewer than two poses")));

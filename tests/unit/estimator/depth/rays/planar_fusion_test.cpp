@@ -43,7 +43,9 @@ TEST(PlanarFusion, ReducesNoiseOnASlantedPlane) {
 TEST(PlanarFusion, TheNoiseOfThePosesAveragesOverNoNeighbours) {
   std::vector<EdgePoint> points = grid_of_points(0.004);
   for (EdgePoint& p : points) p.pose_sigma = 0.005F;
-  for (const EdgePoint& p : fuse_planes(points, FusionOptions{})) EXPECT_GT(p.sigma, 0.005F);
+  const auto fused = fuse_planes(points, FusionOptions{});
+  ASSERT_FALSE(fused.empty());
+  for (const EdgePoint& p : fused) EXPECT_GT(p.sigma, 0.005F);
   for (EdgePoint& p : points) p.pose_sigma = 0.1F;
   EXPECT_TRUE(fuse_planes(points, FusionOptions{}).empty());
 }

@@ -110,6 +110,13 @@ TEST(Bootstrap, AMotionOfAFewPixelsEnds) {
             Bootstrap::Status::kFound);
 }
 
+TEST(Bootstrap, ARotationIsNoStart) {
+  const auto turn = [](double t_s) { return Rigid3(so3_exp(4 * t_s * kRate), {0, 0, 0}); };
+  const Bootstrap start = find_start(recorded(turn, kEnd_s), world().camera(), quick());
+  EXPECT_TRUE(start.status == Bootstrap::Status::kAmbiguous ||
+              start.status == Bootstrap::Status::kNoParallax);
+}
+
 TEST(Bootstrap, NoiseIsNoMotion) {
   const Random random(3);
   Events events;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -78,6 +79,22 @@ TEST(PolarityTracker, RecoversEveryPoseAndBeatsTheEdges) {
   tracker.reset(0, view.world_from_reference);
   EXPECT_LT(1.3 * errors.mean,
             resolved_errors(steady(tracker.track({resolved_recording().events}))).mean);
+}
+
+TEST(PolarityTracker, ARecordingOfAFewFramesHasPoses) {
+  PolarityTracking tracking;
+  const auto all = tracking->track({resolved_recording().events});
+  ASSERT_GT(all.size(), 6U);
+  // The first pose is that of the edges' first frame, of which the fallback follows six at once.
+  const auto frame = static_cast<std::size_t>(
+      std::count_if(resolved_recording().events.begin(), resolved_recording().events.end(),
+                    [&](const Event& e) { return e.t_ns <= all.front().last_ns; }));
+  PolarityTracking again;
+  const auto few = again->track({std::span(resolved_recording().events).first(3 * frame + 1)});
+  EXPECT_GE(few.size(), 1U);
+  EXPECT_LT(few.size(), 6U);
+  PolarityTracking none;
+  EXPECT_TRUE(none->track({std::span(resolved_recording().events).first(frame / 2)}).empty());
 }
 
 TEST(PolarityTracker, DoesNotKnowTheContrast) {
