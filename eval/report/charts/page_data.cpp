@@ -75,7 +75,7 @@ Json gaps(const RunData& data) {
 
 /// A script element ends at its first "</", wherever that stands.
 std::string inside_script(const Json& json) {
-  std::string text = json.dump();
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
     text.insert(at + 1, 1, '\\');
   return text;
