@@ -37,10 +37,8 @@ void decode_metrics(const fs::path& folder, const std::string& file) {
 
 void write_baselines(const fs::path& folder) {
   GateRun run;
-  run.module = "track";
-  run.dataset = "walls";
-  run.configuration = "best";
-  run.metrics.set("trajectory.dt_rel_percent.mean", 0.25);
+  run.key = {"walls", "track", "best", 1};
+  run.metrics["trajectory.dt_rel_percent.mean"] = 0.25;
   write_baseline(folder / "baseline.yaml", {run});
 }
 
