@@ -4,6 +4,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -47,11 +50,14 @@ int exit_code_after(int signal, const fs::path& folder) {
 }
 
 TEST(TemporaryPaths, GoWithAProgramThatASignalEnds) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(exit_code_after(SIGINT, folder.path()), 130);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-  EXPECT_EQ(exit_code_after(SIGTERM, folder.path()), 143);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
+  // Not a TemporaryFolder: the process would know that one as well, and remove it.
+  std::string name = (fs::temp_directory_path() / "signal_XXXXXX").string();
+  ASSERT_NE(mkdtemp(name.data()), nullptr);
+  EXPECT_EQ(exit_code_after(SIGINT, name), 130);
+  EXPECT_TRUE(fs::is_empty(name));
+  EXPECT_EQ(exit_code_after(SIGTERM, name), 143);
+  EXPECT_TRUE(fs::is_empty(name));
+  fs::remove_all(name);
 }
 
 }  // namespace

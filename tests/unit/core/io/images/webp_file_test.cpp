@@ -1,7 +1,11 @@
 #include "core/io/images/webp_file.h"
 
+#include "core/error.h"
+
 #include <gtest/gtest.h>
+
 #include <webp/encode.h>
+#include <span>
 
 #include "core/io/images/image_file.h"
 #include "tests/support/damage.h"
@@ -47,6 +51,17 @@ TEST(WebpFile, AlphaAndLossyPictures) {
 TEST(WebpFile, DamageIsAnError) {
   const std::string file = encode_webp(ImageRgb8(9, 7, Rgb8{1, 2, 3}));
   testing::expect_damage_is_reported(file, file.size() - 2, webp_rgba);
+}
+
+TEST(WebpFile, AHandfulOfBytesIsNoLargePicture) {
+  // Lossless, 16384 x 10240 pixels: as found by a fuzzer.
+  constexpr unsigned char kBytes[] = {
+      0x52, 0x49, 0x46, 0x46, 0x30, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50, 0x38,
+      0x4c, 0x23, 0x00, 0x00, 0x00, 0x2f, 0xff, 0xff, 0xff, 0x09, 0x99, 0x8c, 0xe8, 0x7f, 0x57,
+      0x45, 0x42, 0x50, 0xff, 0x80, 0x82, 0xb6, 0x6d, 0x98, 0x1e, 0x18, 0xe5, 0x0f, 0x75, 0x17,
+      0xc1, 0x04, 0x0c, 0x72, 0x4c, 0x00, 0x74, 0x65, 0xf2, 0x7a, 0x01, 0x00};
+  EXPECT_THROW(static_cast<void>(decode_webp(std::as_bytes(std::span(kBytes)), "a.webp")),
+               InputError);
 }
 
 }  // namespace
