@@ -78,10 +78,12 @@ void expect_refused_or_taken(const std::vector<std::string>& command,
       SCOPED_TRACE(key.name + "=" + value);
       EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 2)
           << result.exit_code << result.output;
-      if (value.find("nan") != std::string::npos || value.find("inf") != std::string::npos)
+      if (value.find("nan") != std::string::npos || value.find("inf") != std::string::npos) {
         EXPECT_EQ(result.exit_code, 2) << "is no number";
-      if (result.exit_code == 2)
+      }
+      if (result.exit_code == 2) {
         EXPECT_THAT(result.output, HasSubstr("--set " + key.name.substr(0, 3)));
+      }
       ++(result.exit_code == 0 ? taken : refused);
     }
   std::cout << fmt::format("{} keys, {} values refused, {} taken\n", keys.size(), refused, taken);

@@ -159,7 +159,9 @@ class Faults : public ::testing::TestWithParam<std::size_t> {
     const CommandResult result = with_fault(kind, number);
     if (result.exit_code == 0) {
       EXPECT_TRUE(fs::exists(out()));
-      if (call().repeats) EXPECT_EQ(hashes(out()), expected_);
+      if (call().repeats) {
+        EXPECT_EQ(hashes(out()), expected_);
+      }
     } else {
       EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << result.exit_code;
       EXPECT_THAT(result.output, HasSubstr("saccade: "));
@@ -168,7 +170,9 @@ class Faults : public ::testing::TestWithParam<std::size_t> {
       ++refused_;
     }
     saccade_ok(words());
-    if (call().repeats) EXPECT_EQ(hashes(out()), expected_);
+    if (call().repeats) {
+      EXPECT_EQ(hashes(out()), expected_);
+    }
   }
 
   static TemporaryFolder* inputs_;
@@ -242,7 +246,9 @@ TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
         EXPECT_EQ(WEXITSTATUS(status), 0) << read_file(log);
       }
       saccade_ok(words());
-      if (!expected_.empty() && call().repeats) EXPECT_EQ(hashes(out()), expected_);
+      if (!expected_.empty() && call().repeats) {
+        EXPECT_EQ(hashes(out()), expected_);
+      }
     }
 }
 

@@ -415,5 +415,15 @@ TEST_F(EventsH5, AnIndexOfManyDimensionsIsRefused) {
               HasSubstr("/ms_to_idx: must have one dimension"));
 }
 
+TEST_F(EventsH5, AGapOfADayIsRefusedBeforeItsIndexIsMade) {
+  const Events events{{0, 1, 2, 1}, {86'400'000'000'000, 1, 2, 1}};
+  EXPECT_THAT(error_of([&] {
+                write(file_, events, kUs);
+                return 0;
+              }),
+              HasSubstr("the events span more than 18 hours"));
+  EXPECT_FALSE(fs::exists(file_));
+}
+
 }  // namespace
 }  // namespace saccade

@@ -1,12 +1,11 @@
 #include "core/io/images/webp_file.h"
 
-#include "core/error.h"
-
 #include <gtest/gtest.h>
-
 #include <webp/encode.h>
+
 #include <span>
 
+#include "core/error.h"
 #include "core/io/images/image_file.h"
 #include "tests/support/damage.h"
 
