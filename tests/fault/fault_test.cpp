@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -208,13 +209,27 @@ TEST_P(Faults, EndInSuccessOrInAnErrorThatLeavesNothing) {
       ++tried;
     }
   }
-  EXPECT_GT(tried, 10);
+  // A file at least is created, written and renamed.
+  EXPECT_GE(tried, 3);
   EXPECT_GT(refused_, 0) << "no fault was noticed at all";
   std::cout << fmt::format("{}: {} faults, {} of them ended in an error\n", call().name, tried,
                            refused_);
 }
 
+/// Whether a process has a handler for the signal, or has ended.
+bool catches(pid_t process, int signal) {
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("State:") && line.find('Z') != std::string::npos) return true;
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> static_cast<unsigned>(signal - 1) & 1U) !=
+             0;
+  }
+  return true;
+}
+
 TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
+  int interrupted = 0;
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}})
     for (const int after_ms : {0, 5, 20, 60}) {
       clear();
@@ -231,14 +246,15 @@ TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
         _exit(127);
       }
       // Not before it is at work: a program that has not begun ends by the signal itself.
-      constexpr int kStart_ms = 40;
-      std::this_thread::sleep_for(std::chrono::milliseconds(kStart_ms + after_ms));
+      while (!catches(child, signal)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
       ::kill(child, signal);
       int status = 0;
       waitpid(child, &status, 0);
-      if (WIFSIGNALED(status)) continue;  // it had not begun
+      ASSERT_TRUE(WIFEXITED(status));
       SCOPED_TRACE(fmt::format("{} after {} ms", call().name, after_ms));
       if (WEXITSTATUS(status) == code) {
+        ++interrupted;
         EXPECT_THAT(read_file(log), HasSubstr("saccade: interrupted (SIG"));
         for (const std::string& name : left_behind())
           EXPECT_TRUE(name == call().output || name.ends_with(".unfinished")) << name;
@@ -250,6 +266,7 @@ TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
         EXPECT_EQ(hashes(out()), expected_);
       }
     }
+  EXPECT_GT(interrupted, 0) << "it was always over before the signal came";
 }
 
 INSTANTIATE_TEST_SUITE_P(Calls, Faults, ::testing::Range(std::size_t{0}, calls().size()),
