@@ -74,7 +74,7 @@ TEST_F(Cache, LeavesAloneWhatItDidNotMake) {
   std::ofstream(datasets / "photos/lock") << "of another program";
   fs::create_directories(datasets / "0123456789abcdef");
   std::ofstream(datasets / "0123456789abcdef/letter.txt") << "without a lock";
-  const TemporaryFolder elsewhere;
+  const testing::TemporaryFolder elsewhere;
   std::ofstream(elsewhere.path() / "lock") << "";
   std::ofstream(elsewhere.path() / "letter.txt") << "behind a link";
   fs::create_directory_symlink(elsewhere.path(), datasets / "fedcba9876543210");
