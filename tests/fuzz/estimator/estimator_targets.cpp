@@ -34,7 +34,7 @@ void write_adapters(const fs::path& folder) {
   write_bytes(folder / "adapter.yaml",
               "name: mine\ncommand: \"prog --in {events} --out {out} 'a {{b' "
               "\\\"{seed}\\\"\"\nversion_command: prog -v\n"
-              "events: h5\noutput: {trajectory: {file: t.txt}}\n");
+              "output: {trajectory: {file: t.txt}}\n");
 }
 
 void decode_adapters(const fs::path& folder, const std::string& file) {

@@ -102,6 +102,7 @@ void decode_textures(const fs::path& folder, const std::string& file) {
 }
 
 void write_simulation(const fs::path& folder) {
+  write_bytes(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write_bytes(folder / "s.yaml",
               "scene:\n  meshes:\n    - {file: a.obj, transform: {scale: 2}}\n  background: "
               "0.5\ntrajectory: "
