@@ -9,6 +9,7 @@
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "core/process/interruption.h"
 #include "core/version.h"
 
 namespace saccade {
@@ -25,7 +26,7 @@ void describe_command(CLI::App& command) {
       "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
       "  saccade eval runs/walls\n"
       "  saccade report runs/walls -o report.html\n\n"
-      "Exit codes: 0 done, 1 failed, 2 bad usage or bad input.");
+      "Exit codes: 0 done, 1 failed, 2 bad usage or bad input, 128 + signal where one ended it.");
   command.set_version_flag("--version", fmt::format("saccade {} ({})", version(), git_commit()));
   command.require_subcommand(1);
   command.get_formatter()->column_width(32);
@@ -69,4 +70,7 @@ int run_command(int argc, char** argv) {
 }  // namespace
 }  // namespace saccade
 
-int main(int argc, char** argv) { return saccade::run_command(argc, argv); }
+int main(int argc, char** argv) {
+  saccade::end_on_interruption();
+  return saccade::run_command(argc, argv);
+}

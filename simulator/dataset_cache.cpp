@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLock = "lock";
 constexpr const char* kMarker = "dataset.yaml";
+constexpr std::size_t kKeyDigits = 16;
 
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
@@ -61,6 +62,16 @@ std::uintmax_t bytes_below(const fs::path& folder) {
   for (const fs::directory_entry& item : fs::recursive_directory_iterator(folder, error))
     if (item.is_regular_file(error)) bytes += item.file_size(error);
   return bytes;
+}
+
+/// Whether this program made a folder of the cache: it has the name of a key and holds a lock. A cache may
+/// have been put where other things are.
+bool is_entry(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  return name.size() == kKeyDigits &&
+         name.find_first_not_of("0123456789abcdef") == std::string::npos &&
+         fs::is_directory(fs::symlink_status(folder)) &&
+         fs::is_regular_file(fs::symlink_status(folder / kLock));
 }
 
 /// The lock goes last: it is held by who removes the entry.
@@ -118,8 +129,7 @@ std::string simulation_key(const SimulationConfig& config) {
   fingerprint["the program"] = program_text();
   std::string text;
   for (const auto& [name, content] : fingerprint) text += name + ": " + content + "\n";
-  constexpr std::size_t kDigits = 16;
-  return sha256(std::as_bytes(std::span(text))).substr(0, kDigits);
+  return sha256(std::as_bytes(std::span(text))).substr(0, kKeyDigits);
 }
 
 DatasetCache::Obtained DatasetCache::obtain(const SimulationConfig& config,
@@ -136,7 +146,7 @@ std::vector<CachedDataset> DatasetCache::list() const {
   std::vector<CachedDataset> datasets;
   std::error_code error;
   for (const fs::directory_entry& item : fs::directory_iterator(folder_, error)) {
-    if (!fs::exists(item.path() / kLock)) continue;
+    if (!is_entry(item.path())) continue;
     datasets.push_back({item.path().filename().string(), dataset_in(item.path()),
                         bytes_below(item.path()), fs::last_write_time(item.path() / kLock)});
   }

@@ -131,7 +131,7 @@ void describe(config::Fields& fields, SimulationConfig& config) {
   fields
       .value("duration_s", config.duration_s,
              "Length of the recording, in seconds; the default is the rest of the trajectory.")
-      .above(0);
+      .range(1e-6, 1e6);
   fields.section("camera", config.camera, "Pinhole camera with lens distortion.");
   const ModelCameraOptions& model = config.trajectory.model_camera;
   if (fields.reading() && config.trajectory.source == MotionSource::kModelCamera &&

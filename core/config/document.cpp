@@ -1,6 +1,7 @@
 #include "core/config/document.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -22,6 +23,9 @@ namespace fs = std::filesystem;
 
 /// A configuration is written by people; a larger file is data given by mistake.
 constexpr std::uintmax_t kMaxBytes = 16 << 20;
+/// Files that include two others each are read as often as a power of two says.
+constexpr std::size_t kMaxIncludeDepth = 32;
+constexpr std::size_t kMaxFiles = 256;
 
 std::string read_text(const fs::path& file, const std::string& location) {
   std::error_code error;
@@ -47,6 +51,13 @@ class Loader {
     const fs::path identity = fs::weakly_canonical(file, error);
     if (std::find(open_.begin(), open_.end(), identity) != open_.end())
       throw InputError(location, "include cycle: '" + file.string() + "' includes itself");
+    if (open_.size() == kMaxIncludeDepth)
+      throw InputError(location, "'" + file.string() + "' is the " +
+                                     std::to_string(kMaxIncludeDepth + 1) +
+                                     "th file of a chain of includes");
+    if (++files_ > kMaxFiles)
+      throw InputError(location, "includes more than " + std::to_string(kMaxFiles) +
+                                     " files, one file as often as it is named");
     open_.push_back(identity);
     Node root = parse(read_text(file, location), file.string(), file.parent_path());
     open_.pop_back();
@@ -92,6 +103,7 @@ class Loader {
   }
 
   std::vector<fs::path> open_;
+  std::size_t files_ = 0;
 };
 
 Document with_overrides(Node root, std::span<const std::string> overrides) {

@@ -29,7 +29,7 @@ class Document {
 /// "scene.meshes.0.file=a.obj"; relative paths in them are relative to the working directory),
 /// applied in order: the value replaces what was there, whole maps too, and `~` removes the key.
 /// Throws InputError with file:line or `--set key.path` for all that is no valid YAML, duplicate
-/// keys, missing files and include cycles.
+/// keys, missing files, include cycles, chains of more than 32 includes and more than 256 in all.
 [[nodiscard]] Document load(const std::filesystem::path& file,
                             std::span<const std::string> overrides = {});
 

@@ -195,7 +195,7 @@ template <class T>
 Rule Fields::section(std::string_view key, std::optional<T>& target, std::string_view help) {
   const Node* stated = input_at(key);
   if (stated != nullptr && stated->kind == Node::Kind::kNull) target.reset();
-  if (stated != nullptr && stated->kind != Node::Kind::kNull && !target) target.emplace();
+  if (stated != nullptr && stated->kind != Node::Kind::kNull && !target) target = T{};
   if (mode_ == Mode::kReference) {
     T described = target.value_or(T{});
     return section(key, described, help);

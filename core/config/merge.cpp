@@ -4,7 +4,9 @@
 #include <charconv>
 #include <memory>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "core/config/yaml_parse.h"
 #include "core/error.h"
@@ -12,16 +14,27 @@
 namespace saccade::config {
 namespace {
 
-void merge_entry(Node& base, Entry over) {
-  Entry* under = base.find(over.key);
-  if (under == nullptr) {
-    base.entries.push_back(std::move(over));
-  } else if (over.value.kind == Node::Kind::kNull) {
-    base.entries.erase(base.entries.begin() + (under - base.entries.data()));
-  } else {
-    under->location = over.location;
-    merge(under->value, std::move(over.value));
+/// The keys of `over` are each there once. A large map is no reason to compare all keys with all.
+void merge_entries(Node& base, std::vector<Entry> over) {
+  std::unordered_map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < base.entries.size(); ++i) places.emplace(base.entries[i].key, i);
+  std::vector<bool> is_removed(base.entries.size(), false);
+  for (Entry& entry : over) {
+    const auto under = places.find(entry.key);
+    if (under == places.end()) {
+      base.entries.push_back(std::move(entry));
+    } else if (entry.value.kind == Node::Kind::kNull) {
+      is_removed[under->second] = true;
+    } else {
+      base.entries[under->second].location = entry.location;
+      merge(base.entries[under->second].value, std::move(entry.value));
+    }
   }
+  std::vector<Entry> kept;
+  kept.reserve(base.entries.size());
+  for (std::size_t i = 0; i < base.entries.size(); ++i)
+    if (i >= is_removed.size() || !is_removed[i]) kept.push_back(std::move(base.entries[i]));
+  base.entries = std::move(kept);
 }
 
 /// Walks one "key.path" into a tree, making the maps that are missing.
@@ -67,7 +80,7 @@ class Override {
     Entry* entry = node.find(key);
     // A map given here replaces the one before: its keys may belong to another choice.
     if (entry != nullptr && value.kind == Node::Kind::kMap) entry->value = Node{};
-    merge_entry(node, {key, location_, std::move(value), {}});
+    merge_entries(node, {Entry{key, location_, std::move(value), {}}});
   }
 
   Node& item(Node& list, const std::string& key) const {
@@ -109,7 +122,7 @@ void merge(Node& base, Node over) {
     return;
   }
   base.location = over.location;
-  for (Entry& entry : over.entries) merge_entry(base, std::move(entry));
+  merge_entries(base, std::move(over.entries));
 }
 
 void apply_override(Node& root, const std::string& assignment) {

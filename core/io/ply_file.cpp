@@ -144,6 +144,10 @@ class HeaderParser {
     if (type == "list") fail("a list property of vertices is not supported");
     const std::optional<PlyType> known = type_named(type);
     if (!known) fail("'" + type + "' is no PLY type");
+    for (const Property& property : header_.properties)
+      if (property.name == name) fail("property '" + name + "' is stated twice");
+    constexpr std::size_t kMostProperties = 1000;
+    if (header_.properties.size() == kMostProperties) fail("has too many properties");
     header_.properties.push_back({name, *known});
   }
 
@@ -193,14 +197,23 @@ Store store_for(const std::string& name, std::size_t vertices, PointCloud& cloud
   };
 }
 
-void read_binary(std::string_view body, const PlyHeader& header, const std::vector<Store>& stores,
-                 const std::string& file) {
-  std::size_t stride = 0;
-  for (const Property& property : header.properties) stride += size_of(property.type);
-  if (body.size() / stride < header.vertices)
-    throw InputError(file, fmt::format("is truncated: {} vertices of {} bytes are announced, {} "
-                                       "bytes follow the header",
-                                       header.vertices, stride, body.size()));
+/// A count beyond what the file can hold is no reason to allocate.
+void check_length(const PlyHeader& header, std::size_t bytes, const std::string& file) {
+  // In text a number takes a digit and what separates it from the next; the line where one is missing is
+  // named when it is read.
+  std::size_t least = 0;
+  for (const Property& property : header.properties)
+    least += header.ascii ? 2 : size_of(property.type);
+  constexpr std::size_t kMissingLines = 1000;
+  const std::size_t present = header.ascii ? bytes + kMissingLines : bytes;
+  if (present / least < header.vertices)
+    throw InputError(file,
+                     fmt::format("is truncated: {} vertices of {}{} bytes are announced, {} "
+                                 "bytes follow the header",
+                                 header.vertices, header.ascii ? "at least " : "", least, bytes));
+}
+
+void read_binary(std::string_view body, const PlyHeader& header, const std::vector<Store>& stores) {
   const char* bytes = body.data();
   for (std::size_t v = 0; v < header.vertices; ++v)
     for (std::size_t i = 0; i < stores.size(); ++i) {
@@ -235,8 +248,7 @@ PointCloud read_ply(const std::filesystem::path& file) {
   for (const Property& p : header.properties)
     axes += p.name == "x" || p.name == "y" || p.name == "z";
   if (axes != 3) throw InputError(file.string(), "the vertices need properties x, y and z");
-  // Every vertex takes at least a byte, so a count beyond the file's size is no reason to allocate.
-  if (header.vertices > bytes.size()) throw InputError(file.string(), "is truncated");
+  check_length(header, bytes.size() - header.size, file.string());
   PointCloud cloud;
   cloud.positions.resize(header.vertices);
   std::vector<Store> stores;
@@ -246,7 +258,7 @@ PointCloud read_ply(const std::filesystem::path& file) {
   if (header.ascii)
     read_ascii(body, header, stores, file.string());
   else
-    read_binary(body, header, stores, file.string());
+    read_binary(body, header, stores);
   return cloud;
 }
 

@@ -189,6 +189,8 @@ bool answer(const ForkedWorker::Work& work, const std::string& request, const Fo
   if (getppid() != parent) _exit(1);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU})
     std::signal(signal, SIG_DFL);
+  // Ctrl-C is the other process's to answer, and this one ends with it.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   if (nowhere >= 0)
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);

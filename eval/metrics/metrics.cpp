@@ -8,6 +8,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/io/files/json_depth.h"
 
 namespace saccade {
 namespace {
@@ -45,6 +46,8 @@ Json number(double value) {
 }
 
 Json parse_object(std::string_view text, const std::string& source) {
+  if (const auto byte = json_too_deep_at(text))
+    throw InputError(source, "byte " + std::to_string(*byte) + " is nested too deeply");
   try {
     Json root = Json::parse(text);
     if (!root.is_object()) throw InputError(source, "must be a JSON object");
@@ -80,7 +83,7 @@ std::string to_json(const Metrics& metrics, const std::map<std::string, std::str
     SACCADE_CHECK(leaf.is_null());
     if (value) leaf = number(*value);
   }
-  return root.dump(2) + "\n";
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Metrics parse_json_metrics(std::string_view text, const std::string& source) {

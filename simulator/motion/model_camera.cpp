@@ -105,8 +105,7 @@ void describe(config::Fields& fields, ModelCameraOptions& options) {
                 "Axis of the model that points upwards. y turns the path by 90 degrees about x, as "
                 "up: y turns a mesh; z leaves it as it is.");
   fields.value("duration_s", options.duration_s, "Duration of the motion, in seconds.")
-      .above(0)
-      .at_most(3600);
+      .range(1e-6, 3600);
   fields.value("sets_focal_length", options.sets_focal_length,
                "Whether camera.fx and camera.fy are those of its vertical field of view.");
 }

@@ -242,8 +242,7 @@ void describe_fit(config::Fields& fields, MotionOptions& options) {
 
 void describe_preset(config::Fields& fields, MotionOptions& options) {
   fields.value("duration_s", options.duration_s, "Duration of the motion, in seconds.")
-      .above(0)
-      .at_most(3600);
+      .range(1e-6, 3600);
   switch (options.source) {
     case MotionSource::kSlider:
       return describe_slider(fields, options.slider);
@@ -265,16 +264,18 @@ void describe(config::Fields& fields, TransformOptions& options) {
   fields
       .value("rotation_deg", options.rotation_deg, "Rotation about x, then y, then z, in degrees.")
       .range(-36000, 36000);
+  constexpr double kLeastScale = 1e-9;
+  constexpr double kLargestScale = 1e9;
   const char* const help = "Scale before the rotation: one factor, or one each for x, y and z.";
   const Eigen::Vector3d& scale = options.scale;
   const bool one_number = fields.reading() ? fields.form("scale") != config::Form::kList
                                            : scale.x() == scale.y() && scale.x() == scale.z();
   if (one_number) {
     double factor = scale.x();
-    fields.value("scale", factor, help).above(0);
+    fields.value("scale", factor, help).range(kLeastScale, kLargestScale);
     options.scale.setConstant(factor);
   } else {
-    fields.value("scale", options.scale, help).above(0);
+    fields.value("scale", options.scale, help).range(kLeastScale, kLargestScale);
   }
 }
 

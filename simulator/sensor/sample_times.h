@@ -15,7 +15,9 @@ namespace saccade {
   if (rate_hz <= 0) return times;
   const TimeNs end = ns_from_seconds(duration_s);
   for (std::size_t k = 0;; ++k) {
-    const TimeNs t = ns_from_seconds(static_cast<double>(k) / rate_hz);
+    const double t_s = static_cast<double>(k) / rate_hz;
+    if (t_s > duration_s + 1) return times;  // of a rate near 0 it may be no time in nanoseconds
+    const TimeNs t = ns_from_seconds(t_s);
     if (t > end) return times;
     times.push_back(t);
   }

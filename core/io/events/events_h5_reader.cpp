@@ -242,6 +242,9 @@ void EventH5Reader::State::take_length(const Column& column) {
     fail(column.path, "must have one dimension");
   if (!is_opened) count = size[0];
   is_opened = true;
+  // Times differ, so that no filter packs them tighter than others; the other columns are as long.
+  if (H5Tget_size(H5Handle{H5Dget_type(column.dataset), H5Tclose}) >= sizeof(std::int64_t))
+    check_h5_size(column.dataset, name + ":" + column.path);
   if (size[0] != count)
     fail(column.path, "has " + std::to_string(size[0]) + " entries, " + x.path + " has " +
                           std::to_string(count));
@@ -249,18 +252,9 @@ void EventH5Reader::State::take_length(const Column& column) {
 
 std::string EventH5Reader::State::read_text(hid_t object, const char* name_of_attribute) const {
   const H5Handle attribute = {H5Aopen(object, name_of_attribute, H5P_DEFAULT), H5Aclose};
-  const H5Handle type = {H5Aget_type(attribute), H5Tclose};
-  std::string text;
-  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) > 0) {
-    char* value = nullptr;
-    if (H5Aread(attribute, type, &value) >= 0 && value != nullptr) text = value;
-    if (value != nullptr) H5free_memory(value);
-  } else if (H5Tget_class(type) == H5T_STRING) {
-    text.resize(H5Tget_size(type));
-    if (H5Aread(attribute, type, text.data()) < 0) text.clear();
-    text = text.c_str();  // without padding
-  }
-  return text;
+  const std::optional<std::string> text = read_h5_text_attribute(attribute);
+  if (!text) fail(place, fmt::format("attribute \"{}\" must be a single text", name_of_attribute));
+  return *text;
 }
 
 void EventH5Reader::State::read_unit() {
@@ -285,7 +279,8 @@ void EventH5Reader::State::read_sensor() {
     const Column resolution{open_dataset(path), path, "", std::nullopt};
     std::vector<std::int32_t> sides;
     const H5Handle space = {H5Dget_space(resolution.dataset), H5Sclose};
-    if (H5Sget_simple_extent_npoints(space) != 2) fail(path, "must hold width and height");
+    if (H5Sget_simple_extent_ndims(space) != 1 || H5Sget_simple_extent_npoints(space) != 2)
+      fail(path, "must hold width and height");
     read(resolution, H5T_NATIVE_INT32, {0, 2}, sides);
     if (sides[0] < 1 || sides[1] < 1 || sides[0] > 65536 || sides[1] > 65536)
       fail(path, "must hold numbers of pixels");
@@ -298,8 +293,10 @@ int EventH5Reader::State::read_size(const char* side) const {
   const H5Handle group = {H5Gopen2(file, "events", H5P_DEFAULT), H5Gclose};
   if (H5Aexists(group, side) <= 0) return 0;
   const H5Handle attribute = {H5Aopen(group, side, H5P_DEFAULT), H5Aclose};
+  const H5Handle space = {H5Aget_space(attribute), H5Sclose};
   int pixels = 0;
-  if (H5Aread(attribute, H5T_NATIVE_INT, &pixels) < 0 || pixels < 1 || pixels > 65536)
+  if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT, &pixels) < 0 ||
+      pixels < 1 || pixels > 65536)
     fail("/events", fmt::format("attribute \"{}\" must be a number of pixels", side));
   return pixels;
 }
@@ -317,6 +314,8 @@ void EventH5Reader::State::read_index() {
   if (H5Lexists(file, "ms_to_idx", H5P_DEFAULT) <= 0) return;
   H5Handle dataset = open_dataset("/ms_to_idx");
   const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  if (H5Sget_simple_extent_ndims(space) != 1) fail("/ms_to_idx", "must have one dimension");
+  check_h5_size(dataset, name + ":/ms_to_idx");
   std::vector<std::uint64_t> index;
   const auto length = static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space));
   read({std::move(dataset), "/ms_to_idx", "", std::nullopt}, H5T_NATIVE_UINT64, {0, length}, index);

@@ -13,7 +13,8 @@
 namespace saccade {
 namespace {
 
-constexpr std::int64_t kMaxIndexMs = std::int64_t{1} << 31;
+/// The index takes 8 bytes for each millisecond, events or not: half a gigabyte for these.
+constexpr std::int64_t kMaxIndexMs = std::int64_t{1} << 26;
 
 struct PackedChunk {
   std::array<H5Chunk, 4> columns;  ///< x, y, p, t
@@ -129,7 +130,7 @@ void EventH5Writer::State::index(std::span<const Event> events) {
     const std::int64_t tick = in_ticks(events[i].t_ns, unit) - offset;
     if (tick > kMaxIndexMs * ticks_per_ms)
       throw InputError(target.target().string(),
-                       "the events span more than 24 days; is a time wrong?");
+                       "the events span more than 18 hours; is a time wrong?");
     while (static_cast<std::int64_t>(ms_to_idx.size()) * ticks_per_ms <= tick)
       ms_to_idx.push_back(written + i);
   }

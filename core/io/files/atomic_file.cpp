@@ -59,17 +59,14 @@ AtomicFile::AtomicFile(const fs::path& file)
     throw InputError(file.string(), "is a device or the like, which cannot be replaced by a file");
   // Fails here rather than after the work when the place is not writable.
   errno = 0;
-  if (!std::ofstream(temporary_)) fail_to_write(file, errno);
+  if (!std::ofstream(path())) fail_to_write(file, errno);
 }
 
-AtomicFile::~AtomicFile() {
-  std::error_code ignored;
-  if (!committed_) fs::remove(temporary_, ignored);
-}
+AtomicFile::~AtomicFile() = default;
 
 void AtomicFile::commit() {
   SACCADE_CHECK(!committed_);
-  rename_or_throw(temporary_, target_);
+  rename_or_throw(path(), target_);
   committed_ = true;
 }
 
@@ -112,9 +109,16 @@ void FinalFolder::take(const fs::path& complete) const {
   if (::renameat2(AT_FDCWD, complete.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) {
     old = sibling_of(path_, "old");
     rename_or_throw(path_, old);
-    rename_or_throw(complete, path_);
+    try {
+      rename_or_throw(complete, path_);
+    } catch (const InputError&) {
+      rename_or_throw(old, path_);  // the former result stays what it was
+      throw;
+    }
   }
-  fs::remove_all(old);
+  // The result stands; what cannot be removed is hidden and in nobody's way.
+  std::error_code ignored;
+  fs::remove_all(old, ignored);
 }
 
 AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
@@ -122,18 +126,15 @@ AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
   final_.check_replaceable();
   final_.create_parent();
   std::error_code error;
-  fs::create_directory(temporary_, error);
+  fs::create_directory(path(), error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
 }
 
-AtomicFolder::~AtomicFolder() {
-  std::error_code ignored;
-  if (!committed_) fs::remove_all(temporary_, ignored);
-}
+AtomicFolder::~AtomicFolder() = default;
 
 void AtomicFolder::commit() {
   SACCADE_CHECK(!committed_);
-  final_.take(temporary_);
+  final_.take(path());
   committed_ = true;
 }
 

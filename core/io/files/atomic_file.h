@@ -4,20 +4,23 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/files/temporary_paths.h"
+
 namespace saccade {
 
 /// A file that appears under its final name only when it is complete: it is written as a hidden
 /// sibling (`.NAME.partial-...`) and renamed. Missing parent folders are created, links followed.
-/// Throws InputError with the path when that is not possible.
+/// Throws InputError with the path when that is not possible. The sibling goes with the object, or with
+/// a program that a signal ends (temporary_paths.h).
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& file);
-  ~AtomicFile();  ///< removes the sibling unless commit() was called
+  ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Where to write until commit().
-  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_.path(); }
   /// The final name.
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
 
@@ -25,7 +28,7 @@ class AtomicFile {
 
  private:
   std::filesystem::path target_;
-  std::filesystem::path temporary_;
+  TemporaryPath temporary_;
   bool committed_ = false;
 };
 
@@ -68,7 +71,7 @@ class AtomicFolder {
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
   /// Where to write until commit().
-  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_.path(); }
   /// The final name.
   [[nodiscard]] const std::filesystem::path& target() const { return final_.path(); }
 
@@ -77,7 +80,7 @@ class AtomicFolder {
 
  private:
   FinalFolder final_;
-  std::filesystem::path temporary_;
+  TemporaryPath temporary_;
   bool committed_ = false;
 };
 

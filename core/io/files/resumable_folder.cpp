@@ -1,5 +1,6 @@
 #include "core/io/files/resumable_folder.h"
 
+#include <atomic>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -15,6 +16,8 @@
 namespace saccade {
 namespace fs = std::filesystem;
 namespace {
+
+std::atomic<int> unfinished_folders = 0;
 
 constexpr const char* kLockFile = "lock";
 constexpr const char* kInputsFile = "inputs.yaml";
@@ -94,11 +97,15 @@ ResumableFolder::ResumableFolder(const fs::path& folder, std::string marker,
     remove_workplace(workplace_);
     throw;
   }
+  ++unfinished_folders;
 }
 
 ResumableFolder::~ResumableFolder() {
+  --unfinished_folders;
   if (!committed_) remove_workplace(workplace_);
 }
+
+bool ResumableFolder::is_any_unfinished() { return unfinished_folders > 0; }
 
 void ResumableFolder::take_up_leftovers() {
   if (!fs::exists(workplace_ / kInputsFile)) return clear();  // new, or not even begun

@@ -48,6 +48,9 @@ class ResumableFolder {
   /// Gives the folder its final name. Once; path() and journal() are gone afterwards.
   void commit();
 
+  /// Whether this program is at work on such a folder: one that is killed now can be gone on with.
+  [[nodiscard]] static bool is_any_unfinished();
+
  private:
   class Lock;
   void take_up_leftovers();

@@ -12,7 +12,9 @@ namespace saccade {
 
 namespace fs = std::filesystem;
 
-ScratchFolder::ScratchFolder() {
+namespace {
+
+fs::path make_scratch_folder() {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
   if (error) {
@@ -22,12 +24,12 @@ ScratchFolder::ScratchFolder() {
   }
   std::string name = (parent / "saccade_XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) fail_to_write(parent, errno);
-  path_ = name;
+  return name;
 }
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
+}  // namespace
+
+ScratchFolder::ScratchFolder() : folder_(make_scratch_folder()) {}
+ScratchFolder::~ScratchFolder() = default;
 
 }  // namespace saccade

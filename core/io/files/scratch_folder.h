@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "core/io/files/temporary_paths.h"
+
 namespace saccade {
 
 /// A new empty folder among the system's temporary files, this process's alone; it and all that
@@ -14,10 +16,10 @@ class ScratchFolder {
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  TemporaryPath folder_;
 };
 
 }  // namespace saccade

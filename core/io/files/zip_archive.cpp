@@ -67,6 +67,20 @@ std::size_t ZipMember::read(std::span<std::byte> bytes) {
   return filled;
 }
 
+std::vector<std::byte> ZipMember::read_rest() {
+  constexpr std::size_t kBlock = std::size_t{1} << 20U;
+  std::vector<std::byte> bytes;
+  for (std::size_t count = kBlock; count == kBlock;) {
+    const std::size_t before = bytes.size();
+    if (before > kMostWholeBytes)
+      throw InputError(location_, fmt::format("unpacks to more than {} bytes", kMostWholeBytes));
+    bytes.resize(before + kBlock);
+    count = read(std::span(bytes).subspan(before));
+    bytes.resize(before + count);
+  }
+  return bytes;
+}
+
 void write_zip(const std::filesystem::path& target,
                const std::vector<std::pair<std::string, std::filesystem::path>>& files) {
   int code = 0;

@@ -48,8 +48,14 @@ class ZipMember {
   /// Fills `bytes`; returns how many there were, fewer only at the end. InputError with the
   /// location where the archive is damaged.
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes);
+  /// What is left of the member. Memory follows what is really unpacked; InputError with the location
+  /// where that is more than kMostWholeBytes.
+  [[nodiscard]] std::vector<std::byte> read_rest();
   /// Of the whole member, as the archive states it [bytes].
   [[nodiscard]] std::uint64_t stated_size() const { return stated_size_; }
+
+  /// A few kilobytes of zeros may be packed into a byte.
+  static constexpr std::uint64_t kMostWholeBytes = std::uint64_t{1} << 30U;
 
  private:
   struct Close {

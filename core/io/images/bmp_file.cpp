@@ -79,7 +79,8 @@ BmpLayout read_bmp_layout(const PictureBytes& bytes, const std::string& location
     bytes.fail(fmt::format("has {} bits per pixel in the compression {}", layout.bits,
                            layout.compression));
   check_picture_size(static_cast<std::uint64_t>(std::max<std::int64_t>(width, 0)),
-                     static_cast<std::uint64_t>(height < 0 ? -height : height), location);
+                     static_cast<std::uint64_t>(height < 0 ? -height : height), bytes.size(),
+                     location);
   layout.width = static_cast<int>(width);
   layout.height = static_cast<int>(height < 0 ? -height : height);
   layout.is_upside_down = height > 0;

@@ -6,6 +6,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/files/file_bytes.h"
+#include "core/io/images/picture_bytes.h"
 #include "core/srgb.h"
 
 namespace saccade {
@@ -65,12 +67,38 @@ class MemorySink final : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-std::vector<ExrChannel> decode_channels(Imf::InputFile& file) {
+/// What the header states is compared with what follows, before memory is taken for it. Constant
+/// planes are packed without a bound, but for the place of every 256 rows.
+void check_exr_size(int width, int height, std::uint64_t channels, std::size_t file_bytes) {
+  constexpr std::uint64_t kMostInflation = 4096;
+  constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 26U;  // pixels of all channels
+  constexpr std::uint64_t kMostRowsOfAPlace = 256;
+  constexpr std::uint64_t kPlaceBytes = 8;
+  if (width < 1 || height < 1) throw std::runtime_error("it has no pixels");
+  if (std::max(width, height) > static_cast<int>(kMostPictureSide))
+    throw std::runtime_error(fmt::format("a side is longer than {} pixels", kMostPictureSide));
+  const std::uint64_t rows = static_cast<std::uint64_t>(height);
+  const std::uint64_t values = static_cast<std::uint64_t>(width) * rows * channels;
+  if (rows / kMostRowsOfAPlace * kPlaceBytes > file_bytes ||
+      values > kAlwaysAllowed + kMostInflation * file_bytes || values > 4 * kMostPixels)
+    throw std::runtime_error(
+        fmt::format("it states {} x {} pixels with {} channels, which {} bytes "
+                    "cannot hold",
+                    width, height, channels, file_bytes));
+}
+
+std::vector<ExrChannel> decode_channels(Imf::InputFile& file, std::size_t file_bytes) {
   const Imath::Box2i window = file.header().dataWindow();
-  const int width = window.max.x - window.min.x + 1;
-  const int height = window.max.y - window.min.y + 1;
+  const std::int64_t stated_width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t stated_height = std::int64_t{window.max.y} - window.min.y + 1;
+  constexpr std::int64_t kMostSide = kMostPictureSide;
+  const int width = static_cast<int>(std::clamp<std::int64_t>(stated_width, 0, kMostSide + 1));
+  const int height = static_cast<int>(std::clamp<std::int64_t>(stated_height, 0, kMostSide + 1));
   std::vector<ExrChannel> channels;
   const Imf::ChannelList& list = file.header().channels();
+  std::uint64_t count = 0;
+  for (auto it = list.begin(); it != list.end(); ++it) ++count;
+  check_exr_size(width, height, count, file_bytes);
   for (auto it = list.begin(); it != list.end(); ++it) {
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
       throw std::runtime_error(std::string("channel ") + it.name() + " is subsampled");
@@ -91,7 +119,7 @@ std::vector<ExrChannel> decode(std::span<const std::byte> bytes, const std::stri
   try {
     MemoryStream stream(bytes, location);
     Imf::InputFile file(stream, 0);
-    return decode_channels(file);
+    return decode_channels(file, bytes.size());
   } catch (const std::exception& error) {
     throw InputError(location, std::string("is no OpenEXR picture or is damaged: ") + error.what());
   }

@@ -40,7 +40,7 @@ class JpegReader {
 
   void begin() {
     if (!succeeds(&JpegReader::read_header)) fail();
-    check_picture_size(state_.image_width, state_.image_height, location_);
+    check_picture_size(state_.image_width, state_.image_height, bytes_.size(), location_);
   }
   [[nodiscard]] bool is_cmyk() const { return state_.num_components == 4; }
 

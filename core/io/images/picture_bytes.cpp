@@ -23,6 +23,18 @@ void check_picture_size(std::uint64_t width, std::uint64_t height, const std::st
                                  width, height, kMostPixels, kMostPictureSide));
 }
 
+void check_picture_size(std::uint64_t width, std::uint64_t height, std::size_t file_bytes,
+                        const std::string& location) {
+  check_picture_size(width, height, location);
+  constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 26U;
+  constexpr std::uint64_t kMostPixelsOfAByte = 4096;
+  if (width * height > kAlwaysAllowed + kMostPixelsOfAByte * file_bytes)
+    throw InputError(location,
+                     fmt::format("claims {} x {} pixels, which {} bytes hardly hold: it is "
+                                 "damaged, or made to take all memory",
+                                 width, height, file_bytes));
+}
+
 void PictureBytes::fail(const std::string& problem) const {
   throw InputError(location_,
                    fmt::format("is no {} picture that can be decoded: it {}", kind_, problem));

@@ -17,6 +17,10 @@ constexpr std::uint64_t kMostPictureSide = std::uint64_t{1} << 20U;
 
 /// InputError naming `location` where a picture has no pixels or more than are decoded.
 void check_picture_size(std::uint64_t width, std::uint64_t height, const std::string& location);
+/// The same, and where `file_bytes` are so few that nobody packs a picture like that: one colour can be packed
+/// without a bound, and memory is taken for all of it.
+void check_picture_size(std::uint64_t width, std::uint64_t height, std::size_t file_bytes,
+                        const std::string& location);
 
 /// A file of little-endian numbers. Whatever lies behind its end is an InputError: "LOCATION is no
 /// `kind` picture that can be decoded: it ends too early".

@@ -95,7 +95,7 @@ ImageRgba8 decode_tiff(std::span<const std::byte> bytes, const std::string& loca
   std::uint32_t width = 0, height = 0;
   TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
-  check_picture_size(width, height, location);
+  check_picture_size(width, height, bytes.size(), location);
   std::array<char, 1024> reason{};
   if (TIFFRGBAImageOK(file.get(), reason.data()) == 0) fail(reason.data());
   std::vector<std::uint32_t> packed(std::size_t{width} * height);

@@ -37,7 +37,7 @@ ImageRgba8 decode_webp(std::span<const std::byte> bytes, const std::string& loca
   if (features.has_animation != 0)
     throw InputError(location, "is a WebP film; a still picture can be decoded");
   const auto width = static_cast<std::size_t>(features.width);
-  check_picture_size(width, static_cast<std::size_t>(features.height), location);
+  check_picture_size(width, static_cast<std::size_t>(features.height), bytes.size(), location);
   ImageRgba8 image(features.width, features.height);
   if (WebPDecodeRGBAInto(begin, bytes.size(), image.data()->data(), image.size() * sizeof(Rgba8),
                          static_cast<int>(width * sizeof(Rgba8))) == nullptr)

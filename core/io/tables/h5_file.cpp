@@ -60,6 +60,7 @@ std::vector<double> H5File::numbers(const std::string& path) const {
   if (H5Tget_class(type) != H5T_INTEGER && H5Tget_class(type) != H5T_FLOAT)
     fail(path, "must hold numbers");
   const H5Handle space = {H5Dget_space(set), H5Sclose};
+  check_h5_size(set, location(path));
   std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
   if (!values.empty() &&
       H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
@@ -70,20 +71,9 @@ std::vector<double> H5File::numbers(const std::string& path) const {
 std::string H5File::text(const std::string& path) const {
   const H5Lock lock;
   const H5Handle set = dataset(path);
-  const H5Handle type = {H5Dget_type(set), H5Tclose};
-  if (H5Tget_class(type) != H5T_STRING) fail(path, "must be a text");
-  std::string text;
-  if (H5Tis_variable_str(type) > 0) {
-    char* value = nullptr;
-    if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0 && value != nullptr)
-      text = value;
-    if (value != nullptr) H5free_memory(value);
-  } else {
-    text.resize(H5Tget_size(type));
-    if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) text.clear();
-    text = text.c_str();  // without padding
-  }
-  return text;
+  std::optional<std::string> text = read_h5_text(set);
+  if (!text) fail(path, "must be a single text");
+  return *std::move(text);
 }
 
 template <class T>
@@ -98,6 +88,7 @@ std::vector<T> H5File::slice(const std::string& path, std::uint64_t index, hid_t
   size[0] = 1;
   hsize_t count = 1;
   for (const hsize_t length : size) count *= length;
+  check_h5_size(set, location(path));
   std::vector<T> values(count);
   const H5Handle space = {H5Dget_space(set), H5Sclose};
   const H5Handle memory = {H5Screate_simple(1, &count, nullptr), H5Sclose};
@@ -113,6 +104,61 @@ std::vector<float> H5File::floats_at(const std::string& path, std::uint64_t inde
 
 std::vector<std::uint8_t> H5File::bytes_at(const std::string& path, std::uint64_t index) const {
   return slice<std::uint8_t>(path, index, H5T_NATIVE_UINT8);
+}
+
+void check_h5_size(hid_t dataset, const std::string& location) {
+  // What deflate makes of one byte at most, of whose filters it packs tightest, and what needs no proof.
+  constexpr double kMostInflation = 1032;
+  constexpr double kAlwaysAllowed = 1 << 26;
+  const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  const H5Handle type = {H5Dget_type(dataset), H5Tclose};
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 0) throw InputError(location, "has no size (HDF5: " + h5_reason() + ")");
+  const double claimed = static_cast<double>(count) * static_cast<double>(H5Tget_size(type));
+  const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
+  if (claimed > kAlwaysAllowed + kMostInflation * stored)
+    throw InputError(location,
+                     fmt::format("claims {:.0f} bytes, but takes {:.0f} in the file, which "
+                                 "cannot hold so many: the file is damaged or cut off",
+                                 claimed, stored));
+}
+
+namespace {
+
+/// `read(type, memory)` reads what has `space` and `type`, of which a single text is let through alone.
+template <class Read>
+std::optional<std::string> single_text(const H5Handle& space, const H5Handle& type,
+                                       const Read& read) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+  if (!space.valid() || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Tget_class(type) != H5T_STRING)
+    return std::nullopt;
+  std::string text;
+  if (H5Tis_variable_str(type) > 0) {
+    char* value = nullptr;
+    if (read(type, &value) && value != nullptr) text = value;
+    if (value != nullptr) H5free_memory(value);
+    return text;
+  }
+  if (H5Tget_size(type) > kMostBytes) return std::nullopt;
+  text.resize(H5Tget_size(type));
+  if (!read(type, text.data())) text.clear();
+  return text.c_str();  // without padding
+}
+
+}  // namespace
+
+std::optional<std::string> read_h5_text(hid_t dataset) {
+  return single_text({H5Dget_space(dataset), H5Sclose}, {H5Dget_type(dataset), H5Tclose},
+                     [dataset](hid_t type, void* memory) {
+                       return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, memory) >= 0;
+                     });
+}
+
+std::optional<std::string> read_h5_text_attribute(hid_t attribute) {
+  return single_text(
+      {H5Aget_space(attribute), H5Sclose}, {H5Aget_type(attribute), H5Tclose},
+      [attribute](hid_t type, void* memory) { return H5Aread(attribute, type, memory) >= 0; });
 }
 
 std::string h5_filter_hint(hid_t dataset) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,14 @@ class H5File {
 
 /// Whether a file begins as HDF5 does.
 [[nodiscard]] bool is_hdf5(const std::filesystem::path& file);
+
+/// InputError(location) where a dataset claims more bytes than the space that it takes in the file can
+/// unpack to, before anybody takes memory for them. Hold an H5Lock.
+void check_h5_size(hid_t dataset, const std::string& location);
+
+/// The text of a dataset or of an attribute; nullopt where it is no single text. Hold an H5Lock.
+[[nodiscard]] std::optional<std::string> read_h5_text(hid_t dataset);
+[[nodiscard]] std::optional<std::string> read_h5_text_attribute(hid_t attribute);
 
 /// For an error of reading a dataset: which package or program brings its filter, "" where that is
 /// known to be there or not known at all. Hold an H5Lock.

@@ -70,6 +70,7 @@ H5Handle open_column(hid_t file, const std::string& group, const char* name,
   if (!has_column(file, group, name)) throw InputError(location, "the dataset is missing");
   H5Handle dataset = {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose};
   const H5Handle space = {H5Dget_space(dataset), H5Sclose};
+  if (H5Sget_simple_extent_ndims(space) != 1) throw InputError(location, "must have one dimension");
   const auto length = H5Sget_simple_extent_npoints(space);
   if (H5Sget_simple_extent_ndims(space) != 1 || static_cast<std::uint64_t>(length) != count)
     throw InputError(location, "has " + std::to_string(length) + " entries for " +

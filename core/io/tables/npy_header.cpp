@@ -134,6 +134,7 @@ std::size_t npy_header_bytes(std::string_view prefix) {
   const std::size_t size =
       version == 1 ? 10 + byte(8) + (byte(9) << 8U)
                    : 12 + byte(8) + (byte(9) << 8U) + (byte(10) << 16U) + (byte(11) << 24U);
+  if (size < kNpyPrefixBytes) throw NpyError{"the header claims to be empty"};
   if (size > kMostHeaderBytes) throw NpyError{fmt::format("the header claims {} bytes", size)};
   return size;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -73,11 +75,13 @@ Json gaps(const RunData& data) {
   return result;
 }
 
-/// A script element ends at its first "</", wherever that stands.
+/// A script element ends at its first "</", wherever that stands, and "<!--<script" keeps it from ending there. In JSON
+/// a "<" is always in a text, where its number stands for it.
 std::string inside_script(const Json& json) {
-  std::string text = json.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.insert(at + 1, 1, '\\');
+  constexpr std::string_view kNumber = "\\u003c";
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kNumber.size())
+    text.replace(at, 1, kNumber);
   return text;
 }
 

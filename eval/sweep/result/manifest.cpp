@@ -164,7 +164,8 @@ void write_manifest(const SweepConfig& sweep, const SweepPlan& plan, const fs::p
         manifest_row(generated_dataset(*sweep.generate, sweep.generate->first + i),
                      plan.simulations[i], folder));
   write_splits(manifest["datasets"], folder);
-  write_atomically(folder / "manifest.json", manifest.dump(1) + "\n");
+  write_atomically(folder / "manifest.json",
+                   manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   manifest_csv(manifest["datasets"]).save(folder / "manifest.csv");
 }
 

@@ -126,10 +126,11 @@ std::optional<Bytes> FileSource::read_unreported(const fs::path& file) const {
   const std::string name = member_name(file);
   if (!zip_->contains(name)) return std::nullopt;
   ZipMember member(*zip_, name);
-  Bytes bytes(member.stated_size());
-  if (member.read(std::as_writable_bytes(std::span(bytes))) != bytes.size())
+  const std::vector<std::byte> bytes = member.read_rest();
+  if (bytes.size() != member.stated_size())
     throw InputError(zip_->location(name), "is damaged in its archive");
-  return bytes;
+  const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
+  return Bytes(first, first + bytes.size());
 }
 
 std::string missing_file_problem(const fs::path& path) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/io/files/json_depth.h"
 #include "simulator/scene/mesh/base64.h"
 
 namespace saccade {
@@ -150,10 +151,17 @@ void GltfFile::fail(const std::string& problem) const {
   throw InputError(source_name_, "cannot be read as glTF: " + problem);
 }
 
+json GltfFile::parse_json(std::span<const unsigned char> text) const {
+  const std::string_view letters(reinterpret_cast<const char*>(text.data()), text.size());
+  if (const auto byte = json_too_deep_at(letters))
+    fail(fmt::format("its JSON is nested too deeply at byte {}", *byte));
+  return json::parse(letters);
+}
+
 void GltfFile::parse(const Bytes& bytes) {
   is_binary_ = bytes.size() >= kGltfHeader && little_endian(bytes, 0) == kGltfMagic;
   if (!is_binary_) {
-    document_ = json::parse(bytes.begin(), bytes.end());
+    document_ = parse_json(bytes);
   } else {
     // A binary glTF 1.0 has another second header.
     if (little_endian(bytes, 4) != 2) return;
@@ -165,7 +173,7 @@ void GltfFile::parse(const Bytes& bytes) {
       if (size > bytes.size() - at) fail("it ends too early");
       const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
       const auto end = begin + static_cast<std::ptrdiff_t>(size);
-      if (type == kGltfJsonChunk && document_.is_null()) document_ = json::parse(begin, end);
+      if (type == kGltfJsonChunk && document_.is_null()) document_ = parse_json({begin, end});
       if (type == kGltfBinaryChunk && binary_chunk_.empty()) binary_chunk_.assign(begin, end);
       at += size;
     }

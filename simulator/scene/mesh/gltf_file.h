@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ class GltfFile {
 
   [[noreturn]] void fail(const std::string& problem) const;
   void parse(const Bytes& bytes);
+  [[nodiscard]] nlohmann::json parse_json(std::span<const unsigned char> text) const;
   void check_extensions() const;
   /// nullopt: the file that it names does not exist.
   [[nodiscard]] std::optional<Bytes> resource(const std::string& uri) const;

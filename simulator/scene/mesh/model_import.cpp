@@ -53,6 +53,8 @@ const aiScene& load(Assimp::Importer& importer, AssimpFiles* files, const fs::pa
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngleDeg);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(file.generic_string(), 0);
+  if (scene != nullptr && scene->mRootNode == nullptr)
+    throw std::runtime_error("holds no scene: no node is its root");
   if (scene != nullptr) {
     leave_out_empty_meshes(*const_cast<aiScene*>(scene));  // the importer's, that nobody else sees
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals |

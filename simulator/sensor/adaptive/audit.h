@@ -76,7 +76,6 @@ class Audit {
 
   PixelRays rays_;
   std::uint64_t seed_;
-  double end_s_ = 0;                ///< of the recording
   std::vector<std::size_t> index_;  ///< of the audited tiles, in order
   std::vector<AuditedTile> tiles_;  ///< these
   std::optional<EventCamera> exact_;

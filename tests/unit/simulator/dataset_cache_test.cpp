@@ -67,6 +67,25 @@ TEST_F(Cache, NothingIsSimulatedTwice) {
   EXPECT_THAT(cache().list(), SizeIs(2));
 }
 
+TEST_F(Cache, LeavesAloneWhatItDidNotMake) {
+  (void)cache().obtain(config(), "plane");
+  const fs::path datasets = entry("");
+  fs::create_directories(datasets / "photos");
+  std::ofstream(datasets / "photos/lock") << "of another program";
+  fs::create_directories(datasets / "0123456789abcdef");
+  std::ofstream(datasets / "0123456789abcdef/letter.txt") << "without a lock";
+  const testing::TemporaryFolder elsewhere;
+  std::ofstream(elsewhere.path() / "lock") << "";
+  std::ofstream(elsewhere.path() / "letter.txt") << "behind a link";
+  fs::create_directory_symlink(elsewhere.path(), datasets / "fedcba9876543210");
+  PruneOptions all;
+  all.all = true;
+  EXPECT_THAT(cache().prune(all), SizeIs(1));
+  EXPECT_TRUE(fs::exists(datasets / "photos/lock"));
+  EXPECT_TRUE(fs::exists(datasets / "0123456789abcdef/letter.txt"));
+  EXPECT_TRUE(fs::exists(elsewhere.path() / "letter.txt"));
+}
+
 TEST_F(Cache, AChangedSceneFileIsAnotherDataset) {
   const std::string before = simulation_key(config());
   EXPECT_EQ(before, simulation_key(config()));

@@ -136,5 +136,34 @@ TEST(Document, AValueOnOneLineIsTheSameValue) {
   EXPECT_EQ(to_flow_yaml(parse(line, "line").root()), line);
 }
 
+TEST(Load, IncludesAreBounded) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 100; ++i)
+    folder.write("chain" + std::to_string(i) + ".yaml",
+                 "include: chain" + std::to_string(i + 1) + ".yaml\n");
+  EXPECT_THAT(error_of([&] { return load(folder.path() / "chain0.yaml"); }),
+              HasSubstr("is the 33th file of a chain of includes"));
+
+  folder.write("twice0.yaml", "x: 1\n");
+  for (int i = 1; i <= 26; ++i) {
+    const std::string part = "twice" + std::to_string(i - 1) + ".yaml";
+    folder.write("twice" + std::to_string(i) + ".yaml", "include: [" + part + ", " + part + "]\n");
+  }
+  EXPECT_THAT(error_of([&] { return load(folder.path() / "twice26.yaml"); }),
+              HasSubstr("includes more than 256 files"));
+}
+
+TEST(Load, ManyKeysAreMergedWithoutComparingAllWithAll) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 200'000; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  folder.write("base.yaml", text);
+  const Document document = load(folder.write(
+      "main.yaml", "include: base.yaml\nkey7: ~\nkey8: 2\n" + text.substr(text.find("key9:"))));
+  EXPECT_EQ(document.root().entries.size(), 199'999U);
+  EXPECT_EQ(document.root().find("key7"), nullptr);
+  EXPECT_EQ(document.root().find("key8")->value.text, "2");
+}
+
 }  // namespace
 }  // namespace saccade::config

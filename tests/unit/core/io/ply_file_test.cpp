@@ -72,6 +72,20 @@ TEST_F(PlyFile, ErrorsNameTheLine) {
   EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 2\n" + xyz + "end_header\n1 2 3\n"),
               HasSubstr("is truncated"));
   EXPECT_THAT(error(""), HasSubstr("c.ply"));
+  EXPECT_THAT(error(head + xyz + "property float x\n"),
+              HasSubstr("c.ply:7: property 'x' is stated"));
+}
+
+TEST_F(PlyFile, ACountThatTheFileCannotHoldTakesNoMemory) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  std::string many;
+  for (int i = 0; i < 900; ++i) many += "property double p" + std::to_string(i) + "\n";
+  for (const char* format : {"ascii", "binary_little_endian"})
+    for (const char* count : {"100000", "4294967296", "18446744073709551615"})
+      EXPECT_THAT(error(std::string("ply\nformat ") + format + " 1.0\nelement vertex " + count +
+                        "\n" + xyz + many + "end_header\n" + std::string(200'000, '1')),
+                  HasSubstr("is truncated"))
+          << format << " " << count;
 }
 
 }  // namespace

@@ -19,6 +19,13 @@ TEST(CommandTemplate, PutsValuesIntoWords) {
               ElementsAre("run", "--in=/a folder/events.txt", "/out/a b", "{x}"));
 }
 
+TEST(CommandTemplate, AValueNeverBecomesASecondWord) {
+  const std::string hostile = "/d'; rm -rf \"$HOME\" #`id` $(id)\n{out}";
+  const Placeholders values{{"events", hostile}, {"out", "/out"}};
+  EXPECT_THAT(substituted_words("run {events} '{events}' --to {out}", values),
+              ElementsAre("run", hostile, hostile, "--to", "/out"));
+}
+
 TEST(CommandTemplate, KnowsWhatItHolds) {
   EXPECT_TRUE(uses_placeholder("a {imu} b", "imu"));
   EXPECT_FALSE(uses_placeholder("a {{imu}} {imux}", "imu"));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/io/run/run_record.h"
 #include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
 #include "eval/report/charts/page_data.h"
@@ -53,6 +54,23 @@ TEST_F(Report, NeedsNothingBesideIt) {
   for (const char* outside : {"<link", "@import", "fetch("})
     EXPECT_EQ(count(page, outside), 0U) << outside;
   EXPECT_EQ(count(page, "{{"), 0U);
+}
+
+TEST_F(Report, NamesBringNoMarkupAndNoScript) {
+  const std::string hostile = "\"'><img src=x onerror=alert(1)></script><script>alert(2)</script>";
+  const fs::path run_folder = folder.path() / "<b onmouseover=alert(3)>run";
+  fs::copy(run(), run_folder, fs::copy_options::recursive);
+  RunRecord record = read_run_record(run_folder / "run.yaml");
+  record.module = "track" + hostile;
+  record.command = "saccade run track -c " + hostile + ".yaml";
+  record.tool_version = hostile;
+  record.machine = hostile;
+  record.config_yaml = "note: \"" + std::string("</textarea><script>alert(4)</script>") + "\"\n";
+  write_run_record(run_folder / "run.yaml", record);
+  const std::string page = written({run_folder});
+  EXPECT_GT(count(page, "alert(3)"), 0U) << "the name is not shown at all";
+  for (const char* markup : {"<img src=x", "<script>alert", "<b onmouseover", "</textarea><script"})
+    EXPECT_EQ(count(page, markup), 0U) << markup;
 }
 
 TEST_F(Report, ShowsTheRunBesideTheThesis) {

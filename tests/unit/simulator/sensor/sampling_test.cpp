@@ -17,6 +17,8 @@ TEST(SampleTimes, CountFromZeroAndIncludeTheEnd) {
   EXPECT_EQ(sample_times(4, 0.5), (std::vector<TimeNs>{0, 250'000'000, 500'000'000}));
   EXPECT_EQ(sample_times(3, 0.7), (std::vector<TimeNs>{0, 333'333'333, 666'666'667}));
   EXPECT_TRUE(sample_times(0, 1).empty());
+  EXPECT_EQ(sample_times(1e-308, 1), (std::vector<TimeNs>{0}));
+  EXPECT_EQ(sample_times(1e-12, 1), (std::vector<TimeNs>{0}));
 }
 
 TEST(SampleTimes, MergeLeavesOutWhatIsThereAlready) {

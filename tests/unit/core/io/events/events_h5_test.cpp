@@ -354,5 +354,76 @@ TEST_F(EventsH5, EndingChoosesTheFormat) {
   }
 }
 
+/// Puts an attribute with `count` entries of a type where a single one is expected.
+void set_attribute(hid_t file, const char* object, const char* name, hid_t type, hsize_t count,
+                   const void* values) {
+  const hid_t place = H5Oopen(file, object, H5P_DEFAULT);
+  if (H5Aexists(place, name) > 0) H5Adelete(place, name);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(place, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, values);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Oclose(place);
+}
+
+TEST_F(EventsH5, AttributesThatAreListsAreRefused) {
+  const std::vector<int> numbers(1000, 240);
+  EXPECT_THAT(error_after([&](hid_t file) {
+                set_attribute(file, "/events", "width", H5T_NATIVE_INT, 1000, numbers.data());
+              }),
+              HasSubstr("attribute \"width\" must be a number"));
+  const hid_t fixed = H5Tcopy(H5T_C_S1);
+  H5Tset_size(fixed, 2);
+  const std::string units(2000, 'u');
+  EXPECT_THAT(error_after([&](hid_t file) {
+                set_attribute(file, "/events/t", "unit", fixed, 1000, units.data());
+              }),
+              HasSubstr("attribute \"unit\" must be a single text"));
+  const hid_t variable = H5Tcopy(H5T_C_S1);
+  H5Tset_size(variable, H5T_VARIABLE);
+  const std::vector<const char*> texts(1000, "us");
+  EXPECT_THAT(error_after([&](hid_t file) {
+                set_attribute(file, "/events/t", "unit", variable, 1000, texts.data());
+              }),
+              HasSubstr("attribute \"unit\" must be a single text"));
+  H5Tclose(fixed);
+  H5Tclose(variable);
+}
+
+TEST_F(EventsH5, ASizeThatTheFileCannotHoldTakesNoMemory) {
+  constexpr hsize_t kHuge = hsize_t{1} << 40U;
+  const std::string error = error_after([](hid_t file) {
+    for (const char* column : {"/events/x", "/events/y", "/events/p", "/events/t"})
+      resize(file, column, kHuge);
+  });
+  EXPECT_THAT(error, HasSubstr("events.h5:/events/t: claims"));
+  EXPECT_THAT(error, HasSubstr("cannot hold so many"));
+  EXPECT_THAT(error_after([](hid_t file) { resize(file, "/ms_to_idx", kHuge); }),
+              HasSubstr("events.h5:/ms_to_idx: claims"));
+}
+
+TEST_F(EventsH5, AnIndexOfManyDimensionsIsRefused) {
+  EXPECT_THAT(error_after([](hid_t file) {
+                H5Ldelete(file, "/ms_to_idx", H5P_DEFAULT);
+                const hsize_t sides[6] = {1, 1, 1, 1, 1, 1};
+                const hid_t space = H5Screate_simple(6, sides, nullptr);
+                H5Dclose(H5Dcreate2(file, "/ms_to_idx", H5T_STD_U64LE, space, H5P_DEFAULT,
+                                    H5P_DEFAULT, H5P_DEFAULT));
+                H5Sclose(space);
+              }),
+              HasSubstr("/ms_to_idx: must have one dimension"));
+}
+
+TEST_F(EventsH5, AGapOfADayIsRefusedBeforeItsIndexIsMade) {
+  const Events events{{0, 1, 2, 1}, {86'400'000'000'000, 1, 2, 1}};
+  EXPECT_THAT(error_of([&] {
+                write(file_, events, kUs);
+                return 0;
+              }),
+              HasSubstr("the events span more than 18 hours"));
+  EXPECT_FALSE(fs::exists(file_));
+}
+
 }  // namespace
 }  // namespace saccade

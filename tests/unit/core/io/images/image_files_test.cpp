@@ -134,5 +134,22 @@ TEST_F(ImageFiles, ExrErrorsNameThePath) {
   EXPECT_THAT(error_of([&] { return read_exr_flow(exr_); }), HasSubstr("needs channels u and v"));
 }
 
+TEST_F(ImageFiles, AnExrThatClaimsMorePixelsThanItHoldsTakesNoMemory) {
+  write_exr(exr_, ImageF(8, 6, 0.5F), "Y");
+  const std::string file = testing::read_file(exr_);
+  const std::size_t window =
+      file.find("dataWindow") + std::string_view("dataWindow?box2i?size").size() + 2;
+  for (const std::int32_t last : {50'000, 1'000'000, 2'000'000'000}) {
+    std::string damaged = file;
+    for (const std::size_t corner : {8U, 12U})
+      damaged.replace(window + corner, sizeof last, reinterpret_cast<const char*>(&last),
+                      sizeof last);
+    const auto claimed = folder_.write("b.exr", damaged);
+    EXPECT_THAT(error_of([&] { return read_exr(claimed); }),
+                HasSubstr("b.exr: is no OpenEXR picture or is damaged"))
+        << last;
+  }
+}
+
 }  // namespace
 }  // namespace saccade

@@ -529,6 +529,8 @@ TEST_F(Gltf, MalformedFilesAreNamed) {
   EXPECT_THAT(error_of(document), HasSubstr("square.gltf"));
   write("square.gltf", "{");
   EXPECT_THROW(static_cast<void>(MeshImporter().read(folder_ / "square.gltf")), InputError);
+  write("square.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"a\": " + std::string(100'000, '['));
+  EXPECT_THROW(static_cast<void>(MeshImporter().read(folder_ / "square.gltf")), InputError);
 }
 
 TEST(Base64, RoundTrip) {

@@ -186,5 +186,13 @@ TEST(EventsZip, EventsOfATextAreReadInTheirArchive) {
   EXPECT_THAT(error_of([&] { return read_events(file, {}); }), HasSubstr("in none of the formats"));
 }
 
+TEST_F(Numpy, AHeaderWithoutContentIsRefused) {
+  const std::string rest(200, ' ');
+  EXPECT_THAT(error(std::string("\x93NUMPY\x01\0\0\0", 10) + rest),
+              HasSubstr("claims to be empty"));
+  EXPECT_THAT(error(std::string("\x93NUMPY\x01\0\x01\0", 10) + rest),
+              HasSubstr("claims to be empty"));
+}
+
 }  // namespace
 }  // namespace saccade

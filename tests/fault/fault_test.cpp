@@ -1,0 +1,276 @@
+// Every verb with every call of the system that may fail: it succeeds, or says what is wrong and leaves nothing under the
+// final name, and the next call succeeds with the same bytes. $SACCADE_FAULTS_EACH is how many calls of a kind are tried
+// (default 6, spread over all; 0: all).
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/io/dataset/dataset_record.h"
+#include "tests/system/saccade_command.h"
+
+namespace saccade::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+using Words = std::vector<std::string>;
+
+/// Environment variables that hold while it lives.
+class Variables {
+ public:
+  explicit Variables(const std::vector<std::pair<std::string, std::string>>& values) {
+    for (const auto& [name, value] : values) {
+      names_.push_back(name);
+      setenv(name.c_str(), value.c_str(), 1);
+    }
+  }
+  ~Variables() {
+    for (const std::string& name : names_) unsetenv(name.c_str());
+  }
+  Variables(const Variables&) = delete;
+  Variables& operator=(const Variables&) = delete;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+Words simulation(const fs::path& data, bool lit = false) {
+  Words words{"simulate",  shipped_config(lit ? "simulation/office.yaml" : "simulation/walls.yaml"),
+              "-o",        data.string(),
+              "--set",     "duration_s=0.05",
+              "--set",     "camera={width: 48, height: 36, fx: 40, fy: 40, cx: 23.5, cy: 17.5}",
+              "--set",     "groundtruth.event_labels=true",
+              "--threads", "1",
+              "-q"};
+  if (lit) words.insert(words.end(), {"--set", "scene.lighting={ambient: 0.3}"});
+  return words;
+}
+
+/// What a call writes, and the call that writes it to `out`.
+struct Call {
+  std::string name;
+  std::string output;  ///< name of the file or folder
+  std::function<Words(const fs::path& inputs, const fs::path& out)> words;
+  /// Whether all bytes are the same at every call; runs and pages state times.
+  bool repeats = true;
+};
+
+Words track(const fs::path& inputs, const fs::path& out) {
+  return {"run", "track",      "--data", (inputs / "d").string(),
+          "-o",  out.string(), "-c",     shipped_config("tracking/fast.yaml"),
+          "-q"};
+}
+
+const std::vector<Call>& calls() {
+  static const std::vector<Call> all{
+      {"simulate", "d", [](const fs::path&, const fs::path& out) { return simulation(out); }},
+      {"run", "r", track, false},
+      {"convert", "e.h5",
+       [](const fs::path& inputs, const fs::path& out) {
+         return Words{"convert", (inputs / "d/events.h5").string(), out.string(), "-q"};
+       }},
+      {"convert_text", "e.txt",
+       [](const fs::path& inputs, const fs::path& out) {
+         return Words{"convert", (inputs / "d/events.h5").string(), out.string(), "-q"};
+       }},
+      {"report", "r.html",
+       [](const fs::path& inputs, const fs::path& out) {
+         return Words{"report", (inputs / "r").string(), "-o", out.string(), "-q"};
+       },
+       false},
+      {"render", "p.png",
+       [](const fs::path& inputs, const fs::path& out) {
+         return Words{"render", (inputs / "d").string(), "-o", out.string(), "-q"};
+       }},
+      {"gate_update", "b.yaml",
+       [](const fs::path& inputs, const fs::path& out) {
+         return Words{"gate", (inputs / "r").string(), "--baseline", out.string(), "--update"};
+       }},
+  };
+  return all;
+}
+
+/// The inputs of all calls, made once.
+class Faults : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  static void SetUpTestSuite() {
+    inputs_ = new TemporaryFolder;
+    saccade_ok(simulation(inputs_->path() / "d"));
+    saccade_ok(track(inputs_->path(), inputs_->path() / "r"));
+    saccade_ok({"eval", (inputs_->path() / "r").string()});
+  }
+  static void TearDownTestSuite() { delete inputs_; }
+
+  [[nodiscard]] static const Call& call() { return calls()[GetParam()]; }
+  [[nodiscard]] fs::path out() const { return folder_.path() / call().output; }
+  [[nodiscard]] Words words() const { return call().words(inputs_->path(), out()); }
+
+  /// The hash of all that a call wrote.
+  [[nodiscard]] static std::map<std::string, std::string> hashes(const fs::path& path) {
+    if (fs::is_directory(path)) return hash_files(path);
+    return {{"", read_file(path)}};
+  }
+
+  [[nodiscard]] std::vector<std::string> left_behind() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+  void clear() const {
+    for (const auto& entry : fs::directory_iterator(folder_.path())) fs::remove_all(entry.path());
+  }
+
+  [[nodiscard]] CommandResult with_fault(const std::string& kind, long number) const {
+    const Variables variables({{"LD_PRELOAD", SACCADE_FAULT_LIBRARY},
+                               {"SACCADE_FAULT", fmt::format("{}:{}", kind, number)},
+                               {"SACCADE_FAULT_UNDER", folder_.path().string()},
+                               {"SACCADE_FAULT_COUNT", (counts_.path() / "count").string()}});
+    return saccade(words());
+  }
+  /// How many calls of the kind a call without faults makes.
+  [[nodiscard]] long count(const std::string& kind) const {
+    fs::remove(counts_.path() / "count");
+    const CommandResult result = with_fault(kind, -1);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return fs::exists(counts_.path() / "count") ? std::stol(read_file(counts_.path() / "count"))
+                                                : 0;
+  }
+
+  void expect_clean(const std::string& kind, long number) const {
+    SCOPED_TRACE(fmt::format("{}, {} {}", call().name, kind, number));
+    clear();
+    const CommandResult result = with_fault(kind, number);
+    if (result.exit_code == 0) {
+      EXPECT_TRUE(fs::exists(out()));
+      if (call().repeats) {
+        EXPECT_EQ(hashes(out()), expected_);
+      }
+    } else {
+      EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << result.exit_code;
+      EXPECT_THAT(result.output, HasSubstr("saccade: "));
+      EXPECT_FALSE(fs::exists(out())) << result.output;
+      EXPECT_THAT(left_behind(), ::testing::IsEmpty()) << result.output;
+      ++refused_;
+    }
+    saccade_ok(words());
+    if (call().repeats) {
+      EXPECT_EQ(hashes(out()), expected_);
+    }
+  }
+
+  static TemporaryFolder* inputs_;
+  TemporaryFolder folder_;
+  TemporaryFolder counts_;
+  std::map<std::string, std::string> expected_;
+  mutable int refused_ = 0;
+};
+
+TemporaryFolder* Faults::inputs_ = nullptr;
+
+/// Numbers from 1 to `count`, at most so many as the environment says, the first and the last among them.
+std::set<long> chosen(long count) {
+  const char* each = std::getenv("SACCADE_FAULTS_EACH");
+  const long most = each == nullptr ? 6 : std::atol(each);
+  std::set<long> numbers;
+  if (most == 0 || count <= most)
+    for (long i = 1; i <= count; ++i) numbers.insert(i);
+  else
+    for (long i = 0; i < most; ++i) numbers.insert(1 + i * (count - 1) / (most - 1));
+  return numbers;
+}
+
+TEST_P(Faults, EndInSuccessOrInAnErrorThatLeavesNothing) {
+  saccade_ok(words());
+  expected_ = hashes(out());
+  int tried = 0;
+  for (const std::string kind : {"no-space", "io-error", "short-write", "interrupted", "create",
+                                 "rename", "sync", "truncate"}) {
+    clear();
+    for (const long number : chosen(count(kind))) {
+      expect_clean(kind, number);
+      ++tried;
+    }
+  }
+  // A file at least is created, written and renamed.
+  EXPECT_GE(tried, 3);
+  EXPECT_GT(refused_, 0) << "no fault was noticed at all";
+  std::cout << fmt::format("{}: {} faults, {} of them ended in an error\n", call().name, tried,
+                           refused_);
+}
+
+/// Whether a process has a handler for the signal, or has ended.
+bool catches(pid_t process, int signal) {
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("State:") && line.find('Z') != std::string::npos) return true;
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> static_cast<unsigned>(signal - 1) & 1U) !=
+             0;
+  }
+  return true;
+}
+
+TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
+  int interrupted = 0;
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}})
+    for (const int after_ms : {0, 5, 20, 60}) {
+      clear();
+      const Words all = words();
+      std::vector<char*> argv{const_cast<char*>(SACCADE_COMMAND)};
+      for (const std::string& word : all) argv.push_back(const_cast<char*>(word.c_str()));
+      argv.push_back(nullptr);
+      const fs::path log = counts_.path() / "log";
+      const pid_t child = fork();
+      if (child == 0) {
+        std::freopen(log.c_str(), "w", stderr);
+        std::freopen("/dev/null", "w", stdout);
+        execv(SACCADE_COMMAND, argv.data());
+        _exit(127);
+      }
+      // Not before it is at work: a program that has not begun ends by the signal itself.
+      while (!catches(child, signal)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+      ::kill(child, signal);
+      int status = 0;
+      waitpid(child, &status, 0);
+      ASSERT_TRUE(WIFEXITED(status));
+      SCOPED_TRACE(fmt::format("{} after {} ms", call().name, after_ms));
+      if (WEXITSTATUS(status) == code) {
+        ++interrupted;
+        EXPECT_THAT(read_file(log), HasSubstr("saccade: interrupted (SIG"));
+        for (const std::string& name : left_behind())
+          EXPECT_TRUE(name == call().output || name.ends_with(".unfinished")) << name;
+      } else {
+        EXPECT_EQ(WEXITSTATUS(status), 0) << read_file(log);
+      }
+      saccade_ok(words());
+      if (!expected_.empty() && call().repeats) {
+        EXPECT_EQ(hashes(out()), expected_);
+      }
+    }
+  EXPECT_GT(interrupted, 0) << "it was always over before the signal came";
+}
+
+INSTANTIATE_TEST_SUITE_P(Calls, Faults, ::testing::Range(std::size_t{0}, calls().size()),
+                         [](const auto& index) { return calls()[index.param].name; });
+
+}  // namespace
+}  // namespace saccade::testing
