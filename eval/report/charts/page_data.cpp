@@ -73,20 +73,12 @@ Json gaps(const RunData& data) {
   return result;
 }
 
-/// A script element ends at its first "</", wherever that stands.
-std::string inside_script(const Json& json) {
-  std::string text = json.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.insert(at + 1, 1, '\\');
-  return text;
-}
-
 }  // namespace
 
 std::string charts_data(std::span<const PageChart> charts) {
   Json all = Json::array();
   for (const PageChart& chart : charts) all.push_back(chart_json(chart));
-  return inside_script(all);
+  return inside_script(all.dump());
 }
 
 std::string run_page_data(const RunData& data) {
@@ -114,7 +106,7 @@ std::string run_page_data(const RunData& data) {
   all["dtheta"] = series("rotation error", "deg", e.t_s, e.dtheta_deg);
   if (const ReprojectionSeries& r = data.reprojection; !r.t_s.empty())
     all["reprojection"] = series("reprojection error", "px", r.t_s, r.rms_px);
-  return inside_script(run);
+  return inside_script(run.dump());
 }
 
 }  // namespace saccade
