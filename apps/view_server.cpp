@@ -20,7 +20,9 @@ namespace saccade {
 namespace {
 
 constexpr const char* kHost = "127.0.0.1";
-constexpr std::size_t kThreads = 4;
+// A connection that a browser keeps open has a thread of its own; it keeps six for a page.
+constexpr std::size_t kThreads = 24;
+constexpr int kIdle_s = 2;
 constexpr std::size_t kLongestBody = 4096;  // no request needs one
 
 /// 128 bits of the system's random numbers, in hexadecimal digits.
@@ -95,6 +97,7 @@ struct ViewServer::State {
 ViewServer::ViewServer(ViewSession& session, int port) : state_(std::make_unique<State>(session)) {
   httplib::Server& server = state_->server;
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server.set_keep_alive_timeout(kIdle_s);
   server.set_socket_options(set_socket_options);
   server.set_default_headers(kHeaders);
   server.set_payload_max_length(kLongestBody);

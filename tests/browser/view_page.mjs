@@ -40,8 +40,9 @@ async function checkOpening(browser) {
 
 async function checkPictures(browser) {
   await seek(browser, 0.5);
+  await browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)))");
   await until(browser, eventsDrawn, "the events do not arrive");
-  await until(browser, `[...document.querySelectorAll(".panel:not([data-complete])")].every((panel) => panel.dataset.shown)`, "a picture does not arrive");
+  await until(browser, `[...document.querySelectorAll(".panel:not([data-complete])")].every((panel) => panel.dataset.shown === panel.dataset.wanted)`, "a picture does not arrive");
   const panels = await browser.evaluate(`[...document.querySelectorAll(".panel")].map((panel) => ({
     name: panel.querySelector("figcaption").textContent, colours: (${kCanvasColours})(panel.querySelector("canvas")) }))`);
   for (const { name, colours } of panels) assert.ok(colours > 2, `${name} shows ${colours} colours`);
@@ -100,12 +101,17 @@ async function checkDrawings(browser) {
   for (const type of ["mouseMoved", "mousePressed", "mouseReleased"])
     await browser.send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", clickCount: 1 });
   assert.ok(await timeOf(browser) > before + 0.01, "a click into a chart does not move the time");
+  await browser.evaluate('scrollTo({ top: 0, behavior: "instant" })');
+  console.log(`${count} charts`);
+}
+
+async function checkSpace(browser) {
+  if (await browser.evaluate(`document.getElementById("space").hidden`)) return console.log("nothing in 3-D");
   await browser.evaluate(`document.getElementById("space").scrollIntoView({ behavior: "instant" })`);
   await until(browser, `document.getElementById("space").dataset.drawn === "yes"`, "the view in 3-D is not drawn");
   const colours = await browser.evaluate(`(${kCanvasColours})(document.querySelector("#space canvas"))`);
   assert.ok(colours > 3, `the view in 3-D shows ${colours} colours`);
   await browser.evaluate('scrollTo({ top: 0, behavior: "instant" })');
-  console.log(`${count} charts and the view in 3-D`);
 }
 
 async function checkPhone(browser) {
@@ -130,6 +136,7 @@ try {
   await checkModes(browser);
   await checkKeys(browser);
   await checkDrawings(browser);
+  await checkSpace(browser);
   await checkPhone(browser);
   await browser.colourScheme("dark");
   await keepPicture(browser, pictures, "dark", true);

@@ -42,7 +42,7 @@ export class EventPanel extends Panel {
     const count = drawEvents(mode, parts, this.picture, this.scratch, from, to);
     this.g.putImageData(this.picture, 0, 0);
     const stride = Math.max(1, ...parts.map((part) => part.events.stride));
-    this.say(`${complete ? "" : "loading, "}${count.toLocaleString("en")} in ${short(windowUs / 1000)} ms${stride > 1 ? `, 1 of ${stride} drawn` : ""}`);
+    this.say(`${complete ? "" : "loading, "}${count.toLocaleString("en")} in ${windowUs / 1000} ms${stride > 1 ? `, 1 of ${stride} drawn` : ""}`);
     this.figure.dataset.complete = complete ? "yes" : "no";
     this.figure.dataset.us = to - 1;
   }
@@ -60,6 +60,7 @@ export class PicturePanel extends Panel {
     const t = us / 1e6;
     // Rounded times of pictures may lie behind the event that is as old.
     const at = Math.max(0, firstNotBefore(this.list.t, t + 1e-4) - 1);
+    this.figure.dataset.wanted = at;
     if (at !== this.shown) this.show(at);
     if (at + 1 < this.list.t.length) this.load(at + 1);
   }

@@ -96,6 +96,6 @@ export class Player {
     this.slider.setAttribute("aria-valuetext", this.time.textContent);
     if (!this.mode) return;
     this.mode.value = kModes.indexOf(style.mode);
-    this.window.textContent = `${short(style.windowMs)} ms`;
+    this.window.textContent = `${style.windowMs} ms`;
   }
 }
