@@ -18,6 +18,8 @@
 #include "core/error.h"
 #include "eval/view/view_clip.h"
 #include "eval/view/view_session.h"
+#include "simulator/event_log.h"
+#include "simulator/resume.h"
 
 namespace saccade {
 namespace {
@@ -54,8 +56,14 @@ void write_page(const ViewVerbOptions& options) {
   if (!options.common.quiet) fmt::print("wrote {}: {}\n", options.output.string(), summary);
 }
 
+/// The events of a simulation that is still running, by the journal of its first camera.
+EventTail simulated_events(const std::filesystem::path& hidden) {
+  const auto tail = std::make_shared<EventLogTail>(event_log_folder(hidden / "journal", 0));
+  return [tail](Events& events) { tail->read(events); };
+}
+
 void serve(const ViewVerbOptions& options) {
-  ViewSession session(options.paths);
+  ViewSession session(options.paths, simulated_events);
   ViewServer server(session, options.port);
   server.run([&] {
     fmt::print("{}\n", server.url());

@@ -77,22 +77,30 @@ std::string pack_events(const EventWindows& events, std::int64_t start_us, std::
   const TimeWindow window{start_us * kNsPerUs, end_us * kNsPerUs};
   const std::uint64_t kept = events.count(window) / every;
   const std::uint64_t stride = every * (1 + kept / (kMostPackedEvents + 1));
-  std::vector<std::uint32_t> head{0, static_cast<std::uint32_t>(stride)}, times;
-  std::vector<std::uint16_t> columns, rows;
+  EventPacker packer(start_us);
   events.visit(window, [&](std::uint64_t index, const Event& event) {
-    if (index % stride != 0) return;
-    if (event.x >= kOffBit) throw InputError("events", "columns beyond 32767 are not drawn");
-    times.push_back(static_cast<std::uint32_t>((event.t_ns - window.start_ns) / kNsPerUs));
-    columns.push_back(static_cast<std::uint16_t>(event.x | (event.polarity > 0 ? 0U : kOffBit)));
-    rows.push_back(event.y);
+    if (index % stride == 0) packer.add(event);
   });
-  head[0] = static_cast<std::uint32_t>(times.size());
+  return packer.bytes(static_cast<std::uint32_t>(stride));
+}
+
+EventPacker::EventPacker(std::int64_t start_us) : start_ns_(start_us * kNsPerUs) {}
+
+void EventPacker::add(const Event& event) {
+  if (event.x >= kOffBit) throw InputError("events", "columns beyond 32767 are not drawn");
+  times_.push_back(static_cast<std::uint32_t>((event.t_ns - start_ns_) / kNsPerUs));
+  columns_.push_back(static_cast<std::uint16_t>(event.x | (event.polarity > 0 ? 0U : kOffBit)));
+  rows_.push_back(event.y);
+}
+
+std::string EventPacker::bytes(std::uint32_t stride) const {
   std::string bytes;
-  bytes.reserve(8 + 8 * times.size());
-  append_bytes(bytes, head);
-  append_bytes(bytes, times);
-  append_bytes(bytes, columns);
-  append_bytes(bytes, rows);
+  bytes.reserve(8 + 8 * times_.size());
+  append_bytes(bytes,
+               std::vector<std::uint32_t>{static_cast<std::uint32_t>(times_.size()), stride});
+  append_bytes(bytes, times_);
+  append_bytes(bytes, columns_);
+  append_bytes(bytes, rows_);
   return bytes;
 }
 

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/io/events/event_file.h"
 #include "core/io/events/events_h5.h"
@@ -42,13 +43,28 @@ class EventWindows {
 /// Events of a window as a page draws them, little-endian:
 ///   u32 number n, u32 stride, n x u32 time since the window's start [us], n x u16 column with the
 ///   highest bit set for OFF, n x u16 row.
-/// Of the recording those events whose index `every` divides, and a multiple of it where more than
-/// kMostPackedEvents would be left: the stride. The window is at most kLongestPacked_us long
-/// (contract).
-[[nodiscard]] std::string pack_events(const EventWindows& events, std::int64_t start_us,
-                                      std::int64_t end_us, std::uint64_t every = 1);
+class EventPacker {
+ public:
+  explicit EventPacker(std::int64_t start_us);
+  /// Not before the start and at most kLongestPacked_us after it (contract). InputError for a
+  /// column beyond 32767.
+  void add(const Event& event);
+  /// `stride`: of how many events of the recording each stands for.
+  [[nodiscard]] std::string bytes(std::uint32_t stride) const;
+
+ private:
+  TimeNs start_ns_;
+  std::vector<std::uint32_t> times_;
+  std::vector<std::uint16_t> columns_, rows_;
+};
 
 constexpr std::uint64_t kMostPackedEvents = 2'000'000;
 constexpr std::int64_t kLongestPacked_us = 4'000'000'000;
+
+/// Of the recording's events in [start_us, end_us) those whose index `every` divides, and a multiple
+/// of it where more than kMostPackedEvents would be left: the stride. The window is at most
+/// kLongestPacked_us long (contract).
+[[nodiscard]] std::string pack_events(const EventWindows& events, std::int64_t start_us,
+                                      std::int64_t end_us, std::uint64_t every = 1);
 
 }  // namespace saccade

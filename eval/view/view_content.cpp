@@ -52,16 +52,18 @@ void add_run(const fs::path& folder, ViewContent& content) {
   content.runs.push_back(std::move(run));
 }
 
-void add_missing(const fs::path& path, ViewContent& content) {
+void add_missing(const fs::path& path, const EventTailOf& tail_of, ViewContent& content) {
   const fs::path hidden = hidden_sibling(path);
   if (hidden.empty())
     throw InputError(path.string(),
                      "no such folder; name a dataset or a run, or one that a program is writing");
-  content.unfinished.push_back({path, hidden});
+  ViewUnfinished unfinished{path, hidden, nullptr};
+  if (tail_of) unfinished.events = std::make_shared<UnfinishedEvents>(tail_of(hidden));
+  content.unfinished.push_back(std::move(unfinished));
 }
 
-void add(const fs::path& path, ViewContent& content) {
-  if (!fs::exists(path)) return add_missing(path, content);
+void add(const fs::path& path, const EventTailOf& tail_of, ViewContent& content) {
+  if (!fs::exists(path)) return add_missing(path, tail_of, content);
   if (!fs::is_directory(path))
     throw InputError(path.string(),
                      "is a file; name the folder of a dataset or a run (saccade convert makes a "
@@ -94,11 +96,21 @@ ViewRecording::ViewRecording(const fs::path& path) : folder(path), dataset(Datas
     depth_range = saccade::depth_range(dataset.load_depth(0));
 }
 
-ViewContent ViewContent::open(std::span<const fs::path> paths) {
+std::size_t ViewUnfinished::frames() const {
+  std::size_t count = 0;
+  while (fs::exists(frame(count))) ++count;
+  return count;
+}
+
+fs::path ViewUnfinished::frame(std::size_t index) const {
+  return hidden / "content/images" / fmt::format("frame_{:08}.png", index);
+}
+
+ViewContent ViewContent::open(std::span<const fs::path> paths, const EventTailOf& tail_of) {
   ViewContent content;
   std::set<fs::path> seen;
   for (const fs::path& path : paths)
-    if (seen.insert(fs::weakly_canonical(path)).second) add(path, content);
+    if (seen.insert(fs::weakly_canonical(path)).second) add(path, tail_of, content);
   tell_names_apart(content.runs);
   return content;
 }

@@ -13,6 +13,7 @@
 #include "eval/picture/image/image_picture.h"
 #include "eval/run_folder.h"
 #include "eval/view/event_windows.h"
+#include "eval/view/unfinished_events.h"
 
 namespace saccade {
 
@@ -36,8 +37,13 @@ struct ViewRun {
 
 /// A folder that another program is writing and that has not its name yet.
 struct ViewUnfinished {
-  std::filesystem::path folder;  ///< the name that it will have
-  std::filesystem::path hidden;  ///< where it grows
+  std::filesystem::path folder;              ///< the name that it will have
+  std::filesystem::path hidden;              ///< where it grows
+  std::shared_ptr<UnfinishedEvents> events;  ///< nullptr: nobody knows how to read them
+
+  /// The frames that are complete: frame_<8 digits>.png of these numbers, from 0 on without a gap.
+  [[nodiscard]] std::size_t frames() const;
+  [[nodiscard]] std::filesystem::path frame(std::size_t index) const;
 };
 
 /// What a page shows: recordings, each once, and runs, in the order in which they were named.
@@ -48,7 +54,9 @@ struct ViewContent {
 
   /// Opens dataset and run folders; a run brings its dataset. InputError for a path that is
   /// neither, and for one that is not there, unless a program is writing it.
-  [[nodiscard]] static ViewContent open(std::span<const std::filesystem::path> paths);
+  /// `tail_of`: reads the events of what is being written; may be empty.
+  [[nodiscard]] static ViewContent open(std::span<const std::filesystem::path> paths,
+                                        const EventTailOf& tail_of = {});
 };
 
 }  // namespace saccade

@@ -46,11 +46,15 @@ void append_points(const ImageF& depth, const PinholeCamera& camera,
 
 }  // namespace
 
+ViewPicture stored_picture(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = read_file_bytes(file);
+  return {"image/png", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+}
+
 ViewPicture frame_picture(const ViewRecording& recording, std::size_t index) {
   const std::filesystem::path& file = recording.dataset.frames().at(index).file;
   if (file.extension() != ".png") return png(draw_radiance(recording.dataset.load_frame(index)));
-  const std::vector<std::byte> bytes = read_file_bytes(file);
-  return {"image/png", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  return stored_picture(file);
 }
 
 ViewPicture depth_picture(const ViewRecording& recording, std::size_t index) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 #include "eval/view/view_content.h"
@@ -13,6 +14,8 @@ struct ViewPicture {
   std::string bytes;
 };
 
+/// A PNG file as it is.
+[[nodiscard]] ViewPicture stored_picture(const std::filesystem::path& file);
 [[nodiscard]] ViewPicture frame_picture(const ViewRecording& recording, std::size_t index);
 [[nodiscard]] ViewPicture depth_picture(const ViewRecording& recording, std::size_t index);
 /// What a run found of its view `index`, whose file must be stated (contract).

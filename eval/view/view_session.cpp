@@ -38,16 +38,23 @@ ViewAnswer picture_answer(ViewPicture&& picture) {
   return {200, std::move(picture.type), std::move(picture.bytes)};
 }
 
+ViewSpan span_of(ViewQuery& query) {
+  ViewSpan span;
+  span.start_us = query.number("start_us", -kFarthest_us, kFarthest_us);
+  span.end_us = query.number("end_us", span.start_us,
+                             std::min(kFarthest_us, span.start_us + kLongestPacked_us));
+  return span;
+}
+
 ViewAnswer events_answer(ViewQuery& query, const ViewContent& content) {
   const ViewRecording& recording = recording_of(query, content);
-  const std::int64_t start_us = query.number("start_us", -kFarthest_us, kFarthest_us);
-  const std::int64_t end_us =
-      query.number("end_us", start_us, std::min(kFarthest_us, start_us + kLongestPacked_us));
+  const ViewSpan span = span_of(query);
   const std::int64_t every = query.number_or("every", 1, 1'000'000'000, 1);
   query.expect_all_read();
   if (!recording.events) throw BadRequest(404, "the recording holds no events");
   return {200, kBinary,
-          pack_events(*recording.events, start_us, end_us, static_cast<std::uint64_t>(every))};
+          pack_events(*recording.events, span.start_us, span.end_us,
+                      static_cast<std::uint64_t>(every))};
 }
 
 ViewAnswer rate_answer(ViewQuery& query, const ViewContent& content) {
@@ -111,6 +118,23 @@ ViewAnswer run_cloud_answer(ViewQuery& query, const ViewContent& content) {
   return {200, kBinary, run_cloud(run)};
 }
 
+ViewAnswer live_events_answer(ViewQuery& query, const ViewContent& content) {
+  const ViewUnfinished& unfinished =
+      content.unfinished[query.index("unfinished", content.unfinished.size())];
+  const ViewSpan span = span_of(query);
+  query.expect_all_read();
+  if (!unfinished.events) throw BadRequest(404, "its events cannot be read yet");
+  return {200, kBinary, unfinished.events->pack(span.start_us, span.end_us)};
+}
+
+ViewAnswer live_frame_answer(ViewQuery& query, const ViewContent& content) {
+  const ViewUnfinished& unfinished =
+      content.unfinished[query.index("unfinished", content.unfinished.size())];
+  const std::size_t id = query.index("id", unfinished.frames());
+  query.expect_all_read();
+  return picture_answer(stored_picture(unfinished.frame(id)));
+}
+
 ViewAnswer errors_answer(ViewQuery& query, const ViewContent& content) {
   const std::size_t index = query.index("run", content.runs.size());
   query.expect_all_read();
@@ -119,17 +143,20 @@ ViewAnswer errors_answer(ViewQuery& query, const ViewContent& content) {
 }
 
 using Answer = ViewAnswer (*)(ViewQuery&, const ViewContent&);
-constexpr std::array<std::pair<const char*, Answer>, 11> kAnswers{{{"events", events_answer},
-                                                                   {"rate", rate_answer},
-                                                                   {"frame", frame_answer},
-                                                                   {"depth", depth_answer},
-                                                                   {"run_depth", run_depth_answer},
-                                                                   {"run_image", run_image_answer},
-                                                                   {"path", path_answer},
-                                                                   {"run_path", run_path_answer},
-                                                                   {"cloud", cloud_answer},
-                                                                   {"run_cloud", run_cloud_answer},
-                                                                   {"errors", errors_answer}}};
+constexpr std::array<std::pair<const char*, Answer>, 13> kAnswers{
+    {{"events", events_answer},
+     {"live_events", live_events_answer},
+     {"live_frame", live_frame_answer},
+     {"rate", rate_answer},
+     {"frame", frame_answer},
+     {"depth", depth_answer},
+     {"run_depth", run_depth_answer},
+     {"run_image", run_image_answer},
+     {"path", path_answer},
+     {"run_path", run_path_answer},
+     {"cloud", cloud_answer},
+     {"run_cloud", run_cloud_answer},
+     {"errors", errors_answer}}};
 
 ViewAnswer find_answer(ViewQuery& query, const ViewContent& content) {
   if (query.name() == "sources") {
@@ -149,9 +176,10 @@ std::string title_of(const ViewContent& content) {
 
 }  // namespace
 
-ViewSession::ViewSession(std::vector<std::filesystem::path> paths)
+ViewSession::ViewSession(std::vector<std::filesystem::path> paths, EventTailOf tail_of)
     : paths_(std::move(paths)),
-      content_(std::make_shared<const ViewContent>(ViewContent::open(paths_))) {}
+      tail_of_(std::move(tail_of)),
+      content_(std::make_shared<const ViewContent>(ViewContent::open(paths_, tail_of_))) {}
 
 std::shared_ptr<const ViewContent> ViewSession::content() const {
   const std::lock_guard lock(mutex_);
@@ -166,7 +194,7 @@ void ViewSession::look_for_finished() {
       std::any_of(unfinished.begin(), unfinished.end(), [](const ViewUnfinished& folder) {
         return std::filesystem::exists(folder.folder) || !std::filesystem::exists(folder.hidden);
       });
-  if (changed) content_ = std::make_shared<const ViewContent>(ViewContent::open(paths_));
+  if (changed) content_ = std::make_shared<const ViewContent>(ViewContent::open(paths_, tail_of_));
 }
 
 ViewAnswer ViewSession::answer(std::string_view target) {

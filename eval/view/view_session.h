@@ -28,13 +28,16 @@ struct ViewAnswer {
 ///   run_depth?run=&id=    run_image?run=&id=        a picture
 ///   path?recording=  run_path?run=                  path_json(), of the truth and of a run
 ///   cloud?recording=  run_cloud?run=                points in the world
+///   live_events?unfinished=&start_us=&end_us=       UnfinishedEvents::pack()
+///   live_frame?unfinished=&id=                      a picture
 ///   errors?run=                                     run_page_data() of the report; null without a truth
 /// What is asked wrongly is answered by 400 or 404 and a sentence, what the files do not yield (they
 /// are damaged, or gone) by 422 and the error.
 class ViewSession {
  public:
   /// InputError for a path that is neither dataset nor run.
-  explicit ViewSession(std::vector<std::filesystem::path> paths);
+  /// `tail_of`: reads the events of what is being written; may be empty.
+  explicit ViewSession(std::vector<std::filesystem::path> paths, EventTailOf tail_of = {});
 
   /// `target`: what follows the token in a request's target.
   [[nodiscard]] ViewAnswer answer(std::string_view target);
@@ -45,6 +48,7 @@ class ViewSession {
   void look_for_finished();
 
   std::vector<std::filesystem::path> paths_;
+  EventTailOf tail_of_;
   mutable std::mutex mutex_;  ///< of content_
   std::shared_ptr<const ViewContent> content_;
 };

@@ -105,10 +105,19 @@ Json unfinished_json(const ViewUnfinished& unfinished) {
     const std::uintmax_t size = entry.is_regular_file(gone) ? entry.file_size(gone) : 0;
     if (!gone) bytes += size;
   }
-  return {{"name", unfinished.folder.string()},
-          {"frames", count_files(content / "images", ".png")},
-          {"depth_maps", count_files(content / "depth", ".exr")},
-          {"mb", std::round(static_cast<double>(bytes) / 1e4) / 100}};
+  Json json{{"name", unfinished.folder.string()},
+            {"frames", unfinished.frames()},
+            {"depth_maps", count_files(content / "depth", ".exr")},
+            {"mb", std::round(static_cast<double>(bytes) / 1e4) / 100}};
+  if (!unfinished.events) return json;
+  unfinished.events->refresh();
+  if (const auto reached_us = unfinished.events->reached_us()) {
+    const SensorSize size = unfinished.events->size();
+    json["reached_us"] = *reached_us;
+    json["width"] = size.width;
+    json["height"] = size.height;
+  }
+  return json;
 }
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }

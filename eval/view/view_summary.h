@@ -14,7 +14,7 @@ namespace saccade {
 ///     "camera": [fx, fy, cx, cy], "frames": {"t", "id"}, "depth": {"t", "id", "near", "far"},
 ///     "truth": bool}],
 ///    "runs": [{"name", "module", "recording", "problem", "depth": {"t", "id"}, "image": {...}}],
-///    "unfinished": [{"name", "frames", "depth_maps", "poses", "mb"}]}
+///    "unfinished": [{"name", "frames", "depth_maps", "mb", "reached_us", "width", "height"}]}
 /// t [s]; an id is what the picture is asked for by. Events are asked for by slots of slot_us,
 /// counted from start_us, which hold about kEventsOfSlot each. Of every list of pictures at most
 /// `most_pictures`, evenly spaced.

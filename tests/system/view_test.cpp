@@ -113,10 +113,11 @@ TEST_F(View, ServesWhoHasTheTokenAndEndsWithOneLine) {
   const httplib::Result sources = client.Get(viewer.page() + "sources");
   ASSERT_TRUE(sources);
   EXPECT_EQ(nlohmann::json::parse(sources->body)["runs"].size(), 2U);
-  const std::string wrong = std::string(viewer.page()).replace(1, 1, viewer.page()[1] == '0' ? "1" : "0");
-  for (const std::string& target : {std::string("/"), std::string("/sources"), wrong,
-                                    wrong + "sources", std::string("/favicon.ico"),
-                                    "/../" + viewer.page(), "/?token=" + viewer.page()})
+  const std::string wrong =
+      std::string(viewer.page()).replace(1, 1, viewer.page()[1] == '0' ? "1" : "0");
+  for (const std::string& target :
+       {std::string("/"), std::string("/sources"), wrong, wrong + "sources",
+        std::string("/favicon.ico"), "/../" + viewer.page(), "/?token=" + viewer.page()})
     EXPECT_EQ(status_of(client, target), 403) << target;
   EXPECT_EQ(status_of(client, viewer.page() + "../../../../etc/passwd"), 404);
   EXPECT_EQ(status_of(client, viewer.page() + "frame?recording=0&id=99999999999999999999"), 400);
@@ -148,7 +149,8 @@ TEST_F(View, TakesThePortThatItIsGiven) {
 
 TEST_F(View, BadInputIsNamed) {
   const TemporaryFolder empty;
-  for (const auto& [arguments, problem] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+  for (const auto& [arguments, problem] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{empty.path()}, "is neither a dataset nor a run"},
            {{path("none")}, "no such folder"},
            {{path("walls"), path("none")}, "no such folder"},

@@ -39,7 +39,7 @@ async function span({ recording, runs }) {
 
 async function start() {
   const sources = await askJson("sources");
-  if (!isClip) followUnfinished(byId("live"), sources);
+  if (!isClip) followUnfinished(byId("live"), byId("panels"), sources);
   const nextRecording = startChoice(byId("choose"), sources);
   const shown = chosen(sources);
   showFacts(byId("facts"), shown);

@@ -71,11 +71,13 @@ TEST_P(EveryFormat, GivesTheEventsOfAWindow) {
   EXPECT_EQ(all.stride, 1U);
   EXPECT_EQ(all.events, Events(events.begin() + 1000, events.begin() + 100'000));
   EXPECT_TRUE(unpack(pack_events(windows, -5000, 0), -5000).events.empty());
-  EXPECT_EQ(unpack(pack_events(windows, -5000, 1), -5000).events, Events(events.begin(), events.begin() + 1));
+  EXPECT_EQ(unpack(pack_events(windows, -5000, 1), -5000).events,
+            Events(events.begin(), events.begin() + 1));
   EXPECT_TRUE(unpack(pack_events(windows, 3'000'000, 4'000'000), 0).events.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, ::testing::Values("events.h5", "events.txt", "events.npz"));
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat,
+                         ::testing::Values("events.h5", "events.txt", "events.npz"));
 
 TEST(EventWindows, ThinsByIndexSoThatWindowsFitTogether) {
   const testing::TemporaryFolder folder;

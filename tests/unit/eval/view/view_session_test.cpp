@@ -186,6 +186,32 @@ TEST_F(View, AFolderThatIsBeingWrittenIsFollowedUntilItIsComplete) {
   EXPECT_EQ(after["unfinished"].size(), 0U);
 }
 
+TEST_F(View, NewestEventsOfWhatIsBeingWrittenAreShown) {
+  const testing::TemporaryFolder folder;
+  fs::create_directories(folder.path() / ".growing.unfinished/content/images");
+  TimeNs now = 0;
+  ViewSession session({folder.path() / "growing"}, [&](const fs::path& hidden) {
+    EXPECT_EQ(hidden.filename(), ".growing.unfinished");
+    return [&](Events& events) {
+      for (int i = 0; i < 10; ++i, now += 1'000'000) events.push_back({now, 7, 3, 1});
+    };
+  });
+  const Json first = sources_of(session)["unfinished"][0];
+  EXPECT_EQ(first["reached_us"], 9000);
+  EXPECT_EQ(first["width"], 8);
+  EXPECT_EQ(first["height"], 4);
+  EXPECT_EQ(sources_of(session)["unfinished"][0]["reached_us"], 19000);
+  const ViewAnswer answer = session.answer("live_events?unfinished=0&start_us=5000&end_us=15000");
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body.size(), 8U + 8 * 10);
+  EXPECT_EQ(session.answer("live_events?unfinished=1&start_us=0&end_us=1").status, 404);
+  EXPECT_EQ(session.answer("live_frame?unfinished=0&id=0").status, 404);
+  now = 2'000'000;  // it began anew
+  EXPECT_EQ(sources_of(session)["unfinished"][0]["reached_us"], 11000);
+  EXPECT_EQ(session.answer("live_events?unfinished=0&start_us=0&end_us=20000").body.size(),
+            8U + 8 * 10);
+}
+
 TEST_F(View, AClipHoldsWhatThePageAsks) {
   ViewSession session({run()});
   const fs::path file = path("clip.html");
@@ -201,9 +227,9 @@ TEST_F(View, AClipHoldsWhatThePageAsks) {
   const Json recording = sources_of(session)["recordings"][0];
   EXPECT_TRUE(clip["answers"].contains(
       "events?recording=0&start_us=" + recording["start_us"].dump() + "&end_us=" +
-      std::to_string(std::min(recording["start_us"].get<std::int64_t>() +
-                                  recording["slot_us"].get<std::int64_t>(),
-                              recording["end_us"].get<std::int64_t>())) +
+      std::to_string(std::min(
+          recording["start_us"].get<std::int64_t>() + recording["slot_us"].get<std::int64_t>(),
+          recording["end_us"].get<std::int64_t>())) +
       "&every=1"));
   EXPECT_THAT(page, AllOf(Not(HasSubstr("src=\"http")), Not(HasSubstr("href=\"http"))));
 }
