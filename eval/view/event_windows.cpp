@@ -12,7 +12,6 @@
 namespace saccade {
 namespace {
 
-constexpr TimeNs kNsPerUs = 1000;
 constexpr unsigned kOffBit = 0x8000;
 
 bool is_hdf5(const std::filesystem::path& file) {

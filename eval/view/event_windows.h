@@ -15,6 +15,8 @@
 
 namespace saccade {
 
+inline constexpr TimeNs kNsPerUs = 1000;
+
 /// Windows of a recording's events, read when they are asked for: memory does not grow with the
 /// recording. HDF5 is read where it lies. Files of other formats cannot be read from their middle:
 /// they are copied once, block by block, into HDF5 in a temporary folder that goes with the object,

@@ -8,12 +8,6 @@
 
 namespace saccade {
 
-namespace {
-
-constexpr TimeNs kNsPerUs = 1000;
-
-}  // namespace
-
 UnfinishedEvents::UnfinishedEvents(EventTail tail) : tail_(std::move(tail)) {}
 
 void UnfinishedEvents::refresh() {

@@ -17,7 +17,7 @@
 namespace saccade {
 namespace {
 
-constexpr int kUpscale = 2;                ///< sparse depths are squares of some pixels
+constexpr int kDepthUpscale = 2;           ///< sparse depths are squares of some pixels
 constexpr std::size_t kMostDepthMaps = 8;  ///< of which the cloud of a recording is made
 constexpr std::size_t kPointsOfDepthMap = 5'000;
 
@@ -67,8 +67,8 @@ ViewPicture run_depth_picture(const ViewRun& run, const ViewRecording& recording
   const RunView& view = run.views.at(index);
   const EstimatedView found = load_depth_map(view.depth, recording.dataset, view.t_s);
   return png(draw_depth_points(found.points, recording.dataset.camera().undistorted(),
-                               recording.depth_range.value_or(depth_range(found.points)), kUpscale,
-                               kDarkTheme));
+                               recording.depth_range.value_or(depth_range(found.points)),
+                               kDepthUpscale, kDarkTheme));
 }
 
 ViewPicture run_image_picture(const ViewRun& run, std::size_t index) {

@@ -14,7 +14,6 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostPoses = 2000;
-constexpr TimeNs kNsPerUs = 1000;
 
 /// Names may be any bytes that a file system takes.
 std::string dump(const Json& json) {
