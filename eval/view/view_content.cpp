@@ -44,7 +44,7 @@ std::size_t recording_of(const fs::path& folder, ViewContent& content) {
 }
 
 void add_run(const fs::path& folder, ViewContent& content) {
-  ViewRun run{"", RunFolder::open(folder), {}, {}};
+  ViewRun run{"", RunFolder::open(folder), {}, {}, fs::exists(folder / "start.yaml")};
   run.name = run.run.name();
   if (fs::exists(folder / "views.yaml")) run.views = read_view_list(folder / "views.yaml");
   if (fs::is_directory(run.run.record.dataset))

@@ -33,6 +33,7 @@ struct ViewRun {
   RunFolder run;
   std::vector<RunView> views;            ///< of views.yaml
   std::optional<std::size_t> recording;  ///< index; nullopt: its dataset is not there any more
+  bool has_own_world = false;            ///< of another origin and scale than the truth's
 };
 
 /// A folder that another program is writing and that has not its name yet.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,9 +67,10 @@ ViewPicture run_depth_picture(const ViewRun& run, const ViewRecording& recording
                               std::size_t index) {
   const RunView& view = run.views.at(index);
   const EstimatedView found = load_depth_map(view.depth, recording.dataset, view.t_s);
+  const std::optional<DepthRange> common = run.has_own_world ? std::nullopt : recording.depth_range;
   return png(draw_depth_points(found.points, recording.dataset.camera().undistorted(),
-                               recording.depth_range.value_or(depth_range(found.points)),
-                               kDepthUpscale, kDarkTheme));
+                               common ? *common : depth_range(found.points), kDepthUpscale,
+                               kDarkTheme));
 }
 
 ViewPicture run_image_picture(const ViewRun& run, std::size_t index) {
