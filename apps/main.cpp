@@ -25,7 +25,8 @@ void describe_command(CLI::App& command) {
       "  saccade simulate configs/simulation/walls.yaml -o data/walls\n"
       "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
       "  saccade eval runs/walls\n"
-      "  saccade report runs/walls -o report.html\n\n"
+      "  saccade report runs/walls -o report.html\n"
+      "  saccade view runs/walls\n\n"
       "Exit codes: 0 done, 1 failed, 2 bad usage or bad input, 128 + signal where one ended it.");
   command.set_version_flag("--version", fmt::format("saccade {} ({})", version(), git_commit()));
   command.require_subcommand(1);
@@ -39,6 +40,7 @@ void describe_command(CLI::App& command) {
   add_results_verb(command);
   add_cache_verb(command);
   add_render_verb(command);
+  add_view_verb(command);
   add_info_verb(command);
   add_statistics_verb(command);
   add_calibrate_verb(command);

@@ -28,6 +28,17 @@ static_assert(sizeof(Packed) == 16);
 static_assert(std::is_trivially_copyable_v<EventStatistics> &&
               std::is_trivially_copyable_v<AuditResult>);
 
+constexpr const char* kJournalName = "events.journal";
+
+template <class Use>
+void for_each_packed(std::span<const std::byte> bytes, const Use& use) {
+  for (std::size_t at = 0; at + sizeof(Packed) <= bytes.size(); at += sizeof(Packed)) {
+    Packed packed;
+    std::memcpy(&packed, bytes.data() + at, sizeof packed);
+    use(packed);
+  }
+}
+
 std::uint64_t checksum_of(std::string_view bytes) {
   return crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
 }
@@ -39,7 +50,7 @@ EventLog::EventLog(const std::filesystem::path& folder, std::chrono::millisecond
     : folder_(folder), shortest_interval_(shortest_interval), time_divisor_(time_divisor) {
   std::filesystem::create_directories(folder);
   if (std::filesystem::exists(folder / "checkpoint")) read_checkpoint();
-  journal_.emplace(folder / "events.journal", head_.journal_length);
+  journal_.emplace(folder / kJournalName, head_.journal_length);
   journal_->read([](std::span<const std::byte>) {});  // whether it is damaged
   next_ = Clock::now() + shortest_interval_;
 }
@@ -108,18 +119,26 @@ void EventLog::write_checkpoint(std::string_view payload) {
 void EventLog::replay(const std::function<void(std::span<const SensedEvent>)>& use) const {
   std::vector<SensedEvent> events;
   journal_->read([&](std::span<const std::byte> bytes) {
-    events.resize(bytes.size() / sizeof(Packed));
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      Packed packed;
-      std::memcpy(&packed, bytes.data() + i * sizeof packed, sizeof packed);
-      events[i] = {};
-      events[i].t_ns = packed.t_ns;
-      events[i].x = packed.x;
-      events[i].y = packed.y;
-      events[i].polarity = packed.polarity;
-      events[i].origin = static_cast<EventOrigin>(packed.origin);
-    }
+    events.clear();
+    for_each_packed(bytes, [&](const Packed& packed) {
+      SensedEvent& event = events.emplace_back();
+      event.t_ns = packed.t_ns;
+      event.x = packed.x;
+      event.y = packed.y;
+      event.polarity = packed.polarity;
+      event.origin = static_cast<EventOrigin>(packed.origin);
+    });
     use(events);
+  });
+}
+
+EventLogTail::EventLogTail(const std::filesystem::path& folder) : journal_(folder / kJournalName) {}
+
+void EventLogTail::read(Events& events) {
+  journal_.read([&](std::span<const std::byte> bytes) {
+    for_each_packed(bytes, [&](const Packed& packed) {
+      events.push_back({packed.t_ns, packed.x, packed.y, packed.polarity});
+    });
   });
 }
 

@@ -79,4 +79,17 @@ class EventLog {
   Clock::time_point next_;
 };
 
+/// The events of a log that another program is filling, as they come. The log is not changed.
+class EventLogTail {
+ public:
+  /// `folder`: of the log; need not be there yet.
+  explicit EventLogTail(const std::filesystem::path& folder);
+  /// Appends the events that came since the last call; those of a recording that began anew come
+  /// anew.
+  void read(Events& events);
+
+ private:
+  BlockJournalTail journal_;
+};
+
 }  // namespace saccade

@@ -17,7 +17,7 @@ namespace {
 EventLogs logs_in(const std::filesystem::path& folder, std::size_t cameras) {
   EventLogs logs;
   for (std::size_t i = 0; i < cameras; ++i)
-    logs.push_back(std::make_unique<EventLog>(folder / fmt::format("cam{}", i)));
+    logs.push_back(std::make_unique<EventLog>(event_log_folder(folder, i)));
   return logs;
 }
 
@@ -29,6 +29,10 @@ double percent_of(const EventLogs& logs, double duration_s) {
 }
 
 }  // namespace
+
+std::filesystem::path event_log_folder(const std::filesystem::path& journal, std::size_t camera) {
+  return journal / fmt::format("cam{}", camera);
+}
 
 Fingerprint fingerprint_of(const SimulationConfig& config, const InputLog& inputs) {
   Fingerprint fingerprint = inputs.files();

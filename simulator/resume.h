@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -13,6 +15,10 @@ namespace saccade {
 /// Everything that a dataset's bytes depend on: the configuration, the files that were read, and
 /// this program.
 [[nodiscard]] Fingerprint fingerprint_of(const SimulationConfig& config, const InputLog& inputs);
+
+/// Where the journal of an unfinished dataset (ResumableFolder::journal()) keeps the log of a camera.
+[[nodiscard]] std::filesystem::path event_log_folder(const std::filesystem::path& journal,
+                                                     std::size_t camera);
 
 using EventLogs = std::vector<std::unique_ptr<EventLog>>;
 

@@ -12,6 +12,10 @@ namespace saccade {
 /// Text for HTML content and quoted attributes.
 [[nodiscard]] std::string escape_html(std::string_view text);
 
+/// The text of a JSON value for a <script> element, which would end at the first "</" or take what
+/// follows "<!--" for a comment.
+[[nodiscard]] std::string inside_script(std::string json);
+
 /// RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 

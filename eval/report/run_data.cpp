@@ -20,9 +20,7 @@
 namespace saccade {
 namespace {
 
-/// Takes the scores that `eval` wrote, or scores the run where they are stale.
-void set_scores(RunData& data) {
-  data.stale = staleness(data.run.folder, *data.data);
+void set_errors(RunData& data) {
   data.input = score_input(data.run, *data.data);
   // The errors over time are relative to the depth that the scores are relative to; `eval` may have
   // been given another one than the dataset's.
@@ -32,8 +30,14 @@ void set_scores(RunData& data) {
   data.samples = scored_samples(data.input);
   data.errors = errors_over_time(data.input);
   data.map = data.run.load_map().positions;
-  data.keyframes = KeyframeHistory::load(data.run);
   data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
+}
+
+/// Takes the scores that `eval` wrote, or scores the run where they are stale.
+void set_scores(RunData& data) {
+  data.stale = staleness(data.run.folder, *data.data);
+  set_errors(data);
+  data.keyframes = KeyframeHistory::load(data.run);
   data.metrics = data.stale.empty() ? data.run.metrics
                                     : score_run(data.run, *data.data, data.input.mean_depth_m);
 }
@@ -72,7 +76,10 @@ Metrics facts_of(const Dataset& dataset) {
   return facts;
 }
 
-RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
+namespace {
+
+/// The run folder with its dataset, if that is there.
+RunData open_run(const std::filesystem::path& folder, std::size_t index) {
   RunData data;
   data.id = "run" + std::to_string(index);
   data.run = RunFolder::open(folder);
@@ -87,8 +94,22 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   }
   data.data = data.run.open_dataset();
   data.dataset = data.data->facts().name;
+  return data;
+}
+
+}  // namespace
+
+RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
+  RunData data = open_run(folder, index);
+  if (!data.data) return data;
   data.facts = facts_of(*data.data);
   set_scores(data);
+  return data;
+}
+
+RunData gather_errors(const std::filesystem::path& folder, std::size_t index) {
+  RunData data = open_run(folder, index);
+  if (data.data) set_errors(data);
   return data;
 }
 

@@ -36,6 +36,10 @@ struct RunData {
 /// Reads the run folder and scores it where its scores are stale; `index` is its place on the page.
 [[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
 
+/// The same without facts, keyframes and scores: what is drawn of its errors over time, for which
+/// stale scores do not matter.
+[[nodiscard]] RunData gather_errors(const std::filesystem::path& folder, std::size_t index);
+
 /// refined_ratio.* of every run that has a run of refine beside it.
 void compare_with_refined(std::vector<RunData>& runs);
 

@@ -6,31 +6,10 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Chromium } from "./chromium.mjs";
+import { PageRecord, kCanvasColours, keepPicture as keep, kTooWide } from "./page_record.mjs";
 
 const [program, page, pictures] = process.argv.slice(2);
-const errors = [], requests = [];
-
-function record(method, params) {
-  if (method === "Runtime.exceptionThrown") errors.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
-  if (method === "Runtime.consoleAPICalled" && ["error", "warning"].includes(params.type)) errors.push(JSON.stringify(params.args));
-  if (method === "Log.entryAdded" && params.entry.level === "error") errors.push(params.entry.text);
-  if (method === "Network.requestWillBeSent") requests.push(params.request.url);
-}
-
-async function keepPicture(browser, name, whole) {
-  if (!pictures) return;
-  const { data } = await browser.send("Page.captureScreenshot", { captureBeyondViewport: whole });
-  writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
-}
-
-// What a canvas shows, in as many colours as it has.
-const kCanvasColours = `(canvas) => {
-  const copy = document.createElement("canvas");
-  Object.assign(copy, { width: canvas.width, height: canvas.height });
-  const g = copy.getContext("2d", { willReadFrequently: true });
-  g.drawImage(canvas, 0, 0);
-  return new Set(new Uint32Array(g.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
-}`;
+const keepPicture = (browser, name, whole) => keep(browser, pictures, name, whole);
 
 async function checkOpening(browser) {
   await browser.open(pathToFileURL(page).href);
@@ -132,8 +111,7 @@ async function checkDownloads(browser) {
 
 async function checkPhone(browser) {
   await browser.resize(360, 740);
-  const wide = await browser.evaluate(`[document.documentElement.scrollWidth, [...document.querySelectorAll("body *")]
-    .filter((e) => e.offsetParent && !e.closest(".scroll, pre") && e.getBoundingClientRect().right > 361).map((e) => e.outerHTML.slice(0, 80))]`);
+  const wide = await browser.evaluate(kTooWide(360));
   assert.ok(wide[0] <= 360, `on a phone the page is ${wide[0]} px wide: ${wide[1].slice(0, 3)}`);
   await keepPicture(browser, "phone", true);
   await browser.resize(1280, 900);
@@ -153,7 +131,7 @@ async function checkColours(browser) {
 
 const browser = new Chromium(program);
 try {
-  browser.listen(record);
+  const { errors, requests } = new PageRecord(browser);
   await browser.newPage();
   await browser.resize(1280, 900);
   await browser.colourScheme("light");

@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <utility>
 
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
@@ -91,6 +93,27 @@ void BlockJournal::read(const std::function<void(std::span<const std::byte>)>& u
     if (checksum_of(content) != header.checksum) fail();
     use(content);
     position += sizeof header + header.size;
+  }
+}
+
+BlockJournalTail::BlockJournalTail(std::filesystem::path file) : file_(std::move(file)) {}
+
+void BlockJournalTail::read(const std::function<void(std::span<const std::byte>)>& use) {
+  std::ifstream stream(file_, std::ios::binary | std::ios::ate);
+  if (!stream) return;
+  const auto size = static_cast<std::uint64_t>(stream.tellg());
+  if (size < position_) position_ = 0;
+  std::vector<std::byte> content;
+  while (size - position_ > sizeof(BlockHeader)) {
+    BlockHeader header;
+    stream.seekg(static_cast<std::streamoff>(position_));
+    stream.read(reinterpret_cast<char*>(&header), sizeof header);
+    if (!stream || header.size > size - position_ - sizeof header) return;
+    content.resize(header.size);
+    stream.read(reinterpret_cast<char*>(content.data()), header.size);
+    if (!stream || checksum_of(content) != header.checksum) return;
+    position_ += sizeof header + header.size;
+    use(content);
   }
 }
 

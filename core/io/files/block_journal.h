@@ -39,4 +39,18 @@ class BlockJournal {
   std::vector<std::byte> block_;  ///< header and what is not written yet
 };
 
+/// The blocks of a journal that another program is filling, as they come. The file is not changed.
+class BlockJournalTail {
+ public:
+  explicit BlockJournalTail(std::filesystem::path file);
+
+  /// Calls `use` with the blocks that came since the last call, up to the first that is not
+  /// complete. Nothing where the file is not there. One that was cut is read from its start again.
+  void read(const std::function<void(std::span<const std::byte>)>& use);
+
+ private:
+  std::filesystem::path file_;
+  std::uint64_t position_ = 0;
+};
+
 }  // namespace saccade

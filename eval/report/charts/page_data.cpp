@@ -75,14 +75,9 @@ Json gaps(const RunData& data) {
   return result;
 }
 
-/// A script element ends at its first "</", wherever that stands, and "<!--<script" keeps it from ending there. In JSON
-/// a "<" is always in a text, where its number stands for it.
-std::string inside_script(const Json& json) {
-  constexpr std::string_view kNumber = "\\u003c";
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kNumber.size())
-    text.replace(at, 1, kNumber);
-  return text;
+/// Names of files may hold bytes that are no text.
+std::string text_of(const Json& json) {
+  return inside_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -90,7 +85,7 @@ std::string inside_script(const Json& json) {
 std::string charts_data(std::span<const PageChart> charts) {
   Json all = Json::array();
   for (const PageChart& chart : charts) all.push_back(chart_json(chart));
-  return inside_script(all);
+  return text_of(all);
 }
 
 std::string run_page_data(const RunData& data) {
@@ -118,7 +113,7 @@ std::string run_page_data(const RunData& data) {
   all["dtheta"] = series("rotation error", "deg", e.t_s, e.dtheta_deg);
   if (const ReprojectionSeries& r = data.reprojection; !r.t_s.empty())
     all["reprojection"] = series("reprojection error", "px", r.t_s, r.rms_px);
-  return inside_script(run);
+  return text_of(run);
 }
 
 }  // namespace saccade

@@ -75,6 +75,23 @@ TEST_F(Log, GoesOnFromTheLastCheckpoint) {
   EXPECT_EQ(replayed(log), events_between(0, 90'000));
 }
 
+TEST_F(Log, IsFollowedWhileItIsFilled) {
+  EventLogTail tail(folder_);
+  Events followed;
+  tail.read(followed);
+  EXPECT_TRUE(followed.empty());
+  EventLog log(folder_);
+  for (TimeNs at = 0; at < 60'000; at += 20'000) {
+    log.append(events_between(at, at + 20'000));
+    log.checkpoint(1e-9 * static_cast<double>(at), [] { return std::string("state"); });
+    tail.read(followed);
+    EXPECT_EQ(followed.size(), static_cast<std::size_t>(at) + 20'000);
+  }
+  Events expected;
+  for (const SensedEvent& event : replayed(log)) expected.push_back(event.event());
+  EXPECT_EQ(followed, expected);
+}
+
 TEST_F(Log, KnowsThatItIsComplete) {
   EventStatistics statistics;
   statistics.rays = 12345;

@@ -7,7 +7,7 @@ import { logTicks, short } from "./number.js";
 import { colour, onTheme } from "./theme.js";
 
 // A chart is described once, for the screen (uPlot) and as a vector file (chart_svg.js):
-//   {title, x: {label, log}, y: {label, log, zero, range: [low, high]}, sync, onTime(t or null),
+//   {title, x: {label, log}, y: {label, log, zero, range: [low, high]}, sync, onTime(t or null), onPick(x),
 //    series: [{name, colour, x: [...], y: [...], points, dash, step, label}],
 //    gaps: [[from, to]], levels: [y]}
 // x of a series ascends; colours are names of style.css. A series is a line, in steps with `step`, or with `points` those alone;
@@ -150,7 +150,28 @@ export class Chart {
     const colours = Object.fromEntries(["muted", "line", "text", "gap", "ground"].map((name) => [name, colour(name)]));
     const data = uPlot.join(this.spec.series.map((one) => [one.x, one.y]));
     this.width = Math.max(200, this.frame.clientWidth);
-    this.plot = new uPlot(options(this.spec, this.width, colours, () => (this.box.dataset.drawn = "yes")), data, this.frame);
+    const drawn = () => {
+      this.box.dataset.drawn = "yes";
+      this.placeNow();
+    };
+    this.plot = new uPlot(options(this.spec, this.width, colours, drawn), data, this.frame);
+    if (this.spec.onPick) this.plot.over.addEventListener("click", (event) => this.spec.onPick(this.plot.posToVal(event.offsetX, "x")));
+    this.placeNow();
+  }
+
+  /// Marks an x of the chart, as the time of a page that plays; never drawn anew for it.
+  showTime(x) {
+    this.now = x;
+    this.placeNow();
+  }
+
+  placeNow() {
+    if (this.now === undefined || !this.plot) return;
+    this.mark ??= Object.assign(document.createElement("i"), { className: "now" });
+    if (this.mark.parentNode !== this.plot.over) this.plot.over.append(this.mark);
+    const left = this.plot.valToPos(this.now, "x");
+    this.mark.hidden = !(left >= 0 && left <= this.plot.over.clientWidth);
+    this.mark.style.transform = `translateX(${left}px)`;
   }
 
   fit() {

@@ -98,5 +98,49 @@ TEST_F(Journal, TellsWhatIsDamaged) {
               HasSubstr("is shorter than it was"));
 }
 
+TEST_F(Journal, IsFollowedWhileItGrows) {
+  BlockJournalTail tail(file_);
+  const auto fresh = [&] {
+    std::string text;
+    tail.read([&](std::span<const std::byte> bytes) {
+      text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    });
+    return text;
+  };
+  EXPECT_EQ(fresh(), "") << "it is not there yet";
+  {
+    BlockJournal journal(file_, 0);
+    append(journal, "one");
+    EXPECT_EQ(fresh(), "") << "it is not flushed";
+    journal.flush();
+    EXPECT_EQ(fresh(), "one");
+    EXPECT_EQ(fresh(), "");
+    append(journal, "two");
+    journal.flush();
+    append(journal, "three");
+    journal.flush();
+    EXPECT_EQ(fresh(), "twothree");
+  }
+  // A block of which the end is still missing.
+  const std::string whole = testing::read_file(file_);
+  std::uint64_t length = whole.size();
+  {
+    BlockJournal journal(file_, length);
+    append(journal, "four");
+    journal.flush();
+    length = journal.length();
+  }
+  fs::resize_file(file_, length - 1);
+  EXPECT_EQ(fresh(), "");
+  EXPECT_EQ(fs::file_size(file_), length - 1) << "a tail changes nothing";
+  std::ofstream(file_, std::ios::app | std::ios::binary) << 'r';
+  EXPECT_EQ(fresh(), "four");
+  // One that began anew.
+  BlockJournal journal(file_, 0);
+  append(journal, "five");
+  journal.flush();
+  EXPECT_EQ(fresh(), "five");
+}
+
 }  // namespace
 }  // namespace saccade

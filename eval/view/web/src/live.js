@@ -1,0 +1,65 @@
+import { ask, askBytes, askJson } from "./data.js";
+import { drawEvents, kModes } from "./event_drawing.js";
+import { unpackEvents } from "./event_store.js";
+import { Panel } from "./panels.js";
+
+const kEveryMs = 500;
+const kWindowUs = 20_000;
+
+const soFar = (folder) =>
+  `${folder.name} is being written (${[folder.frames && `${folder.frames} frames`, folder.depth_maps && `${folder.depth_maps} depth maps`, folder.reached_us !== undefined && `events up to ${(folder.reached_us / 1e6).toFixed(3)} s`, `${folder.mb} MB`].filter(Boolean).join(", ")}); it is shown as a whole when it is complete.`;
+
+/// The newest events and the newest frame of one folder.
+class LivePanels {
+  constructor(box, index) {
+    Object.assign(this, { box, index, frames: 0 });
+  }
+
+  async show(folder) {
+    if (folder.reached_us !== undefined && folder.reached_us !== this.reached) await this.showEvents(folder);
+    if (folder.frames > this.frames) await this.showFrame(folder);
+  }
+
+  async showEvents({ width, height, reached_us: reached }) {
+    const from = reached + 1 - kWindowUs;
+    const buffer = await askBytes(`live_events?unfinished=${this.index}&start_us=${from}&end_us=${reached + 1}`);
+    if (!buffer) return;
+    this.events ??= new Panel(this.box, "newest events", width, height);
+    Object.assign(this.events.canvas, { width, height });
+    const events = unpackEvents(buffer), picture = this.events.g.createImageData(width, height);
+    const count = drawEvents(kModes[0], [{ events, begin: from, from: 0, to: events.count }], picture, new Float64Array(width * height), from, reached + 1);
+    this.events.g.putImageData(picture, 0, 0);
+    this.events.say(`${count.toLocaleString("en")} in ${kWindowUs / 1000} ms before ${(reached / 1e6).toFixed(3)} s`);
+    this.events.figure.dataset.reached = this.reached = reached;
+  }
+
+  async showFrame({ frames }) {
+    const answer = await ask(`live_frame?unfinished=${this.index}&id=${frames - 1}`);
+    if (!answer) return;
+    const { width, height } = await createImageBitmap(answer).then((bitmap) => (this.picture = bitmap));
+    this.frame ??= new Panel(this.box, "newest frame", width, height);
+    this.frame.g.drawImage(this.picture, 0, 0);
+    this.frame.say(`number ${frames}`);
+    this.frames = frames;
+  }
+}
+
+/// Follows the folders that other programs are writing, and opens the page anew when one is complete.
+export function followUnfinished(box, panels, sources) {
+  const count = sources.unfinished.length;
+  if (!count) return;
+  const live = sources.unfinished.map((_, i) => new LivePanels(panels, i));
+  const show = async ({ unfinished }) => {
+    if (unfinished.length !== count) return location.reload();
+    box.textContent = unfinished.map(soFar).join(" ");
+    for (const [i, folder] of unfinished.entries()) await live[i].show(folder);
+    setTimeout(poll, kEveryMs);
+  };
+  const failed = (error) => {
+    box.textContent = error.message;
+    setTimeout(poll, 4 * kEveryMs);
+  };
+  const poll = () => askJson("sources").then(show).catch(failed);
+  box.hidden = false;
+  show(sources).catch(failed);
+}
