@@ -91,6 +91,11 @@ void add_run_verb(CLI::App& command) {
   verb->add_option("--poses-from", request.poses_from,
                    "Run or trajectory file (TUM) whose poses replace the ground truth.")
       ->type_name("RUN");
+  verb->add_option("--smooth-poses", request.smooth_poses_s,
+                   "Smooths the given poses, such as of motion capture, by a spline with knots "
+                   "this many seconds apart; 0.04 suits a hand.")
+      ->type_name("SECONDS")
+      ->check(positive_number());
   verb->add_option("--depth-from", request.depth_from,
                    "Run whose depth replaces the depth maps of the dataset.")
       ->type_name("RUN");

@@ -100,6 +100,8 @@ RunSummary run_module(const std::string& name, const RunRequest& request) {
   const Module& module = find_module(name);
   if (request.poses_from && !module.takes_poses)
     throw InputError("--poses-from", std::string(name) + " takes no poses");
+  if (request.smooth_poses_s && !module.takes_poses)
+    throw InputError("--smooth-poses", std::string(name) + " takes no poses");
   if (request.depth_from && !module.takes_depth)
     throw InputError("--depth-from", std::string(name) + " takes no depth");
   if (request.from && !module.takes_run)

@@ -17,6 +17,7 @@ struct EdgePoint {
   float inverse_depth = 0;  ///< 1 / z [1/m], > 0
   float sigma = 0;          ///< standard deviation of inverse_depth [1/m], > 0
   Eigen::Vector2f normal = Eigen::Vector2f::Zero();  ///< unit, across the edge; 0: not known
+  float pose_sigma = 0;  ///< of inverse_depth by the noise of the poses, alike for neighbours [1/m]
 };
 
 /// Depths that may occur [m], 0 < near < far; all that a method knows of the scene beforehand.
@@ -36,6 +37,9 @@ struct DepthResult {
   std::vector<Eigen::Vector2f> candidates;
   std::vector<std::pair<std::string, double>>
       stages_s;  ///< time per stage, the same names in all windows
+  /// By how much the gates of accuracy were opened to find enough points; 1: not at all.
+  double gate_opening = 1;
+  std::string why_empty = {};  ///< of a view without points: what dropped its candidates
 };
 
 /// A method that estimates depths of edge points from events and poses. Too few events or too

@@ -2,9 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 
 #include "core/config/config.h"
+#include "core/process/progress.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
 #include "estimator/run/run_input.h"
@@ -19,6 +23,31 @@ double mean_depth_of(const Dataset& dataset, const DepthLimits& limits) {
   return dataset.facts().mean_depth_m.value_or(std::sqrt(limits.near_m * limits.far_m));
 }
 
+/// Views that have few points or none, and why.
+void say_what_is_poor(std::span<const DepthResult> results) {
+  std::size_t empty = 0, opened = 0;
+  double opening = 1;
+  std::string why;
+  for (const DepthResult& result : results) {
+    if (result.points.empty()) {
+      ++empty;
+      why = result.why_empty;
+    } else if (result.gate_opening > 1) {
+      ++opened;
+      opening = std::max(opening, result.gate_opening);
+    }
+  }
+  if (opened > 0)
+    show_notice(
+        fmt::format("{} of {} views have few points or little parallax: their gates were "
+                    "opened {} times (rays.least_points), and their depths are coarse, as "
+                    "their sigmas say",
+                    opened, results.size(), opening));
+  if (empty > 0 && !why.empty())
+    show_notice(
+        fmt::format("{} of {} views are empty; of the last, {}", empty, results.size(), why));
+}
+
 }  // namespace
 
 RunSummary run_depth(const RunRequest& request) {
@@ -28,8 +57,8 @@ RunSummary run_depth(const RunRequest& request) {
   RunTiming timing;
   const Dataset dataset = Dataset::open(request.dataset);
   const ViewInput input = load_view_input(request, dataset, timing);
-  const auto windows =
-      cut_windows(input.events(), input.trajectory, config.window, dataset.frames());
+  auto windows = cut_windows(input.events(), input.trajectory, config.window, dataset.frames());
+  for (ViewWindow& window : windows) window.pose_noise = input.pose_noise;
   const auto estimator =
       make_depth_estimator(config, dataset.camera(), mean_depth_of(dataset, config.limits));
   const auto results = estimate_views<DepthResult>(
@@ -43,6 +72,7 @@ RunSummary run_depth(const RunRequest& request) {
   writer.finish("depth", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
+  say_what_is_poor(results);
   std::size_t points = 0;
   for (const DepthResult& result : results) points += result.points.size();
   return summary_of(timing, fmt::format("{} points in {} views", points, windows.size()));

@@ -136,7 +136,7 @@ RunSummary run_stabilization(const RunRequest& request) {
   {
     const ScopedTimer clock(timing.io_s);
     if (request.poses_from)
-      given_poses = load_poses(request, dataset);
+      given_poses = load_poses(request, dataset).trajectory;
     else
       imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
     if (!dataset.events_file().empty()) events = load_events_if_any(request, dataset);

@@ -35,7 +35,7 @@ struct MosaicSource {
 MosaicSource load_source(const RunRequest& request, const Dataset& dataset) {
   MosaicSource source;
   if (request.poses_from)
-    source.poses = load_poses(request, dataset);
+    source.poses = load_poses(request, dataset).trajectory;
   else
     source.imu = load_imu_input(dataset, "mosaic (or --poses-from RUN)");
   source.events = load_events(request, dataset);

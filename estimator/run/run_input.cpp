@@ -1,9 +1,12 @@
 #include "estimator/run/run_input.h"
 
+#include <fmt/core.h>
+
 #include <limits>
 
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
+#include "core/process/progress.h"
 #include "core/time_search.h"
 
 namespace saccade {
@@ -41,7 +44,12 @@ RunRecord::Window window_of(const RunRequest& request, double first_s, double la
   return window;
 }
 
-Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
+namespace {
+
+/// Of jitter, between one pose and the next: by less the events themselves are uncertain.
+constexpr double kVisibleJitter_px = 1.0 / 3;
+
+Trajectory recorded_poses(const RunRequest& request, const Dataset& dataset) {
   if (request.poses_from) {
     const std::filesystem::path& from = *request.poses_from;
     if (!std::filesystem::is_directory(from)) return read_trajectory(from);
@@ -54,6 +62,27 @@ Trajectory load_poses(const RunRequest& request, const Dataset& dataset) {
     throw InputError(dataset.folder().string(),
                      "holds no groundtruth.txt; name a run or a trajectory: --poses-from RUN");
   return dataset.groundtruth();
+}
+
+void warn_of_noise(const PoseNoise& noise, const PinholeCamera& camera) {
+  const double jitter_px = camera.fx * noise.rotation_rad;
+  if (jitter_px > kVisibleJitter_px)
+    show_notice(
+        fmt::format("the poses jitter by {:.2g} mrad, {:.2g} px, from one to the next; "
+                    "--smooth-poses fits a smooth motion through them",
+                    1e3 * noise.rotation_rad, jitter_px));
+}
+
+}  // namespace
+
+GivenPoses load_poses(const RunRequest& request, const Dataset& dataset) {
+  GivenPoses given{recorded_poses(request, dataset), {}};
+  given.noise = pose_noise_of(given.trajectory);
+  if (!request.smooth_poses_s)
+    warn_of_noise(given.noise, dataset.camera());
+  else if (given.trajectory.size() > 1)
+    given.trajectory = smoothed(given.trajectory, *request.smooth_poses_s);
+  return given;
 }
 
 }  // namespace saccade

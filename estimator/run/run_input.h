@@ -4,6 +4,7 @@
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/run/run_record.h"
+#include "core/pose_noise.h"
 #include "core/trajectory.h"
 #include "estimator/run/run_request.h"
 
@@ -31,9 +32,16 @@ template <class Config>
 /// request leaves it open.
 [[nodiscard]] RunRecord::Window window_of(const RunRequest& request, double first_s, double last_s);
 
-/// world_from_camera of the run or the trajectory file at `poses_from`, without one the ground
-/// truth. Of a run that found orientations alone, these, at the origin. Throws InputError where
-/// there is none.
-[[nodiscard]] Trajectory load_poses(const RunRequest& request, const Dataset& dataset);
+/// What a module that takes poses was given.
+struct GivenPoses {
+  Trajectory trajectory;  ///< world_from_camera
+  PoseNoise noise;        ///< of the poses as they were recorded
+};
+
+/// Those of the run or the trajectory file at `poses_from`, without one the ground truth; smoothed
+/// where the request asks for it, and where it does not and they jitter by more than a third of a
+/// pixel, that is said. Of a run that found orientations alone, these, at the origin. Throws
+/// InputError where there is none.
+[[nodiscard]] GivenPoses load_poses(const RunRequest& request, const Dataset& dataset);
 
 }  // namespace saccade

@@ -20,6 +20,8 @@ struct RunRequest {
   /// A run folder or a trajectory file whose poses stand in for the ground truth's; of modules that
   /// take poses.
   std::optional<std::filesystem::path> poses_from;
+  /// Spacing of the knots of a spline by which the poses are smoothed; of modules that take poses.
+  std::optional<double> smooth_poses_s;
   /// A run folder whose depth stands in for the dataset's; of modules that take depth.
   std::optional<std::filesystem::path> depth_from;
   /// A run folder that is refined; of modules that take a run.

@@ -26,6 +26,7 @@ namespace saccade {
 /// What a module that estimates one view per window of events starts from.
 struct ViewInput {
   Trajectory trajectory;  ///< world_from_camera
+  PoseNoise pose_noise;   ///< of the poses as they were recorded
   Events loaded;          ///< all in the window that was asked for
   RunRecord::Window window;
 
@@ -39,7 +40,9 @@ struct ViewInput {
                                                RunTiming& timing) {
   const ScopedTimer clock(timing.io_s);
   ViewInput input;
-  input.trajectory = load_poses(request, dataset);
+  GivenPoses given = load_poses(request, dataset);
+  input.trajectory = std::move(given.trajectory);
+  input.pose_noise = given.noise;
   input.loaded = load_events(request, dataset);
   input.window = window_of(request, seconds_from_ns(input.loaded.front().t_ns),
                            seconds_from_ns(input.loaded.back().t_ns));

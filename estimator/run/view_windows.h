@@ -7,6 +7,7 @@
 #include "core/config/fields.h"
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
+#include "core/pose_noise.h"
 #include "core/rigid3.h"
 #include "core/trajectory.h"
 
@@ -29,6 +30,7 @@ struct ViewWindow {
   std::span<const Event> events;           ///< in order of time, sensor pixels
   const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
   double reference_s = 0;                  ///< time of the view, within the events or at their ends
+  PoseNoise pose_noise = {};               ///< of the recording that the trajectory is of
 
   [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
 };

@@ -138,6 +138,7 @@ RunRequest make_request(const config::Document& config, const std::string& datas
   take("duration_s", request.duration_s);
   take("seed", request.seed);
   take_path("poses_from", request.poses_from);
+  take("smooth_poses_s", request.smooth_poses_s);
   take_path("depth_from", request.depth_from);
   take_path("from", request.from);
   if (options.contains("repeat")) request.repeat = options["repeat"].cast<int>();

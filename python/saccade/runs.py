@@ -150,8 +150,8 @@ def _python_programs() -> Iterator[None]:
 
 def run(estimator: Any, dataset: Union[Dataset, PathLike], output: Optional[PathLike] = None, *,
         config: Config = None, start_s: Optional[float] = None, duration_s: Optional[float] = None,
-        poses_from: Optional[PathLike] = None, depth_from: Optional[PathLike] = None,
-        refines: Optional[PathLike] = None, seed: Optional[int] = None, repeat: int = 1,
+        poses_from: Optional[PathLike] = None, smooth_poses_s: Optional[float] = None,
+        depth_from: Optional[PathLike] = None, refines: Optional[PathLike] = None, seed: Optional[int] = None, repeat: int = 1,
         progress: Progress = None, **overrides: Any) -> Run:
     """Runs an estimator over a dataset, as ``saccade run`` does.
 
@@ -170,6 +170,8 @@ def run(estimator: Any, dataset: Union[Dataset, PathLike], output: Optional[Path
         Window of the dataset.
     poses_from, depth_from, refines : Run or path, optional
         As ``--poses-from``, ``--depth-from`` and ``--from``.
+    smooth_poses_s : float, optional
+        As ``--smooth-poses``, in seconds.
     seed, repeat : int
         As ``--seed`` and ``--repeat``.
     progress
@@ -191,7 +193,7 @@ def run(estimator: Any, dataset: Union[Dataset, PathLike], output: Optional[Path
         keep = tempfile.TemporaryDirectory(prefix="saccade-")
         output = os.path.join(keep.name, name.replace(os.sep, "_").replace(" ", "_"))
     options = {"start_s": start_s, "duration_s": duration_s, "poses_from": _path(poses_from),
-               "depth_from": _path(depth_from), "from": _path(refines), "repeat": repeat}
+               "smooth_poses_s": smooth_poses_s, "depth_from": _path(depth_from), "from": _path(refines), "repeat": repeat}
     if seed is not None:
         overrides = {**overrides, "seed": seed}
     folder, data = os.fspath(output), os.fspath(dataset)

@@ -24,6 +24,11 @@ constexpr float kSigmaMargin = 2;        ///< on the sigma predicted for the who
 constexpr float kMaxConfirmedResidual_px = 0.4F;
 constexpr float kMinGap = 4;
 
+std::nullopt_t drop(std::size_t& count) {
+  ++count;
+  return std::nullopt;
+}
+
 /// A part of the window over which a seed is regressed.
 struct Stage {
   SliceRange slices;
@@ -85,18 +90,19 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
   Stage stage = stage_over(plane.first_slice, plane.last_slice, plane.motion_px);
   for (int i = 0; i < kMaxStages; ++i) {
     gatherer_.gather(stage.slices, edge, near_);
-    const RegressionResult result = regress(near_, options_.regression);
-    if (!result.ok || result.residual_px > kMaxResidual_px) return std::nullopt;
+    const RegressionResult result = regress(near_, options_.regression, options_.prior_sigma);
+    if (!result.ok) return drop(dropped_.weak);
+    if (result.residual_px > kMaxResidual_px) return drop(dropped_.scattered);
     edge = moved(edge, result);
-    if (!is_plausible(edge, seed.pixel)) return std::nullopt;
+    if (!is_plausible(edge, seed.pixel)) return drop(dropped_.scattered);
     const float sigma = result.sigma / edge.inverse_depth;
-    if (sigma > bound_on_sigma(stage, slices, options_.max_sigma)) return std::nullopt;
+    if (sigma > bound_on_sigma(stage, slices, options_.max_sigma)) return drop(dropped_.uncertain);
     if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
     const float shift_px = std::abs(result.change) * stage.motion_px / (2 * edge.inverse_depth);
     if (stage.is_whole(slices) && shift_px < kConverged_px) return accepted(edge, result, events);
     stage = next_stage(stage, result, edge.inverse_depth, slices);
   }
-  return std::nullopt;
+  return drop(dropped_.scattered);
 }
 
 std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "estimator/depth/rays/edgel_seeds.h"
 #include "estimator/depth/rays/event_assignment.h"
 #include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/gate_counts.h"
 #include "estimator/depth/rays/ray_gatherer.h"
 #include "estimator/depth/rays/ray_regression.h"
 
@@ -20,6 +22,8 @@ struct RefinerOptions {
   RegressionOptions regression;
   double spacing_px = 1.4;
   double max_sigma = 0.015;
+  /// Of an inverse depth around that of the stage before [1/m].
+  double prior_sigma = std::numeric_limits<double>::infinity();
 };
 
 /// Uncertainty of an inverse depth that is predicted from the neighbours.
@@ -61,6 +65,8 @@ class EdgelRefiner {
   [[nodiscard]] bool has_similar(const Edgel& edge, float tolerance) const {
     return found_.has_similar(edge, tolerance);
   }
+  /// The seeds that refine() dropped.
+  [[nodiscard]] const GateCounts& dropped() const { return dropped_; }
   /// Replaces the edgels found so far.
   void restart(EdgelIndex found) { found_ = std::move(found); }
 
@@ -77,6 +83,7 @@ class EdgelRefiner {
   RayGatherer gatherer_;
   EdgelIndex found_;
   RayNeighbourhood near_;
+  GateCounts dropped_;
   std::vector<float> observed_;  ///< weight of an edgel's events in each slice
 };
 

@@ -27,9 +27,7 @@ constexpr double kMinVotes = 1.5;      ///< of a ridge, per pixel after the blur
 constexpr double kMinVoteDensity = 0.05;
 constexpr double kMinSeedVoteRatio = 0.8;  ///< to the best plane at the same pixel
 constexpr double kMinAlignment = 0.1;      ///< |cos| between the normal and the motion of the rays
-constexpr double kMinSeedParallax_px =
-    0.3;                               ///< standard deviation over the window, across the edge
-constexpr float kMaxOffset_px = 0.6F;  ///< of a ridge from the centre of its pixel
+constexpr float kMaxOffset_px = 0.6F;      ///< of a ridge from the centre of its pixel
 
 /// The votes of one plane and their lengths.
 struct Plane {
@@ -90,8 +88,11 @@ class ParallaxSigma {
 
 class RidgeFinder {
  public:
-  RidgeFinder(const EventRays& rays, const PinholeCamera& camera)
-      : rays_(rays), parallax_(rays, camera), best_(camera.width, camera.height) {
+  RidgeFinder(const EventRays& rays, const PinholeCamera& camera, double least_parallax_px)
+      : rays_(rays),
+        parallax_(rays, camera),
+        least_parallax_px_(static_cast<float>(least_parallax_px)),
+        best_(camera.width, camera.height) {
     for (Plane& plane : planes_) {
       plane.votes = Image<Eigen::Vector2f>(camera.width, camera.height);
       plane.strength = ImageF(camera.width, camera.height);
@@ -99,8 +100,7 @@ class RidgeFinder {
   }
 
   /// The ridges of the planes [first, last) of a sweep.
-  std::vector<EdgelSeed> find(std::span<const SweepPlane> sweep, std::size_t first,
-                              std::size_t last) {
+  FoundSeeds find(std::span<const SweepPlane> sweep, std::size_t first, std::size_t last) {
     // A ridge must exceed the planes on both sides, which may belong to another part.
     const std::size_t begin = first > 0 ? first - 1 : 0;
     const std::size_t end = std::min(last + 1, sweep.size());
@@ -110,15 +110,14 @@ class RidgeFinder {
       std::swap(planes_[0], planes_[1]);
       std::swap(planes_[1], planes_[2]);
     }
-    return std::move(seeds_);
+    return std::move(found_);
   }
 
-  /// All ridges of one plane, whatever their parallax.
+  /// All ridges of one plane.
   std::vector<EdgelSeed> find_on(const SweepPlane& plane) {
-    min_parallax_px_ = 0;
     vote(plane, planes_[1]);
     collect();
-    return std::move(seeds_);
+    return std::move(found_.seeds);
   }
 
   /// Maximum over the planes at each pixel.
@@ -181,17 +180,20 @@ class RidgeFinder {
         Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
         std::abs(offset) * (gradient.dot(normal) > 0 ? normal : Eigen::Vector2f(-normal));
     const float parallax_px = parallax_.across(pixel, normal) * planes_[1].at.inverse_depth;
-    if (parallax_px < min_parallax_px_) return;
-    seeds_.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
-                      parallax_px, planes_[1].at});
+    if (parallax_px < least_parallax_px_) {
+      ++found_.still;
+      return;
+    }
+    found_.seeds.push_back({pixel, normal, planes_[1].at.inverse_depth, s(x, y), s(x, y) / least, 1,
+                            parallax_px, planes_[1].at});
   }
 
   const EventRays& rays_;
   ParallaxSigma parallax_;
-  float min_parallax_px_ = static_cast<float>(kMinSeedParallax_px);
+  float least_parallax_px_;
   std::array<Plane, 3> planes_;  ///< the last three planes
   ImageF best_;                  ///< over all planes
-  std::vector<EdgelSeed> seeds_;
+  FoundSeeds found_;
 };
 
 float value_near(const ImageF& image, const Eigen::Vector2f& pixel) {
@@ -256,29 +258,31 @@ std::vector<SweepPlane> sweep_planes(const EventRays& rays, const PinholeCamera&
   return planes;
 }
 
-std::vector<EdgelSeed> find_seeds(const EventRays& rays, const PinholeCamera& camera,
-                                  const DepthLimits& limits) {
+FoundSeeds find_seeds(const EventRays& rays, const PinholeCamera& camera, const DepthLimits& limits,
+                      double least_parallax_px) {
   if (rays.size() == 0) return {};
   const std::vector<SweepPlane> sweep = sweep_planes(rays, camera, limits);
   // Each thread takes a part of the sweep. Planes at the bounds are voted for twice; the result is the
   // same for any number of parts.
   const std::vector<std::size_t> cuts = cut(sweep, thread_count());
   const std::size_t parts = cuts.size() - 1;
-  std::vector<RidgeFinder> finders(parts, RidgeFinder(rays, camera));
-  std::vector<std::vector<EdgelSeed>> found(parts);
+  std::vector<RidgeFinder> finders(parts, RidgeFinder(rays, camera, least_parallax_px));
+  std::vector<FoundSeeds> found(parts);
   parallel_for(parts,
                [&](std::size_t i) { found[i] = finders[i].find(sweep, cuts[i], cuts[i + 1]); });
   ImageF best(camera.width, camera.height);
   for (const RidgeFinder& finder : finders)
     for (std::size_t i = 0; i < best.size(); ++i)
       best.pixels()[i] = std::max(best.pixels()[i], finder.best().pixels()[i]);
-  std::vector<EdgelSeed> seeds;
-  for (const std::vector<EdgelSeed>& part : found)
-    for (EdgelSeed seed : part) {
+  FoundSeeds all;
+  for (const FoundSeeds& part : found) {
+    all.still += part.still;
+    for (EdgelSeed seed : part.seeds) {
       seed.vote_ratio = seed.score / value_near(best, seed.pixel);
-      if (seed.vote_ratio >= static_cast<float>(kMinSeedVoteRatio)) seeds.push_back(seed);
+      if (seed.vote_ratio >= static_cast<float>(kMinSeedVoteRatio)) all.seeds.push_back(seed);
     }
-  return seeds;
+  }
+  return all;
 }
 
 std::vector<EdgelSeed> find_seeds_at(const EventRays& rays, const PinholeCamera& camera,
@@ -288,7 +292,9 @@ std::vector<EdgelSeed> find_seeds_at(const EventRays& rays, const PinholeCamera&
   const std::vector<double> parallax = parallax_of_slices(rays, camera);
   const double allowed = kMaxError_px / (relative_sigma * inverse_depth);
   if (parallax[static_cast<std::size_t>(rays.reference_slice())] > allowed) return {};
-  return RidgeFinder(rays, camera).find_on(plane_over(rays, parallax, inverse_depth, allowed));
+  constexpr double kAnyParallax_px = 0;
+  return RidgeFinder(rays, camera, kAnyParallax_px)
+      .find_on(plane_over(rays, parallax, inverse_depth, allowed));
 }
 
 }  // namespace saccade

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,6 +38,15 @@ struct EdgelSeed {
                                                    const PinholeCamera& camera,
                                                    const DepthLimits& limits);
 
+/// What a sweep found.
+struct FoundSeeds {
+  std::vector<EdgelSeed> seeds;
+  std::size_t still = 0;  ///< ridges that moved too little across their edge
+};
+
+/// Least standard deviation of a seed's motion across its edge: less tells no depth.
+constexpr double kSeedParallax_px = 0.3;
+
 /// Candidates for edgels, by a space sweep. The ray of every event votes, at the pixel where it
 /// intersects the plane, with the unit vector p x'(rho) / |x'(rho)| along which the log intensity
 /// increases. At an edge's depth its votes agree and lie on a line; elsewhere they spread, and those
@@ -44,8 +54,9 @@ struct EdgelSeed {
 /// that of the ridge) with more votes than in the two neighbouring planes. Several planes may give a
 /// seed at the same pixel. (The voting follows EMVS, Rebecq et al., IJCV 2018, which is covered by
 /// patent WO2018/037079.)
-[[nodiscard]] std::vector<EdgelSeed> find_seeds(const EventRays& rays, const PinholeCamera& camera,
-                                                const DepthLimits& limits);
+[[nodiscard]] FoundSeeds find_seeds(const EventRays& rays, const PinholeCamera& camera,
+                                    const DepthLimits& limits,
+                                    double least_parallax_px = kSeedParallax_px);
 
 /// Candidates for edgels whose depth cannot be told: all ridges of |votes| in one plane, whatever
 /// their parallax, by the part of the window over which an error of the relative inverse depth of

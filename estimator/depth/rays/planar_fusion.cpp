@@ -79,14 +79,16 @@ std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
     const LocalPlane plane = planes.fit(point);
     if (!is_supported(point, plane, options)) continue;
     const float sigma = sigma_of(plane);
-    if (sigma > static_cast<float>(options.max_sigma) * plane.inverse_depth) continue;
+    if (std::hypot(sigma, point.pose_sigma) >
+        static_cast<float>(options.max_sigma) * plane.inverse_depth)
+      continue;
     const Eigen::Vector2f shift =
         kContourShift_px * static_cast<float>(planes.surface_side(point, plane)) * point.normal;
     EdgePoint smooth = point;
     smooth.x_px += shift.x();
     smooth.y_px += shift.y();
     smooth.inverse_depth = plane.inverse_depth + plane.slope.dot(shift);
-    smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options));
+    smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options), point.pose_sigma);
     if (smooth.inverse_depth > 0) result.push_back(smooth);
   }
   return result;

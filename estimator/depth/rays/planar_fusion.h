@@ -32,6 +32,8 @@ void describe(config::Fields& fields, FusionOptions& options);
 /// a fraction of a pixel; and neighbours that scatter more than their sigmas are no plane. A point
 /// where its surface ends in front of another (LocalPlanes::surface_side) lies within a fraction of a
 /// pixel of either, so it is shifted onto its own.
+/// What the noise of the poses does to a point's depth it does to its neighbours', too, and is added
+/// to sigma^2 after the fusion.
 [[nodiscard]] std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
                                                  const FusionOptions& options);
 

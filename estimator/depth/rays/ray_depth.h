@@ -15,6 +15,7 @@
 #include "estimator/depth/rays/edgel_seeds.h"
 #include "estimator/depth/rays/event_assignment.h"
 #include "estimator/depth/rays/event_rays.h"
+#include "estimator/depth/rays/gate_counts.h"
 #include "estimator/depth/rays/local_planes.h"
 #include "estimator/depth/rays/planar_fusion.h"
 
@@ -26,6 +27,12 @@ struct RayDepthOptions {
   static constexpr int kTimeSlices = 24;
 
   RefinerOptions refiner;
+  /// Views with fewer points are estimated again with opened gates; 0: never.
+  int least_points = 200;
+  /// By how much the gates of accuracy are opened: what a point must have moved is divided by it, its
+  /// largest sigma multiplied.
+  double gate_opening = 1;
+  [[nodiscard]] RayDepthOptions opened(double opening, const DepthLimits& limits) const;
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;
   FusionOptions fusion;
@@ -44,6 +51,17 @@ struct RayDepthOptions {
 
 void describe(config::Fields& fields, RayDepthOptions& options);
 
+/// How far the noise of a window's poses moves an edge over the window: the poses' own noise,
+/// divided by the square root of their number.
+struct PoseError {
+  float rotation_px = 0;    ///< by their orientation
+  float position_px_m = 0;  ///< by their position, of an edge at inverse depth 1/m
+
+  /// Standard deviation of an edgel's inverse depth by it [1/m]: the regression divides it by the
+  /// same parallax as the residuals of its events, of which sigma averages `support`.
+  [[nodiscard]] float sigma_of(const FittedEdgel& edgel) const;
+};
+
 /// The edgels of a window before their depths are fused.
 struct WindowEdgels {
   std::vector<FittedEdgel> edges;  ///< `first` and `last` are indices into `events`
@@ -51,6 +69,8 @@ struct WindowEdgels {
       events;  ///< indices into the rays until the end of find_edgels(), then into the window
   std::vector<Eigen::Vector2f> seeds;
   std::vector<std::pair<std::string, double>> stages_s;
+  GateCounts dropped;
+  PoseError pose_error;
 };
 
 /// Seeds by horizontal strips of the view, which are processed in parallel.
@@ -63,6 +83,8 @@ class RayDepth : public DepthEstimator {
  public:
   RayDepth(const RayDepthOptions& options, const DepthLimits& limits, const PinholeCamera& camera);
 
+  /// A view that gets too few points is estimated again with its gates opened step by step: few
+  /// events and short paths give coarse depths, and their sigmas say so.
   [[nodiscard]] DepthResult estimate(const ViewWindow& window) const override;
 
   /// The two halves of estimate(), for callers that adjust the edgels in between.
@@ -76,7 +98,8 @@ class RayDepth : public DepthEstimator {
   [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, LocalPlanes& planes,
                                                    EdgelRefiner& refiner,
                                                    EdgelEvents& events) const;
-  [[nodiscard]] std::vector<EdgePoint> points_of(const std::vector<FittedEdgel>& edgels) const;
+  [[nodiscard]] std::vector<EdgePoint> points_of(const WindowEdgels& found) const;
+  [[nodiscard]] PoseError pose_error_over(const ViewWindow& window) const;
 
   RayDepthOptions options_;
   DepthLimits limits_;

@@ -75,7 +75,7 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
   if (!request.poses_from && !run.record.poses_from.empty())
     request.poses_from = run.record.poses_from;
   const auto method = run.config<DepthConfig>();
-  const Trajectory poses = load_poses(request, dataset);
+  const Trajectory poses = load_poses(request, dataset).trajectory;
   const Events events = load_events(request, dataset);
   const std::vector<RunView> views = read_view_list(run.folder / "views.yaml");
   const auto points = points_of(run.folder, views.size());

@@ -131,7 +131,7 @@ BENCHMARK(regression)->Unit(benchmark::kMicrosecond);
 void seeds(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
-  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}).size());
+  for (auto _ : state) benchmark::DoNotOptimize(find_seeds(rays, r.world.camera(), {}).seeds.size());
   items_per_second(state, rays.size());
 }
 BENCHMARK(seeds)->Unit(benchmark::kMillisecond);
@@ -139,7 +139,7 @@ BENCHMARK(seeds)->Unit(benchmark::kMillisecond);
 void refinement(benchmark::State& state) {
   const Recording& r = recording();
   const EventRays rays({r.events, &r.trajectory, 0.2}, r.world.camera(), r.undistortion, 32);
-  const auto found = find_seeds(rays, r.world.camera(), {});
+  const auto found = find_seeds(rays, r.world.camera(), {}).seeds;
   const RefinerOptions options;
   for (auto _ : state) {
     EdgelRefiner refiner(rays, options, {}, r.world.camera());

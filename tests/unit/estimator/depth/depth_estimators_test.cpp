@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/median.h"
 #include "core/process/parallel.h"
+#include "core/time_search.h"
 #include "estimator/depth/depth_config.h"
 #include "tests/support/planar_world.h"
 
@@ -176,6 +179,65 @@ TEST(RayDepth, ForwardMotionServesAsWell) {
   std::sort(errors.begin(), errors.end());
   ASSERT_GT(errors.size(), 200U);
   EXPECT_LT(errors[errors.size() / 2], 0.01);
+}
+
+/// The first sixty milliseconds: four pixels of parallax from end to end.
+ViewWindow short_window() {
+  ViewWindow window = recording().window(0.03);
+  window.events = window.events.first(count_before(recording().events, ns_from_seconds(0.06)));
+  return window;
+}
+
+DepthConfig best_rays(int least_points) {
+  DepthConfig config;
+  config.method = DepthConfig::Method::kRays;
+  config.rays.least_points = least_points;
+  return config;
+}
+
+DepthResult by_rays(const ViewWindow& window, int least_points) {
+  return make_depth_estimator(best_rays(least_points), recording().world.camera(), kMeanDepth_m)
+      ->estimate(window);
+}
+
+TEST(RayDepth, OpensItsGatesWhereTheMotionTellsLittle) {
+  const DepthResult strict = by_rays(short_window(), 0);
+  const DepthResult opened = by_rays(short_window(), 200);
+  EXPECT_EQ(strict.gate_opening, 1);
+  EXPECT_GT(opened.gate_opening, 1);
+  ASSERT_GT(opened.points.size(), 100 + 2 * strict.points.size());
+  const std::vector<double> errors = relative_errors(opened, 0.03);
+  EXPECT_LT(errors[errors.size() / 2], 0.1);
+  // A view that has its points keeps its gates.
+  EXPECT_EQ(by_rays(recording().window(kEnd_s / 2), 200).gate_opening, 1);
+}
+
+TEST(RayDepth, NamesTheGateThatEmptiesAView) {
+  const Trajectory turning = trajectory_of(
+      [](double t_s) { return Rigid3(corner_glide(t_s).rotation(), Eigen::Vector3d::Zero()); },
+      kEnd_s);
+  ViewWindow window = recording().window(0);
+  window.trajectory = &turning;
+  EXPECT_THAT(by_rays(window, 200).why_empty, ::testing::HasSubstr("hardly translates"));
+  window.events = window.events.first(5);
+  EXPECT_THAT(by_rays(window, 200).why_empty, ::testing::HasSubstr("events"));
+  EXPECT_EQ(by_rays(recording().window(0), 200).why_empty, "");
+}
+
+TEST(RayDepth, NoiseOfThePosesIsPartOfSigma) {
+  const ViewWindow exact = recording().window(kEnd_s / 2);
+  ViewWindow noisy = exact;
+  noisy.pose_noise = {.rotation_rad = 2e-3, .position_m = 0, .spacing_s = 5e-3};
+  const auto median_sigma = [](const DepthResult& result) {
+    std::vector<double> sigmas;
+    for (const EdgePoint& point : result.points)
+      sigmas.push_back(static_cast<double>(point.sigma / point.inverse_depth));
+    return median(std::move(sigmas));
+  };
+  // Sixty poses leave 2 mrad / sqrt(60), 0.034 px of 36 px from end to end, which scatter by 10 px.
+  const double added = median_sigma(by_rays(noisy, 0)) - median_sigma(by_rays(exact, 0));
+  EXPECT_GT(added, 0.001);
+  EXPECT_LT(added, 0.02);
 }
 
 TEST(ThesisDepth, StartsAtTheStatedDepth) {

@@ -14,6 +14,7 @@
 #include "core/io/run/view_list.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/parallel.h"
+#include "core/random.h"
 #include "estimator/registry.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
@@ -131,6 +132,36 @@ TEST_F(DepthModule, TakesPosesFromARunOrAFile) {
   EXPECT_NEAR(median_depth("doubled") / median_depth("plain"), 2, 0.06);
 }
 
+TEST_F(DepthModule, SmoothsPosesOnRequestAndSaysThatTheyJitter) {
+  const Random random(5);
+  const Trajectory truth = Dataset::open(dataset()).groundtruth();
+  std::vector<StampedPose> noisy;
+  for (std::size_t i = 0; i < truth.size(); i += 5) {
+    StampedPose pose = truth.poses()[i];
+    const Eigen::Vector3d turn(random.normal(0, 3 * i), random.normal(0, 3 * i + 1),
+                               random.normal(0, 3 * i + 2));
+    pose.world_from_camera = {pose.world_from_camera.rotation() * so3_exp(4e-3 * turn),
+                              pose.world_from_camera.translation()};
+    noisy.push_back(pose);
+  }
+  write_tum_trajectory(path("noisy.txt"), noisy);
+  RunRequest run = request("noisy", "method: rays");
+  run.poses_from = path("noisy.txt");
+  ::testing::internal::CaptureStderr();
+  run_depth(run);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("jitter by 4"));
+  const auto points_of = [](const fs::path& folder) {
+    return read_ply(folder / "cloud.ply").positions.size();
+  };
+  const std::size_t before = points_of(path("noisy"));
+  run.smooth_poses_s = 0.04;
+  run.output = path("smooth");
+  ::testing::internal::CaptureStderr();
+  run_depth(run);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), Not(HasSubstr("jitter")));
+  EXPECT_GT(points_of(path("smooth")), before);
+}
+
 TEST_F(DepthModule, LeavesOutEventsWithoutPoses) {
   const Trajectory truth = Dataset::open(dataset()).groundtruth();
   write_tum_trajectory(path("part.txt"), truth.poses().subspan(50, 101));
@@ -161,6 +192,9 @@ TEST_F(DepthModule, TrackingTakesNoPoses) {
   RunRequest track = request("track", "");
   track.poses_from = path("late.txt");
   EXPECT_THAT(error_of([&] { return run_module("track", track); }), HasSubstr("--poses-from"));
+  track.poses_from.reset();
+  track.smooth_poses_s = 0.04;
+  EXPECT_THAT(error_of([&] { return run_module("track", track); }), HasSubstr("--smooth-poses"));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ struct Refined {
       : rays({of, &glide_recording().poses, kMiddle_s}, glide_recording().world.camera(),
              glide_recording().undistortion, 32),
         refiner(rays, options, {}, glide_recording().world.camera()),
-        seeds(find_seeds(rays, glide_recording().world.camera(), {})) {
+        seeds(find_seeds(rays, glide_recording().world.camera(), {}).seeds) {
     for (const EdgelSeed& seed : seeds)
       if (const auto edge = refiner.refine(seed, events)) edges.push_back(*edge);
   }

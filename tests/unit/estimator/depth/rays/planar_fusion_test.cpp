@@ -40,6 +40,14 @@ TEST(PlanarFusion, ReducesNoiseOnASlantedPlane) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(points.size())), 0.5 * kNoise);
 }
 
+TEST(PlanarFusion, TheNoiseOfThePosesAveragesOverNoNeighbours) {
+  std::vector<EdgePoint> points = grid_of_points(0.004);
+  for (EdgePoint& p : points) p.pose_sigma = 0.005F;
+  for (const EdgePoint& p : fuse_planes(points, FusionOptions{})) EXPECT_GT(p.sigma, 0.005F);
+  for (EdgePoint& p : points) p.pose_sigma = 0.1F;
+  EXPECT_TRUE(fuse_planes(points, FusionOptions{}).empty());
+}
+
 TEST(PlanarFusion, KeepsAStep) {
   std::vector<EdgePoint> points = grid_of_points(0.001);
   for (EdgePoint& p : points)
