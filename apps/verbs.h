@@ -18,5 +18,7 @@ void add_info_verb(CLI::App& command);
 void add_statistics_verb(CLI::App& command);
 void add_calibrate_verb(CLI::App& command);
 void add_convert_verb(CLI::App& command);
+void add_completion_verb(CLI::App& command);
+void add_man_verb(CLI::App& command);
 
 }  // namespace saccade
