@@ -19,7 +19,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/scenes ${P
 install(DIRECTORY ${PROJECT_BINARY_DIR}/manual/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT command OPTIONAL)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}-doc/html COMPONENT documentation OPTIONAL)
 
+# All libraries are of the system, and found without a path in the program.
+set_target_properties(saccade PROPERTIES SKIP_BUILD_RPATH ON INSTALL_RPATH "")
 if(TARGET saccade_python)
+  set_target_properties(saccade_python PROPERTIES SKIP_BUILD_RPATH ON INSTALL_RPATH "")
   set(python_dir lib/python3/dist-packages CACHE STRING "Where the Python module is installed, below the prefix")
   install(TARGETS saccade_python LIBRARY DESTINATION ${python_dir}/saccade COMPONENT python)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/saccade DESTINATION ${python_dir} COMPONENT python
