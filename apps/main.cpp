@@ -45,6 +45,8 @@ void describe_command(CLI::App& command) {
   add_statistics_verb(command);
   add_calibrate_verb(command);
   add_convert_verb(command);
+  add_completion_verb(command);
+  add_man_verb(command);
 }
 
 int run_command(int argc, char** argv) {

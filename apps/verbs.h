@@ -19,5 +19,7 @@ void add_statistics_verb(CLI::App& command);
 void add_calibrate_verb(CLI::App& command);
 void add_convert_verb(CLI::App& command);
 void add_view_verb(CLI::App& command);
+void add_completion_verb(CLI::App& command);
+void add_man_verb(CLI::App& command);
 
 }  // namespace saccade

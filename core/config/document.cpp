@@ -12,6 +12,7 @@
 #include "core/check.h"
 #include "core/config/convert.h"
 #include "core/config/merge.h"
+#include "core/config/shipped.h"
 #include "core/config/yaml_parse.h"
 #include "core/error.h"
 #include "core/io/files/input_log.h"
@@ -29,7 +30,8 @@ constexpr std::size_t kMaxFiles = 256;
 
 std::string read_text(const fs::path& file, const std::string& location) {
   std::error_code error;
-  if (!fs::exists(file, error)) throw InputError(location, "no such file '" + file.string() + "'");
+  if (!fs::exists(file, error))
+    throw InputError(location, "no such file '" + file.string() + "'" + nearest_shipped(file));
   if (fs::is_directory(file, error))
     throw InputError(location, "'" + file.string() + "' is a folder, expected a YAML file");
   if (const auto size = fs::file_size(file, error); !error && size > kMaxBytes)
@@ -124,7 +126,7 @@ Document Document::empty(std::span<const std::string> overrides) {
 }
 
 Document load(const fs::path& file, std::span<const std::string> overrides) {
-  return with_overrides(Loader().load(file, {}), overrides);
+  return with_overrides(Loader().load(find_configuration(file), {}), overrides);
 }
 
 Document parse(std::string_view yaml, const std::string& name, const fs::path& folder,

@@ -1,6 +1,5 @@
 #include "simulator/scene/intersection/embree_scene.h"
 
-#include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "simulator/scene/intersection/embree_api.h"
 
 namespace saccade {
 namespace {
@@ -33,15 +33,11 @@ struct ReleaseScene {
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-/// Embree's context with the rays in double precision, for the cutout test.
-struct Context {
-  RTCIntersectContext embree;
+/// A query with the rays in double precision, for the cutout test.
+struct RayQuery : embree::Query {
   const Ray* rays;
 
-  Context(const Ray* all_rays, RTCIntersectContextFlags flags) : rays(all_rays) {
-    rtcInitIntersectContext(&embree);
-    embree.flags = flags;
-  }
+  RayQuery(const Ray* all_rays, embree::Coherence coherence) : Query(coherence), rays(all_rays) {}
 };
 
 /// Hands a geometry that is complete to the scene. `filter`: nullptr, or judges each hit, with
@@ -132,7 +128,7 @@ struct EmbreeScene::State {
   std::vector<SceneHandle> scenes;  ///< one, or one per piece of the animation
   IsOpaque is_opaque;
   std::array<TriangleId, 2> first_of_geometry{};
-  RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  embree::Coherence coherence = embree::Coherence::kCoherent;
   std::shared_ptr<const VertexAnimation> animation;
   std::array<std::vector<CornerIndices>, 2> corners;  ///< of an animation's geometries
 
@@ -158,13 +154,13 @@ struct EmbreeScene::State {
 
   static void filter(const RTCFilterFunctionNArguments* arguments) {
     const auto& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    const auto& context = *reinterpret_cast<const Context*>(arguments->context);
+    const auto& query = static_cast<const RayQuery&>(embree::query_of(*arguments));
     for (unsigned i = 0; i < arguments->N; ++i) {
       if (arguments->valid[i] == 0) continue;
       const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, i);
       const TriangleId triangle =
           state.first_of_geometry[1] + RTCHitN_primID(arguments->hit, arguments->N, i);
-      if (!state.is_opaque(context.rays[ray], triangle)) arguments->valid[i] = 0;
+      if (!state.is_opaque(query.rays[ray], triangle)) arguments->valid[i] = 0;
     }
   }
 
@@ -203,10 +199,10 @@ struct EmbreeScene::State {
       set_ray(packet.ray, i, rays[i]);
       valid[i] = -1;
     }
-    Context context(rays.data(), flags);
+    RayQuery query(rays.data(), coherence);
     for_pieces(rays, packet.ray, valid,
                [&](RTCScene scene, const std::array<int, kRayPacket>& some) {
-                 rtcIntersect16(some.data(), scene, &context.embree, &packet);
+                 embree::intersect16(some.data(), scene, query, packet);
                });
   }
 
@@ -222,7 +218,7 @@ EmbreeScene::EmbreeScene(const TriangleRun& opaque, const TriangleRun& cut_out, 
           std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
   const std::size_t count = opaque.corners.size() + cut_out.corners.size();
   SACCADE_CHECK(count < kNothing / 3);
-  if (count > kCoherentTriangles) state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  if (count > kCoherentTriangles) state_->coherence = embree::Coherence::kIncoherent;
   RTCScene scene = state_->add_scene();
   add_triangles(state_->device.get(), scene, opaque.corners, 0, nullptr, nullptr);
   add_triangles(state_->device.get(), scene, cut_out.corners, 1, State::filter, state_.get());
@@ -236,7 +232,7 @@ EmbreeScene::EmbreeScene(std::shared_ptr<const VertexAnimation> animation,
           std::make_unique<State>(std::array{opaque.first, cut_out.first}, std::move(is_opaque))) {
   SACCADE_CHECK(animation != nullptr);
   state_->animation = std::move(animation);
-  state_->flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  state_->coherence = embree::Coherence::kIncoherent;
   state_->corners = {std::vector(opaque.corners.begin(), opaque.corners.end()),
                      std::vector(cut_out.corners.begin(), cut_out.corners.end())};
   RTCDevice device = state_->device.get();
@@ -292,10 +288,10 @@ void EmbreeScene::find_blocked(std::span<const Ray> rays, std::span<const float>
     packet.tfar[i] = distances[i];
     valid[i] = -1;
   }
-  Context context(rays.data(), state_->flags);
+  RayQuery query(rays.data(), state_->coherence);
   state_->for_pieces(rays, packet, valid,
                      [&](RTCScene scene, const std::array<int, kRayPacket>& some) {
-                       rtcOccluded16(some.data(), scene, &context.embree, &packet);
+                       embree::occluded16(some.data(), scene, query, packet);
                      });
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (valid[i] != 0) blocked[i] = packet.tfar[i] < 0;

@@ -1,7 +1,5 @@
 #include "tests/bench/study/raw_embree.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "core/process/parallel.h"
+#include "simulator/scene/intersection/embree_api.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/scene_builder.h"
 #include "simulator/sensor/rays/pixel_rays.h"
@@ -45,11 +44,9 @@ class BareScene {
       all.fill(-1);
       return all;
     }();
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = triangles_ > kManyTriangles ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
-                                                : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(kAll.data(), scene_.get(), &context, &packet);
+    embree::Query query(triangles_ > kManyTriangles ? embree::Coherence::kIncoherent
+                                                    : embree::Coherence::kCoherent);
+    embree::intersect16(kAll.data(), scene_.get(), query, packet);
   }
 
  private:
