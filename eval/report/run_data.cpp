@@ -21,7 +21,7 @@ namespace saccade {
 namespace {
 
 /// Takes the scores that `eval` wrote, or scores the run where they are stale.
-void set_scores(RunData& data) {
+void set_scores(RunData& data, bool with_reprojection) {
   data.stale = staleness(data.run.folder, *data.data);
   data.input = score_input(data.run, *data.data);
   // The errors over time are relative to the depth that the scores are relative to; `eval` may have
@@ -33,7 +33,8 @@ void set_scores(RunData& data) {
   data.errors = errors_over_time(data.input);
   data.map = data.run.load_map().positions;
   data.keyframes = KeyframeHistory::load(data.run);
-  data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
+  if (with_reprojection)
+    data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
   data.metrics = data.stale.empty() ? data.run.metrics
                                     : score_run(data.run, *data.data, data.input.mean_depth_m);
 }
@@ -72,7 +73,7 @@ Metrics facts_of(const Dataset& dataset) {
   return facts;
 }
 
-RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
+RunData gather_run(const std::filesystem::path& folder, std::size_t index, bool with_reprojection) {
   RunData data;
   data.id = "run" + std::to_string(index);
   data.run = RunFolder::open(folder);
@@ -88,7 +89,7 @@ RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
   data.data = data.run.open_dataset();
   data.dataset = data.data->facts().name;
   data.facts = facts_of(*data.data);
-  set_scores(data);
+  set_scores(data, with_reprojection);
   return data;
 }
 
