@@ -80,7 +80,7 @@ TEST_F(Ablation, TheBestIsBoldWhereItBeatsAllOthers) {
     if (row.job->point.variant == "same") row.metrics.set(kError, *row.metrics.get(kError) / 2);
   const std::vector<Table> both = ablation_tables(results_);
   EXPECT_TRUE(both[0].rows[2][1].best);
-  EXPECT_THAT(table_latex(both[0]), HasSubstr("\\textbf{0.15"));
+  EXPECT_THAT(table_latex(both[0]), HasSubstr("\\textbf{0.1"));
 }
 
 TEST_F(Ablation, TheReferenceMustBeARow) {
