@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -28,6 +30,7 @@ struct GateVerbOptions {
   std::vector<std::filesystem::path> builds;
   std::optional<std::filesystem::path> junit;
   std::optional<std::filesystem::path> markdown;
+  std::string format = "text";
   GateOptions gate;
   int repeats = 10;
   bool update = false;
@@ -42,9 +45,22 @@ void update(const GateVerbOptions& options, const std::vector<GateRun>& runs) {
     fmt::print("wrote {}: {} {}\n", options.baseline.string(), count, count == 1 ? "run" : "runs");
 }
 
+/// Annotations on the standard output, and the table at the end of the job's summary where there is
+/// one: other steps write to that file, too.
+void show_on_github(const GateVerbOptions& options, const GateResult& result) {
+  fmt::print("{}", gate_annotations(result, options.baseline.generic_string()));
+  const char* summary = std::getenv("GITHUB_STEP_SUMMARY");
+  if (summary == nullptr || *summary == '\0') return;
+  std::ofstream file(summary, std::ios::app);
+  file << gate_markdown(result) << "\n";
+  file.close();
+  if (!file) throw InputError(summary, "cannot be written (GITHUB_STEP_SUMMARY)");
+}
+
 /// Shows and writes the result. A gate that tripped is a failure.
 void finish(const GateVerbOptions& options, const GateResult& result) {
   if (!options.quiet) fmt::print("{}", gate_text(result, options.all));
+  if (options.format == "github") show_on_github(options, result);
   if (options.junit) write_atomically(*options.junit, gate_junit(result));
   if (options.markdown) write_atomically(*options.markdown, gate_markdown(result));
   if (!result.tripped()) return;
@@ -108,6 +124,13 @@ void add_rule_options(CLI::App& verb, GateOptions& gate) {
       ->type_name("KEY")
       ->take_all()
       ->allow_extra_args(false);
+  verb.add_option(
+          "--compare", gate.compared,
+          "Setting in which the runs differ from the baseline on purpose, a key of --set or "
+          "`config` for the file of -c: pairs need not agree in it (repeatable).")
+      ->type_name("KEY")
+      ->take_all()
+      ->allow_extra_args(false);
   verb.add_flag("--partial", gate.partial,
                 "Runs of the baseline may be missing; --update then keeps their old values.");
 }
@@ -131,6 +154,11 @@ void add_gate_options(CLI::App& verb, GateVerbOptions& options) {
       ->capture_default_str();
   add_rule_options(verb, options.gate);
   verb.add_flag("--no-speed", options.no_speed, "Do not compare the times of the runs.");
+  verb.add_option("--format", options.format,
+                  "github: also print annotations (::error, ::warning) and append the table to the "
+                  "file that GITHUB_STEP_SUMMARY names.")
+      ->check(CLI::IsMember({"text", "github"}))
+      ->capture_default_str();
   verb.add_option("--junit", options.junit, "Write the result as JUnit XML.")->type_name("FILE");
   verb.add_option("--markdown", options.markdown, "Write the result as Markdown.")
       ->type_name("FILE");
@@ -150,6 +178,7 @@ void add_gate_verb(CLI::App& command) {
       "Examples:\n"
       "  saccade gate runs/* --baseline baseline.yaml --update\n"
       "  saccade gate runs/* --baseline baseline.yaml --junit gate.xml --markdown gate.md\n"
+      "  saccade gate coarse/* --baseline baseline.yaml --compare edges.samples\n"
       "  saccade gate --build old/saccade --build new/saccade -- \\\n"
       "    run track --data data/walls -c configs/tracking/accurate.yaml -o runs/timed\n\n"
       "Exit codes: 0 nothing regressed, 1 the gate tripped, 2 bad usage or bad input.");

@@ -18,6 +18,8 @@
 #include "eval/store/result_diff.h"
 #include "eval/store/result_store.h"
 #include "eval/store/result_text.h"
+#include "eval/store/result_trend.h"
+#include "eval/sweep/result/run_variants.h"
 
 namespace saccade {
 namespace {
@@ -29,11 +31,14 @@ struct ResultsOptions {
   std::string where;
   std::vector<std::string> columns;
   std::vector<std::string> diff;
+  std::string against;
   std::string format = "table";
   fs::path fill;
   std::optional<std::string> missing;
   std::vector<fs::path> add;
   fs::path scan;
+  std::string trend;
+  bool flaky = false;
 };
 
 ResultFormat format_of(const ResultsOptions& options) {
@@ -71,6 +76,15 @@ void add_runs(const std::vector<fs::path>& runs) {
   }
 }
 
+/// --diff A B, or --diff B --against A.
+std::vector<std::string> compared_sides(const ResultsOptions& options) {
+  std::vector<std::string> sides = options.diff;
+  if (!options.against.empty()) sides.insert(sides.begin(), options.against);
+  if (sides.size() != 2)
+    throw InputError("--diff", "name two sides: --diff A B, or --diff B --against A");
+  return sides;
+}
+
 void show_results(const ResultsOptions& options) {
   std::vector<fs::path> runs = options.add;
   if (!options.scan.empty()) {
@@ -78,12 +92,22 @@ void show_results(const ResultsOptions& options) {
     runs.insert(runs.end(), found.begin(), found.end());
   }
   if (!runs.empty()) return add_runs(runs);
-  ResultReader reader(find_result_store(options.store.empty() ? "." : options.store));
+  const fs::path store = find_result_store(options.store.empty() ? "." : options.store);
+  ResultReader reader(store);
   if (!options.fill.empty()) {
     std::ifstream file(options.fill);
     if (!file) throw InputError(options.fill.string(), "cannot be read (--fill)");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     fmt::print("{}", fill_page(text, options.fill.string(), reader, options.missing));
+    return;
+  }
+  if (!options.trend.empty()) {
+    fmt::print(
+        "{}", format_trend(result_trend(reader, options.trend, options.where), format_of(options)));
+    return;
+  }
+  if (options.flaky) {
+    fmt::print("{}", format_flaky(flaky_metrics(reader, options.where), format_of(options)));
     return;
   }
   if (options.diff.empty()) {
@@ -92,9 +116,10 @@ void show_results(const ResultsOptions& options) {
   }
   if (!options.columns.empty())
     throw InputError("--columns", "is for the list of runs; --diff has columns of its own");
-  fmt::print("{}",
-             format_diff(diff_results(reader, options.diff[0], options.diff[1], options.where),
-                         format_of(options)));
+  const std::vector<std::string> sides = compared_sides(options);
+  fmt::print("{}", format_diff(
+                       diff_results(reader, sides[0], sides[1], options.where, run_variants(store)),
+                       format_of(options)));
 }
 
 }  // namespace
@@ -115,10 +140,20 @@ void add_results_verb(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option("--diff", options->diff,
-                   "Compare two runs, or the runs of two commits, versions or configurations that "
-                   "agree in dataset, module, window, configuration and seed.")
+                   "Compare two runs, or the runs of two commits, versions, configurations or "
+                   "variants of a sweep that agree in dataset, module, window, configuration and "
+                   "seed.")
       ->type_name("A B")
-      ->expected(2);
+      ->expected(1, 2);
+  verb->add_option("--against", options->against,
+                   "With --diff B: what B is compared with, A of --diff A B.")
+      ->type_name("A");
+  verb->add_option("--trend", options->trend,
+                   "Show a metric over the commits, with the commits at which its level changed.")
+      ->type_name("METRIC");
+  verb->add_flag("--flaky", options->flaky,
+                 "List metrics that differ between runs of the same commit, dataset, "
+                 "configuration, window, seed and machine.");
   verb->add_option("--format", options->format, "Output format: table, csv or json.")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
@@ -138,6 +173,7 @@ void add_results_verb(CLI::App& command) {
       "  saccade results runs\n"
       "  saccade results runs --where \"module = 'track' and trajectory.drift_percent < 1\"\n"
       "  saccade results runs --diff best fast\n"
+      "  saccade results runs --trend trajectory.dt_rel_percent.mean\n"
       "  saccade results runs --columns run,machine,speed.wall_s --format csv\n"
       "  saccade results runs --fill page.in.md > page.md\n"
       "  saccade results --scan runs");

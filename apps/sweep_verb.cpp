@@ -10,8 +10,10 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "core/io/files/atomic_file.h"
 #include "core/process/progress.h"
 #include "eval/sweep/plan/sweep_config.h"
+#include "eval/sweep/status.h"
 #include "eval/sweep/sweep.h"
 
 namespace saccade {
@@ -27,6 +29,8 @@ struct SweepVerbOptions {
   int threads = 0;  ///< 0: as the file states it
   int jobs = 0;     ///< at a time; 0: one per core
   bool dry_run = false;
+  bool status = false;
+  std::filesystem::path jobs_json;
   bool print_config = false;
   bool quiet = false;
 };
@@ -64,6 +68,14 @@ void sweep(const SweepVerbOptions& options) {
     return;
   }
   if (options.output.empty()) throw InputError("-o", "name the folder of the sweep: -o DIR");
+  if (options.status) {
+    fmt::print("{}", sweep_status(config, options.output));
+    return;
+  }
+  if (!options.jobs_json.empty()) {
+    write_atomically(options.jobs_json, sweep_jobs_json(config, options.output));
+    return;
+  }
   if (options.dry_run) {
     fmt::print("{}", config.generate ? estimate_generation(config, options.output, options.jobs)
                                      : describe_sweep(config, options.output));
@@ -109,6 +121,13 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
   verb.add_flag("--dry-run", options.dry_run,
                 "Print the command lines and what would be skipped; for a sweep that generates "
                 "datasets, estimate events, bytes and time from a short calibration run.");
+  verb.add_flag("--status", options.status,
+                "Print how many jobs are done, running, failed and waiting, also while another "
+                "program runs them, and stop.");
+  verb.add_option("--jobs-json", options.jobs_json,
+                  "Write the jobs with their commands and what each needs as JSON, for another "
+                  "workflow manager, and stop.")
+      ->type_name("FILE");
   verb.add_option("--set", options.overrides,
                   "Override one key of the sweep file, e.g. --set repeat=1 (repeatable).")
       ->type_name("KEY.PATH=VALUE")

@@ -62,7 +62,7 @@ void add_errors(std::string& text, const Metrics& metrics) {
 
 void add_alignments(std::string& text, const Metrics& metrics) {
   Table table = table_of({"alignment", "ATE [mm]", "rot [deg]", "scale"});
-  for (const char* name : {"none", "se3", "sim3"}) {
+  for (const char* name : {"none", "yaw", "se3", "sim3"}) {
     const Shown of(metrics, std::string("trajectory.") + name);
     table.add(
         {name, of.fixed(".ate_rmse_m", 2), of.fixed(".rot_rmse_deg", 3), of.fixed(".scale", 5)});

@@ -1,7 +1,6 @@
 #include "eval/gate/baseline_file.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "core/config/config.h"
@@ -31,6 +30,12 @@ void sort_by_key(std::vector<GateRun>& runs) {
 
 }  // namespace
 
+void describe(config::Fields& fields, MachineTimes& times) {
+  fields.value("machine", times.machine, "Processor and operating system.").required();
+  fields.value("threads", times.threads, "Number of threads.").at_least(0);
+  fields.value("metrics", times.metrics, "Times by dotted key.").required();
+}
+
 void describe(config::Fields& fields, GateRun& run) {
   fields.value("dataset", run.key.dataset, "Name of the dataset's folder.").required();
   fields.value("module", run.key.module, "Module of `saccade run`.").required();
@@ -42,6 +47,9 @@ void describe(config::Fields& fields, GateRun& run) {
   fields.value("threads", run.threads, "Number of threads; 0 where it is not stated.").at_least(0);
   fields.value("tool_version", run.tool_version, "Version of saccade that made the run.");
   fields.value("metrics", run.metrics, "Metrics by dotted key.").required();
+  // Most baselines are of one machine: they have no such key.
+  if (fields.reading() || !run.elsewhere.empty())
+    fields.list("elsewhere", run.elsewhere, "Times on other kinds of machines.");
 }
 
 std::vector<GateRun> read_baseline(const std::filesystem::path& file) {
@@ -63,16 +71,24 @@ GateResult compare_with_baseline(const std::filesystem::path& file, std::span<co
                                  const GateOptions& options) {
   if (!std::filesystem::exists(file))
     throw InputError(file.string(), "does not exist; --update writes it");
-  return compare_runs(read_baseline(file), runs, options);
+  std::vector<GateRun> baseline = read_baseline(file);
+  std::vector<GateRun> given(runs.begin(), runs.end());
+  leave_out_compared(baseline, given, options.compared);
+  take_times_of_same_machine(baseline, given);
+  return compare_runs(baseline, given, options);
 }
 
 std::size_t update_baseline(const std::filesystem::path& file, std::vector<GateRun> runs,
                             bool partial) {
-  if (partial && std::filesystem::exists(file)) {
-    std::set<GateKey> given;
-    for (const GateRun& run : runs) given.insert(run.key);
-    for (const GateRun& old : read_baseline(file))
-      if (!given.contains(old.key)) runs.push_back(old);
+  if (std::filesystem::exists(file)) {
+    for (const GateRun& old : read_baseline(file)) {
+      const auto given = std::find_if(runs.begin(), runs.end(),
+                                      [&](const GateRun& run) { return run.key == old.key; });
+      if (given != runs.end())
+        keep_times_of_other_machines(*given, old);
+      else if (partial)
+        runs.push_back(old);
+    }
   }
   const std::size_t count = runs.size();
   write_baseline(file, std::move(runs));

@@ -11,6 +11,7 @@
 
 namespace saccade {
 
+void describe(config::Fields& fields, MachineTimes& times);
 void describe(config::Fields& fields, GateRun& run);
 
 /// Reads a baseline (docs/gate.md); the runs come sorted by their keys. InputError with file:line
@@ -22,8 +23,8 @@ void describe(config::Fields& fields, GateRun& run);
                                                std::span<const GateRun> runs,
                                                const GateOptions& options);
 
-/// Writes the runs to the baseline; with `partial` it keeps those of its runs that are not among
-/// them. Returns how many it then holds.
+/// Writes the runs to the baseline, which keeps the times that it has of other kinds of machines;
+/// with `partial` also those of its runs that are not among them. Returns how many it then holds.
 std::size_t update_baseline(const std::filesystem::path& file, std::vector<GateRun> runs,
                             bool partial);
 

@@ -22,6 +22,8 @@ struct GateOptions {
   bool speed = true;         ///< also judge the time
   bool partial = false;      ///< runs of the baseline may be left out
   std::vector<std::string> metrics;  ///< judged in addition to gate_metrics()
+  /// Settings in which the runs differ from the baseline on purpose (leave_out_compared()).
+  std::vector<std::string> compared = {};
 
   /// Throws InputError that names the option of the command that is out of range.
   void check() const;

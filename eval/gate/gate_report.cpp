@@ -60,6 +60,17 @@ std::vector<std::string> cells_of(const GateRow& row) {
           values_text(row),     change_text(row), evidence_text(row)};
 }
 
+/// Escaped for a workflow command; `:` and `,` end a property, but not the message.
+std::string workflow_text(const std::string& text, bool is_property) {
+  std::string escaped;
+  for (const char c : text) {
+    const bool special =
+        c == '%' || c == '\r' || c == '\n' || (is_property && (c == ':' || c == ','));
+    escaped += special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return escaped;
+}
+
 Table table_of(const GateResult& result, bool all) {
   Table table{
       .columns = {{""}, {"metric"}, {"scope"}, {"before -> after"}, {"change"}, {"evidence"}}};
@@ -84,6 +95,23 @@ std::string gate_markdown(const GateResult& result) {
   if (result.count(Verdict::kSame) < result.rows.size())
     text += "\n" + table_markdown(table_of(result, false));
   for (const std::string& note : result.notes) text += "\nNote: " + note + "\n";
+  return text;
+}
+
+std::string gate_annotations(const GateResult& result, const std::string& file) {
+  const std::string at = file.empty() ? "" : "file=" + workflow_text(file, true) + ",";
+  std::string text;
+  for (const GateRow& row : result.rows) {
+    if (row.verdict != Verdict::kRegressed) continue;
+    std::string message = row.scope;
+    for (const std::string& part : {values_text(row), change_text(row), evidence_text(row)})
+      if (!part.empty()) message += ", " + part;
+    text +=
+        fmt::format("::error {}title={}::{}\n", at, workflow_text("regressed: " + row.metric, true),
+                    workflow_text(message, false));
+  }
+  for (const std::string& note : result.notes)
+    text += fmt::format("::warning {}title=saccade gate::{}\n", at, workflow_text(note, false));
   return text;
 }
 

@@ -1,7 +1,12 @@
 #include "eval/gate/gate_run.h"
 
+#include <algorithm>
 #include <array>
+#include <regex>
+#include <set>
+#include <utility>
 
+#include "core/config/suggest.h"
 #include "core/error.h"
 #include "core/io/files/folder_name.h"
 #include "core/process/shell.h"
@@ -23,6 +28,65 @@ std::string machine_kind(const std::string& machine) {
 bool is_kept(const std::string& key) {
   return !key.starts_with("speed.") || key.starts_with("speed.wall_s") || key == "speed.events" ||
          key == "speed.repetitions";
+}
+
+bool is_time(const std::string& key) { return key.starts_with("speed."); }
+
+MachineTimes times_of(const GateRun& run) {
+  MachineTimes times{run.machine, run.threads, {}};
+  for (const auto& metric : run.metrics)
+    if (is_time(metric.first)) times.metrics.insert(metric);
+  return times;
+}
+
+bool is_of(const MachineTimes& times, const GateRun& run) {
+  return times.machine == run.machine && times.threads == run.threads;
+}
+
+/// "key=value" of a configuration's name (eval/configuration_name.h) with the blank before it; a
+/// value may hold blanks.
+const std::regex& setting_pattern() {
+  static const std::regex kPattern(R"( ([A-Za-z_][\w.]*)=.*?(?= [A-Za-z_][\w.]*=|, estimated |$))");
+  return kPattern;
+}
+
+std::set<std::string> keys_set(std::span<const GateRun> runs) {
+  std::set<std::string> keys;
+  for (const GateRun& run : runs) {
+    const std::string& name = run.key.config;
+    for (std::sregex_iterator at(name.begin(), name.end(), setting_pattern()), end; at != end; ++at)
+      keys.insert((*at)[1]);
+  }
+  return keys;
+}
+
+bool is_below(const std::string& key, const std::string& compared) {
+  return key == compared || key.starts_with(compared + ".");
+}
+
+std::string without(const std::string& name, const std::vector<std::string>& compared) {
+  std::string kept = name.substr(0, name.find_first_of(" ,"));
+  const std::string rest = name.substr(kept.size());
+  if (std::find(compared.begin(), compared.end(), "config") != compared.end()) kept = "(any)";
+  std::size_t done = 0;
+  for (std::sregex_iterator at(rest.begin(), rest.end(), setting_pattern()), end; at != end; ++at) {
+    const bool is_compared =
+        std::any_of(compared.begin(), compared.end(),
+                    [&](const std::string& key) { return is_below((*at)[1], key); });
+    const auto begin = static_cast<std::size_t>(at->position());
+    kept += rest.substr(done, begin - done);
+    if (!is_compared) kept += at->str();
+    done = begin + static_cast<std::size_t>(at->length());
+  }
+  return kept + rest.substr(done);
+}
+
+void check_distinct(std::span<const GateRun> runs, const char* side) {
+  std::set<GateKey> keys;
+  for (const GateRun& run : runs)
+    if (!keys.insert(run.key).second)
+      throw InputError("--compare", std::string("two runs of the ") + side +
+                                        " then do the same work: " + run.key.text());
 }
 
 }  // namespace
@@ -47,6 +111,54 @@ GateRun gate_run(const RunRecord& record, const Metrics& metrics) {
   for (const auto& [key, value] : metrics.values())
     if (is_kept(key)) run.metrics.emplace(key, value);
   return run;
+}
+
+void take_times_of_same_machine(std::vector<GateRun>& baseline, std::span<const GateRun> runs) {
+  for (GateRun& before : baseline) {
+    const auto after = std::find_if(runs.begin(), runs.end(),
+                                    [&](const GateRun& run) { return run.key == before.key; });
+    if (after == runs.end() || is_of(times_of(before), *after)) continue;
+    const auto same = std::find_if(before.elsewhere.begin(), before.elsewhere.end(),
+                                   [&](const MachineTimes& times) { return is_of(times, *after); });
+    if (same == before.elsewhere.end()) continue;
+    const MachineTimes own = std::exchange(*same, times_of(before));
+    std::erase_if(before.metrics, [](const auto& metric) { return is_time(metric.first); });
+    before.metrics.insert(own.metrics.begin(), own.metrics.end());
+    before.machine = own.machine;
+    before.threads = own.threads;
+  }
+}
+
+void keep_times_of_other_machines(GateRun& run, const GateRun& old) {
+  std::vector<MachineTimes> known = old.elsewhere;
+  known.push_back(times_of(old));
+  for (MachineTimes& times : known)
+    if (!is_of(times, run) && !times.machine.empty()) run.elsewhere.push_back(std::move(times));
+  std::sort(run.elsewhere.begin(), run.elsewhere.end(),
+            [](const MachineTimes& a, const MachineTimes& b) {
+              return std::pair(a.machine, a.threads) < std::pair(b.machine, b.threads);
+            });
+}
+
+void leave_out_compared(std::vector<GateRun>& baseline, std::vector<GateRun>& runs,
+                        const std::vector<std::string>& compared) {
+  if (compared.empty()) return;
+  std::set<std::string> known = keys_set(baseline);
+  known.merge(keys_set(runs));
+  for (const std::string& key : compared) {
+    const bool was_set =
+        key == "config" || std::any_of(known.begin(), known.end(),
+                                       [&](const std::string& set) { return is_below(set, key); });
+    if (was_set) continue;
+    const std::vector<std::string> names(known.begin(), known.end());
+    const auto near = config::nearest(key, names);
+    throw InputError("--compare", "no run has a --set of '" + key + "'" +
+                                      (near ? "; did you mean '" + *near + "'?" : ""));
+  }
+  for (auto* side : {&baseline, &runs})
+    for (GateRun& run : *side) run.key.config = without(run.key.config, compared);
+  check_distinct(baseline, "baseline");
+  check_distinct(runs, "call");
 }
 
 GateRun read_gate_run(const fs::path& folder) {

@@ -38,6 +38,7 @@ std::vector<MetricInfo> trajectory_rows() {
       {.key = "trajectory.dt_m.*", .unit = "m", .scale = 1000, .needs = kTruePath},
       {.key = "trajectory.none.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath,
        .floor = 1e-5},
+      {.key = "trajectory.yaw.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath},
       {.key = "trajectory.se3.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath,
        .board = "ATE after SE(3), RMSE"},
       {.key = "trajectory.sim3.ate_rmse_m", .unit = "m", .scale = 1000, .needs = kTruePath,

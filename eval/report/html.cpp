@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "core/check.h"
+#include "core/io/files/compression.h"
 #include "core/io/images/image_file.h"
 #include "core/io/images/webp_file.h"
 #include "eval/picture/canvas/canvas.h"
@@ -64,6 +66,12 @@ std::string figure(const ImageRgb8& picture, std::string_view caption, std::stri
       "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
       is_webp ? "webp" : "png", base64(is_webp ? encode_webp(picture) : encode_png(picture)),
       picture.width(), picture.height(), escape_html(alt), caption);
+}
+
+std::string packed_html(std::string_view html) {
+  const std::vector<std::byte> packed = pack_zlib(std::as_bytes(std::span(html)));
+  const std::string_view bytes(reinterpret_cast<const char*>(packed.data()), packed.size());
+  return "<script type=\"text/plain\" class=\"packed\">" + base64(bytes) + "</script>\n";
 }
 
 std::string repeat_html(const std::vector<std::string>& commands) {

@@ -24,6 +24,10 @@ namespace saccade {
 [[nodiscard]] std::string figure(const ImageRgb8& picture, std::string_view caption,
                                  std::string_view alt);
 
+/// HTML that the page's script inflates and puts in the place of this element when it comes near the
+/// window (web/src/packed.js): a page of a thousand runs opens at once.
+[[nodiscard]] std::string packed_html(std::string_view html);
+
 /// Command lines that make a part of the page again, folded; empty without any that is known.
 [[nodiscard]] std::string repeat_html(const std::vector<std::string>& commands);
 

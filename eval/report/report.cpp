@@ -22,6 +22,11 @@
 namespace saccade {
 namespace {
 
+/// Pages of more runs keep the sections of their runs compressed, and have pictures of a method's
+/// first run on each dataset alone: those of all seeds would be most of the time and of the page.
+/// They have no chart of the reprojection error, for the same reason.
+constexpr std::size_t kMostUnpackedRuns = 40;
+
 /// The runs grouped by dataset, both in the order in which they first come.
 std::vector<std::vector<const RunData*>> by_dataset(const std::vector<RunData>& runs) {
   std::vector<std::vector<const RunData*>> groups;
@@ -42,17 +47,36 @@ std::string dataset_heading(const RunData& data) {
   return fmt::format("<h2>{}</h2>\n", escape_html(data.dataset)) + dataset_pictures(data);
 }
 
+/// Those whose pictures a page of many runs shows.
+std::set<const RunData*> first_of_methods(const std::vector<RunData>& runs) {
+  std::set<std::pair<std::string, std::string>> seen;
+  std::set<const RunData*> first;
+  for (const RunData& data : runs)
+    if (seen.emplace(data.dataset, data.method).second) first.insert(&data);
+  return first;
+}
+
+std::string framed_section(const RunData& data, const std::string& content, bool packed) {
+  return fmt::format("<section id=\"{}\" class=\"run\"><h3>{}</h3>\n", data.id,
+                     escape_html(data.run.name())) +
+         (packed ? packed_html(content) : content) + "</section>\n";
+}
+
 std::string sections(const std::vector<RunData>& runs, bool film) {
   std::vector<std::pair<const RunData*, bool>> order;  // whether it is a dataset's first
   for (const auto& group : by_dataset(runs))
     for (const RunData* data : group) order.emplace_back(data, data == group.front());
+  const bool packed = runs.size() > kMostUnpackedRuns;
+  const std::set<const RunData*> first = first_of_methods(runs);
   std::vector<std::string> parts(order.size());
   // Films show their own progress and are encoded with all threads: one after the other.
   std::optional<Progress> progress;
   if (order.size() > 1 && !film) progress.emplace("drawing", order.size(), "runs");
   const auto draw = [&](std::size_t i) {
     const auto& [data, is_first] = order[i];
-    parts[i] = (is_first ? dataset_heading(*data) : "") + run_section(*data, film);
+    const RunSectionParts content{!packed || first.contains(data), film};
+    parts[i] = (is_first ? dataset_heading(*data) : "") +
+               framed_section(*data, run_section(*data, content), packed);
     if (progress) progress->add(1);
   };
   parallel_for(order.size(), draw, film ? order.size() : 1);
@@ -65,16 +89,21 @@ std::string contents(const std::vector<RunData>& runs, const std::string& tables
   for (const auto& [id, name] : {std::pair{"against", "A against B"},
                                  {"leaderboard", "Leaderboard"},
                                  {"compared", "Compared"},
+                                 {"segments", "Segments"},
                                  {"reliability", "Reliability"},
+                                 {"failures", "Failures"},
                                  {"accuracy", "Accuracy"},
                                  {"depth", "Depth"},
                                  {"datasets", "Datasets"},
                                  {"speed", "Speed"}})
     if (tables.find(fmt::format("id=\"{}\"", id)) != std::string::npos)
       html += fmt::format("<a href=\"#{}\">{}</a>", id, name);
+  std::string links;
   for (const RunData& data : runs)
-    html += fmt::format("<a href=\"#{}\">{}</a>", data.id, escape_html(data.run.name()));
-  return html;
+    links += fmt::format("<a href=\"#{}\">{}</a>", data.id, escape_html(data.run.name()));
+  if (runs.size() <= kMostUnpackedRuns) return html + links;
+  return html + fmt::format("<details><summary>{} runs</summary><nav>{}</nav></details>",
+                            runs.size(), links);
 }
 
 /// One line for all runs that were scored again.
@@ -99,7 +128,7 @@ std::vector<RunData> gather_runs(std::span<const std::filesystem::path> folders)
   std::optional<Progress> progress;
   if (once.size() > 1) progress.emplace("reading", once.size(), "runs");
   parallel_for(once.size(), [&](std::size_t i) {
-    runs[i] = gather_run(once[i], i + 1);
+    runs[i] = gather_run(once[i], i + 1, once.size() <= kMostUnpackedRuns);
     if (progress) progress->add(1);
   });
   if (progress) progress->finish();
@@ -150,7 +179,9 @@ void write_report(std::span<const std::filesystem::path> run_folders,
   if (runs.size() > 1)
     parts.push_back(leaderboard_section(std::span(exported).first(boards.size())));
   parts.push_back(compared_section(runs, boards, charts));
+  parts.push_back(segment_section(runs));
   parts.push_back(reliability_section(runs, charts));
+  parts.push_back(failure_section(runs));
   for (const auto& table : {accuracy_table, depth_table, dataset_table, speed_table})
     parts.push_back(table(runs));
   const std::string tables = with_repeat(parts, options.command);

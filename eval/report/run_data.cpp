@@ -20,7 +20,7 @@
 namespace saccade {
 namespace {
 
-void set_errors(RunData& data) {
+void set_errors(RunData& data, bool with_reprojection) {
   data.input = score_input(data.run, *data.data);
   // The errors over time are relative to the depth that the scores are relative to; `eval` may have
   // been given another one than the dataset's.
@@ -30,13 +30,14 @@ void set_errors(RunData& data) {
   data.samples = scored_samples(data.input);
   data.errors = errors_over_time(data.input);
   data.map = data.run.load_map().positions;
-  data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
+  if (with_reprojection)
+    data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
 }
 
 /// Takes the scores that `eval` wrote, or scores the run where they are stale.
-void set_scores(RunData& data) {
+void set_scores(RunData& data, bool with_reprojection) {
   data.stale = staleness(data.run.folder, *data.data);
-  set_errors(data);
+  set_errors(data, with_reprojection);
   data.keyframes = KeyframeHistory::load(data.run);
   data.metrics = data.stale.empty() ? data.run.metrics
                                     : score_run(data.run, *data.data, data.input.mean_depth_m);
@@ -99,17 +100,17 @@ RunData open_run(const std::filesystem::path& folder, std::size_t index) {
 
 }  // namespace
 
-RunData gather_run(const std::filesystem::path& folder, std::size_t index) {
+RunData gather_run(const std::filesystem::path& folder, std::size_t index, bool with_reprojection) {
   RunData data = open_run(folder, index);
   if (!data.data) return data;
   data.facts = facts_of(*data.data);
-  set_scores(data);
+  set_scores(data, with_reprojection);
   return data;
 }
 
 RunData gather_errors(const std::filesystem::path& folder, std::size_t index) {
   RunData data = open_run(folder, index);
-  if (data.data) set_errors(data);
+  if (data.data) set_errors(data, true);
   return data;
 }
 

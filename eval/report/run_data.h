@@ -34,7 +34,9 @@ struct RunData {
 };
 
 /// Reads the run folder and scores it where its scores are stale; `index` is its place on the page.
-[[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index);
+/// `with_reprojection`: with RunData::reprojection, which takes most of the time.
+[[nodiscard]] RunData gather_run(const std::filesystem::path& folder, std::size_t index,
+                                 bool with_reprojection = true);
 
 /// The same without facts, keyframes and scores: what is drawn of its errors over time, for which
 /// stale scores do not matter.

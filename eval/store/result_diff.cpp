@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -32,15 +33,23 @@ bool begins_commit(const ResultRow& row, const std::string& name) {
 }
 
 /// What a name may be of, and whether a row is named by it.
-using Naming = std::pair<const char*, bool (*)(const ResultRow&, const std::string&)>;
+using Naming = std::pair<const char*, std::function<bool(const ResultRow&, const std::string&)>>;
 
-constexpr std::array<Naming, 5> kNamings{{
-    {"run", [](const ResultRow& row, const std::string& name) { return row.run == name; }},
-    {"commit", is_commit},
-    {"commit", begins_commit},
-    {"version", [](const ResultRow& row, const std::string& name) { return row.version == name; }},
-    {"config", [](const ResultRow& row, const std::string& name) { return row.config == name; }},
-}};
+std::vector<Naming> namings(const RunVariants& variants) {
+  return {
+      {"run", [](const ResultRow& row, const std::string& name) { return row.run == name; }},
+      {"commit", is_commit},
+      {"commit", begins_commit},
+      {"version",
+       [](const ResultRow& row, const std::string& name) { return row.version == name; }},
+      {"config", [](const ResultRow& row, const std::string& name) { return row.config == name; }},
+      {"variant",
+       [&variants](const ResultRow& row, const std::string& name) {
+         const auto found = variants.find(row.run);
+         return found != variants.end() && found->second == name;
+       }},
+  };
+}
 
 /// Which of the rows a name means.
 Indices named(const Rows& rows, const Naming& naming, const std::string& name) {
@@ -50,25 +59,29 @@ Indices named(const Rows& rows, const Naming& naming, const std::string& name) {
   return chosen;
 }
 
-[[noreturn]] void fail_names(const Rows& rows, const std::string& a, const std::string& b) {
+[[noreturn]] void fail_names(const Rows& rows, const RunVariants& variants, const std::string& a,
+                             const std::string& b) {
   std::set<std::string> names;
   for (const ResultRow& row : rows)
     for (const std::string& name : {row.run, row.commit, row.version, row.config})
       if (!name.empty()) names.insert(name);
+  for (const auto& [run, variant] : variants)
+    if (!variant.empty()) names.insert(variant);
+  const std::vector<Naming> all_namings = namings(variants);
   for (const std::string& name : {a, b}) {
-    const bool known = std::any_of(kNamings.begin(), kNamings.end(), [&](const Naming& naming) {
-      return !named(rows, naming, name).empty();
-    });
+    const bool known =
+        std::any_of(all_namings.begin(), all_namings.end(),
+                    [&](const Naming& naming) { return !named(rows, naming, name).empty(); });
     if (known) continue;
     const std::vector<std::string> all(names.begin(), names.end());
     const auto near = config::nearest(name, all);
     throw InputError("--diff",
-                     fmt::format("'{}' is no run, commit, version or configuration here{}", name,
-                                 near ? "; did you mean '" + *near + "'?" : ""));
+                     fmt::format("'{}' is no run, commit, version, configuration or variant here{}",
+                                 name, near ? "; did you mean '" + *near + "'?" : ""));
   }
   throw InputError("--diff",
                    fmt::format("'{}' and '{}' are not of one kind: name two runs, commits, "
-                               "versions or configurations",
+                               "versions, configurations or variants",
                                a, b));
 }
 
@@ -87,7 +100,7 @@ Groups by_key(const Rows& rows, const Indices& chosen, const std::string& by) {
   Groups groups;
   for (const std::size_t i : chosen) {
     PairKey key = by == "run" ? PairKey() : key_of(rows[i]);
-    if (by == "config") key.config.clear();
+    if (by == "config" || by == "variant") key.config.clear();
     groups[key].push_back(i);
   }
   return groups;
@@ -166,9 +179,9 @@ double MetricChange::percent() const {
 }
 
 ResultDiff diff_results(ResultReader& reader, const std::string& a, const std::string& b,
-                        std::string_view where) {
+                        std::string_view where, const RunVariants& variants) {
   const Rows rows = reader.select(where);
-  for (const Naming& naming : kNamings) {
+  for (const Naming& naming : namings(variants)) {
     const Indices runs_a = named(rows, naming, a);
     const Indices runs_b = named(rows, naming, b);
     if (runs_a.empty() || runs_b.empty()) continue;
@@ -181,7 +194,7 @@ ResultDiff diff_results(ResultReader& reader, const std::string& a, const std::s
                                  "dataset, module, window, configuration and seed",
                                  naming.first, a, b));
   }
-  fail_names(rows, a, b);
+  fail_names(rows, variants, a, b);
 }
 
 std::vector<ChangeSummary> summarise_changes(const ResultDiff& diff) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,12 +11,15 @@
 
 namespace saccade {
 
+/// The variant of each run of a sweep, by the name of its folder.
+using RunVariants = std::map<std::string, std::string>;
+
 /// What two runs that are compared have in common (of two named runs: what the first is of). The
 /// window counts to a hundredth of a second.
 struct PairKey {
   std::string dataset;
   std::string module;
-  std::string config;  ///< empty where configurations are compared
+  std::string config;  ///< empty where configurations or variants are compared
   std::string window;  ///< "0.00-2.00"; empty: the whole dataset
   std::uint64_t seed = 0;
 
@@ -40,19 +44,21 @@ struct ResultPair {
 
 /// Two groups of runs, paired.
 struct ResultDiff {
-  std::string a, b;                  ///< as they were named
-  std::string by;                    ///< what the names are: "run", "commit", "version" or "config"
+  std::string a, b;  ///< as they were named
+  std::string by;    ///< what the names are: "run", "commit", "version", "config" or "variant"
   std::vector<std::string> metrics;  ///< all of the store, in alphabetical order
   std::vector<ResultPair> pairs;
   std::vector<std::string> alone;  ///< runs without a partner
 };
 
 /// Pairs the runs that `a` and `b` name among those for which `where` holds. Names are looked for
-/// among the runs, the commits (also their beginnings), the versions and the configurations, in
-/// this order; two runs are a pair whatever they are of. InputError with the nearest name where one
+/// among the runs, the commits (also their beginnings), the versions, the configurations and the
+/// variants, in this order; two runs are a pair whatever they are of. InputError with the nearest name where one
 /// names nothing or nothing can be paired.
+/// `variants`: names of runs by the run (run_variants()).
 [[nodiscard]] ResultDiff diff_results(ResultReader& reader, const std::string& a,
-                                      const std::string& b, std::string_view where = {});
+                                      const std::string& b, std::string_view where = {},
+                                      const RunVariants& variants = {});
 
 /// A metric over all pairs.
 struct ChangeSummary {

@@ -62,7 +62,8 @@ std::string cell_html(const Table::Cell& cell) {
 
 std::string cell_latex(const Table::Cell& cell) {
   if (cell.text == "–") return "--";
-  if (!cell.text.empty() || !cell.value) return escape_latex(cell.text);
+  if (!cell.text.empty() || !cell.value)
+    return cell.best ? "\\textbf{" + escape_latex(cell.text) + "}" : escape_latex(cell.text);
   const std::string mean = rounded(cell.value->mean);
   const std::string interval = interval_text(*cell.value);
   return (cell.best ? "\\textbf{" + mean + "}" : mean) + (interval.empty() ? "" : " " + interval);

@@ -63,7 +63,7 @@ def ate(estimate: np.ndarray, truth: np.ndarray, alignment: str = "none") -> dic
     ----------
     estimate, truth : array
         (N, 8) and (M, 8); the truth is interpolated at the estimate's times.
-    alignment : {"none", "se3", "sim3"}
+    alignment : {"none", "yaw", "se3", "sim3"}
         The freedom that is taken out of the estimate first.
 
     Returns
@@ -71,8 +71,8 @@ def ate(estimate: np.ndarray, truth: np.ndarray, alignment: str = "none") -> dic
     dict
         ``ate_rmse_m``, ``rot_rmse_deg`` and ``scale``.
     """
-    if alignment not in ("none", "se3", "sim3"):
-        raise _native.InputError(f"alignment: {alignment!r} is none; there are none, se3, sim3")
+    if alignment not in ("none", "yaw", "se3", "sim3"):
+        raise _native.InputError(f"alignment: {alignment!r} is none; there are none, yaw, se3, sim3")
     return _below(f"trajectory.{alignment}.", _native.compare_trajectories(estimate, truth, None))
 
 

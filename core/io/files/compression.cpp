@@ -3,6 +3,7 @@
 #include <bzlib.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
+#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -123,6 +124,17 @@ std::span<const std::byte> Unpacker::unpack(std::span<const std::byte> packed) {
   if (state_->method == Method::kZstd) size = state_->unpack_zstd(packed);
   if (state_->method == Method::kBzip2) size = state_->unpack_bzip2(packed);
   return std::span(state_->bytes).first(size);
+}
+
+std::vector<std::byte> pack_zlib(std::span<const std::byte> bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::vector<std::byte> packed(size);
+  const int status =
+      compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+               reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
+  SACCADE_CHECK(status == Z_OK);
+  packed.resize(size);
+  return packed;
 }
 
 std::vector<std::byte> pack_lz4(std::span<const std::byte> bytes) {

@@ -35,6 +35,9 @@ class Unpacker {
   std::unique_ptr<State> state_;
 };
 
+/// A zlib stream (RFC 1950) with the default level, for browsers.
+[[nodiscard]] std::vector<std::byte> pack_zlib(std::span<const std::byte> bytes);
+
 /// A frame of LZ4 with the default level.
 [[nodiscard]] std::vector<std::byte> pack_lz4(std::span<const std::byte> bytes);
 

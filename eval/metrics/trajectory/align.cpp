@@ -82,6 +82,22 @@ Eigen::Matrix3d best_rotation(const PairMoments& m, Alignment alignment) {
   return rolled(rotation, svd.matrixU().col(0), m.mean_rotation);
 }
 
+/// kYaw by positions alone.
+Eigen::Matrix3d yaw_by_positions(const PairMoments& m) {
+  return rolled(Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitZ(), m.covariance);
+}
+
+Eigen::Matrix3d best_yaw(const PairMoments& m) {
+  constexpr double kStandstill_m2 = 1e-18;
+  constexpr double kClear = 10;  // times the RMS error of the positions, as in best_rotation()
+  const Eigen::Matrix3d rotation = yaw_by_positions(m);
+  const double horizontal_m2 = (rotation.transpose() * m.covariance).topLeftCorner<2, 2>().trace();
+  if (horizontal_m2 > kStandstill_m2 &&
+      horizontal_m2 > kClear * kClear * left_over_m2(m, rotation, 1))
+    return rotation;
+  return rolled(Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitZ(), m.mean_rotation);
+}
+
 Similarity with_rotation(const PairMoments& m, const Eigen::Matrix3d& rotation,
                          Alignment alignment) {
   Similarity result;
@@ -96,13 +112,16 @@ Similarity with_rotation(const PairMoments& m, const Eigen::Matrix3d& rotation,
 Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment) {
   if (alignment == Alignment::kNone || pairs.empty()) return {};
   const PairMoments m = moments_of(pairs);
-  return with_rotation(m, nearest_rotation(m.covariance), alignment);
+  return with_rotation(
+      m, alignment == Alignment::kYaw ? yaw_by_positions(m) : nearest_rotation(m.covariance),
+      alignment);
 }
 
 Similarity align(std::span<const PosePair> pairs, Alignment alignment) {
   if (alignment == Alignment::kNone || pairs.empty()) return {};
   const PairMoments m = moments_of(pairs);
-  return with_rotation(m, best_rotation(m, alignment), alignment);
+  return with_rotation(m, alignment == Alignment::kYaw ? best_yaw(m) : best_rotation(m, alignment),
+                       alignment);
 }
 
 }  // namespace saccade

@@ -7,7 +7,9 @@
 namespace saccade {
 
 /// The freedom that is taken out of an estimate before it is compared with the truth.
-enum class Alignment { kNone, kSe3, kSim3 };
+/// kYaw: a translation and a rotation about the world's z axis, which is vertical. It is what an
+/// estimator with an IMU cannot observe; SE(3) would also forgive a wrong vertical.
+enum class Alignment { kNone, kYaw, kSe3, kSim3 };
 
 /// An estimated pose and the true one at the same time.
 struct PosePair {
@@ -32,6 +34,7 @@ struct Similarity {
 ///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
 /// with U D V^T the singular value decomposition of the covariance of truth and estimate,
 ///   R = U diag(1, 1, det U det V) V^T,  s = tr(R^T covariance) / variance(estimate) (1 for SE(3)).
+/// With kYaw R is the rotation about z that maximises tr(R^T covariance).
 /// What of R the positions leave open is arbitrary. An estimate that stands still, or that makes
 /// the best scale zero, keeps scale 1. No pairs, or Alignment::kNone: the identity.
 [[nodiscard]] Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment);
@@ -40,7 +43,8 @@ struct Similarity {
 /// rest by their chordal mean, the nearest rotation to sum R_truth R_estimate^T: all of it at a
 /// standstill, the roll about the main direction on a path that is straight (one singular value) or
 /// bends by less than ten times the error of the positions, so that they would say the roll to
-/// no better than a tenth radian.
+/// no better than a tenth radian. With kYaw they decide where the horizontal positions say the
+/// angle no better than that.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
 
 }  // namespace saccade

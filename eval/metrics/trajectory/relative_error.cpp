@@ -1,6 +1,7 @@
 #include "eval/metrics/trajectory/relative_error.h"
 
 #include <cmath>
+#include <utility>
 
 #include "eval/metrics/statistics.h"
 
@@ -59,6 +60,13 @@ void set_length_errors(Metrics& metrics, const std::string& key, const PairError
 }
 
 }  // namespace
+
+SegmentErrors segment_errors(const ScoredSamples& samples, double percent) {
+  const std::vector<double> path = path_lengths(samples);
+  if (path.empty() || path.back() < kMinPathM) return {};
+  PairErrors errors = errors_over_length(samples, path, path.back() * percent / 100);
+  return {std::move(errors.trans_percent), std::move(errors.rot_deg_per_m)};
+}
 
 std::vector<double> path_lengths(const ScoredSamples& samples) {
   std::vector<double> lengths;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <vector>
 
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/trajectory/scored_samples.h"
@@ -22,6 +23,14 @@ inline constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 /// does not move (path below 1 um): null.
 /// Sets the keys below "trajectory.rpe".
 void set_relative_errors(Metrics& metrics, const ScoredSamples& samples);
+
+/// The errors of the pairs (i, j) above over one fraction of the path.
+struct SegmentErrors {
+  std::vector<double> trans_percent;  ///< 100 |t(E_ij)| / path from i to j
+  std::vector<double> rot_deg_per_m;
+};
+/// `percent` of the true path, in (0, 100]. Empty where there is no such pair or no path.
+[[nodiscard]] SegmentErrors segment_errors(const ScoredSamples& samples, double percent);
 
 /// True path length from the first sample to each sample [m], samples.t_s.size() entries.
 [[nodiscard]] std::vector<double> path_lengths(const ScoredSamples& samples);

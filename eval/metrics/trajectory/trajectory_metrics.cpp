@@ -114,6 +114,7 @@ Metrics score_trajectory(const TrajectoryScoreInput& input) {
 
   const std::vector<PosePair> pairs = associate(input);
   set_aligned(metrics, "trajectory.none", pairs, Alignment::kNone);
+  set_aligned(metrics, "trajectory.yaw", pairs, Alignment::kYaw);
   set_aligned(metrics, "trajectory.se3", pairs, Alignment::kSe3);
   set_aligned(metrics, "trajectory.sim3", pairs, Alignment::kSim3);
   set_relative_errors(metrics, samples);

@@ -58,10 +58,24 @@ namespace saccade {
 /// Thesis table 8.3; empty where no run was timed.
 [[nodiscard]] std::string speed_table(std::span<const RunData> runs);
 
+/// The costly parts of a run's section.
+struct RunSectionParts {
+  bool pictures = true;  ///< drawn from its dataset; without, a note says where they are left out
+  bool film = false;     ///< film_section()
+};
+
 /// Everything about one run below its heading, as HTML: key numbers, 3-D view, plots, pictures,
 /// alignments, stages, provenance, the commands that repeat it. The views are filled by the page's
-/// script from run_page_data(), which stands beside them. `film`: with film_section().
-[[nodiscard]] std::string run_section(const RunData& data, bool film);
+/// script from run_page_data(), which stands beside them.
+[[nodiscard]] std::string run_section(const RunData& data, const RunSectionParts& parts);
+
+/// The worst windows of every method, each with the map over the events: at most
+/// three of a method, each of another run. Empty where no run has an error over time and a dataset.
+[[nodiscard]] std::string failure_section(std::span<const RunData> runs);
+
+/// Box plots of the relative errors over parts of the path (eval/metrics/trajectory/
+/// relative_error.h), methods beside each other, for every sequence; empty where no run has any.
+[[nodiscard]] std::string segment_section(std::span<const RunData> runs);
 
 /// Pictures of a dataset: events, frame and depth at its middle. Empty without events.
 [[nodiscard]] std::string dataset_pictures(const RunData& data);

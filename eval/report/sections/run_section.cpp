@@ -129,7 +129,7 @@ std::string alignment_table(const RunData& data) {
   Table table{data.id + "_alignments", "All poses, after alignment", {{"alignment"}}};
   table.add_numeric({"ATE RMSE [mm]", "rotation RMSE [deg]", "scale"});
   for (const auto& [key, name] :
-       {std::pair{"none", "none"}, {"se3", "SE(3)"}, {"sim3", "Sim(3)"}}) {
+       {std::pair{"none", "none"}, {"yaw", "yaw"}, {"se3", "SE(3)"}, {"sim3", "Sim(3)"}}) {
     const std::string prefix = std::string("trajectory.") + key;
     const auto ate_mm = shown_value(data.metrics, prefix + ".ate_rmse_m");
     const auto rotation_deg = data.metrics.get(prefix + ".rot_rmse_deg");
@@ -265,19 +265,23 @@ std::string dataset_pictures(const RunData& data) {
   return html + "</div>\n";
 }
 
-std::string run_section(const RunData& data, bool film) {
-  std::string html = fmt::format("<section id=\"{}\" class=\"run\"><h3>{}</h3>\n", data.id,
-                                 escape_html(data.run.name()));
+std::string run_section(const RunData& data, const RunSectionParts& parts) {
+  std::string html;
   if (!data.data)
     html += fmt::format("<p class=\"note\">{}: only the stored numbers are shown.</p>",
                         escape_html(data.missing));
-  html += key_numbers(data) + views(data) + (film ? film_section(data) : "");
-  if (data.data) {
+  html += key_numbers(data) + views(data) + (parts.film ? film_section(data) : "");
+  if (data.data && parts.pictures) {
     html += map_pictures(data) + keyframe_section(data) + depth_section(data) + image_section(data);
     html += mosaic_section(data) + stabilization_section(data) + rotation_section(data);
+    html += reconstruction_stage_section(data);
   }
-  return html + reconstruction_stage_section(data) + accuracy_details(data) + stages(data) +
-         provenance(data) + repeat_html(commands(data)) + "</section>\n";
+  if (!parts.pictures)
+    html +=
+        "<p class=\"note\">A page of many runs has the pictures of a method's first run on each "
+        "dataset.</p>\n";
+  return html + accuracy_details(data) + stages(data) + provenance(data) +
+         repeat_html(commands(data));
 }
 
 }  // namespace saccade

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -98,6 +99,23 @@ std::vector<std::vector<std::string>> combinations(const Grid& grid) {
     all = std::move(longer);
   }
   return all;
+}
+
+/// The first values of all axes, then every other value of each axis beside the first ones.
+std::vector<std::vector<std::string>> one_at_a_time(const Grid& grid) {
+  std::vector<std::string> base;
+  for (const GridAxis& axis : grid) base.push_back(axis.values.front());
+  std::vector<std::vector<std::string>> all{base};
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    for (std::size_t k = 1; k < grid[i].values.size(); ++k) {
+      all.push_back(base);
+      all.back()[i] = grid[i].values[k];
+    }
+  return all;
+}
+
+std::vector<std::vector<std::string>> points_of(const SweepConfig& sweep) {
+  return sweep.plan == GridPlan::kOneAtATime ? one_at_a_time(sweep.grid) : combinations(sweep.grid);
 }
 
 class Planner {
@@ -251,7 +269,7 @@ class Planner {
           index % static_cast<std::uint64_t>(configuration.every) != 0)
         continue;
       for (const SweepVariant& variant : variants)
-        for (const std::vector<std::string>& values : combinations(sweep_.grid))
+        for (const std::vector<std::string>& values : points_of(sweep_))
           for (const auto& seed : seeds_or_default(sweep_.seeds_of(configuration))) {
             SweepJob job = base;
             job.point.module = module_of(configuration);
@@ -278,8 +296,10 @@ class Planner {
              run.point.variant == job.point.variant && run.point.grid == job.point.grid &&
              run.point.seed == job.point.seed;
     };
-    const auto found = std::find_if(plan_.runs.begin(), plan_.runs.end(), is_source);
-    SACCADE_CHECK(found != plan_.runs.end());
+    // From the end: it was added not long ago, and a sweep may have ten thousand runs.
+    const auto last = std::find_if(plan_.runs.rbegin(), plan_.runs.rend(), is_source);
+    SACCADE_CHECK(last != plan_.runs.rend());
+    const auto found = std::prev(last.base());
     append(call, option, found->output.string());
     job.sources.push_back(static_cast<std::size_t>(found - plan_.runs.begin()));
     job.source_runs.push_back(found->output);

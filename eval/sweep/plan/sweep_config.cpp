@@ -260,6 +260,17 @@ void describe(config::Fields& fields, SweepVariant& variant) {
 
 namespace {
 
+void check_reference(config::Fields& fields, const SweepConfig& sweep) {
+  if (sweep.reference.empty()) return;
+  std::vector<std::string> names;
+  for (const SweepVariant& variant : sweep.variants) names.push_back(variant.name);
+  for (const SweepConfiguration& configuration : sweep.configurations)
+    names.push_back(configuration.name);
+  fields.expect(std::find(names.begin(), names.end(), sweep.reference) != names.end(), "reference",
+                fmt::format("names no variant and no configuration; {}",
+                            config::suggestion(sweep.reference, names, "names")));
+}
+
 /// What runs: the axes of the sweep.
 void describe_axes(config::Fields& fields, SweepConfig& sweep) {
   fields.value("module", sweep.module, "Module of `saccade run`.");
@@ -279,6 +290,10 @@ void describe_axes(config::Fields& fields, SweepConfig& sweep) {
               "Named overrides, each {name, set}. Every configuration runs with each of them.");
   fields.value("grid", sweep.grid,
                "Lists of values, as `key.path: [value, ...]`. Every combination runs.");
+  fields.choice("plan", sweep.plan,
+                {{"factorial", GridPlan::kFactorial}, {"one_at_a_time", GridPlan::kOneAtATime}},
+                "Points of the grid: every combination, or the first values of all keys and every "
+                "other value of one key beside them.");
   fields.value("seeds", sweep.seeds,
                "Seeds of the runs. Results are averaged over them. Default: the configuration's.");
 }
@@ -303,6 +318,9 @@ void describe_execution(config::Fields& fields, SweepConfig& sweep) {
       .above(0);
   fields.value("metrics", sweep.metrics,
                "Keys of metrics.json that sweep.md and its charts show. Default: the usual ones.");
+  fields.value("reference", sweep.reference,
+               "Variant or configuration that all others are tested against (ablation.csv, "
+               "ablation.tex and a part of sweep.md). Default: none.");
   fields.list(
       "expected", sweep.expected,
       "Metrics that a benchmark must reach, each {configuration, datasets, metric, at_most, "
@@ -338,6 +356,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
                 "need 'configurations' to vary");
   if (!fields.reading()) return;
   check_truths(fields, sweep);
+  check_reference(fields, sweep);
   check_configurations(fields, sweep);
   check_expected(fields, sweep);
 }

@@ -58,6 +58,12 @@ struct SweepVariant {
   Settings set;
 };
 
+/// Which points of the grid run.
+enum class GridPlan {
+  kFactorial,   ///< every combination
+  kOneAtATime,  ///< the first values of all keys, and every other value of one key beside them
+};
+
 /// A sweep file: every configuration x variant x grid point x seed runs over every dataset. Without
 /// configurations the datasets are only simulated.
 struct SweepConfig {
@@ -68,6 +74,9 @@ struct SweepConfig {
   std::vector<SweepConfiguration> configurations;
   std::vector<SweepVariant> variants;
   Grid grid;
+  GridPlan plan = GridPlan::kFactorial;
+  std::string reference;  ///< variant or configuration that the others are tested against; empty:
+                          ///< none
   std::vector<std::uint64_t> seeds;  ///< empty: the one that the configuration states
   int repeat = 1;
   bool timing = false;

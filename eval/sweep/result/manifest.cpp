@@ -13,6 +13,7 @@
 #include "core/io/tables/csv_file.h"
 #include "core/version.h"
 #include "eval/sweep/plan/generate.h"
+#include "eval/sweep/result/dataset_card.h"
 
 namespace saccade {
 namespace {
@@ -167,6 +168,7 @@ void write_manifest(const SweepConfig& sweep, const SweepPlan& plan, const fs::p
   write_atomically(folder / "manifest.json",
                    manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   manifest_csv(manifest["datasets"]).save(folder / "manifest.csv");
+  write_dataset_card(manifest, folder);
 }
 
 }  // namespace saccade

@@ -1,8 +1,10 @@
 #include "eval/sweep/result/results.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "core/config/suggest.h"
 #include "core/io/dataset/dataset_record.h"
@@ -13,6 +15,7 @@
 #include "eval/metrics/catalogue.h"
 #include "eval/metrics/statistics.h"
 #include "eval/run_folder.h"
+#include "eval/sweep/result/ablation.h"
 #include "eval/sweep/result/charts.h"
 #include "eval/sweep/result/tables.h"
 
@@ -119,14 +122,15 @@ SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
 
 std::vector<SweepGroup> group_by_seed(const std::vector<SweepRow>& rows) {
   std::vector<SweepGroup> groups;
+  // By what SweepPoint::differs_in_seed_only() compares: a sweep may have ten thousand points.
+  using Key = std::tuple<std::string, std::string, std::string, std::vector<std::string>>;
+  std::map<Key, std::size_t> known;
   for (const SweepRow& row : rows) {
-    const auto same = std::find_if(groups.begin(), groups.end(), [&](const SweepGroup& group) {
-      return group.point.differs_in_seed_only(row.job->point);
-    });
-    if (same == groups.end())
-      groups.push_back({row.job->point, {&row}});
-    else
-      same->rows.push_back(&row);
+    const SweepPoint& point = row.job->point;
+    const auto [found, is_new] = known.emplace(
+        Key{point.dataset, point.configuration, point.variant, point.grid}, groups.size());
+    if (is_new) groups.push_back({point, {}});
+    groups[found->second].rows.push_back(&row);
   }
   return groups;
 }
@@ -175,7 +179,9 @@ std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
   sweep_csv(results).save(folder / "sweep.csv");
   const std::vector<std::string> charts = write_charts(results, folder);
   const std::vector<ExpectationResult> expectations = check_expectations(results);
-  write_atomically(folder / "sweep.md", sweep_markdown(results, charts, expectations));
+  const std::vector<Table> ablation = ablation_tables(results);
+  if (!ablation.empty()) export_tables(ablation, folder);
+  write_atomically(folder / "sweep.md", sweep_markdown(results, charts, expectations, ablation));
   return static_cast<std::size_t>(
       std::count_if(expectations.begin(), expectations.end(),
                     [](const ExpectationResult& expectation) { return !expectation.met; }));

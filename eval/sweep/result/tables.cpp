@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/metrics/catalogue.h"
+#include "eval/sweep/result/ablation.h"
 #include "eval/sweep/result/failures.h"
 #include "eval/sweep/result/leaderboards.h"
 #include "eval/sweep/result/pooled_table.h"
@@ -229,7 +230,8 @@ CsvTable sweep_csv(const SweepResults& results) {
 }
 
 std::string sweep_markdown(const SweepResults& results, std::span<const std::string> charts,
-                           std::span<const ExpectationResult> expectations) {
+                           std::span<const ExpectationResult> expectations,
+                           const std::vector<Table>& ablation) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
   std::string text = "# " + title + "\n\n" + method_text(results) + failures_section(results);
   const auto parts = by_dataset(results);
@@ -241,7 +243,8 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
   } else {
     for (const Groups& groups : parts) text += tables_of(results, groups);
   }
-  text += pooled_table(results) + sweep_leaderboards(results) + expected_table(expectations);
+  text += pooled_table(results) + sweep_leaderboards(results);
+  text += ablation_section(ablation, results.sweep.reference) + expected_table(expectations);
   for (const std::string& chart : charts) text += chart + "\n\n";
   return text;
 }

@@ -2,9 +2,11 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/io/tables/csv_file.h"
 #include "eval/sweep/result/results.h"
+#include "eval/table/table.h"
 
 namespace saccade {
 
@@ -15,9 +17,11 @@ namespace saccade {
 
 /// The page of a sweep: the runs that failed or were lost; for each dataset (and module, where there
 /// are several) a table with a row per group, the best value of a column in bold; then all datasets
-/// pooled, the leaderboard, the expected metrics and the charts.
+/// pooled, the leaderboard, the comparisons with the reference (`ablation`, of ablation_tables()),
+/// the expected metrics and the charts.
 [[nodiscard]] std::string sweep_markdown(const SweepResults& results,
                                          std::span<const std::string> charts,
-                                         std::span<const ExpectationResult> expectations);
+                                         std::span<const ExpectationResult> expectations,
+                                         const std::vector<Table>& ablation = {});
 
 }  // namespace saccade

@@ -3,7 +3,8 @@
 
 Written against docs/metrics.md, not against the program. Alignment, errors of poses and relative errors are evo's
 (github.com/MichaelGrupp/evo); interpolation is scipy's. What evo does not have is computed here: the choice of
-pairs by path length, coverage, time lost, NEES, the roll of nearly straight paths.
+pairs by path length, coverage, time lost, NEES, the roll of nearly straight paths,
+the alignment by yaw.
 """
 import json
 import pathlib
@@ -92,8 +93,26 @@ def roll_by_orientations(truth, estimate, with_scale):
     return rmse(np.rad2deg(errors))
 
 
+def yaw_scores(truth, estimate):
+    """After a translation and a rotation about z, the plane as complex numbers; evo has no such alignment.
+
+    The orientations choose the rotation of the orientations where the horizontal path is not ten times its error.
+    """
+    x, y = estimate.positions - estimate.positions.mean(0), truth.positions - truth.positions.mean(0)
+    product = np.mean((y[:, 0] + 1j * y[:, 1]) * np.conj(x[:, 0] + 1j * x[:, 1]))
+    by_positions = Rotation.from_euler("z", np.angle(product))
+    errors = y - by_positions.apply(x)
+    left_over = np.mean(np.sum(errors**2, axis=1))
+    chosen = by_positions
+    if abs(product) <= 100 * left_over:
+        missing = (truth.rotations * estimate.rotations.inv()).as_matrix().mean(0)
+        chosen = Rotation.from_euler("z", np.arctan2(missing[1, 0] - missing[0, 1], missing[0, 0] + missing[1, 1]))
+    rotations = (truth.rotations.inv() * (chosen * estimate.rotations)).magnitude()
+    return {"yaw.ate_rmse_m": float(np.sqrt(left_over)), "yaw.rot_rmse_deg": rmse(np.rad2deg(rotations)), "yaw.scale": 1.0}
+
+
 def aligned_scores(pairs_truth, pairs_estimate):
-    scores = {}
+    scores = yaw_scores(pairs_truth, pairs_estimate)
     for name, options in {"none": None, "se3": {"correct_scale": False}, "sim3": {"correct_scale": True}}.items():
         reference, estimate, scale = pairs_truth.evo(), pairs_estimate.evo(), 1.0
         if options:

@@ -18,5 +18,7 @@ export function whenNear(box, draw) {
   observer.observe(box);
 }
 
-/// Draws what still waits below `parent`.
-export const drawAll = (parent = document) => [...waiting.keys()].filter((box) => parent.contains(box)).forEach(start);
+/// Draws what still waits below `parent`, also what comes to wait by that.
+export function drawAll(parent = document) {
+  for (let boxes; (boxes = [...waiting.keys()].filter((box) => parent.contains(box))).length > 0;) boxes.forEach(start);
+}

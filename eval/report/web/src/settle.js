@@ -10,4 +10,4 @@ function settleNext(runs) {
 }
 
 /// Lays the runs out one by one once the page is open and the browser has nothing else to do.
-export const settle = () => addEventListener("load", () => whenIdle(() => settleNext([...document.querySelectorAll(".run")])));
+export const settle = () => addEventListener("load", () => whenIdle(() => settleNext([...document.querySelectorAll(".run:not(:has(> .packed))")])));

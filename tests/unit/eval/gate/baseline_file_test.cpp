@@ -145,5 +145,53 @@ INSTANTIATE_TEST_SUITE_P(
                   "holds a, b c, seed 1 twice"},
         Malformed{"format_version: 1\nrun: 3\n", "did you mean 'runs'"}));
 
+GateRun made_on(const std::string& machine, const std::string& config, double wall_s) {
+  GateRun run;
+  run.key = {"walls", "track", config, 1};
+  run.machine = machine;
+  run.threads = 1;
+  run.metrics = {{"trajectory.drift_percent", 1.0}, {"speed.wall_s.median", wall_s}};
+  return run;
+}
+
+TEST(Baseline, KeepsTheTimesOfOtherMachines) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "baseline.yaml";
+  update_baseline(file, {made_on("fast", "best", 1)}, false);
+  update_baseline(file, {made_on("slow", "best", 3)}, false);
+  update_baseline(file, {made_on("slow", "best", 4)}, false);
+  std::vector<GateRun> baseline = read_baseline(file);
+  ASSERT_EQ(baseline.size(), 1U);
+  EXPECT_EQ(baseline[0].machine, "slow");
+  EXPECT_EQ(baseline[0].get("speed.wall_s.median"), 4);
+  ASSERT_EQ(baseline[0].elsewhere.size(), 1U);
+  const std::vector<GateRun> runs{made_on("fast", "best", 1.1)};
+  take_times_of_same_machine(baseline, runs);
+  EXPECT_EQ(baseline[0].machine, "fast");
+  EXPECT_EQ(baseline[0].get("speed.wall_s.median"), 1);
+  EXPECT_EQ(baseline[0].get("trajectory.drift_percent"), 1);
+  EXPECT_EQ(baseline[0].elsewhere[0].machine, "slow");
+}
+
+TEST(Compared, SettingsAreLeftOutOfTheKeys) {
+  std::vector<GateRun> baseline{made_on("m", "best align.samples=50 grid=[1, 2]", 1)};
+  std::vector<GateRun> runs{made_on("m", "best align.samples=200 grid=[1, 2], estimated poses", 1)};
+  leave_out_compared(baseline, runs, {"align"});
+  EXPECT_EQ(baseline[0].key.config, "best grid=[1, 2]");
+  EXPECT_EQ(runs[0].key.config, "best grid=[1, 2], estimated poses");
+  leave_out_compared(baseline, runs, {"config", "grid"});
+  EXPECT_EQ(runs[0].key.config, "(any), estimated poses");
+}
+
+TEST(Compared, UnknownAndAmbiguousSettingsAreErrors) {
+  std::vector<GateRun> baseline{made_on("m", "best align.samples=50", 1)};
+  std::vector<GateRun> runs{made_on("m", "best align.samples=20", 1),
+                            made_on("m", "best align.samples=30", 1)};
+  EXPECT_THAT(error_of([&] { leave_out_compared(baseline, runs, {"align.sample"}); }),
+              HasSubstr("did you mean 'align.samples'?"));
+  EXPECT_THAT(error_of([&] { leave_out_compared(baseline, runs, {"align.samples"}); }),
+              HasSubstr("two runs of the call then do the same work"));
+}
+
 }  // namespace
 }  // namespace saccade

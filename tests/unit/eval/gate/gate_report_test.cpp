@@ -53,6 +53,17 @@ TEST(GateText, ShowsAllOnDemand) {
             std::string::npos);
 }
 
+TEST(GateAnnotations, AreWorkflowCommands) {
+  EXPECT_EQ(
+      gate_annotations(sample(), "base,line.yaml"),
+      "::error file=base%2Cline.yaml,title=regressed%3A trajectory.dt_rel_percent.mean::track, "
+      "3 sequences, 0.1680 -> 0.1764, +5.0 %25 [+3.0 %25, +7.0 %25], p 0.0012, 30 pairs\n"
+      "::error file=base%2Cline.yaml,title=regressed%3A depth.rel_median::walls, depth "
+      "\"<best>|\", seed 1, 0.001000 -> –, missing, 1 pair\n"
+      "::warning file=base%2Cline.yaml,title=saccade gate::times not compared\n");
+  EXPECT_EQ(gate_annotations({{}, {"a\nb"}}, ""), "::warning title=saccade gate::a%0Ab\n");
+}
+
 TEST(GateMarkdown, IsATable) {
   EXPECT_EQ(gate_markdown(sample()),
             "**saccade gate: tripped.** 2 regressed, 0 improved, 1 unchanged\n"

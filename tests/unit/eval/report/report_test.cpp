@@ -80,6 +80,30 @@ TEST_F(Report, ShowsTheRunBesideTheThesis) {
     EXPECT_GE(count(page, text), 1U) << text;
 }
 
+TEST_F(Report, ShowsWhereAMethodErrsMostAndItsRelativeErrors) {
+  const std::string page = written({run()});
+  EXPECT_EQ(count(page, "id=\"failures\""), 1U);
+  EXPECT_GE(count(page, "% of the depth, "), 1U);
+  EXPECT_EQ(count(page, "id=\"segments\""), 1U);
+  EXPECT_GE(count(page, "<svg class=\"boxes\""), 2U);
+}
+
+TEST_F(Report, OfManyRunsIsCompressedWithPicturesOfTheFirst) {
+  std::vector<fs::path> runs;
+  for (int i = 0; i < 41; ++i) {
+    runs.push_back(folder.path() / "many" / ("run_" + std::to_string(i)));
+    fs::create_directories(runs.back().parent_path());
+    fs::copy(run(), runs.back(), fs::copy_options::recursive);
+  }
+  const std::string page = written(runs);
+  EXPECT_EQ(count(page, "class=\"packed\">"), runs.size());
+  for (std::size_t i = 1; i <= runs.size(); ++i)
+    EXPECT_EQ(count(page, "<section id=\"run" + std::to_string(i) + "\""), 1U);
+  EXPECT_EQ(count(page, "data-run="), 0U);  // inside the compressed sections
+  const std::string one = written({runs.front()});
+  EXPECT_LT(page.size(), one.size() + runs.size() * 60000);
+}
+
 void expect_links_lead_somewhere(const std::string& page) {
   for (std::size_t at = 0; (at = page.find("href=\"#", at)) != std::string::npos; ++at) {
     const std::size_t begin = at + 7;

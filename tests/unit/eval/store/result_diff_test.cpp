@@ -55,6 +55,17 @@ class Diff : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
+TEST_F(Diff, PairsVariantsOfASweep) {
+  ResultReader from = reader();
+  const RunVariants variants{
+      {"old1", "full"}, {"old2", "full"}, {"new1", "bare"}, {"new2", "bare"}};
+  const ResultDiff by_variant = diff_results(from, "full", "bare", "", variants);
+  EXPECT_EQ(by_variant.by, "variant");
+  EXPECT_EQ(by_variant.pairs.size(), 2U);
+  EXPECT_THAT(error_of([&] { return diff_results(from, "full", "bar", "", variants); }),
+              HasSubstr("did you mean 'bare'?"));
+}
+
 TEST_F(Diff, PairsCommitsBySeed) {
   const ResultDiff by_commit = diff("aaaa1111", "bbbb");
   EXPECT_EQ(by_commit.by, "commit");

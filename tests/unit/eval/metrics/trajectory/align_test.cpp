@@ -43,6 +43,27 @@ TEST(Align, RecoversASimilarityExactly) {
   expect_same(align(transformed(kSpread, kTurned), Alignment::kSe3), kTurned);
 }
 
+TEST(Align, YawRotatesAboutTheVerticalAlone) {
+  const Similarity yawed{1, Rigid3(about({0, 0, 1}, 2.0), {4, -5, 6})};
+  expect_same(align(transformed(kSpread, yawed), Alignment::kYaw), yawed);
+  expect_same(align_positions(transformed(kSpread, yawed), Alignment::kYaw), yawed);
+  // A tilt stays: SE(3) takes it away.
+  const Similarity tilted{1, Rigid3(about({1, 0, 0}, 0.1), {0, 0, 0})};
+  const std::vector<PosePair> pairs = transformed(kSpread, tilted);
+  const Similarity found = align(pairs, Alignment::kYaw);
+  EXPECT_NEAR((found.rigid.rotation() * Vector3d::UnitZ()).z(), 1, 1e-12);
+  double left_m = 0;
+  for (const PosePair& pair : pairs)
+    left_m += (found * pair.estimated.translation() - pair.truth.translation()).norm();
+  EXPECT_GT(left_m, 0.1);
+}
+
+TEST(Align, YawOfAStandstillIsThatOfTheOrientations) {
+  const Similarity yawed{1, Rigid3(about({0, 0, 1}, -1.2), {0, 0, 0})};
+  const std::vector<Vector3d> vertical{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}};
+  expect_same(align(transformed(vertical, yawed), Alignment::kYaw), yawed);
+}
+
 TEST(Align, NoneIsTheIdentity) {
   expect_same(align(transformed(kSpread, kTurnedAndScaled), Alignment::kNone), {});
   expect_same(align({}, Alignment::kSim3), {});

@@ -15,6 +15,14 @@ ScoredSamples samples_of(const Trajectory& estimate, const Trajectory& truth) {
   return take_samples(estimate, truth, {truth.start_s(), truth.end_s()});
 }
 
+TEST(RelativeError, SegmentErrorsAreThoseOfTheMean) {
+  const ScoredSamples samples = samples_of(straight(0, 2, 0.01, 1.1), straight(0, 2, 0.01));
+  const SegmentErrors errors = segment_errors(samples, 50);
+  ASSERT_EQ(errors.trans_percent.size(), 1001U);
+  for (const double percent : errors.trans_percent) EXPECT_NEAR(percent, 10, 1e-6);
+  EXPECT_TRUE(segment_errors({}, 50).trans_percent.empty());
+}
+
 TEST(RelativeError, AScaleErrorIsTheSamePercentageOverEveryLength) {
   Metrics metrics;
   set_relative_errors(metrics, samples_of(straight(0, 2, 0.01, 1.1), straight(0, 2, 0.01)));
