@@ -115,7 +115,9 @@ std::string write_clip(ViewSession& session, const std::filesystem::path& file) 
   for (std::size_t i = 0; i < sources["runs"].size(); ++i) add_run(answers, i, sources["runs"][i]);
   const std::string left = thinning(count, every, sources);
   const Json clip{{"every", every}, {"note", left}, {"answers", answers.json()}};
-  write_atomically(file, view_page(title_of(sources), inside_script(clip.dump(-1, ' ', false, Json::error_handler_t::replace))));
+  write_atomically(
+      file, view_page(title_of(sources),
+                      inside_script(clip.dump(-1, ' ', false, Json::error_handler_t::replace))));
   return left;
 }
 
