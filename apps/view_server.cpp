@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <csignal>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/process/child_process.h"
 #include "eval/view/view_query.h"
 
 namespace saccade {
@@ -59,14 +60,6 @@ void send(ViewAnswer&& answer, httplib::Response& response) {
       [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         return sink.write(body->data() + offset, length);
       });
-}
-
-sigset_t ending_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  return signals;
 }
 
 }  // namespace
@@ -126,17 +119,13 @@ std::string ViewServer::url() const {
 }
 
 void ViewServer::run(const std::function<void()>& ready) {
-  // Threads inherit the mask: the signals wait for sigwait() below.
-  const sigset_t signals = ending_signals();
-  sigset_t before;
-  pthread_sigmask(SIG_BLOCK, &signals, &before);
+  constexpr auto kPoll = std::chrono::milliseconds(50);  ///< a person does not notice it
+  const InterruptGuard interrupted;
   std::thread serving([this] { state_->server.listen_after_bind(); });
   ready();
-  int received = 0;
-  sigwait(&signals, &received);
+  while (!interrupted.requested()) std::this_thread::sleep_for(kPoll);
   state_->server.stop();
   serving.join();
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 }  // namespace saccade

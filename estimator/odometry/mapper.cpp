@@ -83,7 +83,10 @@ MappingOptions relaxed(MappingOptions options, double factor) {
 }  // namespace
 
 Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
-    : options_(options), camera_(camera) {}
+    : options_(options), camera_(camera) {
+  // With few edges less certain ones are taken by the rules of the map (min_edges).
+  options_.depth.rays.least_points = 0;
+}
 
 Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) const {
   Mapping mapping = map_once(events, path);

@@ -90,7 +90,14 @@ ResumableFolder::ResumableFolder(const fs::path& folder, std::string marker,
   if (fs::exists(workplace_) && !fs::exists(workplace_ / kLockFile) &&
       !(fs::is_directory(workplace_) && fs::is_empty(workplace_)))
     throw InputError(workplace_.string(), "is in the way: remove it or choose another output");
-  lock_ = std::make_unique<Lock>(workplace_, target());
+  try {
+    lock_ = std::make_unique<Lock>(workplace_, target());
+  } catch (const std::exception&) {
+    // The folder that was made for a lock that cannot be taken; one that holds anything stays.
+    std::error_code ignored;
+    fs::remove(workplace_, ignored);
+    throw;
+  }
   try {
     take_up_leftovers();
   } catch (const std::exception&) {

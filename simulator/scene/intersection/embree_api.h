@@ -15,11 +15,10 @@ namespace saccade::embree {
 /// speed alone.
 enum class Coherence { kCoherent, kIncoherent };
 
-#if SACCADE_EMBREE_MAJOR >= 4
-
 /// One query of a packet of rays. A filter finds it again by query_of(), so that a class derived from it
 /// carries what the filter needs.
 struct Query {
+#if SACCADE_EMBREE_MAJOR >= 4
   RTCRayQueryContext context;  ///< first, so that its address is that of the query
   RTCRayQueryFlags flags;
 
@@ -28,47 +27,42 @@ struct Query {
                                                 : RTC_RAY_QUERY_FLAG_INCOHERENT) {
     rtcInitRayQueryContext(&context);
   }
-};
-
-/// The nearest hit of the rays with `valid` -1; `valid`: 16, aligned to 64 bytes.
-inline void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& packet) {
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = query.flags;
-  arguments.context = &query.context;
-  rtcIntersect16(valid, scene, &packet, &arguments);
-}
-
-/// Sets tfar of the blocked rays to minus infinity; `valid`: 16, aligned to 64 bytes.
-inline void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& packet) {
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = query.flags;
-  arguments.context = &query.context;
-  rtcOccluded16(valid, scene, &packet, &arguments);
-}
-
 #else
-
-struct Query {
-  RTCIntersectContext context;
+  RTCIntersectContext context;  ///< first, so that its address is that of the query
 
   explicit Query(Coherence coherence) {
     rtcInitIntersectContext(&context);
     context.flags = coherence == Coherence::kCoherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
                                                       : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
+#endif
 };
 
+/// The nearest hit of the rays with `valid` -1; `valid`: 16, aligned to 64 bytes.
 inline void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& packet) {
+#if SACCADE_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = query.flags;
+  arguments.context = &query.context;
+  rtcIntersect16(valid, scene, &packet, &arguments);
+#else
   rtcIntersect16(valid, scene, &query.context, &packet);
-}
-
-inline void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& packet) {
-  rtcOccluded16(valid, scene, &query.context, &packet);
-}
-
 #endif
+}
+
+/// Sets tfar of the blocked rays to minus infinity; `valid`: 16, aligned to 64 bytes.
+inline void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& packet) {
+#if SACCADE_EMBREE_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = query.flags;
+  arguments.context = &query.context;
+  rtcOccluded16(valid, scene, &packet, &arguments);
+#else
+  rtcOccluded16(valid, scene, &query.context, &packet);
+#endif
+}
 
 /// The query that a filter was called for.
 [[nodiscard]] inline const Query& query_of(const RTCFilterFunctionNArguments& arguments) {

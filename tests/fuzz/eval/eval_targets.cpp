@@ -49,7 +49,7 @@ void decode_baselines(const fs::path& folder, const std::string& file) {
 void write_sweeps(const fs::path& folder) {
   write_bytes(
       folder / "sweep.yaml",
-      "module: track\ndatasets: [{path: /tmp}]\nconfigurations: [{name: a, set: {seed: 1}}]\n"
+      "module: track\ndatasets: [{path: /tmp}]\nconfigurations: [{name: a, set: {x.z: 1}}]\n"
       "variants: [{name: b, set: {x.y: 2}}]\ngrid: {a.b: [1, 2, 3]}\nseeds: [1, 2]\nrepeat: 2\n");
 }
 

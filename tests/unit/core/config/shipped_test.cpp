@@ -26,14 +26,14 @@ class Elsewhere {
   Elsewhere& operator=(const Elsewhere&) = delete;
 
  private:
-  testing::TemporaryFolder folder_;
+  saccade::testing::TemporaryFolder folder_;
   fs::path before_;
 };
 
-fs::path walls() { return testing::source_path("configs/simulation/walls.yaml"); }
+fs::path walls() { return saccade::testing::source_path("configs/simulation/walls.yaml"); }
 
 TEST(ShippedConfigurations, AreFoundFromTheBuildTree) {
-  EXPECT_TRUE(fs::equivalent(shipped_folder(), testing::source_path(".")));
+  EXPECT_TRUE(fs::equivalent(shipped_folder(), saccade::testing::source_path(".")));
   const std::vector<std::string> names = shipped_configurations();
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
   EXPECT_THAT(names, ::testing::Contains("tracking/fast"));
@@ -45,7 +45,7 @@ TEST(ShippedConfigurations, AreNamedInFullOrInShort) {
        {"walls", "simulation/walls", "simulation/walls.yaml", "configs/simulation/walls.yaml"})
     EXPECT_TRUE(fs::equivalent(find_configuration(name), walls())) << name;
   const std::string adapter = "examples/external/constant_velocity.yaml";
-  EXPECT_TRUE(fs::equivalent(find_configuration(adapter), testing::source_path(adapter)));
+  EXPECT_TRUE(fs::equivalent(find_configuration(adapter), saccade::testing::source_path(adapter)));
 }
 
 TEST(ShippedConfigurations, GiveWayToAFileOfTheUser) {
@@ -63,14 +63,15 @@ TEST(ShippedConfigurations, AreNotHiddenByAFolder) {
 
 TEST(ShippedConfigurations, ANameOfSeveralListsThem) {
   const Elsewhere elsewhere;
-  EXPECT_THAT(testing::error_of([] { return find_configuration("thesis"); }),
+  EXPECT_THAT(saccade::testing::error_of([] { return find_configuration("thesis"); }),
               HasSubstr("depth/thesis, mosaic/thesis"));
 }
 
 TEST(ShippedConfigurations, AnUnknownNameIsAnErrorWithTheNearest) {
   const Elsewhere elsewhere;
-  EXPECT_THAT(testing::error_of([] { return load("wals"); }), HasSubstr("did you mean 'walls'?"));
-  EXPECT_THAT(testing::error_of([] { return load("configs/tracking/acurate.yaml"); }),
+  EXPECT_THAT(saccade::testing::error_of([] { return load("wals"); }),
+              HasSubstr("did you mean 'walls'?"));
+  EXPECT_THAT(saccade::testing::error_of([] { return load("configs/tracking/acurate.yaml"); }),
               HasSubstr("did you mean 'tracking/accurate'?"));
 }
 
