@@ -1,7 +1,6 @@
 #include "estimator/odometry/start/tile_flow.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -118,8 +117,8 @@ Displacement sharpest(const TileEvents& events, TileContrast& contrast) {
   Eigen::Vector2d curvature = eigen.eigenvalues();
   if (!(curvature[1] > 0)) return best;
   curvature = curvature.cwiseMax(0.01 * curvature[1]);
+  // Bounded across and along the edge: along it the step is noise, however long.
   const Eigen::Vector2d step =
-      eigen.eigenvectors() *
       (eigen.eigenvectors().transpose() * fit.segment<2>(1)).cwiseQuotient(curvature);
   best.information =
       eigen.eigenvectors() * curvature.asDiagonal() * eigen.eigenvectors().transpose();

@@ -75,7 +75,8 @@ TEST(TileFlow, ParallelEdgesTellTheirMotionAcrossThemselves) {
   camera.width = 240, camera.height = 180;
   camera.fx = camera.fy = 200, camera.cx = 119.5, camera.cy = 89.5;
   PlaneMotion rough;
-  rough.velocity = Eigen::Vector3d(-kSpeed / camera.fx, 0.2, 0);
+  // Wrong by 1.4 px across the edge over the window, no whole step of the search.
+  rough.velocity = Eigen::Vector3d(-(kSpeed - 70) / camera.fx, 0, 0);
   const std::vector<TileFlow> flows = flows_from(events, rough, camera);
   ASSERT_FALSE(flows.empty());
   const double across = kSpeed / camera.fx * normal.x();
@@ -83,7 +84,7 @@ TEST(TileFlow, ParallelEdgesTellTheirMotionAcrossThemselves) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(tile.information);
     EXPECT_GT(std::abs(eigen.eigenvectors().col(1).dot(normal)), 0.9);
     EXPECT_LT(eigen.eigenvalues()[0], 0.2 * eigen.eigenvalues()[1]);
-    EXPECT_NEAR(tile.flow.dot(normal), across, 0.1 * across);
+    EXPECT_NEAR(tile.flow.dot(normal), across, 0.04 * across) << "0.4 px of 10";
   }
 }
 
