@@ -123,6 +123,8 @@ void add_run_verb(CLI::App& command) {
       "  saccade run track --data data/walls -c configs/tracking/accurate.yaml -o runs/walls\n"
       "  saccade run depth --data data/walls --poses-from runs/walls -c configs/depth/thesis.yaml "
       "-o runs/walls_depth\n"
+      "  saccade run depth --data data/handheld --smooth-poses 0.04 -c configs/depth/best.yaml "
+      "-o runs/handheld\n"
       "  saccade run reconstruct --data data/walls --depth-from runs/walls_depth "
       "-c configs/reconstruction/best.yaml -o runs/walls_image\n"
       "  saccade run odometry --data data/dunes -c configs/odometry/best.yaml -o runs/dunes\n"
