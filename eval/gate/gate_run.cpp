@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
+#include <cctype>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "core/config/suggest.h"
@@ -43,20 +44,51 @@ bool is_of(const MachineTimes& times, const GateRun& run) {
   return times.machine == run.machine && times.threads == run.threads;
 }
 
-/// "key=value" of a configuration's name (eval/configuration_name.h) with the blank before it; a
-/// value may hold blanks.
-const std::regex& setting_pattern() {
-  static const std::regex kPattern(R"( ([A-Za-z_][\w.]*)=.*?(?= [A-Za-z_][\w.]*=|, estimated |$))");
-  return kPattern;
+/// A "key=value" within a configuration's name (eval/configuration_name.h), from the blank before it
+/// to its end.
+struct Setting {
+  std::string key;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// The key of the setting whose blank is at `blank`; empty where none begins there.
+std::string key_after(const std::string& name, std::size_t blank) {
+  const auto is_letter = [](char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+  };
+  const auto is_of_key = [&](char c) {
+    return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
+  };
+  const auto begin = name.begin() + static_cast<std::ptrdiff_t>(blank) + 1;
+  const auto end = std::find_if_not(begin, name.end(), is_of_key);
+  const bool is_setting = begin != end && is_letter(*begin) && end != name.end() && *end == '=';
+  return is_setting ? std::string(begin, end) : std::string();
+}
+
+/// A value may hold blanks and commas: it ends where the next setting begins, or at what the name
+/// says of the poses and the depth.
+std::vector<Setting> settings_of(const std::string& name) {
+  std::vector<Setting> settings;
+  bool is_open = false;
+  for (std::size_t at = name.find_first_of(" ,"); at != std::string::npos;
+       at = name.find_first_of(" ,", at + 1)) {
+    const std::string_view rest = std::string_view(name).substr(at);
+    const bool is_source = rest.starts_with(", estimated ") || rest.starts_with(", smoothed ");
+    std::string key = name[at] == ' ' ? key_after(name, at) : std::string();
+    if (is_open && (is_source || !key.empty())) settings.back().end = at;
+    if (is_source) is_open = false;
+    if (key.empty()) continue;
+    settings.push_back({std::move(key), at, name.size()});
+    is_open = true;
+  }
+  return settings;
 }
 
 std::set<std::string> keys_set(std::span<const GateRun> runs) {
   std::set<std::string> keys;
-  for (const GateRun& run : runs) {
-    const std::string& name = run.key.config;
-    for (std::sregex_iterator at(name.begin(), name.end(), setting_pattern()), end; at != end; ++at)
-      keys.insert((*at)[1]);
-  }
+  for (const GateRun& run : runs)
+    for (const Setting& setting : settings_of(run.key.config)) keys.insert(setting.key);
   return keys;
 }
 
@@ -69,14 +101,12 @@ std::string without(const std::string& name, const std::vector<std::string>& com
   const std::string rest = name.substr(kept.size());
   if (std::find(compared.begin(), compared.end(), "config") != compared.end()) kept = "(any)";
   std::size_t done = 0;
-  for (std::sregex_iterator at(rest.begin(), rest.end(), setting_pattern()), end; at != end; ++at) {
+  for (const Setting& setting : settings_of(rest)) {
     const bool is_compared =
         std::any_of(compared.begin(), compared.end(),
-                    [&](const std::string& key) { return is_below((*at)[1], key); });
-    const auto begin = static_cast<std::size_t>(at->position());
-    kept += rest.substr(done, begin - done);
-    if (!is_compared) kept += at->str();
-    done = begin + static_cast<std::size_t>(at->length());
+                    [&](const std::string& key) { return is_below(setting.key, key); });
+    kept += rest.substr(done, (is_compared ? setting.begin : setting.end) - done);
+    done = setting.end;
   }
   return kept + rest.substr(done);
 }

@@ -183,6 +183,15 @@ TEST(Compared, SettingsAreLeftOutOfTheKeys) {
   EXPECT_EQ(runs[0].key.config, "(any), estimated poses");
 }
 
+TEST(Compared, AValueMayHoldBlanksAndCommas) {
+  std::vector<GateRun> baseline{made_on("m", "best grid=[1, 2] name=a, b", 1)};
+  std::vector<GateRun> runs{
+      made_on("m", "best grid=[1, 2] name=c = d, estimated poses, smoothed poses", 1)};
+  leave_out_compared(baseline, runs, {"name"});
+  EXPECT_EQ(baseline[0].key.config, "best grid=[1, 2]");
+  EXPECT_EQ(runs[0].key.config, "best grid=[1, 2], estimated poses, smoothed poses");
+}
+
 TEST(Compared, UnknownAndAmbiguousSettingsAreErrors) {
   std::vector<GateRun> baseline{made_on("m", "best align.samples=50", 1)};
   std::vector<GateRun> runs{made_on("m", "best align.samples=20", 1),
