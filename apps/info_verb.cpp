@@ -7,6 +7,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "eval/describe.h"
+#include "eval/information/information_text.h"
 #include "simulator/scene/describe_mesh.h"
 #include "simulator/simulation_config.h"
 
@@ -16,11 +17,14 @@ namespace {
 struct InfoOptions {
   std::filesystem::path path;
   bool verify = false;
+  bool information = false;
 };
 
 void refuse_verify(const InfoOptions& options) {
   if (options.verify)
     throw InputError("--verify", "compares datasets with their hashes, no scenes");
+  if (options.information)
+    throw InputError("--information", "needs a dataset folder, with its poses, frames and depth");
 }
 
 void info(const InfoOptions& options) {
@@ -34,6 +38,10 @@ void info(const InfoOptions& options) {
     refuse_verify(options);
     const auto config = config::read<SimulationConfig>(config::load(options.path.string(), {}));
     fmt::print("{}: simulation, {}", options.path.string(), describe_scene(config.scene));
+    return;
+  }
+  if (options.information) {
+    fmt::print("{}", describe_information(options.path));
     return;
   }
   const PathDescription description = describe_path(options.path, options.verify);
@@ -55,9 +63,13 @@ void add_info_verb(CLI::App& command) {
                    "or simulation configuration (YAML).")
       ->required();
   verb->add_flag("--verify", options->verify, "Compare every file with its hash in dataset.yaml.");
+  verb->add_flag("--information", options->information,
+                 "Say instead how well a dataset's events can tell path and depth at best, by its "
+                 "truth alone.");
   verb->footer(
       "Examples:\n"
       "  saccade info data/walls --verify\n"
+      "  saccade info data/walls --information\n"
       "  saccade info chair.glb\n"
       "  saccade info configs/simulation/office.yaml");
   verb->callback([options] { info(*options); });

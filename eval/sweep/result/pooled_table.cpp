@@ -10,6 +10,7 @@
 #include "core/median.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/sweep/result/dataset_information.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
@@ -104,11 +105,19 @@ std::vector<std::string> loss_cells(const PooledRows& pool) {
           rounded(delay_ms), percent(sum.unreported, sum.all)};
 }
 
-std::string success_cell(const PooledRows& pool) {
-  const std::optional<SuccessShare> share = success_of(pool.rows);
+std::string success_cell(std::span<const SweepRow* const> rows) {
+  const std::optional<SuccessShare> share = success_of(rows);
   if (!share) return rounded(std::nullopt);
   return fmt::format("{} ({}–{})", rounded(100 * share->value), rounded(100 * share->low),
                      rounded(100 * share->high));
+}
+
+/// The rows whose dataset tells enough for their method.
+std::vector<const SweepRow*> informed(const PooledRows& pool) {
+  std::vector<const SweepRow*> rows;
+  for (const SweepRow* row : pool.rows)
+    if (has_enough(*row).value_or(false)) rows.push_back(row);
+  return rows;
 }
 
 bool is_pooled_elsewhere(const std::string& metric) {
@@ -137,6 +146,9 @@ bool has_losses(const std::vector<PooledRows>& pools) {
 std::string table_of_pools(const SweepResults& results, const std::vector<PooledRows>& pools) {
   const std::vector<std::string> metrics = spread_metrics(results, pools);
   const bool with_losses = has_losses(pools);
+  const bool with_information =
+      with_losses && std::any_of(results.rows.begin(), results.rows.end(),
+                                 [](const SweepRow& row) { return row.information.has_value(); });
   Table table{.columns = {{"configuration"}}};
   if (!results.sweep.variants.empty()) table.columns.push_back({"variant"});
   for (const std::string& axis : results.plan.axes) table.columns.push_back({"`" + axis + "`"});
@@ -144,6 +156,7 @@ std::string table_of_pools(const SweepResults& results, const std::vector<Pooled
   if (with_losses)
     table.add_numeric({"success [%]", "lost [% of time]", "loss recall [%]", "loss precision [%]",
                        "loss delay [ms]", "unreported [% of time]"});
+  if (with_information) table.add_numeric({"success where the dataset tells enough [%]"});
   for (const std::string& metric : metrics)
     table.columns.push_back({metric_info(metric).label + " mean / median / 90 %", true});
   for (const PooledRows& pool : pools) {
@@ -152,9 +165,10 @@ std::string table_of_pools(const SweepResults& results, const std::vector<Pooled
     cells.insert(cells.end(), pool.point.grid.begin(), pool.point.grid.end());
     cells.push_back(std::to_string(pool.rows.size()));
     if (with_losses) {
-      cells.push_back(success_cell(pool));
+      cells.push_back(success_cell(pool.rows));
       for (std::string& cell : loss_cells(pool)) cells.push_back(std::move(cell));
     }
+    if (with_information) cells.push_back(success_cell(informed(pool)));
     for (const std::string& metric : metrics) cells.push_back(spread_cell(pool, metric));
     table.add(cells);
   }

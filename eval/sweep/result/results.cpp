@@ -17,6 +17,7 @@
 #include "eval/run_folder.h"
 #include "eval/sweep/result/ablation.h"
 #include "eval/sweep/result/charts.h"
+#include "eval/sweep/result/dataset_information.h"
 #include "eval/sweep/result/tables.h"
 
 namespace saccade {
@@ -107,6 +108,19 @@ ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group)
   return result;
 }
 
+/// A run that was refused has no class of its own: it has that of its configuration's other runs.
+void add_information(const DatasetInformation& information, std::vector<SweepRow>& rows) {
+  std::map<std::string, MethodClass> classes;
+  for (const SweepRow& row : rows)
+    if (row.method_class) classes.emplace(row.job->point.configuration, *row.method_class);
+  for (SweepRow& row : rows) {
+    if (const auto known = information.find(row.job->dataset); known != information.end())
+      row.information = known->second;
+    const auto method = classes.find(row.job->point.configuration);
+    if (!row.method_class && method != classes.end()) row.method_class = method->second;
+  }
+}
+
 SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
   SweepResults results{sweep, plan, {}, {}, sweep.metrics};
   for (const SweepJob& job : plan.rows())
@@ -174,7 +188,8 @@ std::vector<ExpectationResult> check_expectations(const SweepResults& results) {
 
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
                                 const std::filesystem::path& folder) {
-  const SweepResults results = collect_results(sweep, plan);
+  SweepResults results = collect_results(sweep, plan);
+  if (sweep.generate) add_information(dataset_information(plan, folder), results.rows);
   warn_of_unknown(results);
   sweep_csv(results).save(folder / "sweep.csv");
   const std::vector<std::string> charts = write_charts(results, folder);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/io/run/method_class.h"
+#include "eval/information/information.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/outcome.h"
 #include "eval/sweep/plan/plan.h"
@@ -26,6 +27,7 @@ struct SweepRow {
   std::string problem = {};
   std::optional<MethodClass> method_class = {};  ///< nullopt: not known
   int threads = 0;                               ///< 0: not known
+  std::optional<Information> information = {};   ///< of its generated dataset; nullopt: not known
 
   [[nodiscard]] RunOutcome outcome() const {
     return {metrics.get("success"), failed || !problem.empty()};
@@ -75,7 +77,8 @@ struct ExpectationResult {
 /// One result per expected metric and group of its configuration.
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const SweepResults& results);
 
-/// Writes FOLDER/sweep.csv (one row per job with all its metrics), FOLDER/sweep.md (what failed, one
+/// Writes FOLDER/sweep.csv (one row per job with all its metrics), of generated datasets
+/// FOLDER/information.csv (dataset_information.h), FOLDER/sweep.md (what failed, one
 /// row per group with `metrics`, the leaderboard, and the expected metrics) and FOLDER/*.png.
 /// Returns the number of expected metrics that were missed.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,

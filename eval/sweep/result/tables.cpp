@@ -9,6 +9,7 @@
 
 #include "eval/metrics/catalogue.h"
 #include "eval/sweep/result/ablation.h"
+#include "eval/sweep/result/dataset_information.h"
 #include "eval/sweep/result/failures.h"
 #include "eval/sweep/result/leaderboards.h"
 #include "eval/sweep/result/pooled_table.h"
@@ -233,7 +234,8 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
                            std::span<const ExpectationResult> expectations,
                            const std::vector<Table>& ablation) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
-  std::string text = "# " + title + "\n\n" + method_text(results) + failures_section(results);
+  std::string text = "# " + title + "\n\n" + method_text(results) + failures_section(results) +
+                     too_little_section(results);
   const auto parts = by_dataset(results);
   if (results.plan.runs.empty() || parts.size() == results.groups.size()) {
     // One row per dataset: a single table.
