@@ -39,6 +39,18 @@ std::vector<TrackedPose> found_poses(const PathEstimate& start) {
   return poses;
 }
 
+/// How far apart the poses of a keyframe's events lie [m], as if its view were in their middle.
+double baseline_of(const Keyframe& keyframe, std::span<const StampedPose> path) {
+  double furthest_m = 0;
+  for (const StampedPose& pose : path) {
+    if (pose.t_s < keyframe.start_s || pose.t_s > keyframe.end_s) continue;
+    furthest_m = std::max(
+        furthest_m,
+        (pose.world_from_camera.translation() - keyframe.world_from_camera.translation()).norm());
+  }
+  return 2 * furthest_m;
+}
+
 }  // namespace
 
 /// A keyframe in the making.
@@ -100,6 +112,7 @@ OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& 
   }
   if (job_) end_mapping(path_.back().t_s, result);
   output(result);
+  if (result.is_scale_guessed) lose_distant_poses(result);
   return result;
 }
 
@@ -171,6 +184,12 @@ std::optional<TrackedPose> Odometry::relocate() {
   return std::nullopt;
 }
 
+void Odometry::take(Keyframe keyframe, const Rigid3& world_from_camera) {
+  baseline_m_ = baseline_of(keyframe, path_);
+  map_.add(std::move(keyframe), world_from_camera);
+  take_map();
+}
+
 void Odometry::take_map() {
   tracker_.set_map(map_.points());
   monitor_->set_map(map_.points(), Rigid3());
@@ -192,23 +211,31 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   fixed_until_s_ = first.path.fixed_until_s;
   given_until_s_ = first.path.given_until_s;
   result.poses = found_poses(first.path);
-  if (given_until_s_ != kNoGivenPoses) result.extrapolated_s = path_.back().t_s - given_until_s_;
+  if (given_until_s_ != kNoGivenPoses) {
+    result.extrapolated_s = path_.back().t_s - given_until_s_;
+    result.is_scale_guessed = first.is_scale_guessed();
+  }
   typical_depth_m_ = keyframe.typical_depth_m;
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
   last_keyframe_ = path_.back();
-  map_.add(std::move(keyframe), last_keyframe_.world_from_camera);
-  take_map();
+  take(std::move(keyframe), last_keyframe_.world_from_camera);
   output(result);
   for (TrackedPose& pose : result.poses) monitor_->judge(pose);
   tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
 }
 
 bool Odometry::wants_keyframe() const {
-  if (path_.back().t_s < last_keyframe_.t_s + options_.keyframe.interval_s) return false;
   const Rigid3& world_from_camera = path_.back().world_from_camera;
-  const double baseline_m =
+  const double moved_m =
       (world_from_camera.translation() - last_keyframe_.world_from_camera.translation()).norm();
-  return baseline_m >= options_.keyframe.distance * typical_depth_m_;  // d_kf
+  const double distance_m = options_.keyframe.distance * typical_depth_m_;  // d_kf
+  // Depths of a short start are off by some ten percent, and the path with them: with twice the
+  // baseline they are twice as good. From a pixel of parallax on, few keyframes reach d_kf.
+  const double doubled_m = std::max(baseline_m_, typical_depth_m_ / camera_.fx);
+  if (options_.keyframe.doubles_baseline && doubled_m < distance_m && moved_m >= doubled_m)
+    return true;
+  return path_.back().t_s >= last_keyframe_.t_s + options_.keyframe.interval_s &&
+         moved_m >= distance_m;
 }
 
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
@@ -238,8 +265,7 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   typical_depth_m_ = keyframe.typical_depth_m;
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);
-  map_.add(std::move(keyframe), path_.back().world_from_camera);
-  take_map();
+  take(std::move(keyframe), path_.back().world_from_camera);
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
 
@@ -291,6 +317,18 @@ void Odometry::add_images(std::span<const Event> events,
     mapper_.add_image(events, poses, keyframes[i]);
     if (progress) progress(1);
   });
+}
+
+void Odometry::lose_distant_poses(OdometryResult& result) const {
+  // A guess of the depth may be wrong by its whole, and so may the way that the camera has gone.
+  constexpr double kLostFraction = 0.05;
+  const Eigen::Vector3d given = Trajectory(path_).at_clamped(given_until_s_).translation();
+  for (TrackedPose& pose : result.poses) {
+    const double moved_m = (pose.world_from_camera.translation() - given).norm();
+    if (moved_m <= kLostFraction * typical_depth_m_) continue;
+    pose.status = TrackStatus::kLost;
+    pose.probability = std::min(0.5, pose.probability);
+  }
 }
 
 void Odometry::output(OdometryResult& result) const {

@@ -26,8 +26,11 @@ namespace saccade {
 
 /// When a keyframe is made, when it is taken into the map, and how many make up the map.
 struct KeyframeOptions {
-  double distance = 0.1;         ///< d_kf, relative to the typical depth (thesis 7)
-  double interval_s = 0;         ///< least time from one's begin to the next's
+  double distance = 0.1;  ///< d_kf, relative to the typical depth (thesis 7)
+  double interval_s = 0;  ///< least time from one's begin to the next's
+  /// A keyframe is also made, whatever the interval, where the camera has moved as far as the
+  /// baseline that the last one's depths rest on, if that is less than `distance`.
+  bool doubles_baseline = false;
   double handover_s = 0;         ///< from its newest event to the last that is tracked without it
   double active_window_s = 0.1;  ///< poses of its last seconds may still change with the next
   int active = 1;                ///< K: at most so many make up the map
@@ -71,7 +74,9 @@ struct OdometryResult {
   std::vector<TrackedPose> poses;
   std::vector<KeyframeChange> changes;
   double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
-  double tracking_s = 0;      ///< seconds of work
+  /// The given poses tell hardly any depth: poses further from them than 5 % of it are lost.
+  bool is_scale_guessed = false;
+  double tracking_s = 0;  ///< seconds of work
   double mapping_s = 0;
   double check_s = 0;
   // Of adjust().
@@ -132,6 +137,7 @@ class Odometry {
   };
 
   void start_from(FirstMap first, OdometryResult& result);
+  void take(Keyframe keyframe, const Rigid3& world_from_camera);
   void take_map();
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);
   void add_pose(TrackedPose pose, OdometryResult& result);
@@ -142,6 +148,7 @@ class Odometry {
   void begin_mapping(std::span<const Event> events, double now_s);
   void end_mapping(double now_s, OdometryResult& result);
   void apply_adjusted_poses(const Mapping& mapping);
+  void lose_distant_poses(OdometryResult& result) const;
   void output(OdometryResult& result) const;
 
   OdometryOptions options_;
@@ -163,6 +170,7 @@ class Odometry {
   Gyroscope gyroscope_;
   std::optional<MountedImu> imu_;
   StampedPose last_keyframe_;  ///< the camera when the last one was begun
+  double baseline_m_ = 0;      ///< of the newest one in the map
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;
 };

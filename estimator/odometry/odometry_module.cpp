@@ -217,6 +217,8 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
                                  lost, found.keyframes.size());
   if (const double extrapolated_s = found.result.extrapolated_s; extrapolated_s > 0)
     text += fmt::format(", the start extrapolated for {:.2f} s", extrapolated_s);
+  if (found.result.is_scale_guessed)
+    text += ", the scale a guess: the given poses tell hardly any depth";
   if (config.odometry.batch_adjustment != BatchMode::kNone && lost > 0)
     text += ", not adjusted as a whole";
   if (const auto& inertial = found.result.inertial)

@@ -29,7 +29,8 @@ DepthConfig depth_of_keyframes() {
 /// Keyframes of edges with depth, each adjusted together with the poses of its window.
 OdometryOptions edges() {
   OdometryOptions options;
-  options.keyframe = {.distance = 0.05, .active_window_s = 0.4, .active = 3};
+  options.keyframe = {
+      .distance = 0.05, .doubles_baseline = true, .active_window_s = 0.4, .active = 3};
   options.tracker = tracking_by_keyframes(0.1);
   MappingOptions& mapping = options.mapping;
   mapping.depth = depth_of_keyframes();

@@ -1,6 +1,7 @@
 #include "estimator/odometry/start/first_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,34 @@ Trajectory with_given_poses(const Trajectory& path, const PathEstimate& start) {
   return Trajectory(std::move(poses));
 }
 
+double longest_path_s(std::span<const Event> events, const PathEstimate& start,
+                      const FirstMapOptions& options) {
+  return std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start.poses.start_s());
+}
+
+constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
+
+/// Where the motion is a rotation, or nearly none, no depth is found, and the one that is assumed
+/// matters little. The path is extrapolated only for as long as its events show too few edges.
+FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate& start,
+                              const Mapper& mapper, const FirstMapOptions& options,
+                              const Gyroscope& gyroscope) {
+  FirstMap first{start, {}};
+  const double start_s = start.poses.start_s();
+  const double longest_s = longest_path_s(events, start, options);
+  // In the middle of what may be, as ratios count.
+  const DepthLimits& limits = options.refinement.limits;
+  first.path.typical_depth_m = std::sqrt(limits.near_m * limits.far_m);
+  double length_s = start.poses.end_s() - start_s;
+  while (true) {
+    first.mapping = mapper.map(within(events, first.path.poses), first.path);
+    if (first.mapping.keyframe.edges.size() >= Mapper::kMinEdges || length_s >= longest_s)
+      return first;
+    length_s = std::min(kPathGrowth * length_s, longest_s);
+    first.path.poses = extrapolated(start.poses, start_s + length_s, gyroscope);
+  }
+}
+
 }  // namespace
 
 FirstMap first_map(std::span<const Event> events, const PathEstimate& start, const Mapper& mapper,
@@ -30,15 +59,13 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
   FirstMap first{start, mapper.map(within(events, start.poses), start)};
   const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
   if (is_enough() || start.given_until_s == kNoGivenPoses || events.empty()) return first;
-  constexpr double kGrowth = 1.15;  ///< of the path, from round to round
   const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
   const double start_s = start.poses.start_s();
-  const double longest_s =
-      std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start_s);
+  const double longest_s = longest_path_s(events, start, options);
   PathEstimate path = start;
   double length_s = path.poses.end_s() - start_s;
   while (!is_enough() && length_s < longest_s) {
-    length_s = std::min(kGrowth * length_s, longest_s);
+    length_s = std::min(kPathGrowth * length_s, longest_s);
     const Trajectory longer = extrapolated(path.poses, start_s + length_s, gyroscope);
     const std::span<const Event> window = within(events, longer);
     if (window.empty()) continue;
@@ -49,8 +76,10 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};
   }
+  if (is_enough()) return first;
+  if (first.mapping.keyframe.edges.size() < Mapper::kMinEdges)
+    return map_of_assumed_depth(events, start, mapper, options, gyroscope);
   // Now the typical depth is known, at which edges of an unknown one are tracked.
-  if (is_enough() || first.mapping.keyframe.edges.size() < Mapper::kMinEdges) return first;
   first.path.typical_depth_m = first.mapping.keyframe.typical_depth_m;
   Mapping mapping = mapper.map(within(events, first.path.poses), first.path);
   if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())

@@ -31,13 +31,19 @@ struct FirstMapOptions {
 struct FirstMap {
   PathEstimate path;
   Mapping mapping;
+
+  /// Whether hardly any depth was found, so that the scale of the path from here on is a guess.
+  [[nodiscard]] bool is_scale_guessed() const {
+    return mapping.keyframe.depth.points.size() < Mapper::kMinEdges;
+  }
 };
 
 /// What a run starts from. Where the camera hardly translates sideways while its poses are given,
 /// few edges have a depth, and tracking would be lost soon after. The path is then extrapolated at
 /// its last velocity and adjusted together with the edges (PathRefinement), with the given poses
 /// restored each time, until `mapper` makes a map of edges enough, or the path is as long as it may
-/// get; the largest map is taken. `start` as of Odometry::run(): one without given poses is taken
+/// get; the largest map is taken. Where none has edges that could be tracked, as in a rotation, edges
+/// are mapped at an assumed depth: the scale of what follows is a guess. `start` as of Odometry::run(): one without given poses is taken
 /// as it is. `events` in order of time; `camera` with its lens; `gyroscope`, where it is not empty,
 /// measures the rotation beyond the given poses. Deterministic.
 [[nodiscard]] FirstMap first_map(std::span<const Event> events, const PathEstimate& start,
