@@ -320,8 +320,9 @@ void Odometry::add_images(std::span<const Event> events,
 }
 
 void Odometry::lose_distant_poses(OdometryResult& result) const {
-  // A guess of the depth may be wrong by its whole, and so may the way that the camera has gone.
-  constexpr double kLostFraction = 0.05;
+  // A pose is lost that is off by 5 % of the depth. The guess may be wrong by a factor of two and a
+  // half, and so may the way that the camera seems to have gone.
+  constexpr double kLostFraction = 0.02;
   const Eigen::Vector3d given = Trajectory(path_).at_clamped(given_until_s_).translation();
   for (TrackedPose& pose : result.poses) {
     const double moved_m = (pose.world_from_camera.translation() - given).norm();

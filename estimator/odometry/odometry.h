@@ -74,7 +74,7 @@ struct OdometryResult {
   std::vector<TrackedPose> poses;
   std::vector<KeyframeChange> changes;
   double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
-  /// The given poses tell hardly any depth: poses further from them than 5 % of it are lost.
+  /// The given poses tell hardly any depth: poses further from them than 2 % of it are lost.
   bool is_scale_guessed = false;
   double tracking_s = 0;  ///< seconds of work
   double mapping_s = 0;

@@ -158,6 +158,51 @@ TEST_F(OdometryModule, AStartOfAFewPixelsIsExtrapolated) {
   EXPECT_GE(keyframes.front().edges, 600);
 }
 
+TEST_F(OdometryModule, AShortBaselineIsDoubled) {
+  std::string yaml = with_short_start();
+  yaml.replace(yaml.find("distance: 0.05"), 14, "distance: 0.4, interval_s: 1");
+  (void)run_odometry(request("run", yaml));
+  const auto keyframes = read_keyframe_list(folder_.path() / "run" / "keyframes.yaml");
+  // 0.4 of the depth, and a second, are beyond the path's end; twice the first 0.1 m are not.
+  ASSERT_GE(keyframes.size(), 2U);
+  EXPECT_LE(keyframes.size(), 3U) << "as often as a baseline can be doubled";
+  const auto gone_m = [&](std::size_t i) {
+    return glide(keyframes[i].made_s).translation().norm();
+  };
+  EXPECT_GT(gone_m(1), 1.7 * gone_m(0));
+}
+
+TEST_F(OdometryModule, BeyondARotationTheScaleIsAGuess) {
+  const testing::Motion motion = [](double t_s) {
+    const double slid_m = t_s < 0.15 ? 0 : 0.8 * (t_s - 0.15);
+    return Rigid3(so3_exp({0.2 * t_s, -0.6 * t_s, 0.3 * t_s}), {slid_m, 0, 0});
+  };
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
+  const fs::path data = folder_.path() / "turn";
+  testing::write_recording(data, world.camera(), world.simulate(motion, 0, kEnd_s, 1e-3, 0.12),
+                           std::span(&blank, 1), poses_until(kEnd_s, motion));
+  std::string yaml = with_short_start();
+  const RunSummary summary = run_odometry(testing::run_request(data, folder_.path() / "run", yaml));
+  EXPECT_THAT(summary.found, HasSubstr("the scale a guess"));
+  const CsvColumns poses(folder_.path() / "run" / "poses.csv");
+  const Trajectory path = read_trajectory(folder_.path() / "run" / "trajectory.txt");
+  ASSERT_EQ(poses.rows(), path.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const StampedPose& pose = path.poses()[i];
+    const bool is_lost = poses.text(i, poses.require("status")) == "lost";
+    if (pose.t_s < 0.14) {
+      EXPECT_LT(angle_between(pose.world_from_camera.rotation(), motion(pose.t_s).rotation()),
+                0.02);
+      EXPECT_FALSE(is_lost) << pose.t_s;
+    }
+    if (pose.world_from_camera.translation().norm() > 0.08 * kDepth_m) {
+      EXPECT_TRUE(is_lost) << pose.t_s;
+    }
+  }
+  EXPECT_GT(summary.lost_poses, 0U);
+}
+
 TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
   const auto shortest_s = [&](const std::string& name, const std::string& keyframe) {
     std::string yaml = kQuick;

@@ -131,6 +131,24 @@ TEST(FirstMap, AGyroscopeTellsTheTurnBeyond) {
   EXPECT_LT(worst_of(felt.path.poses, kGiven_s, kWhole_s).rad, 1e-3);
 }
 
+TEST(FirstMap, ARotationIsMappedAtAnAssumedDepth) {
+  const testing::Motion turn = [](double t_s) {
+    return Rigid3(so3_exp(t_s * Eigen::Vector3d(0.4, -1.2, 0.3)), {1e-4 * t_s, 0, 0});
+  };
+  const Events turned = corner().simulate(turn, 0, kWhole_s, 1e-3, 0.15);
+  PathEstimate start;
+  start.poses = testing::trajectory_of(turn, kGiven_s);
+  start.fixed_until_s = start.given_until_s = kGiven_s;
+  MappingOptions mapping = quick_mapping();
+  mapping.min_edges = 400;
+  const Mapper mapper(mapping, corner().camera());
+  const FirstMap first = first_map(turned, start, mapper, corner().camera(), carried(), {});
+  EXPECT_GE(first.mapping.keyframe.edges.size(), Mapper::kMinEdges);
+  EXPECT_TRUE(first.is_scale_guessed());
+  EXPECT_DOUBLE_EQ(first.path.poses.end_s(), kGiven_s) << "the given poses show edges enough";
+  EXPECT_FALSE(made(given(), carried()).is_scale_guessed()) << "a slide tells depths";
+}
+
 TEST(FirstMap, EndsWithTheLongestPathThatIsAllowed) {
   FirstMapOptions options = carried();
   options.min_edges = 1000000;
