@@ -108,6 +108,13 @@ Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) con
   return mapping;
 }
 
+Mapping Mapper::map_if_enough(std::span<const Event> events, const PathEstimate& path) const {
+  Mapping loosest = Mapper(relaxed(options_, kMostRelaxed), camera_).map_once(events, path);
+  const bool is_enough =
+      loosest.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges);
+  return is_enough ? map(events, path) : loosest;
+}
+
 Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path) const {
   Mapping mapping;
   Keyframe& keyframe = mapping.keyframe;

@@ -78,6 +78,11 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path) const;
 
+  /// The same for a window that may well show too few edges, of a path without a typical depth: with
+  /// the greatest sigma first, so that it costs one attempt in place of three.
+  [[nodiscard]] Mapping map_if_enough(std::span<const Event> events,
+                                      const PathEstimate& path) const;
+
   /// Depth and edges of a keyframe anew, by better poses; `events` contain its own.
   /// Of DepthConfig's method rays and Edges::kDepth.
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.h"
+
 namespace saccade {
 namespace {
 
@@ -36,6 +38,38 @@ TEST(OutlierRemoval, TheRadiusGrowsWithTheDepth) {
 TEST(OutlierRemoval, KeepsEverythingWithoutNeighboursAsked) {
   EXPECT_EQ(without_outliers({at(50, 50, 2)}, square_camera(), 0.035, 0).size(), 1U);
   EXPECT_TRUE(without_outliers({}, square_camera()).empty());
+}
+
+TEST(OutlierRemoval, KeepsWhatComparingAllPointsKeeps) {
+  const PinholeCamera camera{320, 240, 150, 160, 160, 120, {}};
+  const Random random(5);
+  std::vector<EdgePoint> points;
+  // Wide rays, depths in layers and between them, and some points beside the image.
+  for (std::uint64_t i = 0; i < 4000; ++i) {
+    const double depth =
+        random.uniform(i, 0) < 0.7 ? 2 + 0.02 * random.normal(i, 1) : 1 + 4 * random.uniform(i, 2);
+    points.push_back(at(static_cast<float>(-10 + 340 * random.uniform(i, 3)),
+                        static_cast<float>(-10 + 260 * random.uniform(i, 4)),
+                        static_cast<float>(depth)));
+  }
+  std::vector<Eigen::Vector3d> positions;
+  for (const EdgePoint& p : points)
+    positions.emplace_back(camera.ray({p.x_px, p.y_px}) / static_cast<double>(p.inverse_depth));
+  std::vector<EdgePoint> expected;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    int near = 0;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      near += j != i && (positions[j] - positions[i]).norm() <= 0.035 * positions[i].z() ? 1 : 0;
+    if (near >= 2) expected.push_back(points[i]);
+  }
+  ASSERT_GT(expected.size(), 300U);
+  ASSERT_LT(expected.size(), 3900U);
+  const std::vector<EdgePoint> kept = without_outliers(points, camera);
+  ASSERT_EQ(kept.size(), expected.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_EQ(kept[i].x_px, expected[i].x_px);
+    EXPECT_EQ(kept[i].y_px, expected[i].y_px);
+  }
 }
 
 }  // namespace
