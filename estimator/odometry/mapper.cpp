@@ -97,11 +97,10 @@ Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) con
     Mapping more = Mapper(options, camera_).map_once(events, path);
     if (more.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(more);
   };
-  for (const double factor : {3.0, kMostRelaxed}) {
-    if (is_enough()) return mapping;
-    replace(relaxed(options_, factor));
-  }
-  if (is_enough() || !path.typical_depth_m) return mapping;
+  if (is_enough()) return mapping;
+  for (const double factor : {3.0, kMostRelaxed})
+    if (!is_enough()) replace(relaxed(options_, factor));
+  if (!path.typical_depth_m) return mapping;
   MappingOptions assuming = relaxed(options_, kMostRelaxed);
   assuming.depth.rays.assumed_inverse_depth = 1 / *path.typical_depth_m;
   replace(assuming);

@@ -76,7 +76,6 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};
   }
-  if (is_enough()) return first;
   if (first.mapping.keyframe.edges.size() < Mapper::kMinEdges)
     return map_of_assumed_depth(events, start, mapper, options, gyroscope);
   // Now the typical depth is known, at which edges of an unknown one are tracked.
