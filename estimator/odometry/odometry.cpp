@@ -218,29 +218,37 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   typical_depth_m_ = keyframe.typical_depth_m;
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
   last_keyframe_ = path_.back();
+  interval_from_s_ = last_keyframe_.t_s;
   take(std::move(keyframe), last_keyframe_.world_from_camera);
   output(result);
   for (TrackedPose& pose : result.poses) monitor_->judge(pose);
   tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
 }
 
-bool Odometry::wants_keyframe() const {
-  const Rigid3& world_from_camera = path_.back().world_from_camera;
-  const double moved_m =
-      (world_from_camera.translation() - last_keyframe_.world_from_camera.translation()).norm();
-  const double distance_m = options_.keyframe.distance * typical_depth_m_;  // d_kf
+double Odometry::moved_m() const {
+  return (path_.back().world_from_camera.translation() -
+          last_keyframe_.world_from_camera.translation())
+      .norm();
+}
+
+bool Odometry::has_doubled_baseline() const {
   // Depths of a short start are off by some ten percent, and the path with them: with twice the
   // baseline they are twice as good. From a pixel of parallax on, few keyframes reach d_kf.
   const double doubled_m = std::max(baseline_m_, typical_depth_m_ / camera_.fx);
-  if (options_.keyframe.doubles_baseline && doubled_m < distance_m && moved_m >= doubled_m)
-    return true;
-  return path_.back().t_s >= last_keyframe_.t_s + options_.keyframe.interval_s &&
-         moved_m >= distance_m;
+  return options_.keyframe.doubles_baseline && moved_m() >= doubled_m &&
+         doubled_m < options_.keyframe.distance * typical_depth_m_;
+}
+
+bool Odometry::wants_keyframe() const {
+  return has_doubled_baseline() ||
+         (path_.back().t_s >= interval_from_s_ + options_.keyframe.interval_s &&
+          moved_m() >= options_.keyframe.distance * typical_depth_m_);  // d_kf
 }
 
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_ = std::make_unique<Job>();
   job_->made_s = now_s;
+  if (!has_doubled_baseline()) interval_from_s_ = path_.back().t_s;
   last_keyframe_ = path_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   const std::span<const Event> mapped = events.subspan(count_until_s(events, mapped_from_s_));
