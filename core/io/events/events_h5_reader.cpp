@@ -553,6 +553,14 @@ EventFileInfo EventH5Reader::info() const {
   return info;
 }
 
+std::uint64_t EventH5Reader::block_events() const {
+  // The library unpacks chunks of any length, and keeps few.
+  if (!state_->packed) return kH5Block;
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 18U;  // work for several threads
+  const std::uint64_t chunk = state_->packed->longest_chunk();
+  return (kLeast + chunk - 1) / chunk * chunk;
+}
+
 std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) const {
   const H5Lock lock;
   const Range range = state_->find(window);

@@ -59,6 +59,12 @@ std::optional<PackedColumns> PackedColumns::of(hid_t x, hid_t y, hid_t p, hid_t 
   return PackedColumns({*xs, *ys, *ps, *ts});
 }
 
+std::uint64_t PackedColumns::longest_chunk() const {
+  std::uint64_t longest = 0;
+  for (const H5Chunks& column : chunks_) longest = std::max(longest, column.values());
+  return longest;
+}
+
 bool PackedColumns::read(std::uint64_t begin, std::uint64_t end, EventColumns& columns) const {
   columns.resize(end - begin);
   if (begin == end) return true;

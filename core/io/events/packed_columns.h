@@ -20,6 +20,8 @@ class PackedColumns {
   /// the datasets outlive this.
   [[nodiscard]] static std::optional<PackedColumns> of(hid_t x, hid_t y, hid_t p, hid_t t);
 
+  /// Values in the longest chunk of a column.
+  [[nodiscard]] std::uint64_t longest_chunk() const;
   /// The events with indices [begin, end); false where a chunk is missing or damaged, and then the library
   /// can tell what is wrong with it. Takes the H5Lock itself, but not while it unpacks.
   [[nodiscard]] bool read(std::uint64_t begin, std::uint64_t end, EventColumns& columns) const;
