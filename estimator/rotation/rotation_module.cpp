@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
@@ -216,14 +218,20 @@ RunSummary run_rotation(const RunRequest& request) {
   const bool takes_events = config.method != Method::kImu;
   const TimeWindow event_times = takes_events ? event_window(request, dataset) : TimeWindow();
   Rates rates;
-  Progress progress("rotation", 0, "events");
+  std::optional<Progress> progress;
   for (int i = 0; i < request.repeat; ++i) {
     std::optional<EventQueue> events;
-    if (takes_events) events.emplace(dataset.stream_events(event_times));
-    if (events && events->ahead(1).empty()) refuse_no_events(dataset);
+    std::uint64_t expected = 0;
+    if (takes_events) {
+      EventStream stream = dataset.stream_events(event_times);
+      expected = stream.expected_count() * static_cast<std::uint64_t>(request.repeat);
+      events.emplace(std::move(stream));
+      if (events->ahead(1).empty()) refuse_no_events(dataset);
+    }
+    if (!progress) progress.emplace("rotation", expected, "events");
     const double opened_s = events ? events->waited_s() : 0;
     const Stopwatch working;
-    rates = find_rates(config, dataset.camera(), events ? &*events : nullptr, imu, progress);
+    rates = find_rates(config, dataset.camera(), events ? &*events : nullptr, imu, *progress);
     const double reading_s = events ? events->waited_s() : 0;
     timing.wall_s.push_back(working.seconds() - (reading_s - opened_s));
     timing.io_s += reading_s;
