@@ -1,31 +1,21 @@
 #include "core/process/parallel.h"
 
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 
 #include "core/check.h"
+#include "core/process/thread_pool.h"
 
 namespace saccade {
 namespace {
 
-/// TBB's own default arena never has more threads than cores; this one has as many as asked for.
-struct Pool {
-  explicit Pool(int count)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
-        arena(count) {}
-
-  tbb::global_control limit;
-  tbb::task_arena arena;
-};
-
-std::unique_ptr<Pool>& pool() {
-  static std::unique_ptr<Pool> instance = std::make_unique<Pool>(tbb::info::default_concurrency());
+std::shared_ptr<ThreadPool>& pool() {
+  static std::shared_ptr<ThreadPool> instance =
+      std::make_shared<ThreadPool>(tbb::info::default_concurrency());
   return instance;
 }
 
@@ -34,11 +24,13 @@ std::unique_ptr<Pool>& pool() {
 void set_thread_count(int count) {
   SACCADE_CHECK(count >= 0);
   const int threads = count > 0 ? count : tbb::info::default_concurrency();
-  std::unique_ptr<Pool>& current = pool();
+  std::shared_ptr<ThreadPool>& current = pool();
   current.reset();
-  current = std::make_unique<Pool>(threads);
+  current = std::make_shared<ThreadPool>(threads);
   cv::setNumThreads(threads);
 }
+
+std::shared_ptr<ThreadPool> current_thread_pool() { return pool(); }
 
 int thread_count() { return pool()->arena.max_concurrency(); }
 

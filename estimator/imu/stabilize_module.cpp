@@ -2,11 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/io/events/event_queue.h"
 #include "core/io/imu_file.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/parallel.h"
@@ -22,18 +28,38 @@
 namespace saccade {
 namespace {
 
-/// Consecutive windows of `window_s` from the first event on; empty ones are left out.
-std::vector<std::span<const Event>> event_windows(std::span<const Event> events, double window_s) {
-  std::vector<std::span<const Event>> windows;
-  const TimeNs window_ns = ns_from_seconds(window_s);
-  while (!events.empty()) {
-    const TimeNs start_ns = windows.empty() ? events.front().t_ns : windows.front().front().t_ns;
-    const TimeNs begin_ns = start_ns + (events.front().t_ns - start_ns) / window_ns * window_ns;
-    windows.push_back(events.first(count_before(events, begin_ns + window_ns)));
-    events = events.subspan(windows.back().size());
+/// Events that are cut into windows together, so that all threads have some.
+constexpr std::size_t kBatchEvents = std::size_t{1} << 20U;
+
+/// Consecutive windows of equal length from the first event of a recording on; empty ones are left out.
+class WindowCutter {
+ public:
+  explicit WindowCutter(double window_s) : length_ns_(ns_from_seconds(window_s)) {}
+
+  /// Cuts off the windows that are complete; with `is_last` all of them. `events`: those that follow the
+  /// windows before.
+  [[nodiscard]] std::vector<std::span<const Event>> cut(std::span<const Event> events,
+                                                        bool is_last) {
+    std::vector<std::span<const Event>> windows;
+    if (!start_ns_ && !events.empty()) start_ns_ = events.front().t_ns;
+    while (!events.empty()) {
+      const std::size_t size = count_before(events, begin_of(events.front()) + length_ns_);
+      if (size == events.size() && !is_last) break;
+      windows.push_back(events.first(size));
+      events = events.subspan(size);
+    }
+    return windows;
   }
-  return windows;
-}
+  /// Begin of the window that holds an event.
+  [[nodiscard]] TimeNs begin_of(const Event& event) const {
+    return *start_ns_ + (event.t_ns - *start_ns_) / length_ns_ * length_ns_;
+  }
+  [[nodiscard]] TimeNs length_ns() const { return length_ns_; }
+
+ private:
+  TimeNs length_ns_;
+  std::optional<TimeNs> start_ns_;  ///< first event of the recording
+};
 
 /// The time of a window of events and, in its middle, the rotation to the smoothed orientation.
 StabilizedWindow window_at(TimeNs begin_ns, TimeNs length_ns, const Trajectory& world_from_camera,
@@ -47,55 +73,80 @@ StabilizedWindow window_at(TimeNs begin_ns, TimeNs length_ns, const Trajectory& 
   return window;
 }
 
-/// Result of one repetition.
-struct Stabilization {
+/// What the events are moved by.
+struct Orientations {
   ImuPoses camera;  ///< without an inertial sensor its biases are empty
   Trajectory world_from_smoothed;
-  std::vector<StabilizedWindow> windows;
-  std::vector<std::vector<StabilizedEvent>> events;  ///< of each window
 };
 
-Stabilization stabilize(const std::optional<ImuInput>& imu, const Trajectory& given_poses,
-                        std::span<const Event> events, const StabilizeConfig& config,
-                        const PinholeCamera& camera, RunTiming& timing) {
-  Stabilization result;
-  double orientation_s = 0, events_s = 0;
-  {
-    const ScopedTimer clock(orientation_s);
-    result.camera = imu ? camera_orientations(*imu, config.orientation) : ImuPoses{given_poses, {}};
-    result.world_from_smoothed =
-        smoothed_orientations(result.camera.world_from_camera, config.smoothing);
-  }
-  {
-    const ScopedTimer clock(events_s);
-    const Stabilizer stabilizer(camera, result.camera.world_from_camera);
-    const auto windows = event_windows(events, config.window_s);
-    const TimeNs length_ns = ns_from_seconds(config.window_s);
-    result.windows.resize(windows.size());
-    result.events.resize(windows.size());
-    parallel_for(windows.size(), [&](std::size_t i) {
-      const TimeNs start_ns = events.front().t_ns;
-      const TimeNs index = (windows[i].front().t_ns - start_ns) / length_ns;
-      result.windows[i] = window_at(start_ns + index * length_ns, length_ns,
-                                    result.camera.world_from_camera, result.world_from_smoothed);
-      const Rigid3 steady = result.world_from_smoothed.at_clamped(result.windows[i].at_s);
-      result.events[i] = stabilizer.stabilize(windows[i], steady.rotation());
-    });
-  }
-  timing.wall_s.push_back(orientation_s + events_s);
-  timing.stages_s = {{"orientation", orientation_s}, {"events", events_s}};
-  return result;
+Orientations find_orientations(const std::optional<ImuInput>& imu, const Trajectory& given_poses,
+                               const StabilizeConfig& config) {
+  Orientations found;
+  found.camera = imu ? camera_orientations(*imu, config.orientation) : ImuPoses{given_poses, {}};
+  found.world_from_smoothed =
+      smoothed_orientations(found.camera.world_from_camera, config.smoothing);
+  return found;
 }
 
-void write(const std::filesystem::path& folder, const Dataset& dataset, const Stabilization& result,
+/// What was done with the events in one repetition.
+struct Stabilization {
+  std::size_t events = 0;
+  std::size_t windows = 0;
+  TimeNs first_ns = 0;  ///< where there are events
+  double work_s = 0;    ///< without reading and writing
+  double io_s = 0;
+};
+
+/// Moves the events of the queue batch by batch, so that memory does not grow with the recording, and
+/// writes them into `folder` where one is given.
+Stabilization stabilize_events(EventQueue& events, const Orientations& orientations,
+                               const StabilizeConfig& config, const PinholeCamera& camera,
+                               const std::filesystem::path* folder, Progress& progress) {
+  Stabilization done;
+  const Stabilizer stabilizer(camera, orientations.camera.world_from_camera);
+  WindowCutter cutter(config.window_s);
+  std::optional<StabilizedEventsWriter> writer;
+  std::size_t wanted = kBatchEvents;
+  for (auto ahead = events.ahead(wanted); !ahead.empty(); ahead = events.ahead(wanted)) {
+    const Stopwatch working;
+    if (done.events == 0) done.first_ns = ahead.front().t_ns;
+    const auto parts = cutter.cut(ahead, events.is_complete());
+    // A window that reaches beyond what was read is waited for.
+    wanted = parts.empty() ? 2 * ahead.size() : kBatchEvents;
+    std::vector<StabilizedWindow> windows(parts.size());
+    std::vector<std::vector<StabilizedEvent>> stabilized(parts.size());
+    parallel_for(parts.size(), [&](std::size_t i) {
+      windows[i] =
+          window_at(cutter.begin_of(parts[i].front()), cutter.length_ns(),
+                    orientations.camera.world_from_camera, orientations.world_from_smoothed);
+      const Rigid3 steady = orientations.world_from_smoothed.at_clamped(windows[i].at_s);
+      stabilized[i] = stabilizer.stabilize(parts[i], steady.rotation());
+    });
+    done.work_s += working.seconds();
+    if (folder && !parts.empty()) {
+      const ScopedTimer writing(done.io_s);
+      if (!writer) writer.emplace(*folder, camera);
+      writer->append(windows, stabilized);
+    }
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    events.drop(count);
+    progress.add(count);
+    done.events += count;
+    done.windows += parts.size();
+  }
+  const ScopedTimer writing(done.io_s);
+  if (writer) writer->close();
+  return done;
+}
+
+void write(const std::filesystem::path& folder, const Dataset& dataset, const Orientations& found,
            const RunRecord::Window& window) {
-  write_orientations(folder / "orientation.txt", result.camera.world_from_camera.poses());
-  if (!result.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", result.camera.gyro);
-  if (!result.windows.empty())
-    write_stabilized_events(folder / "stabilized", dataset.camera(), result.windows, result.events);
+  write_orientations(folder / "orientation.txt", found.camera.world_from_camera.poses());
+  if (!found.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", found.camera.gyro);
   write_stabilized_frames(folder / "stabilized", dataset, window,
-                          Stabilizer(dataset.camera(), result.camera.world_from_camera),
-                          result.world_from_smoothed);
+                          Stabilizer(dataset.camera(), found.camera.world_from_camera),
+                          found.world_from_smoothed);
 }
 
 }  // namespace
@@ -132,7 +183,6 @@ RunSummary run_stabilization(const RunRequest& request) {
   const Dataset dataset = Dataset::open(request.dataset);
   std::optional<ImuInput> imu;
   Trajectory given_poses;
-  Events events;
   {
     const ScopedTimer clock(timing.io_s);
     if (request.poses_from) {
@@ -141,33 +191,51 @@ RunSummary run_stabilization(const RunRequest& request) {
       refuse_smoothing(request, "the orientation is the inertial sensor's; it is of --poses-from");
       imu = load_imu_input(dataset, "stabilize (or --poses-from RUN)");
     }
-    if (!dataset.events_file().empty()) events = load_events_if_any(request, dataset);
   }
-  timing.events = events.size();
-  Stabilization result;
-  Progress progress("stabilize", timing.events * static_cast<std::size_t>(request.repeat),
-                    "events");
+  const bool has_events = !dataset.events_file().empty();
+  const TimeWindow event_times = event_window(request, dataset);
+  Orientations found;
+  Stabilization done;
+  std::optional<Progress> progress;
+  const std::filesystem::path folder = writer.path() / "stabilized";
   for (int i = 0; i < request.repeat; ++i) {
-    result = stabilize(imu, given_poses, events, config, dataset.camera(), timing);
-    progress.add(timing.events);
+    double orientation_s = 0;
+    {
+      const ScopedTimer clock(orientation_s);
+      found = find_orientations(imu, given_poses, config);
+    }
+    if (has_events) {
+      EventStream stream = dataset.stream_events(event_times);
+      if (!progress)
+        progress.emplace("stabilize",
+                         stream.expected_count() * static_cast<std::uint64_t>(request.repeat),
+                         "events");
+      EventQueue events(std::move(stream));
+      done = stabilize_events(events, found, config, dataset.camera(),
+                              i + 1 == request.repeat ? &folder : nullptr, *progress);
+      timing.io_s += done.io_s + events.waited_s();
+    }
+    timing.wall_s.push_back(orientation_s + done.work_s);
+    timing.stages_s = {{"orientation", orientation_s}, {"events", done.work_s}};
   }
-  const Trajectory& poses = result.camera.world_from_camera;
+  timing.events = done.events;
+  const Trajectory& poses = found.camera.world_from_camera;
   timing.sequence_s = poses.end_s() - poses.start_s();
-  // --duration-s without --start-s counts from the first event, as it does when they are loaded.
-  const bool is_from_events = request.duration_s && !events.empty();
-  const double first_s = is_from_events ? seconds_from_ns(events.front().t_ns) : poses.start_s();
+  // --duration-s without --start-s counts from the first event, as it does when they are read.
+  const bool is_from_events = request.duration_s && done.events > 0;
+  const double first_s = is_from_events ? seconds_from_ns(done.first_ns) : poses.start_s();
   const RunRecord::Window window = window_of(request, first_s, poses.end_s());
   {
     const ScopedTimer clock(timing.io_s);
-    write(writer.path(), dataset, result, window);
+    write(writer.path(), dataset, found, window);
   }
   MethodClass method_class{{MethodInput::kEvents}};
   if (imu) method_class.inputs.insert(MethodInput::kImu);
   writer.set_class(method_class);
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);
 
-  return summary_of(timing, fmt::format("{} orientations, {} windows of events", poses.size(),
-                                        result.windows.size()));
+  return summary_of(
+      timing, fmt::format("{} orientations, {} windows of events", poses.size(), done.windows));
 }
 
 }  // namespace saccade

@@ -2,16 +2,18 @@
 
 #include <fmt/core.h>
 
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/io/events/event_queue.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
 #include "estimator/rotation/rate_fusion.h"
-#include "estimator/run/repeat.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/tracking/gyroscope.h"
@@ -30,19 +32,26 @@ double middle_of(std::span<const Event> window) {
   return seconds_from_ns((window.front().t_ns + window.back().t_ns) / 2);
 }
 
+/// As many events as tell next_window_size() whether the window is the last one.
+std::size_t events_ahead(const RotationOptions& options) {
+  const auto whole = static_cast<std::size_t>(options.window_events);
+  return whole + whole / 2 + 1;
+}
+
 /// The last window is that which reaches the end.
 std::size_t step_of(std::span<const Event> window, std::span<const Event> events) {
   return window.size() == events.size() ? events.size() : window_step(window);
 }
 
 /// From events alone, window by window.
-Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
-               const RotationOptions& options, Progress& progress) {
+Rates rates_of(EventQueue& queue, const PinholeCamera& camera, const RotationOptions& options,
+               Progress& progress) {
   Rates rates;
   RotationEstimator estimator(camera, options);
   RotationEstimate last;
   double duration_s = options.min_window_s;
-  while (!events.empty()) {
+  const std::size_t needed = events_ahead(options);
+  for (auto events = queue.ahead(needed); !events.empty(); events = queue.ahead(needed)) {
     std::span<const Event> window;
     RotationEstimate found;
     // A window is as long as its own motion wants it, to a factor of two: once more where the motion
@@ -59,7 +68,7 @@ Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
     last = found;
     if (last.is_valid) rates.push_back(rate_at(last.t_s, last.turning.rate));
     const std::size_t done = step_of(window, events);
-    events = events.subspan(done);
+    queue.drop(done);
     progress.add(done);
   }
   return rates;
@@ -83,12 +92,13 @@ AngularMotion motion_of(const Gyroscope& gyroscope, TimeNs start_ns, TimeNs end_
 }
 
 /// From both, window by window; the search starts at the motion by the gyroscope.
-Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
-               const RotationConfig& config, const Gyroscope& gyroscope, Progress& progress) {
+Rates rates_of(EventQueue& queue, const PinholeCamera& camera, const RotationConfig& config,
+               const Gyroscope& gyroscope, Progress& progress) {
   Rates rates;
   RotationEstimator estimator(camera, config.events);
   RateFusion fusion(config.gyroscope);
-  while (!events.empty()) {
+  const std::size_t needed = events_ahead(config.events);
+  for (auto events = queue.ahead(needed); !events.empty(); events = queue.ahead(needed)) {
     const AngularMotion now =
         motion_of(gyroscope, events.front().t_ns,
                   events.front().t_ns + ns_from_seconds(config.events.min_window_s));
@@ -109,7 +119,7 @@ Rates rates_of(std::span<const Event> events, const PinholeCamera& camera,
     else if (!rates.empty())
       rates.push_back(rate_at(middle_s, fusion.without_events(measured.rate)));
     const std::size_t done = window.size();
-    events = events.subspan(done);
+    queue.drop(done);
     progress.add(done);
   }
   return rates;
@@ -134,19 +144,19 @@ Rates rates_of(const ImuInput& imu, const OrientationOptions& options, double av
   return rates;
 }
 
-Rates find_rates(const RotationConfig& config, const PinholeCamera& camera,
-                 std::span<const Event> events, const std::optional<ImuInput>& imu,
-                 Progress& progress) {
+/// `events`: none for Method::kImu.
+Rates find_rates(const RotationConfig& config, const PinholeCamera& camera, EventQueue* events,
+                 const std::optional<ImuInput>& imu, Progress& progress) {
   switch (config.method) {
     case Method::kEvents:
-      return rates_of(events, camera, config.events, progress);
+      return rates_of(*events, camera, config.events, progress);
     case Method::kImu:
       return rates_of(*imu, config.orientation, config.averaging_s);
     case Method::kBoth:
       break;
   }
   const Gyroscope gyroscope(imu->samples, imu->camera_from_imu, Eigen::Vector3d::Zero());
-  return rates_of(events, camera, config, gyroscope, progress);
+  return rates_of(*events, camera, config, gyroscope, progress);
 }
 
 /// Rates over a window are stamped with its middle.
@@ -201,17 +211,32 @@ RunSummary run_rotation(const RunRequest& request) {
   RunTiming timing;
   const Dataset dataset = Dataset::open(request.dataset);
   std::optional<ImuInput> imu;
-  Events events;
   {
     const ScopedTimer clock(timing.io_s);
     if (config.method != Method::kEvents) imu = load_imu_input(dataset, "method: imu or both");
-    if (config.method != Method::kImu) events = load_events(request, dataset);
   }
-  timing.events = events.size();
+  const bool takes_events = config.method != Method::kImu;
+  const TimeWindow event_times = takes_events ? event_window(request, dataset) : TimeWindow();
   Rates rates;
-  Progress progress("rotation", timing.events * static_cast<std::size_t>(request.repeat), "events");
-  repeat_timed(request.repeat, timing.wall_s,
-               [&] { rates = find_rates(config, dataset.camera(), events, imu, progress); });
+  std::optional<Progress> progress;
+  for (int i = 0; i < request.repeat; ++i) {
+    std::optional<EventQueue> events;
+    std::uint64_t expected = 0;
+    if (takes_events) {
+      EventStream stream = dataset.stream_events(event_times);
+      expected = stream.expected_count() * static_cast<std::uint64_t>(request.repeat);
+      events.emplace(std::move(stream));
+      if (events->ahead(1).empty()) refuse_no_events(dataset);
+    }
+    if (!progress) progress.emplace("rotation", expected, "events");
+    const double opened_s = events ? events->waited_s() : 0;
+    const Stopwatch working;
+    rates = find_rates(config, dataset.camera(), events ? &*events : nullptr, imu, *progress);
+    const double reading_s = events ? events->waited_s() : 0;
+    timing.wall_s.push_back(working.seconds() - (reading_s - opened_s));
+    timing.io_s += reading_s;
+    timing.events = events ? events->dropped() : 0;
+  }
   const double first_s = rates.empty() ? 0 : rates.front().t_s;
   const double last_s = rates.empty() ? 0 : rates.back().t_s;
   timing.sequence_s = last_s - first_s;

@@ -4,12 +4,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
 #include "core/io/trajectory_file.h"
 #include "core/process/progress.h"
-#include "core/time_search.h"
 
 namespace saccade {
 
@@ -22,23 +22,28 @@ void check(const RunRequest& request) {
     throw InputError("--smooth-poses", "must be a number of seconds above 0");
 }
 
-Events load_events_if_any(const RunRequest& request, const Dataset& dataset) {
+TimeWindow event_window(const RunRequest& request, const Dataset& dataset) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double start_s = request.start_s.value_or(-infinity);
-  if (!request.duration_s) return dataset.load_events(start_s);
-  if (request.start_s) return dataset.load_events(start_s, start_s + *request.duration_s);
+  if (!request.duration_s) return time_window(start_s, infinity);
+  if (request.start_s) return time_window(start_s, start_s + *request.duration_s);
   // The start is the first event, which only the file knows.
-  Events events = dataset.load_events();
-  if (events.empty()) return events;
-  const TimeNs end_ns = events.front().t_ns + ns_from_seconds(*request.duration_s);
-  events.resize(count_before(events, end_ns));
-  return events;
+  if (dataset.events_file().empty()) return {};
+  const std::optional<TimeNs> first_ns = first_event_ns(dataset.events_file());
+  const TimeNs duration_ns = time_window(0, *request.duration_s).end_ns;
+  TimeWindow window;
+  if (first_ns && __builtin_add_overflow(*first_ns, duration_ns, &window.end_ns))
+    window.end_ns = TimeWindow().end_ns;
+  return window;
+}
+
+void refuse_no_events(const Dataset& dataset) {
+  throw InputError(dataset.folder().string(), "holds no events in the window that was asked for");
 }
 
 Events load_events(const RunRequest& request, const Dataset& dataset) {
-  Events events = load_events_if_any(request, dataset);
-  if (events.empty())
-    throw InputError(dataset.folder().string(), "holds no events in the window that was asked for");
+  Events events = dataset.load_events(event_window(request, dataset));
+  if (events.empty()) refuse_no_events(dataset);
   return events;
 }
 

@@ -24,11 +24,14 @@ template <class Config>
   return config;
 }
 
+/// The times of the events that were asked for: a duration alone counts from the first event of the
+/// dataset, of which no more is read for that than its beginning.
+[[nodiscard]] TimeWindow event_window(const RunRequest& request, const Dataset& dataset);
+
 /// The dataset's events in the window that was asked for. Throws InputError where there are none.
 [[nodiscard]] Events load_events(const RunRequest& request, const Dataset& dataset);
-
-/// The same; none where there are none.
-[[nodiscard]] Events load_events_if_any(const RunRequest& request, const Dataset& dataset);
+/// The InputError for a window without events.
+[[noreturn]] void refuse_no_events(const Dataset& dataset);
 
 /// The window [s] as run.yaml states it; `first_s` and `last_s` of what was loaded, where the
 /// request leaves it open.

@@ -140,11 +140,27 @@ Dataset Dataset::open(const fs::path& folder) {
   return dataset;
 }
 
+TimeWindow time_window(double start_s, double end_s) {
+  return {clamped_ns(start_s), clamped_ns(end_s)};
+}
+
 Events Dataset::load_events(double start_s, double end_s) const {
+  return load_events(time_window(start_s, end_s));
+}
+
+Events Dataset::load_events(TimeWindow window) const {
+  check_events();
+  return read_events(events_file_, {camera_.width, camera_.height}, window);
+}
+
+EventStream Dataset::stream_events(TimeWindow window) const {
+  check_events();
+  return EventStream(events_file_, {camera_.width, camera_.height}, window);
+}
+
+void Dataset::check_events() const {
   if (events_file_.empty())
     throw InputError(folder_.string(), "holds no events (" + event_file_names() + ")");
-  return read_events(events_file_, {camera_.width, camera_.height},
-                     {clamped_ns(start_s), clamped_ns(end_s)});
 }
 
 ImageF Dataset::load_frame(std::size_t index) const {
@@ -191,7 +207,7 @@ EventLabels Dataset::load_labels(double start_s, double end_s) const {
   const fs::path events = folder_ / "events.h5";
   if (!fs::exists(events)) throw InputError(events.string(), "is missing; labels belong to it");
   const EventH5Reader reader(events);
-  const auto [begin, end] = reader.range({clamped_ns(start_s), clamped_ns(end_s)});
+  const auto [begin, end] = reader.range(time_window(start_s, end_s));
   return read_labels_h5(folder_ / "labels.h5", reader.info().count, begin, end);
 }
 

@@ -28,6 +28,9 @@ struct DatasetFacts {
   std::string name;       ///< scene or folder name
 };
 
+/// Of start_s <= t < end_s; beyond +-9e9 s open.
+[[nodiscard]] TimeWindow time_window(double start_s, double end_s);
+
 /// A dataset folder, simulated or recorded: the layout of the Event Camera Dataset (events.txt,
 /// groundtruth.txt, calib.txt, images.txt) with or without events.h5, depth maps and dataset.yaml.
 /// Opening reads the small tables and checks them; events and images are read on request, so a
@@ -59,6 +62,9 @@ class Dataset {
   /// Events with start_s <= t < end_s, in EventOrder. Seconds count from the dataset's time zero.
   [[nodiscard]] Events load_events(double start_s = -std::numeric_limits<double>::infinity(),
                                    double end_s = std::numeric_limits<double>::infinity()) const;
+  [[nodiscard]] Events load_events(TimeWindow window) const;
+  /// The same events block by block, so that memory does not grow with the recording.
+  [[nodiscard]] EventStream stream_events(TimeWindow window = {}) const;
   /// Linear radiance of frame `index`: the EXR where there is one, else the PNG sRGB-decoded to [0,
   /// 1].
   [[nodiscard]] ImageF load_frame(std::size_t index) const;
@@ -84,6 +90,8 @@ class Dataset {
   [[nodiscard]] std::vector<ObjectPose> load_objects() const;
 
  private:
+  void check_events() const;
+
   std::filesystem::path folder_;
   std::filesystem::path events_file_;
   std::optional<DatasetRecord> record_;

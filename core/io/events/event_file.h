@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/event.h"
-#include "core/io/events/tie_run.h"
 
 namespace saccade {
 
@@ -67,28 +67,31 @@ class EventReader {
 constexpr std::size_t kEventBlock = std::size_t{1} << 16U;
 
 /// The events of a file as read_events() gives them, block by block: memory does not grow with the
-/// file.
+/// file. While one block is used the next one is read, on the threads of parallel_for(); an error in it
+/// is thrown when its turn comes.
 class EventStream {
  public:
   explicit EventStream(const std::filesystem::path& file, SensorSize size = {},
                        TimeWindow window = {});
+  ~EventStream();
+  EventStream(EventStream&&) noexcept;
+  EventStream& operator=(EventStream&&) noexcept;
+
   /// The next events, valid until the next call; none at the end. Those of equal time come
   /// together, unless there are more than TieRun::kMostHeld: then in several calls, still in EventOrder.
   [[nodiscard]] std::span<const Event> next();
-  [[nodiscard]] SensorSize sensor() const { return reader_->sensor(); }
-  [[nodiscard]] TimestampUnit unit() const { return reader_->unit(); }
+  [[nodiscard]] SensorSize sensor() const;
+  [[nodiscard]] TimestampUnit unit() const;
+  /// About how many events there are; 0: unknown. Before the first next().
+  [[nodiscard]] std::uint64_t expected_count() const;
 
  private:
-  [[nodiscard]] std::span<const Event> next_of_run();
-
-  std::unique_ptr<EventReader> reader_;
-  TimeWindow window_;
-  Events events_;
-  std::size_t given_ = 0;  ///< of events_, by the last call
-  bool is_over_ = false;
-  TieRun run_;         ///< of equal times, that is too long to be held
-  Events run_events_;  ///< of it, by the last call
+  struct State;
+  std::unique_ptr<State> state_;
 };
+
+/// Time of the first event of the file [ns]; nullopt where there is none. Reads no more than a block.
+[[nodiscard]] std::optional<TimeNs> first_event_ns(const std::filesystem::path& file);
 
 /// Writes a stream of events in order of time, span by span. Nothing stands under the final name
 /// before close(); without it everything is discarded.
@@ -107,7 +110,7 @@ class EventWriter {
                                                              TimestampUnit unit,
                                                              SensorSize sensor = {});
 
-/// Sorts runs of equal time by EventOrder; `events` are in order of time.
+/// Sorts runs of equal time by EventOrder, in parallel; `events` are in order of time.
 void sort_ties(std::span<Event> events);
 
 }  // namespace saccade

@@ -29,6 +29,9 @@ class EventH5Reader {
   EventH5Reader& operator=(EventH5Reader&&) noexcept;
 
   [[nodiscard]] EventFileInfo info() const;
+  /// So many events are best read at once: whole chunks, so that none is unpacked twice, and no more
+  /// than stay in the caches.
+  [[nodiscard]] std::uint64_t block_events() const;
   /// Indices [first, second) of the window's events.
   [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> range(TimeWindow window) const;
   /// Events of the window in EventOrder; reads only the chunks that hold them. InputError with the

@@ -14,16 +14,18 @@ namespace {
 class EventH5Blocks final : public EventReader {
  public:
   EventH5Blocks(const std::filesystem::path& file, SensorSize size, TimeWindow window)
-      : name_(file.string()), reader_(file), size_(size), info_(reader_.info()) {
+      : name_(file.string()),
+        reader_(file),
+        size_(size),
+        info_(reader_.info()),
+        block_(reader_.block_events()) {
     std::tie(next_, end_) = reader_.range(window);
   }
 
   bool read(Events& events) override {
     if (next_ == end_) return false;
     const std::size_t before = events.size();
-    // A few of the file's chunks, so that none is unpacked twice.
-    constexpr std::uint64_t kBlock = std::uint64_t{1} << 20U;
-    const std::uint64_t block_end = std::min(end_, (next_ / kBlock + 1) * kBlock);
+    const std::uint64_t block_end = std::min(end_, (next_ / block_ + 1) * block_);
     reader_.append(next_, block_end, size_, events);
     if (events[before].t_ns < last_ns_)
       throw InputError(fmt::format("{}:/events/t[{}]", name_, next_), "time goes back");
@@ -41,6 +43,7 @@ class EventH5Blocks final : public EventReader {
   EventH5Reader reader_;
   SensorSize size_;
   EventFileInfo info_;
+  std::uint64_t block_;
   std::uint64_t next_ = 0;
   std::uint64_t end_ = 0;
   TimeNs last_ns_ = std::numeric_limits<TimeNs>::min();

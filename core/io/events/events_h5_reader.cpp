@@ -3,24 +3,30 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/io/events/event_formats.h"
 #include "core/io/events/events_h5.h"
+#include "core/io/events/packed_columns.h"
 #include "core/io/tables/h5_file.h"
 #include "core/io/tables/h5_handle.h"
+#include "core/process/parallel.h"
 #include "core/time_search.h"
 
 namespace saccade {
 namespace {
 
-constexpr std::uint64_t kBlock = std::uint64_t{1} << 20;  // events in memory besides the result
+constexpr std::uint64_t kH5Block = std::uint64_t{1} << 20;  // events in memory besides the result
+constexpr std::size_t kH5Grain = std::size_t{1} << 16;      // that one thread makes at a time
 
 /// Smallest tick whose time is not before `t_ns`.
 std::int64_t ceil_ticks(TimeNs t_ns, TimeNs unit) {
@@ -70,6 +76,8 @@ struct EventH5Reader::State {
     open(name);
     open_columns(find_events(event_file_place(path).member));
     read_sensor();
+    if (!times_in_seconds && x.field.empty())
+      packed = PackedColumns::of(x.dataset, y.dataset, p.dataset, t.dataset);
     if (place != "/events" && place != "/") return;
     read_offset();
     read_index();
@@ -102,15 +110,22 @@ struct EventH5Reader::State {
   void read(const Column& column, hid_t type, Range range, std::vector<T>& values) const;
   [[nodiscard]] std::vector<std::int64_t> read_seconds(Range range) const;
   [[nodiscard]] std::vector<std::int64_t> read_times(Range range) const;
+  void check_order(std::span<const std::int64_t> times, std::uint64_t first) const;
+  void read_columns(Range range, EventColumns& columns) const;
   [[nodiscard]] Range bracket(std::int64_t start_tick, std::int64_t end_tick) const;
   [[nodiscard]] Range find(TimeWindow window) const;
   [[nodiscard]] TimeNs time_ns(std::int64_t tick, std::uint64_t index) const;
   void append_block(Range range, SensorSize size, Events& events) const;
+  [[nodiscard]] bool make_events(const EventColumns& columns, SensorSize size,
+                                 std::span<Event> events) const;
+  [[noreturn]] void report(const EventColumns& columns, std::uint64_t first, SensorSize size,
+                           TimeNs last_ns) const;
 
   std::string name;
   std::string place;  ///< of the events in the file
   H5Handle file;
   Column x, y, p, t;
+  std::optional<PackedColumns> packed;  ///< of these, where they are stored so
   bool times_in_seconds = false;
   bool is_opened = false;  ///< whether `count` is known
   std::uint64_t count = 0;
@@ -368,12 +383,17 @@ std::vector<std::int64_t> EventH5Reader::State::read_times(Range range) const {
     times = read_seconds(range);
   else
     read(t, H5T_NATIVE_INT64, range, times);
+  check_order(times, range.begin);
+  return times;
+}
+
+void EventH5Reader::State::check_order(std::span<const std::int64_t> times,
+                                       std::uint64_t first) const {
   for (std::size_t i = 1; i < times.size(); ++i)
     if (times[i] < times[i - 1])
       fail_at(
-          t.path.c_str(), range.begin + i,
+          t.path.c_str(), first + i,
           "time goes back: " + std::to_string(times[i]) + " after " + std::to_string(times[i - 1]));
-  return times;
 }
 
 /// A range of indices that holds all events with start_tick <= t < end_tick, by the index.
@@ -405,7 +425,8 @@ Range EventH5Reader::State::find(TimeWindow window) const {
   const auto first_at_or_after = [&](std::int64_t tick) {
     std::uint64_t low = range.begin;
     std::uint64_t high = range.end;
-    while (high - low > kBlock) {
+    // About a chunk, which has to be unpacked anyway.
+    while (high - low > kH5Grain) {
       const std::uint64_t middle = low + (high - low) / 2;
       if (read_times({middle, middle + 1}).front() < tick)
         low = middle + 1;
@@ -427,32 +448,87 @@ TimeNs EventH5Reader::State::time_ns(std::int64_t tick, std::uint64_t index) con
   return t_ns;
 }
 
-void EventH5Reader::State::append_block(Range range, SensorSize size, Events& events) const {
-  std::vector<std::uint16_t> xs;
-  std::vector<std::uint16_t> ys;
-  std::vector<std::int16_t> ps;
-  read(x, H5T_NATIVE_UINT16, range, xs);
-  read(y, H5T_NATIVE_UINT16, range, ys);
-  read(p, H5T_NATIVE_INT16, range, ps);
-  const std::vector<std::int64_t> ts = read_times(range);
+/// By the library where the chunks are stored in a way that only it knows, or are damaged, which it
+/// reports.
+void EventH5Reader::State::read_columns(Range range, EventColumns& columns) const {
+  if (packed && packed->read(range.begin, range.end, columns)) return;
+  const H5Lock lock;
+  read(x, H5T_NATIVE_UINT16, range, columns.x);
+  read(y, H5T_NATIVE_UINT16, range, columns.y);
+  read(p, H5T_NATIVE_INT16, range, columns.p);
+  columns.t = read_times(range);
+}
+
+/// False where one of them cannot be an event, or comes before its predecessor.
+bool EventH5Reader::State::make_events(const EventColumns& columns, SensorSize size,
+                                       std::span<Event> events) const {
+  const int width = size.width > 0 ? size.width : 65536;
+  const int height = size.height > 0 ? size.height : 65536;
+  const int lowest = place == "/events" ? 0 : -1;
+  // Between these no time overflows.
+  const std::int64_t highest =
+      saturating_subtract(std::numeric_limits<TimeNs>::max() / unit, offset);
+  const std::int64_t least = saturating_subtract(std::numeric_limits<TimeNs>::min() / unit, offset);
+  std::atomic<bool> is_sound = true;
+  const auto make = [&](std::size_t begin, std::size_t end) {
+    bool is_fine = true;
+    std::int64_t before = columns.t[begin > 0 ? begin - 1 : 0];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::int64_t tick = columns.t[i];
+      const int p_of = columns.p[i];
+      // Without a branch, which would keep the loop from several events at a time.
+      is_fine &= static_cast<bool>(
+          static_cast<int>(columns.x[i] < width) & static_cast<int>(columns.y[i] < height) &
+          static_cast<int>(p_of <= 1) & static_cast<int>(p_of >= lowest) &
+          static_cast<int>(tick >= std::max(least, before)) & static_cast<int>(tick <= highest));
+      before = tick;
+      // Unsigned, because a time that is refused may overflow.
+      const std::uint64_t t_ns =
+          (static_cast<std::uint64_t>(tick) + static_cast<std::uint64_t>(offset)) *
+          static_cast<std::uint64_t>(unit);
+      events[i] = {static_cast<TimeNs>(t_ns), columns.x[i], columns.y[i],
+                   static_cast<std::int8_t>(p_of == 1 ? 1 : -1)};
+    }
+    if (!is_fine) is_sound = false;
+  };
+  parallel_for_ranges(events.size(), kH5Grain, make);
+  return is_sound;
+}
+
+/// Throws for the first thing that is wrong.
+void EventH5Reader::State::report(const EventColumns& columns, std::uint64_t first, SensorSize size,
+                                  TimeNs last_ns) const {
+  const auto& [xs, ys, ps, ts] = columns;
+  check_order(ts, first);
   const int width = size.width > 0 ? size.width : 65536;
   const int height = size.height > 0 ? size.height : 65536;
   const int lowest = place == "/events" ? 0 : -1;
   for (std::size_t i = 0; i < ts.size(); ++i) {
-    const TimeNs t_ns = time_ns(ts[i], range.begin + i);
-    if (!events.empty() && t_ns < events.back().t_ns)
-      fail_at(t.path.c_str(), range.begin + i, "time goes back");
+    const TimeNs t_ns = time_ns(ts[i], first + i);
+    if (t_ns < last_ns) fail_at(t.path.c_str(), first + i, "time goes back");
     if (xs[i] >= width || ys[i] >= height)
-      fail_at((xs[i] >= width ? x : y).path.c_str(), range.begin + i,
+      fail_at((xs[i] >= width ? x : y).path.c_str(), first + i,
               "pixel (" + std::to_string(xs[i]) + ", " + std::to_string(ys[i]) +
                   ") lies outside the sensor of " + std::to_string(width) + " x " +
                   std::to_string(height) + " px");
     if (ps[i] > 1 || ps[i] < lowest)
-      fail_at(p.path.c_str(), range.begin + i,
+      fail_at(p.path.c_str(), first + i,
               "polarity " + std::to_string(ps[i]) +
                   (lowest == 0 ? " must be 0 or 1" : " must be 1, 0 or -1"));
-    events.push_back({t_ns, xs[i], ys[i], static_cast<std::int8_t>(ps[i] == 1 ? 1 : -1)});
   }
+  fail_at(t.path.c_str(), first, "a time is too large");
+}
+
+void EventH5Reader::State::append_block(Range range, SensorSize size, Events& events) const {
+  EventColumns columns;
+  read_columns(range, columns);
+  const TimeNs last_ns = events.empty() ? std::numeric_limits<TimeNs>::min() : events.back().t_ns;
+  const std::size_t before = events.size();
+  events.resize(before + columns.t.size());
+  const std::span<Event> block = std::span(events).subspan(before);
+  if (make_events(columns, size, block) && (block.empty() || block.front().t_ns >= last_ns)) return;
+  events.resize(before);
+  report(columns, range.begin, size, last_ns);
 }
 
 EventH5Reader::EventH5Reader(const std::filesystem::path& file)
@@ -477,6 +553,14 @@ EventFileInfo EventH5Reader::info() const {
   return info;
 }
 
+std::uint64_t EventH5Reader::block_events() const {
+  // The library unpacks chunks of any length, and keeps few.
+  if (!state_->packed) return kH5Block;
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 18U;  // work for several threads
+  const std::uint64_t chunk = state_->packed->longest_chunk();
+  return (kLeast + chunk - 1) / chunk * chunk;
+}
+
 std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) const {
   const H5Lock lock;
   const Range range = state_->find(window);
@@ -485,10 +569,9 @@ std::pair<std::uint64_t, std::uint64_t> EventH5Reader::range(TimeWindow window) 
 
 void EventH5Reader::append(std::uint64_t begin, std::uint64_t end, SensorSize size,
                            Events& events) const {
-  const H5Lock lock;
-  // Blocks end at multiples of kBlock, so that no chunk is unpacked twice.
+  // Blocks end at multiples of kH5Block, so that no chunk is unpacked twice.
   while (begin < end) {
-    const std::uint64_t block_end = std::min(end, (begin / kBlock + 1) * kBlock);
+    const std::uint64_t block_end = std::min(end, (begin / kH5Block + 1) * kH5Block);
     state_->append_block({begin, block_end}, size, events);
     begin = block_end;
   }

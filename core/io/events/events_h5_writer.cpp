@@ -8,6 +8,7 @@
 #include "core/io/events/rounded_events.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/tables/h5_column.h"
+#include "core/process/background_task.h"
 #include "core/process/parallel.h"
 
 namespace saccade {
@@ -79,8 +80,9 @@ struct EventH5Writer::State {
   }
 
   void add(std::span<const Event> events);
-  void write_chunks(std::size_t most);
-  void index(std::span<const Event> events);
+  void hand_over();
+  void write_batch();
+  void index();
   void finish();
 
   AtomicFile target;
@@ -88,10 +90,14 @@ struct EventH5Writer::State {
   std::int64_t ticks_per_ms;
   H5Handle file;
   std::array<H5Column, 4> columns;
-  RoundedEvents pending;    ///< not yet written
+  RoundedEvents pending;  ///< not yet handed over
+  std::uint64_t handed_over = 0;
+  // What follows belongs to `writing` until it has been waited for.
+  Events batch;
   std::int64_t offset = 0;  ///< /t_offset [ticks]
   std::uint64_t written = 0;
   std::vector<std::uint64_t> ms_to_idx;
+  BackgroundTask writing;  ///< of the batch; last, so that it ends before the rest does
 };
 
 void EventH5Writer::State::add(std::span<const Event> events) {
@@ -100,34 +106,44 @@ void EventH5Writer::State::add(std::span<const Event> events) {
     const std::span<const Event> part = events.first(std::min(events.size(), kH5BatchValues));
     events = events.subspan(part.size());
     pending.add(part);
-    while (pending.complete().size() >= kH5BatchValues) write_chunks(kH5BatchValues);
+    while (pending.complete().size() >= kH5BatchValues) hand_over();
   }
 }
 
-/// Writes the whole chunks among the first `most` complete events.
-void EventH5Writer::State::write_chunks(std::size_t most) {
-  const std::size_t count =
-      std::min(most, pending.complete().size()) / kH5ChunkValues * kH5ChunkValues;
-  const std::span<const Event> events = pending.complete().first(count);
-  index(events);
-  std::vector<PackedChunk> packed(count / kH5ChunkValues);
+/// Gives a batch of complete events, or the last ones, to be packed and written beside the caller's work.
+void EventH5Writer::State::hand_over() {
+  writing.wait();
+  const std::span<const Event> events =
+      pending.complete().first(std::min(kH5BatchValues, pending.complete().size()));
+  batch.assign(events.begin(), events.end());
+  pending.drop(batch.size());
+  handed_over += batch.size();
+  writing.start([this] { write_batch(); });
+}
+
+/// Every chunk but the last one of all is full.
+void EventH5Writer::State::write_batch() {
+  index();
+  std::vector<PackedChunk> packed((batch.size() + kH5ChunkValues - 1) / kH5ChunkValues);
   parallel_for(packed.size(), [&](std::size_t i) {
-    packed[i] = pack(events.subspan(i * kH5ChunkValues, kH5ChunkValues), unit, offset);
+    const std::size_t begin = i * kH5ChunkValues;
+    packed[i] =
+        pack(std::span(batch).subspan(begin, std::min(kH5ChunkValues, batch.size() - begin)), unit,
+             offset);
   });
   const H5Lock lock;
+  written += batch.size();
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    columns[c].extend(written + count);
+    columns[c].extend(written);
     for (const PackedChunk& chunk : packed) columns[c].append(chunk.columns[c]);
   }
-  written += count;
-  pending.drop(count);
 }
 
-/// Extends ms_to_idx by events that follow those written.
-void EventH5Writer::State::index(std::span<const Event> events) {
-  if (written == 0 && !events.empty()) offset = time_origin_ns(events.front().t_ns) / unit;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const std::int64_t tick = in_ticks(events[i].t_ns, unit) - offset;
+/// Extends ms_to_idx by the batch, which follows what is written.
+void EventH5Writer::State::index() {
+  if (written == 0 && !batch.empty()) offset = time_origin_ns(batch.front().t_ns) / unit;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const std::int64_t tick = in_ticks(batch[i].t_ns, unit) - offset;
     if (tick > kMaxIndexMs * ticks_per_ms)
       throw InputError(target.target().string(),
                        "the events span more than 18 hours; is a time wrong?");
@@ -138,20 +154,9 @@ void EventH5Writer::State::index(std::span<const Event> events) {
 
 void EventH5Writer::State::finish() {
   pending.finish();
-  while (pending.complete().size() >= kH5ChunkValues) write_chunks(pending.complete().size());
-  const std::span<const Event> rest = pending.complete();
-  index(rest);
+  while (!pending.complete().empty()) hand_over();
+  writing.wait();
   const H5Lock lock;
-  if (!rest.empty()) {
-    const PackedChunk chunk = pack(rest, unit, offset);  // padded to the chunk's size
-    const std::size_t size = written + rest.size();
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      columns[c].extend(size);
-      columns[c].append(chunk.columns[c]);
-    }
-    written = size;
-    pending.drop(rest.size());
-  }
   H5Column index_column(file, "ms_to_idx", H5T_STD_U64LE, target.target());
   index_column.extend(ms_to_idx.size());
   check(H5Dwrite(index_column.id(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -180,6 +185,6 @@ void EventH5Writer::append(std::span<const Event> events) { state_->add(events);
 
 void EventH5Writer::close() { state_->finish(); }
 
-std::uint64_t EventH5Writer::count() const { return state_->written + state_->pending.size(); }
+std::uint64_t EventH5Writer::count() const { return state_->handed_over + state_->pending.size(); }
 
 }  // namespace saccade

@@ -4,23 +4,24 @@
 
 #include "core/io/tables/csv_file.h"
 #include "core/io/tables/csv_reader.h"
-#include "core/io/tables/h5_table.h"
 
 namespace saccade {
 namespace {
 
 constexpr const char* kPlacesGroup = "places";
 
+std::array<H5Source, 4> h5_columns_of(const StabilizedCoordinates& places) {
+  return {h5_source("x", places.x), h5_source("y", places.y),
+          h5_source("source_x", places.source_x), h5_source("source_y", places.source_y)};
+}
+
 }  // namespace
 
-void write_stabilized_coordinates(const std::filesystem::path& file,
-                                  const StabilizedCoordinates& places) {
-  const std::array columns{h5_source("x", places.x), h5_source("y", places.y),
-                           h5_source("source_x", places.source_x),
-                           h5_source("source_y", places.source_y)};
-  H5TableWriter writer(file, kPlacesGroup, columns);
-  writer.append(columns);
-  writer.close();
+StabilizedCoordinatesWriter::StabilizedCoordinatesWriter(const std::filesystem::path& file)
+    : table_(file, kPlacesGroup, h5_columns_of(StabilizedCoordinates())) {}
+
+void StabilizedCoordinatesWriter::append(const StabilizedCoordinates& places) {
+  table_.append(h5_columns_of(places));
 }
 
 StabilizedCoordinates read_stabilized_coordinates(const std::filesystem::path& file,

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/io/tables/h5_table.h"
+
 namespace saccade {
 
 /// places.h5: for each event of a stabilized events.h5, in its order, where it lies to sub-pixel
@@ -19,8 +21,16 @@ struct StabilizedCoordinates {
   [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
-void write_stabilized_coordinates(const std::filesystem::path& file,
-                                  const StabilizedCoordinates& places);
+/// Writes them part by part. Nothing stands under the final name before close().
+class StabilizedCoordinatesWriter {
+ public:
+  explicit StabilizedCoordinatesWriter(const std::filesystem::path& file);
+  void append(const StabilizedCoordinates& places);
+  void close() { table_.close(); }
+
+ private:
+  H5TableWriter table_;
+};
 
 /// `count`: of the events that they belong to. InputError with the place for columns that are
 /// missing or of another length.

@@ -1,28 +1,16 @@
 #include "core/io/tables/h5_column.h"
 
-#include <zlib.h>
-
+#include <memory>
 #include <string>
 
-#include "core/check.h"
 #include "core/error.h"
+#include "core/io/files/zlib_stream.h"
+#include "core/io/tables/h5_chunks.h"
 
 namespace saccade {
 namespace {
 
 constexpr int kDeflateLevel = 1;
-
-/// HDF5's shuffle filter: the first bytes of all values, then the second ones ...
-std::vector<unsigned char> shuffled(std::span<const std::byte> values, std::size_t width) {
-  const std::size_t count = values.size() / width;
-  std::vector<unsigned char> bytes(values.size());
-  for (std::size_t b = 0; b < width; ++b) {
-    unsigned char* plane = bytes.data() + b * count;
-    for (std::size_t i = 0; i < count; ++i)
-      plane[i] = std::to_integer<unsigned char>(values[i * width + b]);
-  }
-  return bytes;
-}
 
 }  // namespace
 
@@ -35,12 +23,11 @@ void check_h5_write(bool success, const std::filesystem::path& file) {
 }
 
 H5Chunk pack_h5_chunk(std::span<const std::byte> values, std::size_t value_bytes) {
-  const std::vector<unsigned char> bytes = shuffled(values, value_bytes);
-  uLongf size = compressBound(bytes.size());
-  H5Chunk packed(size);
-  SACCADE_CHECK(compress2(packed.data(), &size, bytes.data(), bytes.size(), kDeflateLevel) == Z_OK);
-  packed.resize(size);
-  return packed;
+  if (value_bytes == 1) return pack_zlib_fast(values);
+  const auto memory = std::make_unique_for_overwrite<std::byte[]>(values.size());
+  const std::span shuffled(memory.get(), values.size());
+  shuffle_bytes(values, value_bytes, shuffled);
+  return pack_zlib_fast(shuffled);
 }
 
 H5Column::H5Column(hid_t parent, const char* name, hid_t type, const std::filesystem::path& file)

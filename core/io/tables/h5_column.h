@@ -20,7 +20,7 @@ void check_h5_write(bool success, const std::filesystem::path& file);
 
 /// The values of one chunk as HDF5's shuffle and deflate (level 1) filters store them, so that
 /// chunks can be packed in parallel. The last chunk of a column is packed whole, too.
-using H5Chunk = std::vector<unsigned char>;
+using H5Chunk = std::vector<std::byte>;
 [[nodiscard]] H5Chunk pack_h5_chunk(std::span<const std::byte> values, std::size_t value_bytes);
 
 template <class T>

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/tables/h5_column.h"
+#include "core/process/background_task.h"
 #include "core/process/parallel.h"
 
 namespace saccade {
@@ -96,14 +97,15 @@ struct H5TableWriter::State {
   struct Column {
     H5Column file;
     std::size_t value_bytes;
-    std::vector<std::byte> pending;  ///< not yet written
+    std::vector<std::byte> pending;  ///< not yet handed over
+    std::vector<std::byte> batch;    ///< that is being written
 
     [[nodiscard]] std::size_t rows() const { return pending.size() / value_bytes; }
 
-    /// The chunk from row `begin` on, padded to its whole size with zeros.
+    /// The chunk of the batch from row `begin` on, padded to its whole size with zeros.
     [[nodiscard]] H5Chunk pack(std::size_t begin) const {
-      const std::size_t count = std::min(kH5ChunkValues, rows() - begin);
-      const auto from = pending.begin() + static_cast<std::ptrdiff_t>(begin * value_bytes);
+      const std::size_t count = std::min(kH5ChunkValues, batch.size() / value_bytes - begin);
+      const auto from = batch.begin() + static_cast<std::ptrdiff_t>(begin * value_bytes);
       std::vector<std::byte> values(from, from + static_cast<std::ptrdiff_t>(count * value_bytes));
       values.resize(kH5ChunkValues * value_bytes);
       return pack_h5_chunk(values, value_bytes);
@@ -120,11 +122,24 @@ struct H5TableWriter::State {
     for (const H5Source& column : schema)
       columns.push_back({{group, column.name, type_in_file(column.type), target.target()},
                          bytes_of(column.type),
+                         {},
                          {}});
   }
 
-  /// Writes the first `count` pending rows: whole chunks, or everything at the end.
-  void write(std::size_t count) {
+  /// Gives the first `count` pending rows, whole chunks, or everything at the end, to be packed and
+  /// written beside the caller's work.
+  void hand_over(std::size_t count) {
+    writing.wait();
+    for (Column& column : columns) {
+      const auto end =
+          column.pending.begin() + static_cast<std::ptrdiff_t>(count * column.value_bytes);
+      column.batch.assign(column.pending.begin(), end);
+      column.pending.erase(column.pending.begin(), end);
+    }
+    writing.start([this, count] { write_batch(count); });
+  }
+
+  void write_batch(std::size_t count) {
     const std::size_t chunks = (count + kH5ChunkValues - 1) / kH5ChunkValues;
     std::vector<H5Chunk> packed(chunks * columns.size());
     parallel_for(packed.size(), [&](std::size_t i) {
@@ -133,11 +148,8 @@ struct H5TableWriter::State {
     const H5Lock lock;
     written += count;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      Column& column = columns[c];
-      column.file.extend(written);
-      for (std::size_t i = 0; i < chunks; ++i) column.file.append(packed[c * chunks + i]);
-      const auto begin = column.pending.begin();
-      column.pending.erase(begin, begin + static_cast<std::ptrdiff_t>(count * column.value_bytes));
+      columns[c].file.extend(written);
+      for (std::size_t i = 0; i < chunks; ++i) columns[c].file.append(packed[c * chunks + i]);
     }
   }
 
@@ -145,6 +157,7 @@ struct H5TableWriter::State {
   H5Handle file;
   std::vector<Column> columns;
   std::size_t written = 0;
+  BackgroundTask writing;  ///< of the batches; last, so that it ends before the rest does
 };
 
 H5TableWriter::H5TableWriter(const std::filesystem::path& file, const char* group,
@@ -161,11 +174,12 @@ void H5TableWriter::append(std::span<const H5Source> columns) {
     SACCADE_CHECK(state_->columns[c].rows() == state_->columns[0].rows());
   }
   const std::size_t rows = state_->columns[0].rows();
-  if (rows >= kH5BatchValues) state_->write(rows / kH5ChunkValues * kH5ChunkValues);
+  if (rows >= kH5BatchValues) state_->hand_over(rows / kH5ChunkValues * kH5ChunkValues);
 }
 
 void H5TableWriter::close() {
-  if (const std::size_t rows = state_->columns[0].rows(); rows > 0) state_->write(rows);
+  if (const std::size_t rows = state_->columns[0].rows(); rows > 0) state_->hand_over(rows);
+  state_->writing.wait();
   const H5Lock lock;
   bool closed = true;
   for (State::Column& column : state_->columns) closed = column.file.close() && closed;

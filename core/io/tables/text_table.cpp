@@ -87,6 +87,11 @@ std::optional<std::string> without_exponent(std::string_view text) {
   return sign + digits.insert(static_cast<std::size_t>(position), ".");
 }
 
+bool has_content(std::string_view line) {
+  const std::size_t content = line.find_first_not_of(" \t\r");
+  return content != std::string_view::npos && line[content] != '#';
+}
+
 }  // namespace
 
 void TextRow::skip_comma() {
@@ -171,10 +176,13 @@ TextReader::TextReader(const std::filesystem::path& file) : name_(file.string())
 TextReader::TextReader(std::string name, Source source)
     : name_(std::move(name)), source_(std::move(source)), block_(kReadBytes) {}
 
+void TextReader::fail_long_line() const {
+  throw InputError(name_ + ":" + std::to_string(line_ + 1),
+                   "a line of more than 1 MiB; this is no table of text");
+}
+
 bool TextReader::refill() {
-  if (begin_ == 0 && end_ == block_.size())
-    throw InputError(name_ + ":" + std::to_string(line_ + 1),
-                     "a line of more than 1 MiB; this is no table of text");
+  if (begin_ == 0 && end_ == block_.size()) fail_long_line();
   std::memmove(block_.data(), block_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
@@ -197,22 +205,64 @@ bool TextReader::next(std::string_view& line) {
     begin_ = std::min(begin_ + length + 1, end_);
     ++line_;
     line = {start, length};
-    const std::size_t content = line.find_first_not_of(" \t\r");
-    if (content != std::string_view::npos && line[content] != '#') return true;
+    if (has_content(line)) return true;
   }
 }
 
-void append_decimal_seconds(TimeNs t_ns, std::string& text) {
+/// Fills the block as far as the source goes; false where nothing is left in it.
+bool TextReader::fill() {
+  while (end_ < block_.size() || begin_ > 0)
+    if (!refill()) break;
+  return end_ > begin_;
+}
+
+std::string_view TextReader::next_lines() {
+  if (!fill()) return {};
+  const std::string_view text(block_.data() + begin_, end_ - begin_);
+  const bool is_last = end_ < block_.size();
+  const std::size_t newline = text.rfind('\n');
+  if (newline == std::string_view::npos && !is_last) fail_long_line();
+  const std::string_view lines = is_last ? text : text.substr(0, newline + 1);
+  begin_ += lines.size();
+  return lines;
+}
+
+bool TextLines::next(std::string_view& line) {
+  while (!rest_.empty()) {
+    const std::size_t length = std::min(rest_.find('\n'), rest_.size());
+    line = rest_.substr(0, length);
+    rest_.remove_prefix(std::min(length + 1, rest_.size()));
+    ++line_;
+    if (has_content(line)) return true;
+  }
+  return false;
+}
+
+std::vector<std::string_view> divide_lines(std::string_view text, std::size_t bytes) {
+  std::vector<std::string_view> parts;
+  while (!text.empty()) {
+    const std::size_t newline = text.find('\n', std::min(bytes, text.size()) - 1);
+    parts.push_back(text.substr(0, newline == std::string_view::npos ? newline : newline + 1));
+    text.remove_prefix(parts.back().size());
+  }
+  return parts;
+}
+
+char* write_decimal_seconds(TimeNs t_ns, char* to) {
   const std::uint64_t t =
       t_ns < 0 ? 0 - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
-  std::array<char, 24> digits;
-  if (t_ns < 0) text += '-';
-  const auto [end, error] = std::to_chars(digits.begin(), digits.end(), t / 1'000'000'000);
-  text.append(digits.begin(), end);
+  if (t_ns < 0) *to++ = '-';
   // The fraction with a one before it, which keeps its leading zeros and then becomes the point.
-  std::to_chars(digits.begin(), digits.end(), 1'000'000'000 + t % 1'000'000'000);
-  digits[0] = '.';
-  text.append(digits.data(), 10);
+  char* const point = std::to_chars(to, to + kMostDecimalSeconds, t / 1'000'000'000).ptr;
+  std::array<char, 10> fraction;
+  std::to_chars(fraction.begin(), fraction.end(), 1'000'000'000 + t % 1'000'000'000);
+  fraction[0] = '.';
+  return std::copy(fraction.begin(), fraction.end(), point);
+}
+
+void append_decimal_seconds(TimeNs t_ns, std::string& text) {
+  std::array<char, kMostDecimalSeconds> digits;
+  text.append(digits.data(), write_decimal_seconds(t_ns, digits.data()));
 }
 
 std::string decimal_seconds(TimeNs t_ns) {

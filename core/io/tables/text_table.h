@@ -103,6 +103,37 @@ class TextRow {
   bool first_ = true;
 };
 
+/// The lines of a text in memory that have content: what TextReader leaves out is left out here, too.
+class TextLines {
+ public:
+  /// `name`: what errors call the text; it outlives this. `before`: lines of it that come first;
+  /// `readable`: bytes behind `text` that may be looked at.
+  TextLines(const std::string& name, std::string_view text, std::size_t before,
+            std::size_t readable = 0)
+      : name_(name),
+        rest_(text),
+        line_(before),
+        readable_end_(text.data() + text.size() + readable) {}
+
+  /// The next line; false where there is none.
+  [[nodiscard]] bool next(std::string_view& line);
+  /// Number of the line that next() gave, from 1; after the last one, how many there are.
+  [[nodiscard]] std::size_t line_number() const { return line_; }
+  [[nodiscard]] TextRow row(std::string_view line) const {
+    return {name_, line_, line,
+            static_cast<std::size_t>(readable_end_ - (line.data() + line.size()))};
+  }
+
+ private:
+  const std::string& name_;
+  std::string_view rest_;
+  std::size_t line_;
+  const char* readable_end_;
+};
+
+/// Divides a text behind ends of lines into parts of about `bytes`.
+[[nodiscard]] std::vector<std::string_view> divide_lines(std::string_view text, std::size_t bytes);
+
 /// Reads a text file line by line in large blocks; lines end in \n or \r\n. Blank lines and lines
 /// that start with '#' are skipped.
 class TextReader {
@@ -116,6 +147,11 @@ class TextReader {
 
   /// The next line with content; false at the end of the file.
   [[nodiscard]] bool next(std::string_view& line);
+  /// In place of next(): the whole lines that are in memory, about a megabyte, those without content as
+  /// well; empty at the end. Valid until the next call. Their number is for the caller to tell by
+  /// count_lines(), since he passes over them anyway.
+  [[nodiscard]] std::string_view next_lines();
+  void count_lines(std::size_t lines) { line_ += lines; }
   /// Number of the line that next() gave, from 1.
   [[nodiscard]] std::size_t line_number() const { return line_; }
   [[nodiscard]] TextRow row(std::string_view line) const {
@@ -126,6 +162,8 @@ class TextReader {
 
  private:
   [[nodiscard]] bool refill();
+  [[nodiscard]] bool fill();
+  [[noreturn]] void fail_long_line() const;
 
   std::string name_;
   Source source_;
@@ -149,6 +187,9 @@ void for_each_row(const std::filesystem::path& file, const Parse& parse) {
 /// ns -> decimal seconds with 9 decimals, exact; what TextRow::seconds() reads back.
 [[nodiscard]] std::string decimal_seconds(TimeNs t_ns);
 void append_decimal_seconds(TimeNs t_ns, std::string& text);
+/// The same to where there is room for kMostDecimalSeconds characters; gives the end.
+[[nodiscard]] char* write_decimal_seconds(TimeNs t_ns, char* to);
+constexpr std::size_t kMostDecimalSeconds = 21;  // "-9223372036.854775808"
 
 /// A whole table of finite numbers with the same number of columns in every row.
 struct NumberTable {

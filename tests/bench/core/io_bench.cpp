@@ -1,12 +1,17 @@
 #include <benchmark/benchmark.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
 #include "core/io/events/event_file.h"
 #include "core/io/files/sha256.h"
+#include "core/io/files/zlib_stream.h"
 #include "core/io/images/exr_file.h"
 #include "core/io/images/image_file.h"
+#include "core/io/tables/h5_chunks.h"
+#include "core/io/tables/h5_column.h"
 #include "core/process/parallel.h"
 #include "core/random.h"
 #include "core/srgb.h"
@@ -66,6 +71,44 @@ void read_all_events(benchmark::State& state, const char* name) {
   set_thread_count(0);
 }
 
+/// Block by block, as commands read that need no more.
+void stream_events(benchmark::State& state, const char* name) {
+  const testing::TemporaryFolder folder;
+  write(folder.path() / name);
+  set_thread_count(static_cast<int>(state.range(0)));
+  for ([[maybe_unused]] auto _ : state) {
+    EventStream stream(folder.path() / name, kSize);
+    while (!stream.next().empty()) {
+    }
+  }
+  report(state);
+  set_thread_count(0);
+}
+
+/// Chunks of times, which are the widest column.
+std::vector<std::int64_t> chunk_of_times() {
+  std::vector<std::int64_t> times;
+  for (std::size_t i = 0; i < kH5ChunkValues; ++i) times.push_back(events()[i].t_ns);
+  return times;
+}
+
+void pack_chunk(benchmark::State& state) {
+  const std::vector<std::int64_t> times = chunk_of_times();
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(pack_h5_chunk(times));
+  state.SetItemsProcessed(static_cast<std::int64_t>(times.size()) * state.iterations());
+}
+
+void unpack_chunk(benchmark::State& state) {
+  const H5Chunk packed = pack_h5_chunk(chunk_of_times());
+  std::vector<std::byte> shuffled(kH5ChunkValues * sizeof(std::int64_t)), values(shuffled.size());
+  for ([[maybe_unused]] auto _ : state) {
+    benchmark::DoNotOptimize(unpack_zlib_exactly(packed, shuffled));
+    unshuffle_bytes(shuffled, sizeof(std::int64_t), values);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(kH5ChunkValues) * state.iterations());
+}
+
 /// 10 ms from the middle of the file.
 void read_window(benchmark::State& state) {
   const testing::TemporaryFolder folder;
@@ -95,10 +138,12 @@ void hash(benchmark::State& state) {
 
 BENCHMARK_CAPTURE(write_events, text, "events.txt")
     ->Arg(1)
+    ->Arg(2)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK_CAPTURE(read_all_events, text, "events.txt")
     ->Arg(1)
+    ->Arg(2)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK_CAPTURE(write_events, h5, "events.h5")
@@ -117,6 +162,18 @@ BENCHMARK_CAPTURE(write_events, aedat4, "events.aedat4")->Arg(1)->Unit(benchmark
 BENCHMARK_CAPTURE(read_all_events, aedat4, "events.aedat4")->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_events, npz, "events.npz")->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_all_events, npz, "events.npz")->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(stream_events, h5, "events.h5")
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(stream_events, text, "events.txt")
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(pack_chunk)->Unit(benchmark::kMicrosecond);
+BENCHMARK(unpack_chunk)->Unit(benchmark::kMicrosecond);
 BENCHMARK(read_window)->Unit(benchmark::kMillisecond);
 BENCHMARK(write_frame)->Unit(benchmark::kMillisecond);
 BENCHMARK(hash);

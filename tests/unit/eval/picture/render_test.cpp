@@ -61,7 +61,9 @@ fs::path stabilized_run(const fs::path& run, const fs::path& data, const fs::pat
   EventH5Writer writer(stabilized / "events.h5", TimestampUnit::kNanoseconds);
   writer.append(events);
   writer.close();
-  write_stabilized_coordinates(stabilized / "places.h5", coordinates);
+  StabilizedCoordinatesWriter places(stabilized / "places.h5");
+  places.append(coordinates);
+  places.close();
   write_stabilized_windows(stabilized / "windows.csv", {});
   write_file_list(stabilized / "images.txt", dataset.frames());
   return folder;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <limits>
+#include <vector>
 
 #include "core/process/parallel.h"
 #include "tests/support/command.h"
@@ -294,6 +296,72 @@ TEST_F(EventsH5, TruncatedAndForeignFiles) {
   EXPECT_THAT(error_of([&] { return EventH5Reader(folder_.path() / "no.h5"); }),
               HasSubstr("no.h5: no such file"));
   EXPECT_THAT(error_of([&] { return EventH5Reader(folder_.path()); }), HasSubstr("is no HDF5"));
+}
+
+/// Replaces a column by one of another type, length of chunks and filters that holds the same.
+void store_otherwise(hid_t file, const char* path, hid_t type, hsize_t chunk, bool with_deflate) {
+  hid_t dataset = H5Dopen2(file, path, H5P_DEFAULT);
+  hid_t space = H5Dget_space(dataset);
+  const hsize_t count = static_cast<hsize_t>(H5Sget_simple_extent_npoints(space));
+  std::vector<std::int64_t> values(count);
+  H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(dataset);
+  H5Sclose(space);
+  H5Ldelete(file, path, H5P_DEFAULT);
+  space = H5Screate_simple(1, &count, nullptr);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(layout, 1, &chunk);
+  if (with_deflate) H5Pset_deflate(layout, 6);
+  dataset = H5Dcreate2(file, path, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(dataset);
+  H5Pclose(layout);
+  H5Sclose(space);
+}
+
+TEST_F(EventsH5, ColumnsOfOtherTypesAndChunksHoldTheSame) {
+  const Events events = rounded_to_us(random_events(700'000, 0, 300));
+  const TimeWindow window{events[300'000].t_ns, events[650'000].t_ns};
+  // Of the types of p and t, those that are unpacked here and one that is left to the library.
+  for (const hid_t time :
+       {H5T_STD_U32LE, H5T_STD_I64LE, H5T_STD_U64LE, H5T_STD_I32LE, H5T_STD_I64BE})
+    for (const bool with_deflate : {false, true}) {
+      write(file_, events, kUs);
+      const hid_t file = H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+      store_otherwise(file, "/events/t", time, 30'000, with_deflate);
+      store_otherwise(file, "/events/x", H5T_STD_U16LE, 400'000, with_deflate);
+      H5Fclose(file);
+      EXPECT_EQ(read_events(file_, kSensor), events);
+      EXPECT_EQ(read_events(file_, kSensor, window), within(events, window));
+    }
+}
+
+TEST_F(EventsH5, AreReadTheSameByAnyNumberOfThreads) {
+  const Events events = sorted(random_events(1'500'000, 0, 300));
+  write(file_, events, kNs);
+  for (const int threads : {1, 2, 5}) {
+    set_thread_count(threads);
+    EXPECT_EQ(read_events(file_, kSensor), events);
+    EventStream stream(file_, kSensor);
+    std::size_t given = 0;
+    for (auto next = stream.next(); !next.empty(); next = stream.next()) {
+      ASSERT_TRUE(std::equal(next.begin(), next.end(),
+                             events.begin() + static_cast<std::ptrdiff_t>(given)));
+      given += next.size();
+    }
+    EXPECT_EQ(given, events.size());
+  }
+  set_thread_count(0);
+}
+
+TEST_F(EventsH5, ATimeBeyondTheRangeIsAnErrorInAnyBlock) {
+  const Events events = random_events(300'000, 0, 300);
+  write(file_, events, kUs);
+  const hid_t file = H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  set(file, "/events/t", 299'999, std::numeric_limits<std::int64_t>::max() / 100);
+  H5Fclose(file);
+  EXPECT_THAT(error_of([&] { static_cast<void>(read_events(file_, kSensor)); }),
+              HasSubstr("/events/t[299999]: the time is too large"));
 }
 
 TEST_F(EventsH5, DamagedChunkNamesTheDataset) {

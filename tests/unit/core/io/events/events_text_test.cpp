@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
+#include "core/io/tables/text_table.h"
+#include "core/process/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 #include "tests/unit/core/io/events/random_events.h"
@@ -83,6 +88,75 @@ TEST(EventsText, RoundTripIsExact) {
   EXPECT_EQ(info.count, events.size());
   EXPECT_EQ(info.first_ns, events.front().t_ns);
   EXPECT_EQ(info.last_ns, events.back().t_ns);
+}
+
+/// Lines for several blocks, with comments and blank lines between them.
+class LongEventsText : public ::testing::Test {
+ protected:
+  static constexpr int kLines = 200'000;
+
+  LongEventsText() {
+    for (int i = 0; i < kLines; ++i) {
+      if (i % 1000 == 0) lines_.emplace_back(i % 2000 == 0 ? "# comment" : "");
+      lines_.push_back(decimal_seconds(1000 * i) + " " + std::to_string(i % 240) + " 7 1");
+    }
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string text;
+    for (const std::string& line : lines_) text += line + "\n";
+    return text;
+  }
+
+  std::vector<std::string> lines_;
+};
+
+TEST_F(LongEventsText, IsTheSameForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("events.txt", text());
+  std::vector<std::string> copies;
+  for (const int threads : {1, 2, 5}) {
+    set_thread_count(threads);
+    const Events events = read_events(file, kSensor);
+    ASSERT_EQ(events.size(), static_cast<std::size_t>(kLines));
+    for (int i = 0; i < kLines; ++i)
+      ASSERT_EQ(events[static_cast<std::size_t>(i)],
+                (Event{1000 * i, static_cast<std::uint16_t>(i % 240), 7, 1}));
+    EventTextWriter writer(folder.path() / "copy.txt");
+    writer.append(std::span(events).first(3));
+    writer.append(std::span(events).subspan(3));
+    writer.close();
+    copies.push_back(testing::read_file(folder.path() / "copy.txt"));
+  }
+  set_thread_count(0);
+  EXPECT_EQ(copies[0], copies[1]);
+  EXPECT_EQ(copies[0], copies[2]);
+  EXPECT_EQ(copies[0].substr(0, 32), "0.000000000 0 7 1\n0.000001000 1 ");
+}
+
+TEST_F(LongEventsText, TheFirstOfSeveralErrorsIsNamedWithItsLine) {
+  lines_[150'000] = "0.150 1 7 2";
+  lines_[190'000] = "no event";
+  EXPECT_THAT(parse_error(text()), HasSubstr("events.txt:150001: polarity 2"));
+  lines_[100'000] = "1e-9 1 7 1";
+  EXPECT_THAT(parse_error(text()), HasSubstr("events.txt:100001: time goes back"));
+}
+
+TEST_F(LongEventsText, TimeMayNotGoBackFromOneBlockToTheNext) {
+  // One line in each place, so that some of them begin a part of the text.
+  for (std::size_t i = 40'000; i < 40'400; ++i) lines_[i] = "# " + std::string(4'000, '-');
+  for (const std::size_t at : {40'010U, 40'100U, 40'263U, 40'399U}) {
+    std::vector<std::string> before = lines_;
+    lines_[at] = "0.000000001 1 7 1";
+    EXPECT_THAT(parse_error(text()),
+                HasSubstr("events.txt:" + std::to_string(at + 1) + ": time goes back"));
+    lines_ = before;
+  }
+}
+
+TEST_F(LongEventsText, BehindTheWindowNothingIsRead) {
+  lines_.push_back("no event");
+  EXPECT_EQ(parse_events(text(), {50'000'000, 150'000'000}).size(), 100'000U);
 }
 
 TEST(EventsText, WithoutCloseNothingIsWritten) {
