@@ -340,8 +340,8 @@ class LockstepTile final : public EventTile {
                                   const SurfaceSample& surface, double from_s, double to_s) const {
     const double from = path.fraction(from_s);
     const double to = path.fraction(to_s);
-    const Interval x = CoordinateBounds(path.x, from, to).values;
-    const Interval y = CoordinateBounds(path.y, from, to).values;
+    const Interval x = CoordinateBounds::over(path.x, from, to).values;
+    const Interval y = CoordinateBounds::over(path.y, from, to).values;
     const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
     const double low = surface.factor * static_cast<double>(texels.low);
     const double high = surface.factor * static_cast<double>(texels.high);
