@@ -49,7 +49,7 @@ class LockstepTile final : public EventTile {
     tracer_.set_poses(poses);
     TileSamples now;
     now.trace(tracer_, directions_, t_s, all_pixels());
-    now.sample_surfaces(tracer_, directions_);
+    now.sample_surfaces(tracer_, directions_, all_pixels());
     for (std::size_t i = 0; i < pixels_.size(); ++i)
       pixels_.start(i, sample(now, i).log_intensity, t_s);
     store_state(now);
@@ -154,8 +154,8 @@ class LockstepTile final : public EventTile {
       pixels = sense_steady(now, next, pixels);
     if (pixels.none()) return;
     if (steps.last - steps.first == 1) {
-      now.sample_surfaces(tracer_, directions_);
-      next.sample_surfaces(tracer_, directions_);
+      now.sample_surfaces(tracer_, directions_, pixels);
+      next.sample_surfaces(tracer_, directions_, pixels);
       return sense_step(now, next, pixels);
     }
     const int middle = (steps.first + steps.last) / 2;
