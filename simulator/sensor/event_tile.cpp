@@ -49,7 +49,7 @@ class LockstepTile final : public EventTile {
     tracer_.set_poses(poses);
     TileSamples now;
     now.trace(tracer_, directions_, t_s, all_pixels());
-    now.sample_surfaces(tracer_, directions_);
+    now.sample_surfaces(tracer_, directions_, all_pixels());
     for (std::size_t i = 0; i < pixels_.size(); ++i)
       pixels_.start(i, sample(now, i).log_intensity, t_s);
     store_state(now);
@@ -154,8 +154,8 @@ class LockstepTile final : public EventTile {
       pixels = sense_steady(now, next, pixels);
     if (pixels.none()) return;
     if (steps.last - steps.first == 1) {
-      now.sample_surfaces(tracer_, directions_);
-      next.sample_surfaces(tracer_, directions_);
+      now.sample_surfaces(tracer_, directions_, pixels);
+      next.sample_surfaces(tracer_, directions_, pixels);
       return sense_step(now, next, pixels);
     }
     const int middle = (steps.first + steps.last) / 2;
@@ -340,8 +340,8 @@ class LockstepTile final : public EventTile {
                                   const SurfaceSample& surface, double from_s, double to_s) const {
     const double from = path.fraction(from_s);
     const double to = path.fraction(to_s);
-    const Interval x = CoordinateBounds(path.x, from, to).values;
-    const Interval y = CoordinateBounds(path.y, from, to).values;
+    const Interval x = CoordinateBounds::over(path.x, from, to).values;
+    const Interval y = CoordinateBounds::over(path.y, from, to).values;
     const TexelRange texels = surface.texture->range({x.low, x.high, y.low, y.high});
     const double low = surface.factor * static_cast<double>(texels.low);
     const double high = surface.factor * static_cast<double>(texels.high);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simulator/sensor/pixel/crossing.h"
 #include "simulator/sensor/pixel/pixel_noise.h"
@@ -41,7 +43,7 @@ class PixelSensor {
 
   /// The same behind the photoreceptor's low pass.
   double sense_filtered(const Sample& lo, const Sample& hi, const PixelNoise& noise,
-                        NoisyState& noisy, int depth = 0);
+                        NoisyState& noisy);
 
  private:
   struct Crossing {
@@ -67,10 +69,22 @@ class PixelSensor {
   template <class AnyInterval>
   void sense_interval(AnyInterval& interval, const PixelNoise& noise, NoisyState& noisy);
   void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+  /// sense_filtered() by halves.
+  void divide_filtered(const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                       NoisyState& noisy, int depth = 0);
+  /// sense_filtered() along the lines of a signal that knows them, up to `hi`.
+  template <class Lines>
+  void follow_lines(Lines& lines, const Sample& lo, const Sample& hi, const PixelNoise& noise,
+                    NoisyState& noisy);
   /// Whether the bounds of the unfiltered signal and the filter's state, between which the output
   /// stays, prove that nothing happens over an interval.
   [[nodiscard]] bool proves_no_event(const RadianceRange& range, double from_s, double to_s,
                                      const NoisyState& noisy) const;
+  /// Whether nothing happens over an interval if the unfiltered signal stays within the band.
+  [[nodiscard]] bool stays_quiet(double from_s, double to_s, const NoisyState& noisy) const {
+    const auto [low, high] = std::minmax(noisy.filter.first, noisy.filter.output);
+    return noisy.is_idle(from_s, to_s) && is_within_band(low, from_s, high, to_s);
+  }
   /// Whether the bounds of the filtered signal prove that nothing happens over a piece.
   [[nodiscard]] bool proves_no_event(const FilteredPiece& piece, const LinearPiece& input,
                                      const NoisyState& noisy) const;
@@ -104,6 +118,11 @@ class PixelSensor {
 /// The greatest error of the linear pieces that the low pass is given, where the signal does not
 /// jump [log units].
 constexpr double kPieceError = 1e-3;
+/// The same of lines along a path over a texture, which use up what they are allowed, where the
+/// bounds of divided intervals are seldom reached: with this part of it a stream is as near to that
+/// of much shorter pieces as with them (of Walls with the noise of a DAVIS240C, 99 % of the events
+/// within 54 and 62 us).
+constexpr double kLineError = 0.45 * kPieceError;
 /// The greatest change within a piece, for which its cutoff is constant [log units].
 constexpr double kPieceChange = 0.05;
 /// An interval in which nothing happens is passed over up to what the filter remembers at its end,
@@ -225,32 +244,69 @@ double PixelSensor<Signal, Emit>::sense(const Sample& lo, const Sample& hi, cons
 
 template <class Signal, class Emit>
 double PixelSensor<Signal, Emit>::sense_filtered(const Sample& lo, const Sample& hi,
-                                                 const PixelNoise& noise, NoisyState& noisy,
-                                                 int depth) {
-  const double length_s = hi.t_s - lo.t_s;
-  if (length_s <= signal_.tolerance_s()) {  // a step
-    sense_piece(lo, hi, noise, noisy);
-    return widest_s_;
+                                                 const PixelNoise& noise, NoisyState& noisy) {
+  if constexpr (requires { typename Signal::Lines; })
+    signal_.visit_lines(
+        lo, hi, {kLineError, kPieceChange},
+        [&](typename Signal::Lines& lines, const Sample& a, const Sample& b) {
+          follow_lines(lines, a, b, noise, noisy);
+        },
+        [&](const Sample& a, const Sample& b) { divide_filtered(a, b, noise, noisy); });
+  else
+    divide_filtered(lo, hi, noise, noisy);
+  return widest_s_;
+}
+
+template <class Signal, class Emit>
+template <class Lines>
+void PixelSensor<Signal, Emit>::follow_lines(Lines& lines, const Sample& lo, const Sample& hi,
+                                             const PixelNoise& noise, NoisyState& noisy) {
+  const double least_u = signal_.fraction(lo.t_s + signal_.tolerance_s()) - lo.u;
+  // An event may cut short the time for which the signal is known to stay within the band.
+  double quiet_until_s = lo.t_s;
+  double upper = std::numeric_limits<double>::quiet_NaN();
+  for (Sample now = lo; now.t_s < hi.t_s;) {
+    if (now.t_s >= quiet_until_s || upper != state_.reference.band().upper) {
+      upper = state_.reference.band().upper;
+      const auto run = lines.run_within(thresholds_.radiances(hi.t_s), hi.u);
+      quiet_until_s = signal_.time_s(run.end);
+      const double end_s = std::min(quiet_until_s, noisy.spontaneous.next_s());
+      const double memory_s = noise.filter.memory_s(run.least);
+      if (end_s - now.t_s > kLongMemories * memory_s && stays_quiet(now.t_s, end_s, noisy)) {
+        lines.go_to(signal_.fraction(end_s - memory_s));
+        now = signal_.at_end(lines, hi);
+        noisy.filter = PhotoreceptorFilter::settled(now.log_intensity);
+      }
+    }
+    lines.advance(hi.u, least_u);
+    const Sample next = signal_.at_end(lines, hi);
+    sense_piece(now, next, noise, noisy);
+    now = next;
   }
+}
+
+template <class Signal, class Emit>
+void PixelSensor<Signal, Emit>::divide_filtered(const Sample& lo, const Sample& hi,
+                                                const PixelNoise& noise, NoisyState& noisy,
+                                                int depth) {
+  const double length_s = hi.t_s - lo.t_s;
+  if (length_s <= signal_.tolerance_s())  // a step
+    return sense_piece(lo, hi, noise, noisy);
   const RadianceRange range = signal_.range(lo, hi);
   if (std::abs(hi.log_intensity - lo.log_intensity) <= kPieceChange &&
-      range.log_error(log_eps_, length_s) <= kPieceError) {
-    sense_piece(lo, hi, noise, noisy);
-    return widest_s_;
-  }
+      range.log_error(log_eps_, length_s) <= kPieceError)
+    return sense_piece(lo, hi, noise, noisy);
   const double memory_s = noise.filter.memory_s(range.low);
   if (length_s > kLongMemories * memory_s && proves_no_event(range, lo.t_s, hi.t_s, noisy)) {
     const Sample remembered = signal_.at(hi.t_s - memory_s, lo, hi);
     noisy.filter = PhotoreceptorFilter::settled(remembered.log_intensity);
-    return sense_filtered(remembered, hi, noise, noisy, depth + 1);
+    return divide_filtered(remembered, hi, noise, noisy, depth + 1);
   }
   const Sample middle = signal_.divide(lo, hi, depth);
-  if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s)) {  // no double left between them
-    sense_piece(lo, hi, noise, noisy);
-    return widest_s_;
-  }
-  sense_filtered(lo, middle, noise, noisy, depth + 1);
-  return sense_filtered(middle, hi, noise, noisy, depth + 1);
+  if (!(middle.t_s > lo.t_s && middle.t_s < hi.t_s))  // no double left between them
+    return sense_piece(lo, hi, noise, noisy);
+  divide_filtered(lo, middle, noise, noisy, depth + 1);
+  divide_filtered(middle, hi, noise, noisy, depth + 1);
 }
 
 /// A piece of the photoreceptor's output, whose crossings follow in closed form.

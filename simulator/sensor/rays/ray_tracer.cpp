@@ -395,6 +395,28 @@ double RayTracer::change_s(const Eigen::Vector3d& direction, const VisibleTriang
   return a_s + (b_s - a_s) * std::clamp(a / (a - b), 0.0, 1.0);
 }
 
+double RayTracer::change_near_s(const Eigen::Vector3d& direction, TriangleId triangle,
+                                const Interval& span, double guess, double tolerance_s) const {
+  constexpr double kNear = 1e-3;  // about as exact as a guess from a parabola is
+  constexpr int kMaxSteps = 4;
+  const double length_s = span.high - span.low;
+  double a_s = span.low + guess * length_s;
+  double b_s = a_s + (guess < 0.5 ? kNear : -kNear) * length_s;
+  double a = min_barycentric(direction, triangle, a_s);
+  double b = min_barycentric(direction, triangle, b_s);
+  for (int k = 0; k < kMaxSteps; ++k) {
+    const double t_s = b_s - b * ((b_s - a_s) / (b - a));
+    if (!(t_s > span.low && t_s < span.high)) break;
+    // The error of a step of the secant method, for slopes that change by no more than themselves.
+    if (std::abs((t_s - a_s) * (t_s - b_s)) < tolerance_s * length_s) return t_s;
+    a_s = b_s;
+    a = b;
+    b_s = t_s;
+    b = min_barycentric(direction, triangle, t_s);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 bool RayTracer::is_covered(const Eigen::Vector3d& direction, const VisibleTriangle& from,
                            const VisibleTriangle& to, double tolerance_s) const {
   if (from.triangle == kNothing || to.triangle == kNothing) return true;

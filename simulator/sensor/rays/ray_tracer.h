@@ -14,6 +14,7 @@
 #include "simulator/sensor/motion/image_motion.h"
 #include "simulator/sensor/rays/pixel_rays.h"
 #include "simulator/sensor/rays/plane_sampler.h"
+#include "simulator/sensor/signal/cell_bounds.h"
 #include "simulator/sensor/signal/ray_sample.h"
 #include "simulator/sensor/visibility/opacity_search.h"
 
@@ -145,6 +146,11 @@ class RayTracer {
   /// leaves the first or else enters the second; NaN if neither.
   [[nodiscard]] double change_s(const Eigen::Vector3d& direction, const VisibleTriangle& from,
                                 const VisibleTriangle& to, double tolerance_s) const;
+
+  /// When within `span` a ray crosses the edge of a triangle, from about where it does as a fraction
+  /// of the span, within `tolerance_s`; NaN where the search goes astray.
+  [[nodiscard]] double change_near_s(const Eigen::Vector3d& direction, TriangleId triangle,
+                                     const Interval& span, double guess, double tolerance_s) const;
 
   /// Whether at every time between `from` and `to` the ray intersects at least one of the two
   /// triangles, so that nothing behind them shows in between.

@@ -21,26 +21,23 @@ struct TileSamples {
 
   double t_s;
   Triangles triangles;
-  bool has_samples;
+  PixelSet sampled;  ///< whose samples are known
   std::array<RaySample, kMaxTilePixels * kRays> samples;
 
   /// The visible triangles are known.
   void set_triangles(const Triangles& seen, double at_s) {
     t_s = at_s;
     triangles = seen;
-    has_samples = false;
+    sampled.reset();
   }
 
   /// Traces the rays of `pixels`, packet by packet. Of the other pixels nothing is known then.
   void trace(RayTracer& tracer, std::span<const Eigen::Vector3d> directions, double at_s,
              const PixelSet& pixels);
 
-  void sample_surfaces(RayTracer& tracer, std::span<const Eigen::Vector3d> directions) {
-    if (has_samples) return;
-    has_samples = true;
-    const std::size_t n = directions.size();
-    tracer.sample(directions, {triangles.data(), n}, t_s, {samples.data(), n});
-  }
+  /// Samples what `pixels` see, of which the triangles are known.
+  void sample_surfaces(RayTracer& tracer, std::span<const Eigen::Vector3d> directions,
+                       const PixelSet& pixels);
 
   /// Of pixel `i`; needs the samples.
   [[nodiscard]] PixelSample<kRays> sample(std::size_t i, double log_eps) const {
@@ -57,7 +54,7 @@ void TileSamples<kRays>::trace(RayTracer& tracer, std::span<const Eigen::Vector3
                                double at_s, const PixelSet& pixels) {
   t_s = at_s;
   triangles.fill(kNothing);
-  has_samples = false;
+  sampled.reset();
   std::array<Eigen::Vector3d, kRayPacket> rays;
   std::array<std::size_t, kRayPacket> owners;
   std::array<TriangleId, kRayPacket> seen;
@@ -74,6 +71,25 @@ void TileSamples<kRays>::trace(RayTracer& tracer, std::span<const Eigen::Vector3
     if (n == kRayPacket) flush();
   }
   if (n > 0) flush();
+}
+
+template <std::size_t kRays>
+void TileSamples<kRays>::sample_surfaces(RayTracer& tracer,
+                                         std::span<const Eigen::Vector3d> directions,
+                                         const PixelSet& pixels) {
+  const PixelSet missing = pixels & ~sampled;
+  sampled |= missing;
+  // Neighbours in one go: they see the same triangles.
+  const std::size_t count = directions.size() / kRays;
+  for (std::size_t first = 0; first < count; ++first) {
+    if (!missing[first]) continue;
+    std::size_t last = first + 1;
+    while (last < count && missing[last]) ++last;
+    const std::size_t at = first * kRays;
+    const std::size_t n = (last - first) * kRays;
+    tracer.sample(directions.subspan(at, n), {&triangles[at], n}, t_s, {&samples[at], n});
+    first = last;
+  }
 }
 
 }  // namespace saccade

@@ -29,12 +29,13 @@ class TrajectoryCoordinate {
   [[nodiscard]] double to() const { return to_; }
   [[nodiscard]] double chord() const { return chord_; }
   [[nodiscard]] double quartic() const { return quartic_; }
-  /// How far the path may be from the true one [texel]: by its next term, or, lest that is small by
-  /// chance, by what the terms before it let expect of a swinging motion.
-  [[nodiscard]] double error() const {
+  /// Whether the path may be farther from the true one than `limit` [texel]: by its next term, or,
+  /// lest that is small by chance, by what the terms before it let expect of a swinging motion:
+  ///   0.2 quartic sqrt(quartic / bow)
+  [[nodiscard]] bool may_exceed(double limit) const {
     const double quartic = std::abs(quartic_);
     const double bow = std::max(0.125 * std::abs(from_excess_ - to_excess_), quartic);
-    return std::max(error_, 0.2 * quartic * std::sqrt(quartic / std::max(bow, kTiny)));
+    return error_ > limit || 0.04 * quartic * quartic * quartic > limit * limit * bow;
   }
 
   [[nodiscard]] double at(double u) const {
@@ -57,8 +58,6 @@ class TrajectoryCoordinate {
   }
 
  private:
-  static constexpr double kTiny = 1e-300;
-
   double from_, to_;
   double chord_;
   double from_excess_, to_excess_;
@@ -79,6 +78,12 @@ struct CoordinateBounds {
   CoordinateBounds(const TrajectoryCoordinate& track, double u0, double u1)
       : CoordinateBounds(track.at(u0), track.slope_at(u0), track.at(u1), track.slope_at(u1),
                          track.second_derivative_bound() * (u1 - u0), u1 - u0) {}
+
+  /// Of all or a part of a path; whatever is asked of the whole does not depend on its cubic.
+  [[nodiscard]] static CoordinateBounds over(const TrajectoryCoordinate& track, double u0,
+                                             double u1) {
+    return u0 == 0 && u1 == 1 ? CoordinateBounds(track) : CoordinateBounds(track, u0, u1);
+  }
 
   [[nodiscard]] double middle_texel() const { return std::floor(0.5 * (values.low + values.high)); }
 
@@ -109,8 +114,8 @@ struct TexelTrajectory {
     constexpr double kFraction = 0.01;
     constexpr double kLeast_texel = 1e-6;
     const double motion = std::max(std::abs(x.chord()), std::abs(y.chord())) / length_s;
-    return std::max(x.error(), y.error()) <=
-           std::max(kFraction * tolerance_s * motion, kLeast_texel);
+    const double limit = std::max(kFraction * tolerance_s * motion, kLeast_texel);
+    return !x.may_exceed(limit) && !y.may_exceed(limit);
   }
 };
 

@@ -8,6 +8,7 @@
 #include "simulator/sensor/pixel/crossing.h"
 #include "simulator/sensor/signal/ray_sample.h"
 #include "simulator/sensor/signal/texel_traversal.h"
+#include "simulator/sensor/signal/texture_lines.h"
 
 namespace saccade {
 
@@ -105,6 +106,30 @@ class TextureSignal {
     traversal_.traverse(lo.u, hi.u, texels, visit, search);
     return exit;
   }
+
+  /// use(lines, from, to) with the parts of the signal between two samples along which there are
+  /// lines, in order; search(from, to) with those where the path turns.
+  using Lines = TextureLines;
+  template <class Use, class Search>
+  void visit_lines(const Sample& lo, const Sample& hi, const LineLimits& limits, const Use& use,
+                   const Search& search) const {
+    const auto sample = [&](double u) {
+      return u <= lo.u ? lo : u >= hi.u ? hi : evaluate(path_.time_s(u), u);
+    };
+    traversal_.visit_parts(
+        lo.u, hi.u,
+        [&](const PathCells& cells, double u0, double u1) {
+          TextureLines lines(path_, cells, factor_, log_eps_, limits, u0);
+          use(lines, sample(u0), sample(u1));
+        },
+        [&](double u0, double u1) { search(sample(u0), sample(u1)); });
+  }
+  /// Where a line has come to, on the way to `to`.
+  [[nodiscard]] Sample at_end(const TextureLines& line, const Sample& to) const {
+    return line.u() >= to.u ? to : evaluate(path_.time_s(line.u()), line.u());
+  }
+  [[nodiscard]] double time_s(double u) const { return path_.time_s(u); }
+  [[nodiscard]] double fraction(double t_s) const { return path_.fraction(t_s); }
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "simulator/sensor/signal/cell_bounds.h"
@@ -51,6 +52,18 @@ class TriangleRayBounds {
       passed = k;
     }
     return passed;
+  }
+
+  /// When, as a fraction of the interval, the ray crosses such an edge.
+  [[nodiscard]] double crossing(std::size_t k) const {
+    const double from = triangle_.at[0].edges[k].dot(direction_);
+    const double middle = triangle_.at[1].edges[k].dot(direction_);
+    const double to = triangle_.at[2].edges[k].dot(direction_);
+    // from + u (slope + bend u) = 0; the root between two signs, without cancellation.
+    const double bend = 2 * (from - 2 * middle + to);
+    const double slope = to - from - bend;
+    const double root = std::sqrt(std::max(slope * slope - 4 * bend * from, 0.0));
+    return -2 * from / (slope + (to > from ? root : -root));
   }
 
   /// Whether it is outside one of them all the time.

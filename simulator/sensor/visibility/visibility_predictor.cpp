@@ -112,7 +112,11 @@ double VisibilityPredictor::change_s(const Eigen::Vector3d& direction, const Vis
                          : out     ? after.stays_inside() && after.stays_behind(*a)
                                : in.has_value() && before.stays_inside() && before.stays_behind(*b);
   if (!is_single || !are_in_front(direction, *a, *b)) return kUnknown;
-  return tracer_.change_s(direction, from, to, 0.1 * tolerance_s_);
+  const double guess = out ? before.crossing(*out) : after.crossing(*in);
+  const double change_s = tracer_.change_near_s(direction, out ? from.triangle : to.triangle,
+                                                {from.t_s, to.t_s}, guess, 0.1 * tolerance_s_);
+  return std::isnan(change_s) ? tracer_.change_s(direction, from, to, 0.1 * tolerance_s_)
+                              : change_s;
 }
 
 void VisibilityPredictor::find_transits(const Eigen::Vector3d& direction,

@@ -11,15 +11,13 @@ namespace {
 
 using testing::ClosedFormPlane;
 
-/// Events per second, and rays and surface samples per event, at a contrast of range(0) / 100.
-void record_events(benchmark::State& state) {
+/// Events per second, and rays and surface samples per event.
+void record(benchmark::State& state, const EventOptions& options) {
   ClosedFormPlane plane = ClosedFormPlane::smooth(240, 180);
   plane.duration_s = 0.2;
   plane.camera.fx = plane.camera.fy = 200;
   const Scene scene = testing::scene_of(plane);
   const Spline motion = plane.motion();
-  EventOptions options;
-  options.contrast.on = options.contrast.off = 0.01 * static_cast<double>(state.range(0));
   std::int64_t events = 0;
   EventStatistics statistics;
   for (auto _ : state) {
@@ -36,7 +34,28 @@ void record_events(benchmark::State& state) {
   state.counters["rays_per_event"] = per_event(statistics.rays);
   state.counters["samples_per_event"] = per_event(statistics.surface_samples);
 }
+
+/// At a contrast of range(0) / 100.
+void record_events(benchmark::State& state) {
+  EventOptions options;
+  options.contrast.on = options.contrast.off = 0.01 * static_cast<double>(state.range(0));
+  record(state, options);
+}
 BENCHMARK(record_events)->Arg(15)->Arg(50)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// At a contrast of 0.15 behind a low pass with two poles and a cutoff of range(0) Hz.
+void record_filtered_events(benchmark::State& state) {
+  EventOptions options;
+  options.contrast.on = options.contrast.off = 0.15;
+  options.noise.bandwidth.cutoff_hz = static_cast<double>(state.range(0));
+  options.noise.bandwidth.order = 2;
+  record(state, options);
+}
+BENCHMARK(record_filtered_events)
+    ->Arg(300)
+    ->Arg(3000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// A grey frame of 240 x 180 px, pixels per second.
 void render_frame(benchmark::State& state) {

@@ -62,8 +62,8 @@ TEST(TrajectoryCoordinate, KnowsItsError) {
   double worst = 0;
   for (double u = 0; u <= 1; u += 1e-3)
     worst = std::max(worst, std::abs(track.at(u) - position(u)));
-  EXPECT_LE(worst, 1.1 * track.error());
-  EXPECT_GT(worst, 0.05 * track.error());
+  EXPECT_TRUE(track.may_exceed(worst / 1.1));
+  EXPECT_FALSE(track.may_exceed(worst / 0.05));
 }
 
 }  // namespace

@@ -1,0 +1,193 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "simulator/sensor/signal/path_cells.h"
+#include "simulator/sensor/signal/texel_trajectory.h"
+
+namespace saccade {
+
+/// How far ln(eps + I) may depart from a straight line, and how far that may rise or fall.
+struct LineLimits {
+  double error;   ///< [log units]
+  double change;  ///< [log units], small
+};
+
+/// Goes along the texels of a path, whose values are bilinear from border to border, in lines as
+/// long as some limits allow: over many cells where the texture is smooth, over parts of one where
+/// it is not.
+class TextureLines {
+ public:
+  /// From `u` on; all arguments outlive it. The radiance is `factor` times the texture, and
+  /// `log_eps` as in ln(eps + I).
+  TextureLines(const TexelTrajectory& path, const PathCells& cells, double factor, double log_eps,
+               const LineLimits& limits, double u)
+      : path_(path),
+        cells_(cells),
+        factor_(factor),
+        log_eps_(log_eps),
+        // Where a radiance is a line, its logarithm departs from one by an eighth of the square of
+        // the change, and by more than its radiance does, relatively, where that is least.
+        error_((limits.error - 0.125 * limits.change * limits.change) * (1 - limits.change)),
+        change_(limits.change * (1 - 0.5 * limits.change)) {
+    find_knots();
+    go_to(u);
+  }
+
+  [[nodiscard]] double u() const { return u_; }
+  void go_to(double u) {
+    u_ = u;
+    cell_ = cells_.at(u);
+    value_ = value_at(cell_, u);
+  }
+
+  /// How far the path goes on, up to `to`, through cells whose radiances are all within the open
+  /// interval `band`, and the least of those.
+  struct Run {
+    double end;
+    double least;
+  };
+  [[nodiscard]] Run run_within(const Interval& band, double to) const {
+    const Interval texels{band.low / factor_, band.high / factor_};
+    const int outside = cells_.next_outside(cell_, texels);
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = cell_; k < outside; ++k) least = std::min(least, cells_.low(k));
+    return {outside == cell_ ? u_ : std::min(cells_.end(outside - 1), to), factor_ * least};
+  }
+
+  /// Goes on to the end of a line: `to` at most, and no less than `least` further, unless `to` is
+  /// nearer.
+  void advance(double to, double least) {
+    const double scale = log_eps_ + value_;
+    const double reach = change_ * scale;
+    const double error = error_ * scale;
+    Knot end = knot(cell_, u_, to);
+    if (!(std::abs(end.value - value_) <= reach && end.straying <= error)) {
+      arrive(part_of_cell(end, reach, error, least));
+      return;
+    }
+    // The slopes of lines that pass all knots so far near enough; the rest is for what strays
+    // between two knots.
+    const double near = 0.5 * error;
+    Interval slopes{-std::numeric_limits<double>::infinity(),
+                    std::numeric_limits<double>::infinity()};
+    while (end.straying <= near && end.u < to && cell_ + 1 < cells_.count()) {
+      const double per_length = 1 / (end.u - u_);
+      slopes.low = std::max(slopes.low, (end.value - value_ - near) * per_length);
+      slopes.high = std::min(slopes.high, (end.value - value_ + near) * per_length);
+      const Knot next = knot(cell_ + 1, end.u, to);
+      const double rise = next.value - value_;
+      const double slope = rise / (next.u - u_);
+      if (!(std::abs(rise) <= reach && next.straying <= near && slope >= slopes.low &&
+            slope <= slopes.high))
+        break;
+      ++cell_;
+      end = next;
+    }
+    arrive(end);
+  }
+
+ private:
+  /// Where the path leaves a cell or ends in it, and how far it strays from the line between there
+  /// and where it came into the cell or began.
+  struct Knot {
+    double u, value, straying;
+  };
+
+  /// Of the part of a cell from `from` on.
+  [[nodiscard]] Knot knot(int cell, double from, double to) const {
+    const auto k = static_cast<std::size_t>(cell);
+    const double end = std::min(cells_.end(cell), to);
+    const double length = end - from;
+    return {end, end < cells_.end(cell) ? value_at(cell, end) : values_[k],
+            bends_[k] * length * length};
+  }
+
+  /// The first part of what is left of a cell up to `end` that is within the limits.
+  [[nodiscard]] Knot part_of_cell(const Knot& end, double reach, double error, double least) const {
+    constexpr double kCautious = 0.95;
+    const double left = end.u - u_;
+    const double rise = std::abs(end.value - value_);
+    double length = left * std::min(kCautious * reach / std::max(rise, reach),
+                                    std::sqrt(error / std::max(end.straying, error)));
+    Knot part = knot(cell_, u_, u_ + length);
+    while (!(std::abs(part.value - value_) <= reach) && length > least) {
+      length *= 0.5;
+      part = knot(cell_, u_, u_ + length);
+    }
+    return length > least ? part : knot(cell_, u_, std::min(u_ + least, end.u));
+  }
+
+  void arrive(const Knot& end) {
+    u_ = end.u;
+    value_ = end.value;
+    if (cell_ + 1 < cells_.count() && cells_.end(cell_) <= u_) ++cell_;
+  }
+
+  [[nodiscard]] double value_at(int cell, double u) const {
+    return factor_ * Bilinear(cells_.corners(cell))
+                         .at(path_.x.at(u) - static_cast<double>(cells_.i(cell)),
+                             path_.y.at(u) - static_cast<double>(cells_.j(cell)));
+  }
+
+  struct Bilinear {
+    double corner, along_x, along_y, twist;
+
+    explicit Bilinear(const std::array<float, 4>& corners)
+        : corner(corners[0]),
+          along_x(corners[1] - corners[0]),
+          along_y(corners[2] - corners[0]),
+          twist(corners[3] - corners[2] - along_x) {}
+    [[nodiscard]] double at(double x, double y) const {
+      return corner + x * along_x + y * (along_y + twist * x);
+    }
+  };
+
+  /// Of all cells, as if the path went all the way through them.
+  void find_knots() {
+    const double bending =
+        0.125 * std::max(path_.x.second_derivative_bound(), path_.y.second_derivative_bound());
+    double u0 = cells_.start();
+    double x0 = path_.x.at(u0);
+    double y0 = path_.y.at(u0);
+    for (int cell = 0; cell < cells_.count(); ++cell) {
+      const auto k = static_cast<std::size_t>(cell);
+      const double u1 = cells_.end(cell);
+      const double x1 = path_.x.at(u1);
+      const double y1 = path_.y.at(u1);
+      const Bilinear texels(cells_.corners(cell));
+      values_[k] = factor_ * texels.at(x1 - static_cast<double>(cells_.i(cell)),
+                                       y1 - static_cast<double>(cells_.j(cell)));
+      // Along the chord the bilinear function is a parabola; the path departs from the chord.
+      const double steepest =
+          std::abs(texels.along_x) + std::abs(texels.along_y) + std::abs(texels.twist);
+      const double length = std::max(u1 - u0, kShortest);
+      const double bend = 0.25 * std::abs(texels.twist * (x1 - x0) * (y1 - y0));
+      bends_[k] = factor_ * (bend / (length * length) + bending * steepest);
+      u0 = u1;
+      x0 = x1;
+      y0 = y1;
+    }
+  }
+
+  /// A cell of no length does not bend.
+  static constexpr double kShortest = 1e-9;
+
+  const TexelTrajectory& path_;
+  const PathCells& cells_;
+  double factor_;
+  double log_eps_;
+  double error_;                                ///< relative to eps + I
+  double change_;                               ///< likewise
+  std::array<double, PathCells::kMax> values_;  ///< at the ends of the cells
+  std::array<double, PathCells::kMax> bends_;   ///< how far a line strays in them, by its length^2
+  double u_ = 0;
+  int cell_ = 0;  ///< in which the path goes on from u_
+  double value_ = 0;
+};
+
+}  // namespace saccade
