@@ -27,6 +27,10 @@ void refuse_verify(const InfoOptions& options) {
     throw InputError("--information", "needs a dataset folder, with its poses, frames and depth");
 }
 
+void refuse_verify_with_information(const InfoOptions& options) {
+  if (options.verify) throw InputError("--information", "cannot be had with --verify: ask twice");
+}
+
 void info(const InfoOptions& options) {
   const bool is_folder = std::filesystem::is_directory(options.path);
   if (!is_folder && is_mesh_name(options.path)) {
@@ -41,6 +45,7 @@ void info(const InfoOptions& options) {
     return;
   }
   if (options.information) {
+    refuse_verify_with_information(options);
     fmt::print("{}", describe_information(options.path));
     return;
   }

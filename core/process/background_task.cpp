@@ -27,7 +27,11 @@ struct BackgroundTask::State {
 
 BackgroundTask::BackgroundTask() : state_(std::make_unique<State>()) {}
 
-BackgroundTask::~BackgroundTask() { settle(); }
+BackgroundTask::~BackgroundTask() {
+  // What has not begun is wanted by nobody.
+  if (!state_->pool) state_->work = nullptr;
+  settle();
+}
 
 void BackgroundTask::start(std::function<void()> work) {
   SACCADE_CHECK(!state_->work && !state_->error);
@@ -35,15 +39,22 @@ void BackgroundTask::start(std::function<void()> work) {
   const std::shared_ptr<ThreadPool> pool = current_thread_pool();
   if (pool->arena.max_concurrency() == 1) return;
   state_->pool = pool;
-  pool->arena.execute([state = state_.get()] { state->group.run([state] { state->run(); }); });
+  pool->arena.execute([state = state_.get()] {
+    state->group.run([state] {
+      const InThreadPool mark(*state->pool);
+      state->run();
+    });
+  });
 }
 
 void BackgroundTask::settle() {
   if (!state_->work) return;
-  if (state_->pool)
-    state_->pool->arena.execute([this] { state_->group.wait(); });
-  else
+  if (!state_->pool)
     state_->run();
+  else if (is_inside(*state_->pool))
+    state_->group.wait();
+  else
+    state_->pool->arena.execute([this] { state_->group.wait(); });
   state_->pool.reset();
   state_->work = nullptr;
 }

@@ -12,7 +12,7 @@ namespace saccade {
 class BackgroundTask {
  public:
   BackgroundTask();
-  /// Waits; an error that nobody asked for is lost.
+  /// Waits for what has begun; an error that nobody asked for is lost.
   ~BackgroundTask();
   BackgroundTask(const BackgroundTask&) = delete;
   BackgroundTask& operator=(const BackgroundTask&) = delete;

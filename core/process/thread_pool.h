@@ -22,4 +22,20 @@ struct ThreadPool {
 /// The one that parallel_for() uses from now on; work that is under way keeps that which it began on.
 [[nodiscard]] std::shared_ptr<ThreadPool> current_thread_pool();
 
+/// Whether this thread does work of the pool.
+[[nodiscard]] bool is_inside(const ThreadPool& pool);
+
+/// Marks this thread as one that does work of a pool, for as long as it lives: loops of that work then
+/// stay within the pool.
+class InThreadPool {
+ public:
+  explicit InThreadPool(const ThreadPool& pool);
+  ~InThreadPool();
+  InThreadPool(const InThreadPool&) = delete;
+  InThreadPool& operator=(const InThreadPool&) = delete;
+
+ private:
+  const ThreadPool* before_;
+};
+
 }  // namespace saccade

@@ -68,7 +68,7 @@ std::vector<EdgePoint> without_outliers(const std::vector<EdgePoint>& points,
     const double radius = radius_ratio * positions[i].z();
     // What is within the radius q of a point with the ray (s, 1), both over the depth, is seen at
     //   (s + q_xy) / (1 + q_z), that is within |q| (1 + |s|) / (1 - |q|) of s.
-    const double slope = (positions[i].head<2>() / positions[i].z()).norm();
+    const double slope = camera.ray({points[i].x_px, points[i].y_px}).head<2>().norm();
     const double reach =
         std::max(camera.fx, camera.fy) * radius_ratio * (1 + slope) / (1 - radius_ratio);
     int neighbours = 0;

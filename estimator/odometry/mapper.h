@@ -28,7 +28,7 @@ struct MappingOptions {
   double max_sigma = 0.05;        ///< of a point's inverse depth that becomes an edge, relative
   /// Of kDepth: with fewer edges, those of 3 and 9 times the sigma are tracked, too: edges that
   /// hardly move sideways need no better depth. Where these are too few, edges whose depth cannot be
-  /// told are tracked at the typical depth, as where the camera only rotates. Renewed depths are the
+  /// told are tracked, too, at the typical depth where it is known. Renewed depths are the
   /// certain ones alone.
   int min_edges = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked

@@ -185,7 +185,7 @@ std::optional<TrackedPose> Odometry::relocate() {
 }
 
 void Odometry::take(Keyframe keyframe, const Rigid3& world_from_camera) {
-  baseline_m_ = baseline_of(keyframe, path_);
+  baseline_m_ = std::max(baseline_m_, baseline_of(keyframe, path_));
   map_.add(std::move(keyframe), world_from_camera);
   take_map();
 }
@@ -213,7 +213,8 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   result.poses = found_poses(first.path);
   if (given_until_s_ != kNoGivenPoses) {
     result.extrapolated_s = path_.back().t_s - given_until_s_;
-    result.is_scale_guessed = first.is_scale_guessed();
+    result.is_scale_guessed = is_scale_guessed_ =
+        options_.mapping.edges == MappingOptions::Edges::kDepth && first.is_scale_guessed();
   }
   typical_depth_m_ = keyframe.typical_depth_m;
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
@@ -231,12 +232,16 @@ double Odometry::moved_m() const {
       .norm();
 }
 
+double Odometry::doubling_m() const {
+  // Below a pixel of parallax there is nothing to double.
+  return std::max(baseline_m_, typical_depth_m_ / camera_.fx);
+}
+
 bool Odometry::has_doubled_baseline() const {
   // Depths of a short start are off by some ten percent, and the path with them: with twice the
-  // baseline they are twice as good. From a pixel of parallax on, few keyframes reach d_kf.
-  const double doubled_m = std::max(baseline_m_, typical_depth_m_ / camera_.fx);
-  return options_.keyframe.doubles_baseline && moved_m() >= doubled_m &&
-         doubled_m < options_.keyframe.distance * typical_depth_m_;
+  // baseline they are twice as good.
+  return options_.keyframe.doubles_baseline && moved_m() >= doubling_m() &&
+         doubling_m() < options_.keyframe.distance * typical_depth_m_;
 }
 
 bool Odometry::wants_keyframe() const {
@@ -248,7 +253,11 @@ bool Odometry::wants_keyframe() const {
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
   job_ = std::make_unique<Job>();
   job_->made_s = now_s;
-  if (!has_doubled_baseline()) interval_from_s_ = path_.back().t_s;
+  // Whatever becomes of this keyframe, the next one waits for more: a few of them reach d_kf.
+  if (has_doubled_baseline())
+    baseline_m_ = 2 * doubling_m();
+  else
+    interval_from_s_ = path_.back().t_s;
   last_keyframe_ = path_.back();
   const auto policy = thread_count() > 1 ? std::launch::async : std::launch::deferred;
   const std::span<const Event> mapped = events.subspan(count_until_s(events, mapped_from_s_));
@@ -290,7 +299,7 @@ void Odometry::apply_adjusted_poses(const Mapping& mapping) {
 
 bool Odometry::wants_batch_adjustment() const {
   return options_.batch_adjustment != BatchMode::kNone && options_.mode == OdometryMode::kOffline &&
-         lost_ns_.empty();
+         lost_ns_.empty() && !is_scale_guessed_;
 }
 
 void Odometry::adjust(std::span<const Event> events, const PathEstimate& start,

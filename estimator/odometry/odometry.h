@@ -28,8 +28,8 @@ namespace saccade {
 struct KeyframeOptions {
   double distance = 0.1;  ///< d_kf, relative to the typical depth (thesis 7)
   double interval_s = 0;  ///< least time from one's begin to the next's
-  /// A keyframe is also made where the camera has moved as far as the baseline that the last one's
-  /// depths rest on, if that is less than `distance`. The interval does not count it.
+  /// A keyframe is also made where the camera has moved as far as the baseline that the map's depths
+  /// rest on, each time for twice as much, until that is `distance`. The interval does not count it.
   bool doubles_baseline = false;
   double handover_s = 0;         ///< from its newest event to the last that is tracked without it
   double active_window_s = 0.1;  ///< poses of its last seconds may still change with the next
@@ -144,6 +144,7 @@ class Odometry {
   void discard_diverged_poses(const TrackedPose& found, OdometryResult& result);
   [[nodiscard]] std::optional<TrackedPose> relocate();
   [[nodiscard]] double moved_m() const;  ///< since the last keyframe was begun
+  [[nodiscard]] double doubling_m() const;
   [[nodiscard]] bool has_doubled_baseline() const;
   [[nodiscard]] bool wants_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
@@ -173,7 +174,8 @@ class Odometry {
   std::optional<MountedImu> imu_;
   StampedPose last_keyframe_;   ///< the camera when the last one was begun
   double interval_from_s_ = 0;  ///< when the last was begun that did not double a baseline
-  double baseline_m_ = 0;       ///< of the newest one in the map
+  double baseline_m_ = 0;       ///< that the map's depths rest on, or that was tried
+  bool is_scale_guessed_ = false;
   double typical_depth_m_ = 1;
   std::unique_ptr<Job> job_;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include "eval/information/observations.h"
 #include "eval/information/true_edges.h"
@@ -20,8 +21,6 @@ constexpr double kLogDepthSigma = 1;
 constexpr double kPlaceSigmaPx = 10;
 /// The given start of odometry, its default.
 constexpr double kStartS = 0.2, kStartFraction = 0.1;
-/// A scale that is fixed, against what the path is known to.
-constexpr double kFixedScale = 1e-4;
 constexpr double kKnownDepth = 0.05;
 /// Half of what success allows, so that a method at the bound succeeds in 19 of 20 worlds.
 constexpr double kEnoughPercent = 0.5, kEnoughDeg = 2.5;
@@ -30,7 +29,7 @@ constexpr double kEnoughEdges = 0.05;
 /// Of a recording without an edge that can fire.
 constexpr Information kNothing{100, 180, 100, 100, 0};
 
-using Observations = std::vector<EdgeObservation>;
+using Observations = std::vector<LineObservation>;
 
 /// The observations of all edges, and of how many edges of their kind each speaks.
 struct Problem {
@@ -58,7 +57,7 @@ Eigen::Matrix2d edge_prior() {
 /// Information on an edge where the poses are known.
 Eigen::Matrix2d edge_information(const Observations& observations) {
   Eigen::Matrix2d information = edge_prior();
-  for (const EdgeObservation& o : observations)
+  for (const LineObservation& o : observations)
     information += o.weight * o.by_edge.transpose() * o.by_edge;
   return information;
 }
@@ -99,19 +98,19 @@ void add_holding(const std::vector<PathNode>& nodes, double f, double mean_depth
 /// of the matrix is filled.
 void add_edge(const Observations& observations, double count, bool is_known,
               Eigen::MatrixXd& information) {
-  const auto row_of = [](const EdgeObservation& o) {
+  const auto row_of = [](const LineObservation& o) {
     return static_cast<Eigen::Index>(6 * o.node);
   };
-  for (const EdgeObservation& o : observations)
+  for (const LineObservation& o : observations)
     information.block<6, 6>(row_of(o), row_of(o)) +=
         count * o.weight * o.by_pose.transpose() * o.by_pose;
   if (is_known) return;
   const Eigen::Matrix2d covariance = edge_information(observations).inverse();
   for (std::size_t a = 0; a < observations.size(); ++a) {
-    const EdgeObservation& o = observations[a];
+    const LineObservation& o = observations[a];
     const Eigen::RowVector2d left = count * o.weight * o.by_edge * covariance;
     for (std::size_t b = 0; b <= a; ++b) {
-      const EdgeObservation& other = observations[b];
+      const LineObservation& other = observations[b];
       const double coupling = other.weight * left.dot(other.by_edge);
       information.block<6, 6>(row_of(o), row_of(other)) -=
           coupling * o.by_pose.transpose() * other.by_pose;
@@ -129,46 +128,66 @@ Eigen::MatrixXd path_information(const Problem& problem, bool is_map_known) {
   return information;
 }
 
-/// Bounds of positions [m] and rotations [rad], RMS over the poses.
+/// Bounds of positions [m] and rotations [rad], RMS over the nodes.
 struct PathBound {
   double position = 0, rotation = 0;
 };
 
-/// With the first `known` poses given, which have no error; there is one (contract).
-PathBound bound_of(const Eigen::MatrixXd& information, std::size_t known) {
-  const auto given = static_cast<Eigen::Index>(6 * known);
-  const Eigen::Index size = information.rows() - given;
-  if (size == 0) return {};
+/// The covariance of the poses after the first `known` ones, which are given; nullopt where the
+/// information does not determine it.
+std::optional<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& information,
+                                             std::size_t known) {
+  const Eigen::Index size = information.rows() - static_cast<Eigen::Index>(6 * known);
   const Eigen::LLT<Eigen::MatrixXd> factor(information.bottomRightCorner(size, size));
-  const Eigen::VectorXd variances = factor.solve(Eigen::MatrixXd::Identity(size, size)).diagonal();
-  PathBound sum;
-  for (Eigen::Index i = 0; i < size; i += 6) {
-    sum.position += variances.segment<3>(i).sum();
-    sum.rotation += variances.segment<3>(i + 3).sum();
-  }
-  const auto count = static_cast<double>(information.rows() / 6);
-  return {std::sqrt(sum.position / count), std::sqrt(sum.rotation / count)};
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(size, size));
+  if (!covariance.allFinite() || (covariance.diagonal().array() < 0).any()) return std::nullopt;
+  return covariance;
 }
 
-/// The same without a given start: the first pose is the world, and the distance to the node that is
-/// furthest from it the unit.
-PathBound own_bound_of(Eigen::MatrixXd information, const std::vector<PathNode>& nodes) {
-  const Eigen::Vector3d& origin = nodes.front().world_from_camera.translation();
-  const auto distance = [&](const PathNode& node) {
-    return (node.world_from_camera.translation() - origin).norm();
-  };
-  const auto furthest = std::max_element(
-      nodes.begin(), nodes.end(),
-      [&](const PathNode& a, const PathNode& b) { return distance(a) < distance(b); });
-  if (distance(*furthest) > 0) {
-    const auto row = static_cast<Eigen::Index>(6 * (furthest - nodes.begin()));
-    const Rigid3& pose = furthest->world_from_camera;
-    const Eigen::Vector3d direction =
-        pose.rotation().inverse() * (pose.translation() - origin).normalized();
-    const double sigma = kFixedScale * distance(*furthest);
-    information.block<3, 3>(row, row) += direction * direction.transpose() / (sigma * sigma);
+std::optional<PathBound> bound_of(const Eigen::MatrixXd& information, std::size_t known) {
+  const auto covariance = covariance_of(information, known);
+  if (!covariance) return std::nullopt;
+  PathBound sum;
+  for (Eigen::Index i = 0; i < covariance->rows(); i += 6) {
+    sum.position += covariance->diagonal().segment<3>(i).sum();
+    sum.rotation += covariance->diagonal().segment<3>(i + 3).sum();
   }
-  return bound_of(information, 1);
+  const auto count = static_cast<double>(covariance->rows() / 6);
+  return PathBound{std::sqrt(sum.position / count), std::sqrt(sum.rotation / count)};
+}
+
+/// An orthonormal basis of the ways in which a similarity transformation moves the nodes' positions,
+/// all nodes but the first below one another. The first pose is held, which fixes the gauge of the
+/// covariance; what is left after the best alignment does not depend on how it is fixed.
+Eigen::MatrixXd similarity_basis(const std::vector<PathNode>& nodes) {
+  Eigen::MatrixXd ways(3 * nodes.size() - 3, 7);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const Eigen::Vector3d position =
+        nodes[i].world_from_camera.translation() - nodes.front().world_from_camera.translation();
+    ways.middleRows<3>(static_cast<Eigen::Index>(3 * i - 3)) << Eigen::Matrix3d::Identity(),
+        -skew(position), position;
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(ways);
+  return factor.householderQ() * Eigen::MatrixXd::Identity(ways.rows(), factor.rank());
+}
+
+/// RMS of the positions without a given start [m], after the best similarity transformation.
+std::optional<double> own_bound_of(const Eigen::MatrixXd& information, const Problem& problem) {
+  const std::vector<PathNode>& nodes = problem.nodes;
+  const auto covariance = covariance_of(information, 1);
+  if (!covariance) return std::nullopt;
+  const auto count = static_cast<Eigen::Index>(nodes.size()) - 1;
+  Eigen::MatrixXd positions(3 * count, 3 * count);  // in the world
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b)
+      positions.block<3, 3>(3 * a, 3 * b) =
+          nodes[static_cast<std::size_t>(a) + 1].world_from_camera.rotation_matrix() *
+          covariance->block<3, 3>(6 * a, 6 * b) *
+          nodes[static_cast<std::size_t>(b) + 1].world_from_camera.rotation_matrix().transpose();
+  const Eigen::MatrixXd basis = similarity_basis(nodes);
+  const double left = positions.trace() - (basis.transpose() * positions * basis).trace();
+  return std::sqrt(std::max(0.0, left) / static_cast<double>(count));
 }
 
 std::size_t given_nodes(const std::vector<PathNode>& nodes) {
@@ -177,7 +196,8 @@ std::size_t given_nodes(const std::vector<PathNode>& nodes) {
   const auto after = std::find_if(nodes.begin(), nodes.end(), [&](const PathNode& node) {
     return node.t_s > start_s + given_s;
   });
-  return static_cast<std::size_t>(after - nodes.begin());
+  // Of a camera that hardly moves the last node may lie within them.
+  return std::min(static_cast<std::size_t>(after - nodes.begin()), nodes.size() - 1);
 }
 
 double mean_depth(const TrueEdges& edges, const DatasetFacts& facts) {
@@ -190,9 +210,9 @@ double mean_depth(const TrueEdges& edges, const DatasetFacts& facts) {
 Problem problem_of(const Dataset& dataset, const TrueEdges& edges, double contrast) {
   const PinholeCamera& camera = dataset.camera();
   Problem problem;
-  problem.nodes = path_nodes(dataset.groundtruth(), edges, camera);
   problem.f = camera.fx;
   problem.mean_depth_m = mean_depth(edges, dataset.facts());
+  problem.nodes = path_nodes(dataset.groundtruth(), edges, camera, problem.mean_depth_m);
   for (const TrueEdge& edge : edges.edges) {
     problem.edges.push_back(observe(camera, edges, edge, problem.nodes, contrast));
     problem.pixels.push_back(edge.pixels);
@@ -213,23 +233,21 @@ bool Information::is_enough_for(std::string_view module, bool has_given_start) c
 
 std::optional<Information> information_of(const Dataset& dataset) {
   const DatasetFacts& facts = dataset.facts();
-  const double contrast = std::min(facts.contrast_on.value_or(kUsualContrast),
-                                   facts.contrast_off.value_or(kUsualContrast));
+  const double on = facts.contrast_on.value_or(facts.contrast_off.value_or(kUsualContrast));
+  const double contrast = std::min(on, facts.contrast_off.value_or(on));
   // Below this the whole width of an edge is less than the threshold.
   const TrueEdges edges = find_true_edges(dataset, contrast / TrueEdges::kWidthPx);
-  if (edges.frames.empty()) return std::nullopt;
+  if (edges.frames.empty() || dataset.groundtruth().size() < 2) return std::nullopt;
   if (edges.edges.empty()) return kNothing;
   const Problem problem = problem_of(dataset, edges, contrast);
-  const double percent = 100 / problem.mean_depth_m;
-  const PathBound tracking = bound_of(path_information(problem, true), 1);
   const Eigen::MatrixXd path = path_information(problem, false);
-  Information found;
-  found.pose_percent = percent * tracking.position;
-  found.pose_deg = tracking.rotation * 180 / std::numbers::pi;
-  found.path_percent = percent * bound_of(path, given_nodes(problem.nodes)).position;
-  found.own_path_percent = percent * own_bound_of(path, problem.nodes).position;
-  found.depth_share = share_of_known_depths(problem);
-  return found;
+  const auto tracking = bound_of(path_information(problem, true), 1);
+  const auto odometry = bound_of(path, given_nodes(problem.nodes));
+  const auto own = own_bound_of(path, problem);
+  if (!tracking || !odometry || !own) return kNothing;
+  const double percent = 100 / problem.mean_depth_m;
+  return Information{percent * tracking->position, tracking->rotation * 180 / std::numbers::pi,
+                     percent * odometry->position, percent * *own, share_of_known_depths(problem)};
 }
 
 }  // namespace saccade

@@ -14,11 +14,14 @@ namespace saccade {
 /// view moves by two pixels, each within that motion of the one before. Moving objects count as
 /// standing still.
 struct Information {
-  /// Position and rotation of a pose before a known map, RMS over time: the bound of tracking [% of
-  /// the mean depth, deg].
+  /// Changes with whatever changes a bound, so that stored ones are recognised as out of date.
+  static constexpr int kVersion = 1;
+
+  /// Position and rotation of a pose before a known map, RMS over the poses: the bound of tracking [%
+  /// of the mean depth, deg].
   double pose_percent = 0;
   double pose_deg = 0;
-  /// Position of the camera in a world that is not known, RMS over time: the bound of odometry,
+  /// Position of the camera in a world that is not known, RMS over the poses: the bound of odometry,
   /// given the poses of the first 0.2 s, a tenth of the recording at most [% of the mean depth].
   double path_percent = 0;
   /// The same without them, up to a similarity transformation.
@@ -27,8 +30,8 @@ struct Information {
   double depth_share = 0;
 
   /// Whether a method of a module ("track", "odometry", "depth", "reconstruct" ...) can succeed:
-  /// a bound of the path of at most half of what success allows (1 % of the depth, 5 degrees), or a
-  /// depth for at least a twentieth of the edges. True for a module that no rule is about.
+  /// a bound of the positions of at most half of what success allows (1 % of the depth), in tracking
+  /// also of 2.5 degrees, or a depth for at least a twentieth of the edges. True for a module that no rule is about.
   [[nodiscard]] bool is_enough_for(std::string_view module, bool has_given_start = true) const;
 };
 

@@ -19,14 +19,10 @@ constexpr double kSigmaPx = 0.5;
 /// Enough for a median to a tenth of itself.
 constexpr std::size_t kMotionSamples = 200;
 
-/// Where the sensor sees a point, without the lens; nullopt where it does not.
 std::optional<Eigen::Vector2d> pixel_of(const PinholeCamera& camera,
                                         const Rigid3& world_from_camera,
                                         const Eigen::Vector3d& point) {
-  const Eigen::Vector3d in_camera = world_from_camera.inverse() * point;
-  if (!(in_camera.z() > 0)) return std::nullopt;
-  const Eigen::Vector2d pixel = camera.project(in_camera);
-  return camera.contains(camera.distort(pixel)) ? std::optional(pixel) : std::nullopt;
+  return TrueEdges::pixel_of(camera, world_from_camera.inverse() * point);
 }
 
 /// Median motion of what both poses see [px]; nullopt where they see nothing in common.
@@ -43,7 +39,13 @@ std::optional<double> motion_between(const Rigid3& before, const Rigid3& after,
   return median(std::move(motions));
 }
 
-/// Points of the frame nearest to `t_s`.
+/// How far the view moves where all is as far away as `depth_m` [px].
+double motion_of_poses(const Rigid3& before, const Rigid3& after, double f, double depth_m) {
+  return f * (angle_between(before.rotation(), after.rotation()) +
+              (after.translation() - before.translation()).norm() / depth_m);
+}
+
+/// Some points of the frame nearest to `t_s`; none where it shows no edge.
 std::vector<Eigen::Vector3d> points_at(double t_s, const TrueEdges& edges) {
   const std::size_t frame = edges.nearest_frame(t_s);
   std::vector<Eigen::Vector3d> points;
@@ -72,15 +74,15 @@ std::vector<PathNode> thinned(const std::vector<PathNode>& nodes) {
 }  // namespace
 
 std::vector<PathNode> path_nodes(const Trajectory& path, const TrueEdges& edges,
-                                 const PinholeCamera& camera) {
+                                 const PinholeCamera& camera, double depth_m) {
   const auto poses = path.poses();
   std::vector<PathNode> nodes{{poses.front().t_s, poses.front().world_from_camera}};
   std::vector<Eigen::Vector3d> points = points_at(poses.front().t_s, edges);
   for (const StampedPose& pose : poses.subspan(1)) {
-    // Where two poses see nothing in common the view has turned by its own width.
+    const Rigid3& before = nodes.back().world_from_camera;
     const double motion_px =
-        motion_between(nodes.back().world_from_camera, pose.world_from_camera, points, camera)
-            .value_or(camera.width);
+        motion_between(before, pose.world_from_camera, points, camera)
+            .value_or(motion_of_poses(before, pose.world_from_camera, camera.fx, depth_m));
     const bool is_end = nodes.size() == 1 && pose.t_s == path.end_s();
     if (motion_px < kNodeMotionPx && !is_end) continue;
     nodes.push_back({pose.t_s, pose.world_from_camera, motion_px});
@@ -89,7 +91,7 @@ std::vector<PathNode> path_nodes(const Trajectory& path, const TrueEdges& edges,
   return thinned(nodes);
 }
 
-EdgeObservation linearise(const PinholeCamera& camera, const TrueEdge& edge,
+LineObservation linearise(const PinholeCamera& camera, const TrueEdge& edge,
                           const Rigid3& world_from_camera) {
   const Rigid3 camera_from_world = world_from_camera.inverse();
   const Eigen::Vector3d point = camera_from_world * edge.point;
@@ -99,17 +101,17 @@ EdgeObservation linearise(const PinholeCamera& camera, const TrueEdge& edge,
       Eigen::RowVector2d(-line.y(), line.x()) * camera.project_jacobian(point);
   Eigen::Matrix<double, 3, 2> point_by_edge;
   point_by_edge << edge.per_log_z, edge.per_px;
-  EdgeObservation observation;
+  LineObservation observation;
   observation.by_pose = -by_point * point_jacobian(point);
   observation.by_edge = by_point * camera_from_world.rotation_matrix() * point_by_edge;
   return observation;
 }
 
-std::vector<EdgeObservation> observe(const PinholeCamera& camera, const TrueEdges& edges,
+std::vector<LineObservation> observe(const PinholeCamera& camera, const TrueEdges& edges,
                                      const TrueEdge& edge, const std::vector<PathNode>& nodes,
                                      double contrast) {
   const PinholeCamera view = camera.undistorted();
-  std::vector<EdgeObservation> observations;
+  std::vector<LineObservation> observations;
   std::optional<Eigen::Vector2d> fired_at;  // or where it came into view
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Rigid3& pose = nodes[i].world_from_camera;
@@ -127,7 +129,7 @@ std::vector<EdgeObservation> observe(const PinholeCamera& camera, const TrueEdge
     const Eigen::Vector2d normal = Eigen::Vector2d(-line.y(), line.x()).normalized();
     const double moved_px = std::abs(normal.dot(*pixel - *fired_at));
     if (edge.strength * std::min(moved_px, kEdgeWidthPx) < contrast) continue;
-    EdgeObservation observation = linearise(view, edge, pose);
+    LineObservation observation = linearise(view, edge, pose);
     observation.node = i;
     // Each width of the edge that it moves by says where it is anew.
     observation.weight = std::max(1.0, moved_px / kEdgeWidthPx) / (kSigmaPx * kSigmaPx);

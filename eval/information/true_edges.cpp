@@ -86,13 +86,24 @@ std::vector<TrueEdge> edges_of(const ImageF& levels, const TrueFrame& frame,
 
 }  // namespace
 
+std::optional<Eigen::Vector2d> TrueEdges::pixel_of(const PinholeCamera& camera,
+                                                   const Eigen::Vector3d& in_camera) {
+  if (!(in_camera.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d pixel = camera.project(in_camera);
+  const Eigen::Vector2d on_sensor = camera.distort(pixel);
+  if (!camera.contains(on_sensor)) return std::nullopt;
+  const bool folds_over =
+      camera.is_distorted() && (camera.undistort(on_sensor) - pixel).squaredNorm() > 1;
+  return folds_over ? std::nullopt : std::optional(pixel);
+}
+
 TrueEdges::Sight TrueEdges::sight(const PinholeCamera& camera, std::size_t index,
                                   const Eigen::Vector3d& point) const {
   const TrueFrame& frame = frames[index];
   const Eigen::Vector3d in_camera = frame.world_from_camera.inverse() * point;
-  if (!(in_camera.z() > 0)) return Sight::kOutside;
-  const Eigen::Vector2d pixel = camera.distort(camera.project(in_camera));
-  if (!camera.contains(pixel)) return Sight::kOutside;
+  const auto undistorted = pixel_of(camera, in_camera);
+  if (!undistorted) return Sight::kOutside;
+  const Eigen::Vector2d pixel = camera.distort(*undistorted);
   const double z = static_cast<double>(frame.depth(static_cast<int>(std::lround(pixel.x())),
                                                    static_cast<int>(std::lround(pixel.y()))));
   return z > 0 && in_camera.z() > z * (1 + kHidden) ? Sight::kHidden : Sight::kSeen;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,6 +41,10 @@ struct TrueEdges {
   enum class Sight { kSeen, kHidden, kOutside };
   [[nodiscard]] Sight sight(const PinholeCamera& camera, std::size_t index,
                             const Eigen::Vector3d& point) const;
+  /// Where the sensor sees a point of the camera's frame, without the lens [px]; nullopt where it does
+  /// not. A lens model that folds over far outside of the image shows nothing there.
+  [[nodiscard]] static std::optional<Eigen::Vector2d> pixel_of(const PinholeCamera& camera,
+                                                               const Eigen::Vector3d& in_camera);
   /// The frame nearest in time; there is one (contract).
   [[nodiscard]] std::size_t nearest_frame(double t_s) const;
 };

@@ -97,7 +97,8 @@ bool is_plain_integer(hid_t type, std::size_t width) {
 
 std::optional<H5Chunks> H5Chunks::of(hid_t dataset) {
   // Longer chunks than anybody writes would take memory for which the library asks only when they are there.
-  constexpr hsize_t kMostValues = hsize_t{1} << 22U;
+  // Of shorter ones each costs more than its values do.
+  constexpr hsize_t kLeastValues = 256, kMostValues = hsize_t{1} << 22U;
   const H5Handle space = {H5Dget_space(dataset), H5Sclose};
   const H5Handle layout = {H5Dget_create_plist(dataset), H5Pclose};
   const H5Handle type = {H5Dget_type(dataset), H5Tclose};
@@ -107,8 +108,10 @@ std::optional<H5Chunks> H5Chunks::of(hid_t dataset) {
   chunks.value_bytes_ = H5Tget_size(type);
   if (!is_plain_integer(type, chunks.value_bytes_)) return std::nullopt;
   if (H5Sget_simple_extent_ndims(space) != 1 || H5Pget_layout(layout) != H5D_CHUNKED ||
-      H5Pget_chunk(layout, 1, &length) != 1 || length == 0 || length > kMostValues)
+      H5Pget_chunk(layout, 1, &length) != 1 || length < kLeastValues || length > kMostValues)
     return std::nullopt;
+  unsigned options = 0;  // of chunks that are stored as they are
+  if (H5Pget_chunk_opts(layout, &options) < 0 || options != 0) return std::nullopt;
   chunks.values_ = length;
   chunks.is_signed_ = H5Tget_sign(type) == H5T_SGN_2;
   for (int i = 0; i < H5Pget_nfilters(layout); ++i) {

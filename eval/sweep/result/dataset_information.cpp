@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/error.h"
 #include "core/io/files/sha256.h"
 #include "core/io/tables/csv_file.h"
 #include "core/io/tables/csv_reader.h"
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFile = "information.csv";
+constexpr const char* kVersionColumn = "bounds_version";
 
 struct KnownInformation {
   std::string sha256;
@@ -38,14 +40,16 @@ const std::vector<std::pair<const char*, double Information::*>>& columns() {
   return kColumns;
 }
 
-/// By name of the dataset; empty where the file is not there.
-std::map<std::string, KnownInformation> read_known(const fs::path& file) {
-  std::map<std::string, KnownInformation> known;
-  if (!fs::exists(file)) return known;
+using KnownByName = std::map<std::string, KnownInformation>;
+
+KnownByName read_table(const fs::path& file) {
+  KnownByName known;
   const CsvColumns table(file);
+  const std::size_t version = table.require(kVersionColumn);
   const std::size_t name = table.require("dataset");
   const std::size_t sha256 = table.require("dataset_yaml_sha256");
   for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.number(row, version) != Information::kVersion) continue;
     KnownInformation entry{table.text(row, sha256), std::nullopt};
     if (!table.text(row, table.require(columns().front().first)).empty()) {
       entry.information.emplace();
@@ -57,12 +61,34 @@ std::map<std::string, KnownInformation> read_known(const fs::path& file) {
   return known;
 }
 
-void save_known(const std::map<std::string, KnownInformation>& known, const fs::path& file) {
-  std::vector<std::string> names{"dataset", "dataset_yaml_sha256"};
+/// By name of the dataset. The file only saves time: one that cannot be read is as good as none.
+KnownByName read_known(const fs::path& file) {
+  if (!fs::exists(file)) return {};
+  try {
+    return read_table(file);
+  } catch (const InputError& error) {
+    show_notice(std::string(error.what()) + "; it is written anew");
+    return {};
+  }
+}
+
+/// nullopt, with a notice, also for a dataset that cannot be read: the page shows the rest.
+std::optional<Information> look_at(const SweepJob& job) {
+  try {
+    return information_of(Dataset::open(job.output));
+  } catch (const InputError& error) {
+    show_notice(error.what());
+    return std::nullopt;
+  }
+}
+
+void save_known(const KnownByName& known, const fs::path& file) {
+  std::vector<std::string> names{"dataset", "dataset_yaml_sha256", kVersionColumn};
   for (const auto& column : columns()) names.emplace_back(column.first);
   CsvTable table(names);
   for (const auto& [name, entry] : known) {
-    std::vector<CsvTable::Cell> cells{name, entry.sha256};
+    std::vector<CsvTable::Cell> cells{name, entry.sha256,
+                                      static_cast<long long>(Information::kVersion)};
     for (const auto& column : columns())
       if (entry.information)
         cells.emplace_back((*entry.information).*column.second);
@@ -88,8 +114,13 @@ std::string bound_text(const Information& information, const std::string& module
 std::string answer_text(const SweepRow& row) {
   const std::string status = status_of(row);
   if (row.outcome().has_failed) return status;
+  // As long as a person would call a moment.
+  constexpr double kMomentS = 0.05;
   const double reported_s = row.metrics.get("trajectory.reported_lost_s").value_or(0);
+  const double unreported_s = row.metrics.get("trajectory.loss.unreported_s").value_or(0);
   if (row.metrics.get("success") == 1.0) return "succeeded";
+  if (unreported_s > kMomentS)
+    return fmt::format("**wrong for {} s, and does not say so**", rounded(unreported_s));
   if (reported_s > 0) return fmt::format("says that it is lost for {} s", rounded(reported_s));
   if (row.metrics.get("depth.points") == 0.0) return "gives none";
   return row.metrics.get("success") ? "**wrong, and does not say so**" : status;
@@ -102,7 +133,7 @@ bool is_given_start(const SweepRow& row) {
 }  // namespace
 
 DatasetInformation dataset_information(const SweepPlan& plan, const fs::path& folder) {
-  std::map<std::string, KnownInformation> known = read_known(folder / kFile);
+  KnownByName known = read_known(folder / kFile);
   DatasetInformation found;
   std::vector<const SweepJob*> due;
   std::map<const SweepJob*, std::string> hashes;
@@ -116,10 +147,10 @@ DatasetInformation dataset_information(const SweepPlan& plan, const fs::path& fo
   if (!due.empty()) {
     Progress progress("what the datasets tell at best", due.size(), "datasets");
     for (const SweepJob* job : due) {
-      known[job->name] = {hashes[job], information_of(Dataset::open(job->output))};
+      known[job->name] = {hashes[job], look_at(*job)};
+      save_known(known, folder / kFile);  // a long sweep may be interrupted
       progress.add(1);
     }
-    save_known(known, folder / kFile);
   }
   for (const auto& [job, hash] : hashes)
     if (const auto& information = known[job->name].information)

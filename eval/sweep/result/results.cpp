@@ -110,13 +110,18 @@ ExpectationResult check(const ExpectedMetric& expected, const SweepGroup& group)
 
 /// A run that was refused has no class of its own: it has that of its configuration's other runs.
 void add_information(const DatasetInformation& information, std::vector<SweepRow>& rows) {
-  std::map<std::string, MethodClass> classes;
+  using Compared = std::tuple<std::string, std::string, std::vector<std::string>>;
+  const auto method_of = [](const SweepRow& row) {
+    const SweepPoint& point = row.job->point;
+    return Compared{point.configuration, point.variant, point.grid};
+  };
+  std::map<Compared, MethodClass> classes;
   for (const SweepRow& row : rows)
-    if (row.method_class) classes.emplace(row.job->point.configuration, *row.method_class);
+    if (row.method_class) classes.emplace(method_of(row), *row.method_class);
   for (SweepRow& row : rows) {
     if (const auto known = information.find(row.job->dataset); known != information.end())
       row.information = known->second;
-    const auto method = classes.find(row.job->point.configuration);
+    const auto method = classes.find(method_of(row));
     if (!row.method_class && method != classes.end()) row.method_class = method->second;
   }
 }

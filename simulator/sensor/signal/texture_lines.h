@@ -164,7 +164,7 @@ class TextureLines {
                                        y1 - static_cast<double>(cells_.j(cell)));
       // Along the chord the bilinear function is a parabola; the path departs from the chord.
       const double steepest =
-          std::abs(texels.along_x) + std::abs(texels.along_y) + std::abs(texels.twist);
+          std::abs(texels.along_x) + std::abs(texels.along_y) + 2 * std::abs(texels.twist);
       const double length = std::max(u1 - u0, kShortest);
       const double bend = 0.25 * std::abs(texels.twist * (x1 - x0) * (y1 - y0));
       bends_[k] = factor_ * (bend / (length * length) + bending * steepest);

@@ -77,5 +77,25 @@ TEST(BackgroundTask, ASingleThreadIsTheCallersOwn) {
   set_thread_count(0);
 }
 
+/// A thread that waits in the pool may be handed the wait of another one; its own work must not take
+/// that up, or both would wait for themselves.
+TEST(BackgroundTask, OfSeveralThreadsOfAProgramEndsEach) {
+  set_thread_count(2);
+  std::atomic<int> done = 0;
+  const auto use = [&] {
+    BackgroundTask task;
+    for (int i = 0; i < 300; ++i) {
+      task.start([&] { parallel_for(40, [&](std::size_t) { ++done; }); });
+      parallel_for(10, [&](std::size_t) { ++done; });
+      task.wait();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) threads.emplace_back(use);
+  for (std::thread& thread : threads) thread.join();
+  set_thread_count(0);
+  EXPECT_EQ(done, 4 * 300 * 50);
+}
+
 }  // namespace
 }  // namespace saccade

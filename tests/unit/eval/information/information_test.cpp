@@ -59,6 +59,8 @@ TEST(Information, ASlideTellsPathAndDepth) {
   EXPECT_LT(found->path_percent, 0.5);
   EXPECT_GT(found->depth_share, 0.5);
   EXPECT_GE(found->path_percent, found->pose_percent) << "a map that is known cannot hurt";
+  EXPECT_GT(found->own_path_percent, 0);
+  EXPECT_LT(found->own_path_percent, 0.5);
   for (const char* module : {"track", "odometry", "depth", "reconstruct"})
     EXPECT_TRUE(found->is_enough_for(module)) << module;
 }
@@ -111,11 +113,11 @@ TrueEdge some_edge() {
   return edge;
 }
 
-TEST(EdgeObservation, HasTheDerivativesOfThePlaceAcrossTheLine) {
+TEST(LineObservation, HasTheDerivativesOfThePlaceAcrossTheLine) {
   const PinholeCamera camera = testing::corner_world(160, 120).camera();
   const TrueEdge edge = some_edge();
   const Rigid3 pose = Rigid3::exp((Twist() << 0.1, -0.05, 0.2, 0.03, -0.1, 0.2).finished());
-  const EdgeObservation observation = linearise(camera, edge, pose);
+  const LineObservation observation = linearise(camera, edge, pose);
   const Rigid3 camera_from_world = pose.inverse();
   const Eigen::Vector2d line = (camera.project(camera_from_world * edge.along) -
                                 camera.project(camera_from_world * edge.point))
