@@ -55,13 +55,14 @@ TEST_P(BackgroundTasks, AnErrorIsThrownByTheNextWait) {
   EXPECT_TRUE(is_done);
 }
 
-TEST_P(BackgroundTasks, TheDestructorWaits) {
+/// A single thread has not begun what nobody waited for, and nobody wants it any more.
+TEST_P(BackgroundTasks, TheDestructorWaitsForWhatHasBegun) {
   std::atomic<bool> is_done = false;
   {
     BackgroundTask task;
     task.start([&] { is_done = true; });
   }
-  EXPECT_TRUE(is_done);
+  EXPECT_EQ(is_done, GetParam() > 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, BackgroundTasks, ::testing::Values(1, 2, 5));
