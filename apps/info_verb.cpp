@@ -20,32 +20,32 @@ struct InfoOptions {
   bool information = false;
 };
 
-void refuse_verify(const InfoOptions& options) {
+void refuse_for_scene(const InfoOptions& options) {
   if (options.verify)
     throw InputError("--verify", "compares datasets with their hashes, no scenes");
   if (options.information)
     throw InputError("--information", "needs a dataset folder, with its poses, frames and depth");
 }
 
-void refuse_verify_with_information(const InfoOptions& options) {
+void refuse_both(const InfoOptions& options) {
   if (options.verify) throw InputError("--information", "cannot be had with --verify: ask twice");
 }
 
 void info(const InfoOptions& options) {
   const bool is_folder = std::filesystem::is_directory(options.path);
   if (!is_folder && is_mesh_name(options.path)) {
-    refuse_verify(options);
+    refuse_for_scene(options);
     fmt::print("{}", describe_mesh(options.path));
     return;
   }
   if (!is_folder && options.path.extension() == ".yaml") {
-    refuse_verify(options);
+    refuse_for_scene(options);
     const auto config = config::read<SimulationConfig>(config::load(options.path.string(), {}));
     fmt::print("{}: simulation, {}", options.path.string(), describe_scene(config.scene));
     return;
   }
   if (options.information) {
-    refuse_verify_with_information(options);
+    refuse_both(options);
     fmt::print("{}", describe_information(options.path));
     return;
   }

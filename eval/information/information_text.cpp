@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 std::string line(const char* what, const std::string& bound, bool is_enough) {
-  return fmt::format("  {:<32}{:<28}{}\n", what, bound, is_enough ? "enough" : "too little");
+  return fmt::format("  {:<32}{:<32}  {}\n", what, bound, is_enough ? "enough" : "too little");
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct PathNode {
 
 /// Poses between which the view moves by two pixels, in the median over the edges that both see (what
 /// both see none of is taken for as far away as `depth_m`), or by more where that makes more than 200
-/// of them. The recording's first pose is the first; where
-/// nothing moves by as much the last is the second.
+/// of them. The recording's first pose is the first; where nothing moves by as much the last is the
+/// second.
 [[nodiscard]] std::vector<PathNode> path_nodes(const Trajectory& path, const TrueEdges& edges,
                                                const PinholeCamera& camera, double depth_m);
 

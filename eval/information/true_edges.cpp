@@ -11,8 +11,7 @@
 namespace saccade {
 namespace {
 
-/// What a second of machine time allows; a bound from 6000 edges is within some percent of that
-/// from all.
+/// What a second of machine time allows; each then stands for the pixels that are left out.
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kMostFrames = 60;
 constexpr double kSameTimeS = 1e-4;
