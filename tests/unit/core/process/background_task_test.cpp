@@ -78,8 +78,8 @@ TEST(BackgroundTask, ASingleThreadIsTheCallersOwn) {
   set_thread_count(0);
 }
 
-/// A thread that waits in the pool may be handed the wait of another one; its own work must not take
-/// that up, or both would wait for themselves.
+/// As in a viewer or a program in Python. It does not show what loops that stay in the pool prevent:
+/// without that it ended as well in thousands of repetitions.
 TEST(BackgroundTask, OfSeveralThreadsOfAProgramEndsEach) {
   set_thread_count(2);
   std::atomic<int> done = 0;
