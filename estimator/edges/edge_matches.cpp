@@ -60,26 +60,26 @@ std::optional<std::size_t> EdgeMatcher::match(const Edgel& edge) const {
   return nearest->index;
 }
 
-std::vector<std::vector<KeyframeEdge>> reobservations(std::span<const KeyframeEdge> edges,
-                                                      std::span<const ViewWindow> windows,
-                                                      std::span<const WindowEdgels> found,
-                                                      double apart_s, const PinholeCamera& camera) {
-  std::vector<std::vector<KeyframeEdge>> observations(edges.size());
-  const auto find = [&](std::size_t keyframe) {
-    const auto before = [](const KeyframeEdge& edge, std::size_t k) { return edge.keyframe < k; };
-    const auto first = std::lower_bound(edges.begin(), edges.end(), keyframe, before);
-    const auto last = std::lower_bound(first, edges.end(), keyframe + 1, before);
-    const Rigid3 view_from_world = windows[keyframe].world_from_reference().inverse();
-    for (std::size_t other = keyframe + 1; other < windows.size(); ++other) {
-      if (windows[other].reference_s - windows[keyframe].reference_s < apart_s) continue;
-      const EdgeMatcher matcher(found[other].edges,
-                                view_from_world * windows[other].world_from_reference(), camera);
+std::vector<std::vector<EdgeOfView>> reobservations(std::span<const EdgeOfView> edges,
+                                                    std::span<const EdgeView> views,
+                                                    std::span<const Rigid3> world_from_view,
+                                                    double apart_s, const PinholeCamera& camera) {
+  std::vector<std::vector<EdgeOfView>> observations(edges.size());
+  const auto find = [&](std::size_t view) {
+    const auto before = [](const EdgeOfView& edge, std::size_t k) { return edge.view < k; };
+    const auto first = std::lower_bound(edges.begin(), edges.end(), view, before);
+    const auto last = std::lower_bound(first, edges.end(), view + 1, before);
+    const Rigid3 view_from_world = world_from_view[view].inverse();
+    for (std::size_t other = view + 1; other < views.size(); ++other) {
+      if (views[other].t_s - views[view].t_s < apart_s) continue;
+      const EdgeMatcher matcher(views[other].edges, view_from_world * world_from_view[other],
+                                camera);
       for (auto edge = first; edge != last; ++edge)
-        if (const auto match = matcher.match(found[keyframe].edges[edge->edge].edge))
+        if (const auto match = matcher.match(views[view].edges[edge->edge].edge))
           observations[static_cast<std::size_t>(edge - edges.begin())].push_back({other, *match});
     }
   };
-  parallel_for(windows.size(), find);
+  parallel_for(views.size(), find);
   return observations;
 }
 

@@ -8,9 +8,8 @@
 #include "core/camera.h"
 #include "core/rigid3.h"
 #include "estimator/depth/rays/event_assignment.h"
-#include "estimator/depth/rays/ray_depth.h"
+#include "estimator/edges/edge_view.h"
 #include "estimator/edges/landmarks.h"
-#include "estimator/run/view_windows.h"
 
 namespace saccade {
 
@@ -39,17 +38,17 @@ class EdgeMatcher {
   ProjectedLandmarks landmarks_;
 };
 
-/// An edge that a keyframe's window shows.
-struct KeyframeEdge {
-  std::size_t keyframe;
-  std::size_t edge;  ///< in the keyframe's WindowEdgels
+/// An edge of one of several views.
+struct EdgeOfView {
+  std::size_t view;
+  std::size_t edge;  ///< in the view's EdgeView
 };
 
-/// Observations of each of these edges by later keyframes at least `apart_s` away, in order of
-/// time. `windows` are in order of time, `found` are their edges; `edges` are in order of their
-/// keyframes.
-[[nodiscard]] std::vector<std::vector<KeyframeEdge>> reobservations(
-    std::span<const KeyframeEdge> edges, std::span<const ViewWindow> windows,
-    std::span<const WindowEdgels> found, double apart_s, const PinholeCamera& camera);
+/// Observations of each of these edges by later views at least `apart_s` away, in order of time.
+/// `views` are in order of time, with their poses on the camera's path; `edges` are in order of
+/// their views.
+[[nodiscard]] std::vector<std::vector<EdgeOfView>> reobservations(
+    std::span<const EdgeOfView> edges, std::span<const EdgeView> views,
+    std::span<const Rigid3> world_from_view, double apart_s, const PinholeCamera& camera);
 
 }  // namespace saccade

@@ -80,12 +80,12 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
       "Part of the events around each keyframe in which its edges are found.");
   fields
       .value(
-          "edges", options.edges,
+          "edges", options.problem.edges,
           "The most edges of a view that are adjusted; fewer where all views would have more than "
           "100,000 together. More reduce drift and take longer.")
       .range(30, 1e7);
   fields
-      .value("reobserved_keyframes", options.reobserved_keyframes,
+      .value("reobserved_keyframes", options.problem.reobserved_views,
              "The most later keyframes whose events join the edges that they observe again; 0 "
              "leaves every keyframe to its own window. It bounds the drift of a camera that comes "
              "back and triples the time.")
@@ -94,7 +94,7 @@ void describe_joint(config::Fields& fields, RefinementConfig& config) {
       .value("rounds", options.rounds,
              "How often edges are found on the refined path and adjusted together with it.")
       .range(1, 100);
-  fields.choice("solver", options.solver,
+  fields.choice("solver", options.problem.solver,
                 {{"structured", BundleSolver::kStructured}, {"ceres", BundleSolver::kCeres}},
                 "What solves the adjustment: the project's own solver, which makes use of its "
                 "structure, or Ceres, its reference, to the same cost and many times slower.");

@@ -8,7 +8,7 @@
 
 #include "core/config/fields.h"
 #include "core/io/dataset/dataset.h"
-#include "estimator/edges/batch/batch_adjustment.h"
+#include "estimator/edges/path/batch_adjustment.h"
 #include "estimator/refinement/poses/pose_refinement.h"
 #include "estimator/refinement/source_run.h"
 #include "estimator/run/run_writer.h"

@@ -67,6 +67,15 @@ class EdgeBundle {
   /// Kept unknowns beside the path: factors and links may name any of them.
   void keep(std::span<double> unknowns) { kept_.push_back(unknowns); }
 
+  /// Room for edges with these events.
+  void reserve(std::span<const std::vector<Event>> events_of_edges) {
+    std::size_t lanes = 0;
+    for (const std::vector<Event>& events : events_of_edges)
+      lanes += (events.size() + kEventLanes - 1) / kEventLanes;
+    edges_.reserve(edges_.size() + events_of_edges.size());
+    lanes_.reserve(lanes_.size() + lanes);
+  }
+
   /// An edge; the events that are observed from now on are its own.
   void add_edge(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double* unknowns,
                 const Prior& prior, std::optional<SurfaceLink> link = {}) {

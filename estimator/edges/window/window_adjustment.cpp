@@ -75,6 +75,25 @@ class WindowProblem {
     return result;
   }
 
+  /// All edges that still fit, in the view's pose on `path`, which is the window's as corrected.
+  [[nodiscard]] WindowEdgels fitted_to(const Trajectory& path) const {
+    const Rigid3 now_from_view =
+        path.at_clamped(window_.reference_s).inverse() * window_.world_from_reference();
+    std::vector<std::optional<FittedEdgel>> fitted(edges_.edges.size());
+    parallel_for(
+        fitted.size(),
+        [&](std::size_t k) {
+          if (const auto edge = fitted_to_path(edges_.edges[k]))
+            fitted[k] = transformed(now_from_view, *edge, observed_.camera());
+        },
+        kGrain);
+    WindowEdgels result = edges_;
+    result.edges.clear();
+    for (const std::optional<FittedEdgel>& edge : fitted)
+      if (edge) result.edges.push_back(*edge);
+    return result;
+  }
+
  private:
   /// The sigma of a twist (v, w) whose parts move the image by `px`.
   [[nodiscard]] Twist sigma_of_px(double px) const {
@@ -187,19 +206,7 @@ class WindowProblem {
       if (pose.t_s >= correction_.time_s(0))
         pose.world_from_camera = pose.world_from_camera * Rigid3::exp(correction_.at(pose.t_s));
     result.trajectory = Trajectory(std::move(poses));
-    const Rigid3 now_from_view = result.trajectory.at_clamped(window_.reference_s).inverse() *
-                                 window_.world_from_reference();
-    std::vector<std::optional<FittedEdgel>> fitted(edges_.edges.size());
-    parallel_for(
-        fitted.size(),
-        [&](std::size_t k) {
-          if (const auto edge = fitted_to_path(edges_.edges[k]))
-            fitted[k] = transformed(now_from_view, *edge, observed_.camera());
-        },
-        kGrain);
-    result.edges.edges.clear();
-    for (const std::optional<FittedEdgel>& edge : fitted)
-      if (edge) result.edges.edges.push_back(*edge);
+    if (options_.fits_edges) result.edges = fitted_to(result.trajectory);
   }
 
   /// The edge in the view as it was, by its events from the corrected path.
@@ -230,6 +237,12 @@ WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edg
                                const PinholeCamera& camera, const WindowPriors& priors,
                                const WindowAdjustmentOptions& options) {
   return WindowProblem(window, edges, camera, priors, options).solve();
+}
+
+WindowEdgels edges_on_path(const ViewWindow& window, const WindowEdgels& edges,
+                           const PinholeCamera& camera, const WindowPriors& priors,
+                           const WindowAdjustmentOptions& options) {
+  return WindowProblem(window, edges, camera, priors, options).fitted_to(*window.trajectory);
 }
 
 }  // namespace saccade

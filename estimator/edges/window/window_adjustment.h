@@ -23,6 +23,9 @@ struct WindowAdjustmentOptions {
   /// many, evenly in time: only there events determine the scale.
   int given_pairs = 5;
   int iterations = 10;  ///< of Levenberg-Marquardt, at most
+  /// All edges are fitted to the corrected path; false leaves that to edges_on_path(), on a path that
+  /// is corrected further.
+  bool fits_edges = true;
   BundleSolver solver = BundleSolver::kStructured;
   /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
   double landmark_sigma_px = 0.1;       ///< across the edge
@@ -52,7 +55,8 @@ struct WindowPriors {
 
 struct WindowAdjustment {
   Trajectory trajectory;  ///< the path of before, corrected
-  WindowEdgels edges;     ///< all of those given that still fit, in the view's corrected pose
+  WindowEdgels
+      edges;  ///< all of those given that still fit, in the view's corrected pose; or as given
   double residual_before_px = 0;  ///< robust standard deviation of the events
   double residual_after_px = 0;
   bool ok = false;  ///< false: too little to adjust; nothing is changed
@@ -67,5 +71,10 @@ struct WindowAdjustment {
                                              const PinholeCamera& camera,
                                              const WindowPriors& priors,
                                              const WindowAdjustmentOptions& options);
+
+/// The edges of a window that still fit, each fitted by itself to the window's path as it is.
+[[nodiscard]] WindowEdgels edges_on_path(const ViewWindow& window, const WindowEdgels& edges,
+                                         const PinholeCamera& camera, const WindowPriors& priors,
+                                         const WindowAdjustmentOptions& options);
 
 }  // namespace saccade

@@ -81,23 +81,22 @@ TEST_F(EdgeMatching, NotOneElsewhereAtAnotherDepthOrTheOtherWayRound) {
   EXPECT_TRUE(found(*seen));
 }
 
-TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterKeyframesThatAreFarEnoughAway) {
-  const Trajectory path({{0, Rigid3()}, {1, Rigid3()}, {2, other_from_view_.inverse()}});
-  std::vector<ViewWindow> windows;
-  for (const double t_s : {0.0, 1.0, 2.0}) windows.push_back({{}, &path, t_s});
-  std::vector<WindowEdgels> found(3);
-  found[0].edges = found[1].edges = edges_;
-  // The last keyframe sees the third edge first, and the second one not at all.
+TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterViewsThatAreFarEnoughAway) {
+  const std::vector<Rigid3> poses = {Rigid3(), Rigid3(), other_from_view_.inverse()};
+  std::vector<EdgeView> views(3);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].t_s = static_cast<double>(i);
+  views[0].edges = views[1].edges = edges_;
+  // The last view sees the third edge first, and the second one not at all.
   for (const std::size_t i : {2U, 0U}) {
     const auto seen = transformed(other_from_view_, edges_[i], kCamera);
     ASSERT_TRUE(seen);
-    found[2].edges.push_back(*seen);
+    views[2].edges.push_back(*seen);
   }
-  const std::vector<KeyframeEdge> edges{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}};
-  const auto again = reobservations(edges, windows, found, 1.5, kCamera);
+  const std::vector<EdgeOfView> edges{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}};
+  const auto again = reobservations(edges, views, poses, 1.5, kCamera);
   ASSERT_EQ(again.size(), 5U);
   ASSERT_EQ(again[0].size(), 1U);
-  EXPECT_EQ(again[0][0].keyframe, 2U);
+  EXPECT_EQ(again[0][0].view, 2U);
   EXPECT_EQ(again[0][0].edge, 1U);
   EXPECT_TRUE(again[1].empty());
   ASSERT_EQ(again[2].size(), 1U);

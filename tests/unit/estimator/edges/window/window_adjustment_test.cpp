@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "estimator/depth/depth_config.h"
 #include "tests/support/planar_world.h"
@@ -95,6 +97,38 @@ TEST(EdgeAdjustment, TooFewEdgesChangeNothing) {
                                                 {kKnown_s, kNoGivenPoses, kCornerDepth_m, {}}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.trajectory.size(), start.size());
+}
+
+/// Median error of the edges' depths in a view, relative.
+double median_depth_error(const WindowEdgels& found, const ImageF& depth) {
+  std::vector<double> errors;
+  for (const FittedEdgel& fitted : found.edges) {
+    const auto x = static_cast<int>(std::lround(fitted.edge.pixel.x()));
+    const auto y = static_cast<int>(std::lround(fitted.edge.pixel.y()));
+    if (x < 0 || y < 0 || x >= depth.width() || y >= depth.height() || !(depth(x, y) > 0)) continue;
+    errors.push_back(
+        std::abs(1 / static_cast<double>(fitted.edge.inverse_depth * depth(x, y)) - 1));
+  }
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(EdgeAdjustment, EdgesThatWereFoundOnADriftingPathFitABetterOne) {
+  const KeyframeRecording& recording = keyframe_recording();
+  const PinholeCamera& camera = recording.world.camera();
+  const Trajectory wrong =
+      trajectory_of([](double t_s) { return drifted(t_s, 3); }, kAdjustedEnd_s);
+  const Trajectory right = trajectory_of(corner_glide, kAdjustedEnd_s);
+  const DepthConfig config;
+  const ViewWindow on_wrong{recording.events, &wrong, 0.15},
+      on_right{recording.events, &right, 0.15};
+  const WindowEdgels found = RayDepth(config.rays, config.limits, camera).find_edgels(on_wrong);
+  const WindowEdgels fitted =
+      edges_on_path(on_right, found, camera, {kKnown_s, kKnown_s, kCornerDepth_m, {}}, {});
+  EXPECT_GT(fitted.edges.size(), found.edges.size() * 9 / 10);
+  const ImageF depth = recording.world.depth(corner_glide(0.15));
+  EXPECT_LT(median_depth_error(fitted, depth), 0.5 * median_depth_error(found, depth));
 }
 
 TEST(EdgeAdjustment, BringsADriftingPathBack) {

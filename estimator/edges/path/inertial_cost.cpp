@@ -1,7 +1,7 @@
-#include "estimator/edges/batch/inertial_cost.h"
+#include "estimator/edges/path/inertial_cost.h"
 
-#include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/least_squares/jacobian_block.h"
+#include "estimator/edges/path/path_correction.h"
 
 namespace saccade {
 

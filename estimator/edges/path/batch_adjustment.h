@@ -9,47 +9,34 @@
 #include "core/camera.h"
 #include "core/trajectory.h"
 #include "estimator/depth/rays/ray_depth.h"
-#include "estimator/edges/batch/inertial_factors.h"
-#include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/least_squares/cost_log.h"
-#include "estimator/edges/least_squares/edge_bundle.h"
 #include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/edges/path/inertial_factors.h"
+#include "estimator/edges/path/path_edge_problem.h"
 
 namespace saccade {
 
 struct BatchAdjustmentOptions {
   double smoothing_s = 0.025;  ///< knots of the given path: follows a hand's motion, removes jitter
-  double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
-  double window_s = 1.6;            ///< of the events around a view in which its edges are found
-  int edges = 1500;                 ///< of a view, at most, evenly chosen
-  int all_edges = 100000;           ///< of all views: some seven million events, 2 to 3 GB
-  int events_per_edge = 30;         ///< at most, evenly in time
+  double window_s = 1.6;       ///< of the events around a view in which its edges are found
+  int events_per_edge = 30;    ///< at most, evenly in time
   int given_events_per_edge = 100;  ///< beside them, while poses are given: the scale is theirs
-  int reobserved_keyframes = 4;     ///< later ones that observe an edge again, at most
-  int reobserved_events = 10;       ///< of an edge in each of them, at most
-  double correction_sigma_px = 30;  ///< of the correction from 0, as image motion
-  double slope_walk_px = 30;        ///< random walk of the correction's slope within a second
-  double given_sigma_px = 0.02;     ///< of the given poses, as image motion
   int rounds = 2;                   ///< of finding the edges, and adjusting them with the path
-  int iterations = 10;              ///< of Levenberg-Marquardt in a round, at most
-  BundleSolver solver = BundleSolver::kStructured;
+  /// An edge is observed again by views a window away.
+  PathEdgeProblemOptions problem;
   double information_ratio = 0.04;  ///< of that of independent residuals: neighbours err alike
   bool use_imu = false;             ///< BatchInput::imu joins in
   double imu_interval_s = 0.1;      ///< over which its samples are preintegrated
 
   /// Steps of work, as far as progress goes.
   [[nodiscard]] std::size_t steps() const {
-    return static_cast<std::size_t>(rounds) * static_cast<std::size_t>(iterations + 1);
+    return static_cast<std::size_t>(rounds) * static_cast<std::size_t>(problem.iterations + 1);
   }
 };
 
 /// What is adjusted.
-struct BatchInput {
-  std::vector<StampedPose> path;  ///< spans the events
-  /// Poses that fix the position and, where there is more than one, the scale.
-  std::vector<StampedPose> given;
+struct BatchInput : PathInput {
   std::vector<double> keyframe_s;  ///< times of the keyframes' views
-  double typical_depth_m = 1;      ///< converts pixels to metres
   std::optional<MountedImu> imu;   ///< for options.use_imu
   bool is_metric = true;           ///< the path is in metres; else the samples say the scale
 };
@@ -68,8 +55,8 @@ struct BatchAdjustment {
 };
 
 /// The batch optimum of a camera's whole path and the edges of all keyframes: one bundle adjustment
-/// over the windows of views along the path (batch_views()), which overlap and so constrain each other, solved as an EdgeBundle
-/// with the noise model of edge_noise.h. The given poses of the start fix the gauge. With an inertial sensor its
+/// over the windows of views along the path (batch_views()), which overlap and so constrain each
+/// other (PathEdgeProblem). The given poses of the start fix the gauge. With an inertial sensor its
 /// preintegrated samples join in (inertial_cost.h), with gravity, biases and time offset and, of a
 /// path that is not metric, the scale; the path stays in its unit. Deterministic for any number of
 /// threads. `progress` is called with the steps done since its last call, of options.steps() in

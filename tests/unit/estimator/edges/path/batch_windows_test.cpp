@@ -1,4 +1,4 @@
-#include "estimator/edges/batch/batch_adjustment.h"
+#include "estimator/edges/path/batch_adjustment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "estimator/edges/batch/batch_adjustment.h"
+#include "estimator/edges/path/batch_adjustment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ BatchAdjustment refined(int rounds, const std::function<void(std::size_t)>& prog
   start.typical_depth_m = kCornerDepth_m;
   BatchAdjustmentOptions options;
   options.window_s = 0.3;
-  options.edges = 300;
+  options.problem.edges = 300;
   options.events_per_edge = 20;
   options.given_events_per_edge = given_events_per_edge;
   options.rounds = rounds;
@@ -146,9 +146,9 @@ BatchAdjustment refined_there_and_back(const Events& events, int reobserved_keyf
   start.typical_depth_m = kCornerDepth_m;
   BatchAdjustmentOptions options;
   options.window_s = 0.3;
-  options.edges = 200;
+  options.problem.edges = 200;
   options.events_per_edge = 20;
-  options.reobserved_keyframes = reobserved_keyframes;
+  options.problem.reobserved_views = reobserved_keyframes;
   const DepthConfig config;
   return adjust_batch(events, start, camera, RayDepth(config.rays, config.limits, camera), options);
 }

@@ -1,4 +1,4 @@
-#include "estimator/edges/batch/inertial_cost.h"
+#include "estimator/edges/path/inertial_cost.h"
 
 #include <gtest/gtest.h>
 

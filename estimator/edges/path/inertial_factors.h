@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/trajectory.h"
-#include "estimator/edges/batch/inertial_cost.h"
-#include "estimator/edges/batch/path_correction.h"
 #include "estimator/edges/least_squares/edge_bundle.h"
+#include "estimator/edges/path/inertial_cost.h"
+#include "estimator/edges/path/path_correction.h"
 #include "estimator/imu/inertial_alignment.h"
 
 namespace saccade {

@@ -1,4 +1,4 @@
-#include "estimator/edges/batch/inertial_factors.h"
+#include "estimator/edges/path/inertial_factors.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/trajectory.h"
+#include "estimator/depth/rays/ray_depth.h"
+#include "estimator/edges/edge_view.h"
+#include "estimator/edges/path/path_edge_problem.h"
+
+namespace saccade {
+
+struct FixedLagOptions {
+  /// How far back views are adjusted together with the newest one [s]; 0: never.
+  double lag_s = 0;
+  /// Of a path that is older than the lag, how long it is held at the lag's beginning [s]: it hands
+  /// on what was known before.
+  double held_s = 0.2;
+  double smoothing_s = 0.025;  ///< knots of the given path, as of BatchAdjustmentOptions
+  int events_per_edge =
+      20;  ///< at most, evenly in time, and as many beside them while poses are held
+  /// Of these edges at most `edges` of each view. Two iterations will do: the next view goes on with
+  /// what they leave. Views of odometry are of 0.65 s: events nearer than that are shared.
+  PathEdgeProblemOptions problem{.edges = 800, .reobserved_apart_s = 0.65, .iterations = 2};
+};
+
+/// Fixed-lag smoothing of a camera's path: of the last seconds the path and the edges of all views
+/// are adjusted together whenever a view is added (PathEdgeProblem), so that edges that were seen from far apart
+/// constrain each other. What is older is not changed any more: cost and memory do not grow with
+/// the path. Each view's events belong to the edges that they belonged to when it was added.
+class FixedLagSmoother {
+ public:
+  /// `camera` may have a lens.
+  FixedLagSmoother(const FixedLagOptions& options, const PinholeCamera& camera)
+      : options_(options), camera_(camera) {}
+
+  [[nodiscard]] bool is_enabled() const { return options_.lag_s > 0; }
+
+  /// The view of a window that the smoother takes. `held_until_s`: poses until then do not change.
+  [[nodiscard]] EdgeView view(const ViewWindow& window, const WindowEdgels& found,
+                              double held_until_s) const;
+
+  /// Adds the newest view; those that have left the lag are forgotten.
+  void add(EdgeView newest);
+  /// Forgets all views, of a path that turned out to be wrong.
+  void clear() { views_.clear(); }
+
+  /// The poses of `path` from the lag's beginning to its end, adjusted with the edges of the views.
+  /// Those until `held_until_s` stay as they are. nullopt: there are not two views to adjust them
+  /// by.
+  [[nodiscard]] std::optional<Trajectory> smooth(const Trajectory& path, double held_until_s,
+                                                 double typical_depth_m) const;
+
+ private:
+  FixedLagOptions options_;
+  PinholeCamera camera_;
+  std::vector<EdgeView> views_;  ///< in order of time
+};
+
+}  // namespace saccade

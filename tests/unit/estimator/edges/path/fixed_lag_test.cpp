@@ -1,0 +1,105 @@
+#include "estimator/edges/path/fixed_lag.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/time_search.h"
+#include "estimator/depth/depth_config.h"
+#include "tests/support/planar_world.h"
+
+namespace saccade {
+namespace {
+
+using testing::corner_glide;
+using testing::corner_world;
+using testing::kCornerDepth_m;
+
+constexpr double kLagEnd_s = 0.4;
+constexpr double kHeldUntil_s = 0.15;
+
+/// corner_glide(), drifting away after kHeldUntil_s: 1 % of the depth and 7 mrad in the end.
+Rigid3 drifting(double t_s) {
+  const double away = std::max(0.0, t_s - kHeldUntil_s) / (kLagEnd_s - kHeldUntil_s);
+  return corner_glide(t_s) *
+         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
+}
+
+Trajectory drifting_path() {
+  std::vector<StampedPose> poses;
+  for (double t_s = 0; t_s <= kLagEnd_s + 1e-9; t_s += 2e-3) poses.push_back({t_s, drifting(t_s)});
+  return Trajectory(std::move(poses));
+}
+
+class FixedLag : public ::testing::Test {
+ protected:
+  static const testing::PlanarWorld& world() {
+    static const testing::PlanarWorld world = corner_world(160, 120);
+    return world;
+  }
+
+  /// A smoother with the views at these times, of a window of 0.3 s each on the drifted path.
+  FixedLagSmoother smoother(double lag_s, std::initializer_list<double> times_s) const {
+    static const Events events = world().simulate(corner_glide, 0, kLagEnd_s, 1e-3, 0.15);
+    FixedLagOptions options;
+    options.lag_s = lag_s;
+    options.problem.edges = 300;
+    options.problem.iterations = 10;
+    FixedLagSmoother smoother(options, world().camera());
+    const DepthConfig config;
+    const RayDepth depth(config.rays, config.limits, world().camera());
+    for (const double t_s : times_s) {
+      const ViewWindow window{
+          events_between(events, ns_from_seconds(t_s - 0.15), ns_from_seconds(t_s + 0.15)), &path_,
+          t_s};
+      smoother.add(smoother.view(window, depth.find_edgels(window), kHeldUntil_s));
+    }
+    return smoother;
+  }
+
+  static double error_m(const Trajectory& path, double t_s) {
+    return (corner_glide(t_s).inverse() * path.at_clamped(t_s)).translation().norm();
+  }
+
+  Trajectory path_ = drifting_path();
+};
+
+TEST_F(FixedLag, CorrectsADriftingPath) {
+  const auto smoothed = smoother(1, {0.1, 0.2, 0.3}).smooth(path_, kHeldUntil_s, kCornerDepth_m);
+  ASSERT_TRUE(smoothed);
+  EXPECT_EQ(smoothed->size(), path_.size());
+  for (const double t_s : {0.25, 0.3, 0.35, 0.38})
+    EXPECT_LT(error_m(*smoothed, t_s), 0.4 * error_m(path_, t_s)) << t_s;
+}
+
+TEST_F(FixedLag, HeldPosesStayAsTheyAre) {
+  const auto smoothed = smoother(1, {0.1, 0.2, 0.3}).smooth(path_, kHeldUntil_s, kCornerDepth_m);
+  ASSERT_TRUE(smoothed);
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    const StampedPose& before = path_.poses()[i];
+    const StampedPose& after = smoothed->poses()[i];
+    EXPECT_EQ(before.world_from_camera.translation() == after.world_from_camera.translation(),
+              before.t_s <= kHeldUntil_s)
+        << before.t_s;
+  }
+}
+
+TEST_F(FixedLag, WhatIsOlderThanTheLagIsNoLongerPartOfIt) {
+  const auto smoothed = smoother(0.1, {0.1, 0.2, 0.28}).smooth(path_, kHeldUntil_s, kCornerDepth_m);
+  ASSERT_TRUE(smoothed);
+  EXPECT_GT(smoothed->start_s(), 0.02) << "the view at 0.1 s, of events from 0 s on, is forgotten";
+  EXPECT_LT(smoothed->start_s(), 0.1);
+  EXPECT_EQ(smoothed->end_s(), path_.end_s());
+}
+
+TEST_F(FixedLag, OneViewAloneIsLeftToItsOwnAdjustment) {
+  FixedLagSmoother one = smoother(1, {0.2});
+  EXPECT_FALSE(one.smooth(path_, kHeldUntil_s, kCornerDepth_m));
+  FixedLagSmoother none = smoother(1, {0.1, 0.2});
+  none.clear();
+  EXPECT_FALSE(none.smooth(path_, kHeldUntil_s, kCornerDepth_m));
+  EXPECT_FALSE(FixedLagSmoother({}, world().camera()).is_enabled());
+}
+
+}  // namespace
+}  // namespace saccade
