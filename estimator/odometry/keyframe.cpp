@@ -2,6 +2,12 @@
 
 namespace saccade {
 
+void move_to(const Rigid3& world_from_camera, Keyframe& keyframe) {
+  keyframe.edges =
+      transformed(world_from_camera * keyframe.world_from_camera.inverse(), keyframe.edges);
+  keyframe.world_from_camera = world_from_camera;
+}
+
 MapPoints points_in_world(const DepthResult& depth, const PinholeCamera& camera,
                           const Rigid3& world_from_camera, double max_sigma) {
   MapPoints points;

@@ -25,6 +25,9 @@ struct Keyframe {
   double typical_depth_m = 1;  ///< median of the depths
 };
 
+/// Moves a keyframe, with its edges, to another pose.
+void move_to(const Rigid3& world_from_camera, Keyframe& keyframe);
+
 /// The points of a depth map whose relative sigma is below `max_sigma`, in the world of its view's
 /// pose. `camera` is undistorted.
 [[nodiscard]] MapPoints points_in_world(const DepthResult& depth, const PinholeCamera& camera,

@@ -157,7 +157,24 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
     add_points(keyframe);
     if (edges) add_assumed_points(*edges, keyframe);
   }
+  if (edges)
+    mapping.edges = {{window.events.begin(), window.events.end()}, std::move(*edges), options_};
   return mapping;
+}
+
+void Mapper::refit(const Trajectory& path, const PathEstimate& estimate, Mapping& mapping) const {
+  KeyframeEdges& found = *mapping.edges;
+  Keyframe& keyframe = mapping.keyframe;
+  const ViewWindow window{found.events, &path, keyframe.t_s};
+  found.edges = edges_on_path(window, found.edges, camera_,
+                              {estimate.fixed_until_s, estimate.given_until_s,
+                               keyframe.typical_depth_m, estimate.landmarks},
+                              options_.adjustment);
+  keyframe.world_from_camera = window.world_from_reference();
+  const Mapper mapper(found.options, camera_);
+  keyframe.depth = mapper.rays().fuse(found.edges);
+  mapper.add_points(keyframe);
+  mapper.add_assumed_points(found.edges, keyframe);
 }
 
 void Mapper::renew(std::span<const Event> events, const Trajectory& poses,

@@ -58,12 +58,20 @@ struct PathEstimate {
   std::vector<Landmark> landmarks;        ///< edges known from events before those of the window
 };
 
+/// The edges of a keyframe before their depths are fused, with the events that they were found in.
+struct KeyframeEdges {
+  std::vector<Event> events;
+  WindowEdgels edges;
+  MappingOptions options;  ///< by which they were found
+};
+
 /// A keyframe and the poses that it is consistent with.
 struct Mapping {
   Keyframe keyframe;
   std::vector<StampedPose> poses;  ///< of its events, adjusted; in order of time
   /// Transforms a pose at its last event, and those after it, as the adjustment did.
   Rigid3 world_from_before;
+  std::optional<KeyframeEdges> edges;  ///< where poses and edges were adjusted together
 };
 
 /// Mapping (thesis chapter 7): depth, then image of the newest events with known poses. Thread-safe
@@ -82,6 +90,10 @@ class Mapper {
   /// the greatest sigma first, so that it costs one attempt in place of three.
   [[nodiscard]] Mapping map_if_enough(std::span<const Event> events,
                                       const PathEstimate& path) const;
+
+  /// Depth and edges of a new keyframe on a better path, its events belonging to the edges that
+  /// they belonged to before.
+  void refit(const Trajectory& path, const PathEstimate& estimate, Mapping& mapping) const;
 
   /// Depth and edges of a keyframe anew, by better poses; `events` contain its own.
   /// Of DepthConfig's method rays and Edges::kDepth.

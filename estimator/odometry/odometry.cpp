@@ -39,6 +39,19 @@ std::vector<TrackedPose> found_poses(const PathEstimate& start) {
   return poses;
 }
 
+/// The path with the poses that a mapping adjusted, up to the end of its events.
+Trajectory with_adjusted(const Trajectory& path, const Mapping& mapping, double held_until_s) {
+  const Trajectory adjusted(mapping.poses);
+  std::vector<StampedPose> poses;
+  for (StampedPose pose : path.poses()) {
+    if (pose.t_s > adjusted.end_s()) break;
+    if (pose.t_s >= adjusted.start_s() && pose.t_s > held_until_s)
+      pose.world_from_camera = adjusted.at_clamped(pose.t_s);
+    poses.push_back(pose);
+  }
+  return Trajectory(std::move(poses));
+}
+
 /// How far apart the poses of a keyframe's events lie [m], as if its view were in their middle.
 double baseline_of(const Keyframe& keyframe, std::span<const StampedPose> path) {
   double furthest_m = 0;
@@ -49,6 +62,21 @@ double baseline_of(const Keyframe& keyframe, std::span<const StampedPose> path) 
         (pose.world_from_camera.translation() - keyframe.world_from_camera.translation()).norm());
   }
   return 2 * furthest_m;
+}
+
+/// Edges are fitted once, to the smoothed path, where there is one.
+MappingOptions mapping_options(const OdometryOptions& options) {
+  MappingOptions mapping = options.mapping;
+  mapping.adjustment.fits_edges = options.smoothing.lag_s <= 0;
+  return mapping;
+}
+
+/// Of each keyframe as many edges as its own adjustment has.
+FixedLagOptions smoothing_options(const OdometryOptions& options) {
+  FixedLagOptions smoothing = options.smoothing;
+  smoothing.problem.edges = options.mapping.adjustment.edges;
+  smoothing.problem.solver = options.mapping.adjustment.solver;
+  return smoothing;
 }
 
 }  // namespace
@@ -63,13 +91,14 @@ struct Odometry::Job {
 Odometry::Odometry(const OdometryOptions& options, const PinholeCamera& camera, std::uint64_t seed)
     : options_(options),
       camera_(camera),
-      mapper_(options.mapping, camera),
+      mapper_(mapping_options(options), camera),
       map_(options.keyframe.active, camera),
+      smoother_(smoothing_options(options), camera),
       tracker_(options.tracker, camera, map_.points(), Rigid3(), seed) {
-  batch_.solver = options.mapping.adjustment.solver;
+  batch_.problem.solver = options.mapping.adjustment.solver;
   batch_.use_imu = options.batch_adjustment == BatchMode::kEventsAndImu;
   start_.min_edges = static_cast<std::size_t>(options.mapping.min_edges);
-  start_.refinement.adjustment.solver = batch_.solver;
+  start_.refinement.adjustment.solver = batch_.problem.solver;
   start_.refinement.limits = options.mapping.depth.limits;
 }
 
@@ -157,6 +186,7 @@ void Odometry::discard_diverged_poses(const TrackedPose& found, OdometryResult& 
   const double t_s = seconds_from_ns(found.t_ns);
   // The keyframe in the making rests on diverged poses, and so do poses at the same time.
   job_.reset();
+  smoother_.clear();
   monitor_->restart();
   while (!result.poses.empty() && result.poses.back().t_ns >= found.t_ns) result.poses.pop_back();
   while (path_.size() > 1 && path_.back().t_s >= t_s) path_.pop_back();
@@ -210,6 +240,7 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   path_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
   fixed_until_s_ = first.path.fixed_until_s;
   given_until_s_ = first.path.given_until_s;
+  held_until_s_ = std::max(fixed_until_s_, given_until_s_);
   result.poses = found_poses(first.path);
   if (given_until_s_ != kNoGivenPoses) {
     result.extrapolated_s = path_.back().t_s - given_until_s_;
@@ -220,6 +251,7 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   if (!is_fixed(first.path)) apply_adjusted_poses(first.mapping);
   last_keyframe_ = path_.back();
   interval_from_s_ = last_keyframe_.t_s;
+  if (smoother_.is_enabled()) smooth(first.path, first.mapping);
   take(std::move(keyframe), last_keyframe_.world_from_camera);
   output(result);
   for (TrackedPose& pose : result.poses) monitor_->judge(pose);
@@ -244,9 +276,17 @@ bool Odometry::has_doubled_baseline() const {
          doubling_m() < options_.keyframe.distance * typical_depth_m_;
 }
 
+double Odometry::least_interval_s() const {
+  if (!options_.keyframe.doubles_baseline) return options_.keyframe.interval_s;
+  // Windows of a short path are short: they cost little, and with a quarter more of it depths are
+  // a quarter better.
+  const double known_s = path_.back().t_s - path_.front().t_s;
+  return std::min(options_.keyframe.interval_s, known_s / 4);
+}
+
 bool Odometry::wants_keyframe() const {
   return has_doubled_baseline() ||
-         (path_.back().t_s >= interval_from_s_ + options_.keyframe.interval_s &&
+         (path_.back().t_s >= interval_from_s_ + least_interval_s() &&
           moved_m() >= options_.keyframe.distance * typical_depth_m_);  // d_kf
 }
 
@@ -268,8 +308,29 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
            Trajectory(path_), fixed_until_s_, given_until_s_, typical_depth_m_,
            map_.landmarks(now_s - options_.mapping.duration_s, path_.back().world_from_camera)}] {
         const ScopedTimer clock(*seconds);
-        return mapper_.map(mapped, path);
+        return map(mapped, path);
       });
+}
+
+Mapping Odometry::map(std::span<const Event> events, const PathEstimate& path) {
+  Mapping mapping = mapper_.map(events, path);
+  if (smoother_.is_enabled()) smooth(path, mapping);
+  return mapping;
+}
+
+void Odometry::smooth(const PathEstimate& path, Mapping& mapping) {
+  if (!mapping.edges || mapping.keyframe.edges.size() < Mapper::kMinEdges) return;
+  Keyframe& keyframe = mapping.keyframe;
+  const Trajectory adjusted = with_adjusted(path.poses, mapping, held_until_s_);
+  const ViewWindow window{mapping.edges->events, &adjusted, keyframe.t_s};
+  smoother_.add(smoother_.view(window, mapping.edges->edges, held_until_s_));
+  const Trajectory smoothed =
+      smoother_.smooth(adjusted, held_until_s_, keyframe.typical_depth_m).value_or(adjusted);
+  mapping.world_from_before = smoothed.at_clamped(keyframe.end_s) *
+                              adjusted.at_clamped(keyframe.end_s).inverse() *
+                              mapping.world_from_before;
+  mapping.poses.assign(smoothed.poses().begin(), smoothed.poses().end());
+  mapper_.refit(smoothed, path, mapping);
 }
 
 void Odometry::end_mapping(double now_s, OdometryResult& result) {
@@ -282,6 +343,7 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   typical_depth_m_ = keyframe.typical_depth_m;
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);
+  move_keyframes(mapping.poses.front().t_s);
   take(std::move(keyframe), path_.back().world_from_camera);
   result.changes.push_back({job->made_s, now_s, map_.keyframes().size() - 1, map_.active()});
 }
@@ -289,12 +351,20 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
 void Odometry::apply_adjusted_poses(const Mapping& mapping) {
   const Trajectory adjusted(mapping.poses);
   for (StampedPose& pose : path_) {
-    if (pose.t_s < adjusted.start_s()) continue;
+    if (pose.t_s < adjusted.start_s() || pose.t_s <= held_until_s_) continue;
     pose.world_from_camera = pose.t_s <= adjusted.end_s()
                                  ? adjusted.at_clamped(pose.t_s)
                                  : mapping.world_from_before * pose.world_from_camera;
   }
   tracker_.correct(mapping.world_from_before);
+}
+
+void Odometry::move_keyframes(double from_s) {
+  if (!smoother_.is_enabled()) return;
+  const Trajectory path(path_);
+  for (Keyframe& keyframe : map_.keyframes())
+    if (keyframe.t_s > std::max(from_s, held_until_s_))
+      move_to(path.at_clamped(keyframe.t_s), keyframe);
 }
 
 bool Odometry::wants_batch_adjustment() const {

@@ -14,7 +14,8 @@
 #include "core/event.h"
 #include "core/io/covariance_file.h"
 #include "core/trajectory.h"
-#include "estimator/edges/batch/batch_adjustment.h"
+#include "estimator/edges/path/batch_adjustment.h"
+#include "estimator/edges/path/fixed_lag.h"
 #include "estimator/odometry/edge_map.h"
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
@@ -29,7 +30,8 @@ struct KeyframeOptions {
   double distance = 0.1;  ///< d_kf, relative to the typical depth (thesis 7)
   double interval_s = 0;  ///< least time from one's begin to the next's
   /// A keyframe is also made where the camera has moved as far as the baseline that the map's depths
-  /// rest on, each time for twice as much, until that is `distance`. The interval does not count it.
+  /// rest on, each time for twice as much, until that is `distance`. The interval does not count it,
+  /// and is at most a quarter of the time since the start.
   bool doubles_baseline = false;
   double handover_s = 0;         ///< from its newest event to the last that is tracked without it
   double active_window_s = 0.1;  ///< poses of its last seconds may still change with the next
@@ -59,6 +61,7 @@ struct OdometryOptions {
   Relocation relocation = Relocation::kLost;
   MappingOptions mapping;
   EdgeTrackerOptions tracker;
+  FixedLagOptions smoothing;
   BatchMode batch_adjustment = BatchMode::kNone;
 };
 
@@ -146,11 +149,15 @@ class Odometry {
   [[nodiscard]] double moved_m() const;  ///< since the last keyframe was begun
   [[nodiscard]] double doubling_m() const;
   [[nodiscard]] bool has_doubled_baseline() const;
+  [[nodiscard]] double least_interval_s() const;
   [[nodiscard]] bool wants_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
+  [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path);
+  void smooth(const PathEstimate& path, Mapping& mapping);
   void begin_mapping(std::span<const Event> events, double now_s);
   void end_mapping(double now_s, OdometryResult& result);
   void apply_adjusted_poses(const Mapping& mapping);
+  void move_keyframes(double from_s);
   void lose_distant_poses(OdometryResult& result) const;
   void output(OdometryResult& result) const;
 
@@ -160,11 +167,13 @@ class Odometry {
   PinholeCamera camera_;
   Mapper mapper_;
   EdgeMap map_;
+  FixedLagSmoother smoother_;  ///< of the thread that maps
   EdgeTracker tracker_;
   std::optional<PoseMonitor> monitor_;
   std::vector<StampedPose> path_;  ///< the start, then what was tracked, as last adjusted
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;
+  double held_until_s_ = 0;   ///< poses of the start until then never change: they fix the gauge
   double mapped_from_s_ = 0;  ///< poses before were lost and found again
   bool is_lost_ = false;
   std::vector<TimeNs>

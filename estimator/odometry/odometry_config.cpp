@@ -180,6 +180,13 @@ void describe(config::Fields& fields, OdometryConfig& config) {
     fields.group(
         "adjustment", [&](Fields& f) { describe_adjustment(f, odometry.mapping); },
         "Adjustment of the poses and edges of a keyframe's window.");
+    fields
+        .value(
+            "smoothing_s", odometry.smoothing.lag_s,
+            "With every keyframe the path of the last seconds is adjusted together with the "
+            "edges of all keyframes in it: how long that is. Longer drifts less and costs more; "
+            "what is older does not change any more. 0 adjusts the window of the keyframe alone.")
+        .range(0, 1e3);
     fields.choice("batch_adjustment", odometry.batch_adjustment,
                   {{"none", BatchMode::kNone},
                    {"events", BatchMode::kEvents},

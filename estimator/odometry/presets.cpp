@@ -29,8 +29,11 @@ DepthConfig depth_of_keyframes() {
 /// Keyframes of edges with depth, each adjusted together with the poses of its window.
 OdometryOptions edges() {
   OdometryOptions options;
-  options.keyframe = {
-      .distance = 0.05, .doubles_baseline = true, .active_window_s = 0.4, .active = 3};
+  options.keyframe = {.distance = 0.05,
+                      .interval_s = 0.1,
+                      .doubles_baseline = true,
+                      .active_window_s = 0.4,
+                      .active = 3};
   options.tracker = tracking_by_keyframes(0.1);
   MappingOptions& mapping = options.mapping;
   mapping.depth = depth_of_keyframes();
@@ -43,6 +46,7 @@ OdometryOptions edges() {
   mapping.min_edges = 600;
   mapping.smoothing_s = 0.01;
   mapping.adjust_rounds = 1;
+  options.smoothing.lag_s = 2;
   return options;
 }
 

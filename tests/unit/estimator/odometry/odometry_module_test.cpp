@@ -204,19 +204,22 @@ TEST_F(OdometryModule, BeyondARotationTheScaleIsAGuess) {
 }
 
 TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
-  const auto shortest_s = [&](const std::string& name, const std::string& keyframe) {
+  const auto made_s = [&](const std::string& name, const std::string& keyframe) {
     std::string yaml = kQuick;
     yaml.replace(yaml.find("distance: 0.05"), 14, keyframe);
     (void)run_odometry(request(name, yaml));
-    const auto keyframes = read_keyframe_list(folder_.path() / name / "keyframes.yaml");
-    EXPECT_GE(keyframes.size(), 3U);
-    double shortest = kEnd_s;
-    for (std::size_t i = 2; i < keyframes.size(); ++i)
-      shortest = std::min(shortest, keyframes[i].made_s - keyframes[i - 1].made_s);
-    return shortest;
+    std::vector<double> times_s;
+    for (const auto& row : read_keyframe_list(folder_.path() / name / "keyframes.yaml"))
+      times_s.push_back(row.made_s);
+    return times_s;
   };
-  EXPECT_LT(shortest_s("any", "distance: 0.02"), 0.08);
-  EXPECT_GE(shortest_s("apart", "distance: 0.02, interval_s: 0.1"), 0.099);
+  const std::vector<double> any = made_s("any", "distance: 0.02, interval_s: 0");
+  const std::vector<double> apart = made_s("apart", "distance: 0.02, interval_s: 0.1");
+  ASSERT_GE(apart.size(), 3U);
+  EXPECT_GT(any.size(), apart.size());
+  // A quarter of the time that is known, at the start, and 0.1 s later.
+  for (std::size_t i = 2; i < apart.size(); ++i)
+    EXPECT_GE(apart[i] - apart[i - 1], std::min(0.1, apart[i] / 4) - 1e-3) << apart[i];
 }
 
 TEST_F(OdometryModule, GivenPosesMayBeStampedLate) {
