@@ -27,9 +27,9 @@ struct FixedLagOptions {
 };
 
 /// Fixed-lag smoothing of a camera's path: of the last seconds the path and the edges of all views
-/// are adjusted together whenever a view is added (PathEdgeProblem), so that edges that were seen from far apart
-/// constrain each other. What is older is not changed any more: cost and memory do not grow with
-/// the path. Each view's events belong to the edges that they belonged to when it was added.
+/// are adjusted together whenever a view is added (PathEdgeProblem), so that edges that were seen
+/// from far apart constrain each other. What is older is not changed any more: cost and memory do
+/// not grow with the path. Each view's events belong to the edges that they belonged to when it was added.
 class FixedLagSmoother {
  public:
   /// `camera` may have a lens.

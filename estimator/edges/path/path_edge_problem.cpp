@@ -76,7 +76,7 @@ void PathEdgeProblem::choose_edges() {
 /// Each edge with its own events and some of those of its matches in later views.
 void PathEdgeProblem::add_edges() {
   std::vector<EdgeOfView> found;
-  for (const BatchEdge& edge : edges_) found.push_back(edge.found);
+  for (const PathEdge& edge : edges_) found.push_back(edge.found);
   std::vector<std::vector<EdgeOfView>> again(edges_.size());
   if (options_.reobserved_views > 0)
     again = reobservations(found, views_, world_from_view_, options_.reobserved_apart_s, camera_);
@@ -85,7 +85,7 @@ void PathEdgeProblem::add_edges() {
       edges_.size(), [&](std::size_t i) { events[i] = events_of(edges_[i], again[i]); }, kGrain);
   bundle_.reserve(events);
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    BatchEdge& edge = edges_[i];
+    PathEdge& edge = edges_[i];
     Unknowns sigma;
     sigma << EdgeNoise::prior_sigma(edge.unknowns[0]), EdgeNoise::kRunSpacingSigma_px;
     const Edgel& line = this->found(edge.found).edge;
@@ -97,7 +97,7 @@ void PathEdgeProblem::add_edges() {
 }
 
 std::vector<PathBundle::Event> PathEdgeProblem::events_of(
-    const BatchEdge& edge, std::span<const EdgeOfView> reobservations) const {
+    const PathEdge& edge, std::span<const EdgeOfView> reobservations) const {
   std::vector<PathBundle::Event> events;
   const FittedEdgel& own = found(edge.found);
   for (const EdgeEvent& event : views_[edge.found.view].of(own))
@@ -111,7 +111,7 @@ std::vector<PathBundle::Event> PathEdgeProblem::events_of(
   return events;
 }
 
-PathBundle::Event PathEdgeProblem::event_of(const BatchEdge& edge, const EdgeEvent& event,
+PathBundle::Event PathEdgeProblem::event_of(const PathEdge& edge, const EdgeEvent& event,
                                             double sigma_px) const {
   const Edgel& line = found(edge.found).edge;
   EdgeObservation observation;

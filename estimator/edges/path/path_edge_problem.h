@@ -73,7 +73,7 @@ class PathEdgeProblem {
   }
 
  private:
-  struct BatchEdge {
+  struct PathEdge {
     EdgeOfView found;
     Unknowns unknowns;
   };
@@ -85,8 +85,8 @@ class PathEdgeProblem {
   void choose_edges();
   void add_edges();
   [[nodiscard]] std::vector<PathBundle::Event> events_of(
-      const BatchEdge& edge, std::span<const EdgeOfView> reobservations) const;
-  [[nodiscard]] PathBundle::Event event_of(const BatchEdge& edge, const EdgeEvent& event,
+      const PathEdge& edge, std::span<const EdgeOfView> reobservations) const;
+  [[nodiscard]] PathBundle::Event event_of(const PathEdge& edge, const EdgeEvent& event,
                                            double sigma_px) const;
   void add_path_priors(const std::vector<StampedPose>& given);
   void add_prior(const Matrix6& root, const Twist& mean, const Eigen::Vector4d& weight,
@@ -100,7 +100,7 @@ class PathEdgeProblem {
   double depth_m_;
   PathCorrection correction_;
   std::vector<Rigid3> world_from_view_;
-  std::vector<BatchEdge> edges_;
+  std::vector<PathEdge> edges_;
   std::optional<InertialFactors> inertial_factors_;
   PathBundle bundle_;
 };
