@@ -155,6 +155,12 @@ Rigid3 corner_glide(double t_s) {
   return {so3_exp({0.1 * t_s, -0.3 * t_s, 0.4 * t_s}), {0.9 * t_s, 0.25 * t_s, 0.1 * t_s}};
 }
 
+Rigid3 drifting_glide(double t_s, double true_until_s, double end_s) {
+  const double away = std::max(0.0, t_s - true_until_s) / (end_s - true_until_s);
+  return corner_glide(t_s) *
+         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
+}
+
 Rigid3 corner_motion(double t_s) {
   const double a = 2 * 3.14159265358979 * t_s;
   const Eigen::Vector3d position(0.20 * std::sin(1.3 * a), 0.15 * std::sin(0.9 * a + 0.4) - 0.058,

@@ -71,6 +71,10 @@ constexpr double kCornerDepth_m = 2.2;
 /// derotation must take out; for corner_world().
 [[nodiscard]] Rigid3 corner_glide(double t_s);
 
+/// corner_glide() up to `true_until_s`, from where on the path drifts away: at `end_s` by 1 % of the
+/// depth and 7 mrad.
+[[nodiscard]] Rigid3 drifting_glide(double t_s, double true_until_s, double end_s);
+
 /// Smooth six-degree motion of decimetres and a few degrees within a second, for corner_world().
 [[nodiscard]] Rigid3 corner_motion(double t_s);
 

@@ -23,12 +23,7 @@ using testing::kCornerDepth_m;
 constexpr double kJointEnd_s = 0.4;
 constexpr double kGivenUntil_s = 0.15;
 
-/// corner_glide(), drifting away after kGivenUntil_s: 1 % of the depth and 7 mrad in the end.
-Rigid3 drifted(double t_s) {
-  const double away = std::max(0.0, t_s - kGivenUntil_s) / (kJointEnd_s - kGivenUntil_s);
-  return corner_glide(t_s) *
-         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
-}
+Rigid3 drifted(double t_s) { return testing::drifting_glide(t_s, kGivenUntil_s, kJointEnd_s); }
 
 struct JointRecording {
   testing::PlanarWorld world = corner_world(160, 120);
