@@ -88,9 +88,8 @@ class EdgeBundle {
   /// where the ray leads away from the edge's view as the unknowns are now.
   bool add_event(const Event& event) {
     Edge& edge = edges_.back();
-    Eigen::Vector4d unknowns = Eigen::Map<const Eigen::Vector4d>(edge.unknowns);
-    if (!std::isfinite(edge_residual(event.observation, camera_, Twist::Zero(), unknowns, nullptr)))
-      return false;
+    const EdgeLine line = line_of(event.observation, camera_);
+    if (!(line.forward > 0 && line.magnification(edge.unknowns[0]) > 0)) return false;
     if (next_lane_ == kEventLanes) {
       lanes_.emplace_back();
       ++edge.last_lanes;

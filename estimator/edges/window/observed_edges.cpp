@@ -21,7 +21,9 @@ ObservedEdges::ObservedEdges(const ViewWindow& window, const WindowEdgels& edges
       camera_(camera),
       undistorted_(camera.undistorted()),
       correction_(correction),
-      view_from_world_(window.world_from_reference().inverse()),
+      view_from_camera_(*window.trajectory, seconds_from_ns(window.events.front().t_ns),
+                        seconds_from_ns(window.events.back().t_ns),
+                        window.world_from_reference().inverse()),
       run_positions_(run_positions(window.events, camera)) {
   for (int node = 1; node < correction.count(); ++node) {
     const auto next =
@@ -61,7 +63,7 @@ ObservedEvent ObservedEdges::observed(const FittedEdgel& edge, double mean_posit
   const Event& event = window_.events[index];
   const double t_s = seconds_from_ns(event.t_ns);
   EdgeObservation observation;
-  observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
+  observation.view_from_camera = view_from_camera_.at(t_s);
   observation.ray = undistorted_.ray(camera_.undistort({event.x, event.y}));
   const std::uint8_t position = run_positions_[index];
   const double lag = position > 0 ? position - mean_position : 0;

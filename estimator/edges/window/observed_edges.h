@@ -7,6 +7,7 @@
 #include "core/camera.h"
 #include "core/rigid3.h"
 #include "estimator/depth/rays/ray_depth.h"
+#include "estimator/edges/dense_path.h"
 #include "estimator/edges/edge_residual.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/run/view_windows.h"
@@ -42,7 +43,7 @@ class ObservedEdges {
   PinholeCamera camera_;
   PinholeCamera undistorted_;
   const NodeCorrection& correction_;
-  Rigid3 view_from_world_;
+  DensePath view_from_camera_;
   std::vector<std::uint8_t> run_positions_;  ///< of every event of the window
   /// The events between a node and the next one.
   struct NodeEvents {

@@ -71,6 +71,7 @@ class WindowProblem {
     result.ok =
         solve_bundle(bundle_, options_.solver, {options_.iterations, kCostTolerance}).is_usable;
     result.residual_after_px = residual_sigma_px();
+    is_corrected_ = result.ok;
     if (result.ok) correct(result);
     return result;
   }
@@ -183,6 +184,7 @@ class WindowProblem {
   /// The event's observation after the correction.
   [[nodiscard]] EdgeObservation moved(const ObservedEvent& event) const {
     EdgeObservation observation = event.observation;
+    if (!is_corrected_) return observation;
     const auto twist = [&](int node) { return Eigen::Map<const Twist>(correction_.data(node)); };
     observation.view_from_camera =
         observation.view_from_camera * Rigid3::exp((1 - event.fraction) * twist(event.node) +
@@ -225,6 +227,7 @@ class WindowProblem {
   const WindowPriors& priors_;
   ProjectedLandmarks landmarks_;
   NodeCorrection correction_;
+  bool is_corrected_ = false;
   ObservedEdges observed_;
   std::vector<ChosenEdge> chosen_;
   CoarseSurface surface_;
