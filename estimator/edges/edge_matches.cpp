@@ -63,15 +63,18 @@ std::optional<std::size_t> EdgeMatcher::match(const Edgel& edge) const {
 std::vector<std::vector<EdgeOfView>> reobservations(std::span<const EdgeOfView> edges,
                                                     std::span<const EdgeView> views,
                                                     std::span<const Rigid3> world_from_view,
-                                                    double apart_s, const PinholeCamera& camera) {
+                                                    Reobserving which, double apart_s,
+                                                    const PinholeCamera& camera) {
   std::vector<std::vector<EdgeOfView>> observations(edges.size());
   const auto find = [&](std::size_t view) {
     const auto before = [](const EdgeOfView& edge, std::size_t k) { return edge.view < k; };
     const auto first = std::lower_bound(edges.begin(), edges.end(), view, before);
     const auto last = std::lower_bound(first, edges.end(), view + 1, before);
+    if (first == last) return;
     const Rigid3 view_from_world = world_from_view[view].inverse();
-    for (std::size_t other = view + 1; other < views.size(); ++other) {
-      if (views[other].t_s - views[view].t_s < apart_s) continue;
+    const double direction = which == Reobserving::kLater ? 1 : -1;
+    for (std::size_t other = 0; other < views.size(); ++other) {
+      if (other == view || direction * (views[other].t_s - views[view].t_s) < apart_s) continue;
       const EdgeMatcher matcher(views[other].edges, view_from_world * world_from_view[other],
                                 camera);
       for (auto edge = first; edge != last; ++edge)

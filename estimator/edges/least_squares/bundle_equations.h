@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include "estimator/edges/least_squares/bundle_rows.h"
+#include "estimator/edges/least_squares/path_information.h"
 #include "estimator/edges/least_squares/reduced_system.h"
 #include "estimator/edges/least_squares/small_cholesky.h"
 
@@ -32,8 +33,12 @@ class BundleEquations {
   using Damping = std::function<double(double)>;
 
   explicit BundleEquations(const Rows& rows)
+      : BundleEquations(rows, 0, rows.bundle().edges().size()) {}
+
+  /// Of the edges first .. last - 1 alone.
+  BundleEquations(const Rows& rows, std::size_t first, std::size_t last)
       : rows_(rows), eliminated_(rows.bundle().edges().size()) {
-    make_chunks();
+    make_chunks(first, last);
     std::vector<std::vector<std::uint32_t>> groups;
     for (const Chunk& chunk : chunks_) groups.push_back(chunk.blocks);
     for (const std::vector<std::uint32_t>& blocks : rows.kept().factor_blocks())
@@ -49,32 +54,18 @@ class BundleEquations {
 
   /// The reduced system at `point`, where the rows were linearised.
   void build(const Point& point, const Damping& damping) {
-    system_->set_zero();
-    right_ = Eigen::VectorXd::Zero(system_->size());
-    gradient_ = right_;
-    Eigen::VectorXd diagonal = right_;
-    std::vector<Product> products(std::min(kWave, chunks_.size()));
-    for (std::size_t wave = 0; wave < chunks_.size(); wave += kWave) {
-      const std::size_t count = std::min(kWave, chunks_.size() - wave);
-      parallel_for(
-          count, [&](std::size_t k) { multiply(chunks_[wave + k], point, damping, products[k]); });
-      for (std::size_t k = 0; k < count; ++k) {
-        const Chunk& chunk = chunks_[wave + k];
-        system_->add(chunk.blocks, products[k].matrix);
-        Eigen::Index local = 0;
-        for (const std::uint32_t block : chunk.blocks) {
-          const Eigen::Index at = rows_.kept().begin()[block], size = rows_.kept().size(block);
-          right_.segment(at, size) += products[k].right.segment(local, size);
-          gradient_.segment(at, size) += products[k].gradient.segment(local, size);
-          diagonal.segment(at, size) += products[k].diagonal.segment(local, size);
-          local += size;
-        }
-      }
-    }
+    Eigen::VectorXd diagonal = sum_edges(point, damping);
     rows_.kept().add_to(*system_, gradient_, right_, diagonal);
     damping_.resize(system_->size());
     for (Eigen::Index i = 0; i < damping_.size(); ++i) damping_[i] = damping(diagonal[i]);
     system_->add_diagonal(damping_);
+  }
+
+  /// What the edges alone say of the path, from `point`, where their rows were linearised.
+  [[nodiscard]] PathInformation path_information(const Point& point) {
+    sum_edges(point, [](double) { return 0.0; });
+    const auto size = static_cast<Eigen::Index>(rows_.bundle().path().size());
+    return {system_->matrix().topLeftCorner(size, size), right_.head(size)};
   }
 
   /// The greatest derivative of the cost, absolute.
@@ -154,9 +145,36 @@ class BundleEquations {
     Unknowns gradient, damping, step;
   };
 
-  void make_chunks() {
+  /// The part of the edges in the reduced system; the diagonal before they were eliminated.
+  Eigen::VectorXd sum_edges(const Point& point, const Damping& damping) {
+    system_->set_zero();
+    right_ = Eigen::VectorXd::Zero(system_->size());
+    gradient_ = right_;
+    Eigen::VectorXd diagonal = right_;
+    std::vector<Product> products(std::min(kWave, chunks_.size()));
+    for (std::size_t wave = 0; wave < chunks_.size(); wave += kWave) {
+      const std::size_t count = std::min(kWave, chunks_.size() - wave);
+      parallel_for(
+          count, [&](std::size_t k) { multiply(chunks_[wave + k], point, damping, products[k]); });
+      for (std::size_t k = 0; k < count; ++k) {
+        const Chunk& chunk = chunks_[wave + k];
+        system_->add(chunk.blocks, products[k].matrix);
+        Eigen::Index local = 0;
+        for (const std::uint32_t block : chunk.blocks) {
+          const Eigen::Index at = rows_.kept().begin()[block], size = rows_.kept().size(block);
+          right_.segment(at, size) += products[k].right.segment(local, size);
+          gradient_.segment(at, size) += products[k].gradient.segment(local, size);
+          diagonal.segment(at, size) += products[k].diagonal.segment(local, size);
+          local += size;
+        }
+      }
+    }
+    return diagonal;
+  }
+
+  void make_chunks(std::size_t first, std::size_t last) {
     std::vector<std::uint32_t> blocks, all;
-    for (std::size_t i = 0; i < eliminated_.size(); ++i) {
+    for (std::size_t i = first; i < last; ++i) {
       blocks = blocks_of(rows_.bundle().edges()[i]);
       const bool fits = [&] {
         if (chunks_.empty() || i - chunks_.back().first >= kEdgesAtOnce) return false;

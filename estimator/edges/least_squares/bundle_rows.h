@@ -89,33 +89,13 @@ class BundleRows {
 
   /// The events' rows and the factors at a point where the cost can be evaluated.
   void linearise(const Point& point) {
-    parallel_for(
-        point.edges.size(),
-        [&](std::size_t e) {
-          const Edge& edge = bundle_.edges()[e];
-          const EdgeState<kUnknowns> state = Bundle::state(edge, point.edges[e]);
-          for (std::size_t i = edge.first_lanes; i < edge.last_lanes; ++i) {
-            const EventLanes<kSupport>& lanes = bundle_.lanes()[i];
-            RowLanes<kUnknowns>& rows = rows_[i];
-            // The cost at the point is finite, so that an event whose ray leads away is one by the
-            // rounding of its last bit: it is an outlier, and says nothing.
-            const bool is_whole =
-                event_rows(lanes, state, bundle_.camera(), motion_of(lanes, path_of(point)), rows);
-            if (!is_whole) {
-              rows = RowLanes<kUnknowns>{};
-              continue;
-            }
-            DoubleLanes weight;
-            for (std::size_t lane = 0; lane < kEventLanes; ++lane)
-              weight[lane] = cauchy_root_weight(rows.residual[lane] * rows.residual[lane],
-                                                EdgeNoise::kCauchyScale);
-            rows.residual *= weight;
-            for (DoubleLanes& by : rows.by_motion) by *= weight;
-            for (DoubleLanes& by : rows.by_edge) by *= weight;
-          }
-        },
-        kEdgesAtOnce);
+    linearise_edges(point, 0, point.edges.size());
     kept_.linearise(point.kept);
+  }
+  /// The rows of the events of the edges first .. last - 1 alone.
+  void linearise_edges(const Point& point, std::size_t first, std::size_t last) {
+    parallel_for(
+        last - first, [&](std::size_t k) { linearise_edge(point, first + k); }, kEdgesAtOnce);
   }
 
   /// Starts an edge's part of the normal equations with its prior: J^T J and J^T r.
@@ -147,6 +127,30 @@ class BundleRows {
   }
 
  private:
+  void linearise_edge(const Point& point, std::size_t e) {
+    const Edge& edge = bundle_.edges()[e];
+    const EdgeState<kUnknowns> state = Bundle::state(edge, point.edges[e]);
+    for (std::size_t i = edge.first_lanes; i < edge.last_lanes; ++i) {
+      const EventLanes<kSupport>& lanes = bundle_.lanes()[i];
+      RowLanes<kUnknowns>& rows = rows_[i];
+      // The cost at the point is finite, so that an event whose ray leads away is one by the
+      // rounding of its last bit: it is an outlier, and says nothing.
+      const bool is_whole =
+          event_rows(lanes, state, bundle_.camera(), motion_of(lanes, path_of(point)), rows);
+      if (!is_whole) {
+        rows = RowLanes<kUnknowns>{};
+        continue;
+      }
+      DoubleLanes weight;
+      for (std::size_t lane = 0; lane < kEventLanes; ++lane)
+        weight[lane] = cauchy_root_weight(rows.residual[lane] * rows.residual[lane],
+                                          EdgeNoise::kCauchyScale);
+      rows.residual *= weight;
+      for (DoubleLanes& by : rows.by_motion) by *= weight;
+      for (DoubleLanes& by : rows.by_edge) by *= weight;
+    }
+  }
+
   [[nodiscard]] std::span<const double> path_of(const Point& point) const {
     return std::span(point.kept).first(bundle_.path().size());
   }

@@ -82,9 +82,23 @@ PathCovariances<kSupport> path_covariances(EdgeBundle<kSupport, kUnknowns>& bund
   return {blocks.begin(), blocks.end()};
 }
 
+template <int kSupport, int kUnknowns>
+std::optional<PathInformation> path_information(EdgeBundle<kSupport, kUnknowns>& bundle,
+                                                std::size_t first, std::size_t last) {
+  BundleRows<kSupport, kUnknowns> rows(bundle);
+  const auto point = rows.point();
+  rows.linearise_edges(point, first, last);
+  const PathInformation found =
+      BundleEquations<kSupport, kUnknowns>(rows, first, last).path_information(point);
+  if (!found.information.allFinite() || !found.gradient.allFinite()) return std::nullopt;
+  return found;
+}
+
 template SolverSummary solve_bundle(WindowBundle&, BundleSolver, const BundleSolverOptions&);
 template SolverSummary solve_bundle(PathBundle&, BundleSolver, const BundleSolverOptions&);
 template PathCovariances<2> path_covariances(WindowBundle&);
 template PathCovariances<4> path_covariances(PathBundle&);
+template std::optional<PathInformation> path_information(WindowBundle&, std::size_t, std::size_t);
+template std::optional<PathInformation> path_information(PathBundle&, std::size_t, std::size_t);
 
 }  // namespace saccade

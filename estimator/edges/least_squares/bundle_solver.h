@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "estimator/edges/least_squares/cost_log.h"
 #include "estimator/edges/least_squares/edge_bundle.h"
+#include "estimator/edges/least_squares/path_information.h"
 
 namespace saccade {
 
@@ -30,5 +33,10 @@ using PathCovariances = std::vector<Eigen::Matrix<double, 6 * kSupport, 6 * kSup
 /// J with the weights of the losses. Empty where the problem does not determine it.
 template <int kSupport, int kUnknowns>
 [[nodiscard]] PathCovariances<kSupport> path_covariances(EdgeBundle<kSupport, kUnknowns>& bundle);
+
+/// Of the edges first .. last - 1, from where the unknowns are now. nullopt where it has no value.
+template <int kSupport, int kUnknowns>
+[[nodiscard]] std::optional<PathInformation> path_information(
+    EdgeBundle<kSupport, kUnknowns>& bundle, std::size_t first, std::size_t last);
 
 }  // namespace saccade

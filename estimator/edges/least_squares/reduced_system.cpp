@@ -102,6 +102,11 @@ void ReducedSystem::add_diagonal(const Eigen::VectorXd& diagonal) {
     sparse_.valuePtr()[sparse_.outerIndexPtr()[i]] += diagonal[i];
 }
 
+Eigen::MatrixXd ReducedSystem::matrix() const {
+  if (is_dense_) return dense_.selfadjointView<Eigen::Lower>();
+  return Eigen::MatrixXd(sparse_).selfadjointView<Eigen::Lower>();
+}
+
 bool ReducedSystem::factorise() {
   if (is_dense_) {
     dense_factor_.compute(dense_.selfadjointView<Eigen::Lower>());

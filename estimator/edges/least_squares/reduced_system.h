@@ -29,6 +29,9 @@ class ReducedSystem {
   void add(std::span<const std::uint32_t> blocks, const Eigen::MatrixXd& lower);
   void add_diagonal(const Eigen::VectorXd& diagonal);
 
+  /// The whole matrix.
+  [[nodiscard]] Eigen::MatrixXd matrix() const;
+
   /// False where the matrix is not positive definite.
   [[nodiscard]] bool factorise();
   /// After factorise().

@@ -26,34 +26,77 @@ std::vector<StampedPose> part_from(const Trajectory& path, double from_s) {
 EdgeView FixedLagSmoother::view(const ViewWindow& window, const WindowEdgels& found,
                                 double held_until_s) const {
   return edge_view(window, found, camera_,
-                   {options_.events_per_edge, options_.events_per_edge, held_until_s});
+                   {options_.events_per_edge, options_.given_events_per_edge, held_until_s});
 }
 
 void FixedLagSmoother::add(EdgeView newest) {
   if (newest.edges.empty()) return;
-  std::erase_if(views_,
-                [&](const EdgeView& view) { return view.t_s < newest.t_s - options_.lag_s; });
+  const auto first = std::partition_point(views_.begin(), views_.end(), [&](const EdgeView& view) {
+    return view.t_s < newest.t_s - options_.lag_s;
+  });
+  adjusted_views_ -= std::min(adjusted_views_, static_cast<std::size_t>(first - views_.begin()));
+  views_.erase(views_.begin(), first);
+  // What a longer window of the same beginning shows was found on a better path.
+  const double from_s = first_event_s(newest);
+  const auto repeated =
+      std::find_if(views_.begin() + static_cast<std::ptrdiff_t>(adjusted_views_), views_.end(),
+                   [&](const EdgeView& view) { return first_event_s(view) >= from_s; });
+  views_.erase(repeated, views_.end());
   views_.push_back(std::move(newest));
 }
 
 std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, double held_until_s,
-                                                   double typical_depth_m) const {
-  if (views_.size() < 2) return std::nullopt;
+                                                   double typical_depth_m) {
+  if (views_.empty()) return std::nullopt;
+  const PinholeCamera camera = camera_.undistorted();
+  const auto information_of_px = [&](double px) -> Matrix6 {
+    return sigma_of_px(px, camera, typical_depth_m).cwiseAbs2().cwiseInverse().asDiagonal();
+  };
   PathInput input;
   input.path = part_from(path, first_event_s(views_.front()));
   input.typical_depth_m = typical_depth_m;
   const double from_s = input.path.front().t_s;
-  if (from_s > path.start_s()) held_until_s = std::max(held_until_s, from_s + options_.held_s);
-  const auto is_held = [&](const StampedPose& pose) { return pose.t_s <= held_until_s; };
-  std::copy_if(input.path.begin(), input.path.end(), std::back_inserter(input.given), is_held);
   const Trajectory before = smoothed_path(input.path, options_.smoothing_s);
-  PathEdgeProblem problem(before, views_, input, camera_.undistorted(), options_.problem);
+  const SplineKnots knots = known_.knots(from_s, before.end_s());
+  if (known_.empty()) {
+    if (from_s > path.start_s()) held_until_s = std::max(held_until_s, from_s + options_.held_s);
+    for (const StampedPose& pose : input.path)
+      if (pose.t_s <= held_until_s) {
+        const Rigid3 now = before.at_clamped(pose.t_s);
+        known_.add_pose(knots, pose.t_s, (now.inverse() * pose.world_from_camera).log(),
+                        information_of_px(options_.problem.given_sigma_px));
+      }
+  } else {
+    known_.move(path_, before);
+    known_.forget_before(knots, information_of_px(options_.problem.correction_sigma_px));
+  }
+  PathEdgeProblem problem(before, views_, input, {knots, adjusted_views_}, camera,
+                          options_.problem);
+  if (!known_.empty()) problem.add_prior(known_.cost(), known_.controls());
   CostLog costs;
-  if (!problem.solve(costs)) return std::nullopt;
-  const Trajectory after = problem.path();
+  if (!problem.solve(costs)) {
+    clear();
+    return std::nullopt;
+  }
+  path_ = problem.path();
+  take_over(problem);
   for (StampedPose& pose : input.path)
-    if (!is_held(pose)) pose.world_from_camera = after.at_clamped(pose.t_s);
+    if (pose.t_s > held_until_s) pose.world_from_camera = path_.at_clamped(pose.t_s);
   return Trajectory(std::move(input.path));
+}
+
+void FixedLagSmoother::take_over(PathEdgeProblem& problem) {
+  const SplineKnots& knots = problem.correction().knots();
+  const std::span<const double> controls = problem.bundle().path();
+  known_.correct(knots, Eigen::Map<const Eigen::VectorXd>(
+                            controls.data(), static_cast<Eigen::Index>(controls.size())));
+  const double fresh_from_s = views_.back().t_s - options_.fresh_s;
+  std::size_t last = adjusted_views_;
+  while (last < views_.size() && views_[last].t_s < fresh_from_s) ++last;
+  if (last == adjusted_views_) return;
+  if (const auto information = problem.information_of_views(adjusted_views_, last))
+    known_.add(knots, *information);
+  adjusted_views_ = last;
 }
 
 }  // namespace saccade

@@ -8,6 +8,7 @@
 #include "core/trajectory.h"
 #include "estimator/depth/rays/ray_depth.h"
 #include "estimator/edges/edge_view.h"
+#include "estimator/edges/path/marginal_prior.h"
 #include "estimator/edges/path/path_edge_problem.h"
 
 namespace saccade {
@@ -19,11 +20,19 @@ struct FixedLagOptions {
   /// on what was known before.
   double held_s = 0.2;
   double smoothing_s = 0.025;  ///< knots of the given path, as of BatchAdjustmentOptions
-  int events_per_edge =
-      20;  ///< at most, evenly in time, and as many beside them while poses are held
+  int events_per_edge = 20;  ///< at most, evenly in time
+  /// Beside them, while poses are given: they alone say how far away an edge is in metres.
+  int given_events_per_edge = 100;
+  /// How long before the newest view the edges of views are adjusted [s]. What older ones say of the
+  /// path is known from then (MarginalPrior).
+  double fresh_s = 0.65;
   /// Of these edges at most `edges` of each view. Two iterations will do: the next view goes on with
-  /// what they leave. Views of odometry are of 0.65 s: events nearer than that are shared.
-  PathEdgeProblemOptions problem{.edges = 800, .reobserved_apart_s = 0.65, .iterations = 2};
+  /// what they leave. Views of odometry are of 0.65 s: events nearer than that are shared. Edges
+  /// are observed again by earlier views, whose own are not adjusted any more.
+  PathEdgeProblemOptions problem{.edges = 800,
+                                 .reobserving = Reobserving::kEarlier,
+                                 .reobserved_apart_s = 0.65,
+                                 .iterations = 2};
 };
 
 /// Fixed-lag smoothing of a camera's path: of the last seconds the path and the edges of all views
@@ -34,7 +43,7 @@ class FixedLagSmoother {
  public:
   /// `camera` may have a lens.
   FixedLagSmoother(const FixedLagOptions& options, const PinholeCamera& camera)
-      : options_(options), camera_(camera) {}
+      : options_(options), camera_(camera), known_(options.problem.knot_spacing_s) {}
 
   [[nodiscard]] bool is_enabled() const { return options_.lag_s > 0; }
 
@@ -45,18 +54,28 @@ class FixedLagSmoother {
   /// Adds the newest view; those that have left the lag are forgotten.
   void add(EdgeView newest);
   /// Forgets all views, of a path that turned out to be wrong.
-  void clear() { views_.clear(); }
+  void clear() {
+    views_.clear();
+    adjusted_views_ = 0;
+    known_ = MarginalPrior(options_.problem.knot_spacing_s);
+  }
 
   /// The poses of `path` from the lag's beginning to its end, adjusted with the edges of the views.
   /// Those until `held_until_s` stay as they are. nullopt: there are not two views to adjust them
   /// by.
   [[nodiscard]] std::optional<Trajectory> smooth(const Trajectory& path, double held_until_s,
-                                                 double typical_depth_m) const;
+                                                 double typical_depth_m);
 
  private:
+  /// What views say that are not adjusted any more from now on.
+  void take_over(PathEdgeProblem& problem);
+
   FixedLagOptions options_;
   PinholeCamera camera_;
-  std::vector<EdgeView> views_;  ///< in order of time
+  std::vector<EdgeView> views_;     ///< in order of time
+  std::size_t adjusted_views_ = 0;  ///< of them the first, which are adjusted no more
+  MarginalPrior known_;
+  Trajectory path_;  ///< that it is about
 };
 
 }  // namespace saccade

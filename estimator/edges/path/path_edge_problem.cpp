@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "core/error.h"
 #include "core/process/parallel.h"
@@ -19,6 +20,12 @@ constexpr std::size_t kGrain = 64;       ///< edges that a thread takes at a tim
 
 }  // namespace
 
+Twist sigma_of_px(double px, const PinholeCamera& camera, double depth_m) {
+  const double rad = px / camera.fx;
+  return (Twist() << Eigen::Vector3d::Constant(rad * depth_m), Eigen::Vector3d::Constant(rad))
+      .finished();
+}
+
 Trajectory smoothed_path(std::span<const StampedPose> path, double smoothing_s) {
   const Spline spline = Spline::smooth(path, smoothing_s);
   const double length_s = spline.end_s() - spline.start_s();
@@ -34,17 +41,35 @@ Trajectory smoothed_path(std::span<const StampedPose> path, double smoothing_s) 
 PathEdgeProblem::PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views,
                                  const PathInput& input, const PinholeCamera& camera,
                                  const PathEdgeProblemOptions& options)
+    : PathEdgeProblem(
+          path, views, input,
+          {SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)}, camera,
+          options) {}
+
+PathEdgeProblem::PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views,
+                                 const PathInput& input, const PathEdgePart& part,
+                                 const PinholeCamera& camera, const PathEdgeProblemOptions& options)
     : path_(path),
       views_(views),
       options_(options),
       camera_(camera),
       depth_m_(input.typical_depth_m),
-      correction_(SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)),
+      correction_(part.knots),
+      world_from_camera_(path, path.start_s(), path.end_s()),
       bundle_(camera_, correction_.unknowns()) {
-  for (const EdgeView& view : views) world_from_view_.push_back(path.at_clamped(view.t_s));
-  choose_edges();
+  for (const EdgeView& view : views) {
+    world_from_view_.push_back(path.at_clamped(view.t_s));
+    view_from_world_.push_back(world_from_view_.back().inverse());
+  }
+  choose_edges(part.first_view);
   add_edges();
   add_path_priors(input.given);
+}
+
+void PathEdgeProblem::add_prior(std::unique_ptr<ceres::CostFunction> cost, std::size_t controls) {
+  std::vector<double*> blocks;
+  for (std::size_t k = 0; k < controls; ++k) blocks.push_back(correction_.data(k));
+  bundle_.add_factor(std::move(cost), std::move(blocks));
 }
 
 bool PathEdgeProblem::solve(CostLog& costs, const std::function<void()>& each) {
@@ -55,18 +80,22 @@ bool PathEdgeProblem::solve(CostLog& costs, const std::function<void()>& each) {
   return summary.is_usable;
 }
 
-/// The sigma of a twist (v, w) whose parts move the image by `px`.
-Twist PathEdgeProblem::sigma_of_px(double px) const {
-  const double rad = px / camera_.fx;
-  return (Twist() << Eigen::Vector3d::Constant(rad * depth_m_), Eigen::Vector3d::Constant(rad))
-      .finished();
+std::optional<PathInformation> PathEdgeProblem::information_of_views(std::size_t first,
+                                                                     std::size_t last) {
+  const auto begin_of = [&](std::size_t view) {
+    const auto edge = std::partition_point(edges_.begin(), edges_.end(), [&](const PathEdge& e) {
+      return e.found.view < view;
+    });
+    return static_cast<std::size_t>(edge - edges_.begin());
+  };
+  return path_information(bundle_, begin_of(first), begin_of(last));
 }
 
-void PathEdgeProblem::choose_edges() {
+void PathEdgeProblem::choose_edges(std::size_t first_view) {
   if (views_.empty()) return;
   const int most =
       std::min(options_.edges, std::max(1, options_.all_edges / static_cast<int>(views_.size())));
-  for (std::size_t k = 0; k < views_.size(); ++k)
+  for (std::size_t k = first_view; k < views_.size(); ++k)
     for (const std::size_t i : evenly(views_[k].edges.size(), most)) {
       const auto rho = static_cast<double>(views_[k].edges[i].edge.inverse_depth);
       edges_.push_back({{k, i}, {rho, 0, 0, 0, 0}});
@@ -79,7 +108,8 @@ void PathEdgeProblem::add_edges() {
   for (const PathEdge& edge : edges_) found.push_back(edge.found);
   std::vector<std::vector<EdgeOfView>> again(edges_.size());
   if (options_.reobserved_views > 0)
-    again = reobservations(found, views_, world_from_view_, options_.reobserved_apart_s, camera_);
+    again = reobservations(found, views_, world_from_view_, options_.reobserving,
+                           options_.reobserved_apart_s, camera_);
   std::vector<std::vector<PathBundle::Event>> events(edges_.size());
   parallel_for(
       edges_.size(), [&](std::size_t i) { events[i] = events_of(edges_[i], again[i]); }, kGrain);
@@ -116,7 +146,7 @@ PathBundle::Event PathEdgeProblem::event_of(const PathEdge& edge, const EdgeEven
   const Edgel& line = found(edge.found).edge;
   EdgeObservation observation;
   observation.view_from_camera =
-      world_from_view_[edge.found.view].inverse() * path_.at_clamped(event.t_s);
+      view_from_world_[edge.found.view] * world_from_camera_.at(event.t_s);
   observation.ray = Eigen::Vector3f(event.ray_x, event.ray_y, 1).cast<double>();
   observation.lag = static_cast<double>(event.polarity);
   observation.pixel = line.pixel.cast<double>();
@@ -126,13 +156,13 @@ PathBundle::Event PathEdgeProblem::event_of(const PathEdge& edge, const EdgeEven
 }
 
 void PathEdgeProblem::add_path_priors(const std::vector<StampedPose>& given) {
-  const Matrix6 weak = root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px));
+  const Matrix6 weak = root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px, camera_, depth_m_));
   for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
     bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(weak, Twist::Zero()),
                        {correction_.data(k)});
   }
   add_slope_prior();
-  const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px));
+  const Matrix6 root = root_of_sigma<6>(sigma_of_px(options_.given_sigma_px, camera_, depth_m_));
   for (const StampedPose& pose : given) {
     if (pose.t_s < path_.start_s() || pose.t_s > path_.end_s()) continue;
     const SplineKnots::LocalBasis basis = correction_.knots().at(pose.t_s);
@@ -154,7 +184,7 @@ void PathEdgeProblem::add_prior(const Matrix6& root, const Twist& mean,
 /// c_(k-1) - 2 c_k + c_(k+1) = 0 of the correction's controls: its slope is a random walk.
 void PathEdgeProblem::add_slope_prior() {
   const double walk_px = options_.slope_walk_px * std::pow(options_.knot_spacing_s, 1.5);
-  const Matrix6 root = root_of_sigma<6>(sigma_of_px(walk_px));
+  const Matrix6 root = root_of_sigma<6>(sigma_of_px(walk_px, camera_, depth_m_));
   const std::size_t last = correction_.knots().controls() - 4;
   for (std::size_t k = 0; k <= last + 1; ++k) {
     // Four controls at a time, the last four twice: three of them count.

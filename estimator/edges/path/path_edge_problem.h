@@ -1,16 +1,19 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/trajectory.h"
+#include "estimator/edges/dense_path.h"
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_view.h"
 #include "estimator/edges/least_squares/cost_log.h"
 #include "estimator/edges/least_squares/edge_bundle.h"
+#include "estimator/edges/least_squares/path_information.h"
 #include "estimator/edges/path/inertial_factors.h"
 #include "estimator/edges/path/path_correction.h"
 
@@ -20,7 +23,8 @@ struct PathEdgeProblemOptions {
   double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
   int edges = 1500;                 ///< of a view, at most, evenly chosen
   int all_edges = 100000;           ///< of all views: some seven million events, 2 to 3 GB
-  int reobserved_views = 4;         ///< later ones that observe an edge again, at most
+  Reobserving reobserving = Reobserving::kLater;
+  int reobserved_views = 4;         ///< later (earlier) ones that observe an edge again, at most
   int reobserved_events = 10;       ///< of an edge in each of them, at most
   double reobserved_apart_s = 1.6;  ///< from the edge's view to these, at least
   double correction_sigma_px = 30;  ///< of the correction from 0, as image motion
@@ -37,6 +41,15 @@ struct PathInput {
   std::vector<StampedPose> given;
   double typical_depth_m = 1;  ///< converts pixels to metres
 };
+
+/// Which part of a path and of its views is adjusted.
+struct PathEdgePart {
+  SplineKnots knots;           ///< of the correction
+  std::size_t first_view = 0;  ///< edges of views before this one only observe others again
+};
+
+/// The sigma of a twist (v, w) whose parts move the image by `px`.
+[[nodiscard]] Twist sigma_of_px(double px, const PinholeCamera& camera, double depth_m);
 
 /// A camera's path every millisecond: the poses through a smooth spline.
 [[nodiscard]] Trajectory smoothed_path(std::span<const StampedPose> path, double smoothing_s);
@@ -55,6 +68,12 @@ class PathEdgeProblem {
   /// undistorted.
   PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views, const PathInput& input,
                   const PinholeCamera& camera, const PathEdgeProblemOptions& options);
+  PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views, const PathInput& input,
+                  const PathEdgePart& part, const PinholeCamera& camera,
+                  const PathEdgeProblemOptions& options);
+
+  /// What else is known of the first controls of the correction, six numbers each.
+  void add_prior(std::unique_ptr<ceres::CostFunction> cost, std::size_t controls);
 
   /// The samples of an inertial sensor join in, each worth `1 / information_ratio` of what it would
   /// be beside independent events. Throws InputError where they do not fit the path.
@@ -63,6 +82,10 @@ class PathEdgeProblem {
 
   /// False: it has no solution. `each` is called after every iteration, if set.
   bool solve(CostLog& costs, const std::function<void()>& each = {});
+
+  /// What the edges of these views say of the correction, from where it is now, whatever they are.
+  [[nodiscard]] std::optional<PathInformation> information_of_views(std::size_t first,
+                                                                    std::size_t last);
 
   /// As corrected.
   [[nodiscard]] Trajectory path() const { return correction_.applied(path_); }
@@ -78,11 +101,10 @@ class PathEdgeProblem {
     Unknowns unknowns;
   };
 
-  [[nodiscard]] Twist sigma_of_px(double px) const;
   [[nodiscard]] const FittedEdgel& found(const EdgeOfView& edge) const {
     return views_[edge.view].edges[edge.edge];
   }
-  void choose_edges();
+  void choose_edges(std::size_t first_view);
   void add_edges();
   [[nodiscard]] std::vector<PathBundle::Event> events_of(
       const PathEdge& edge, std::span<const EdgeOfView> reobservations) const;
@@ -99,7 +121,8 @@ class PathEdgeProblem {
   PinholeCamera camera_;
   double depth_m_;
   PathCorrection correction_;
-  std::vector<Rigid3> world_from_view_;
+  DensePath world_from_camera_;
+  std::vector<Rigid3> world_from_view_, view_from_world_;
   std::vector<PathEdge> edges_;
   std::optional<InertialFactors> inertial_factors_;
   PathBundle bundle_;

@@ -93,7 +93,7 @@ TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterViewsThatAreFarEnoughAway) {
     views[2].edges.push_back(*seen);
   }
   const std::vector<EdgeOfView> edges{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}};
-  const auto again = reobservations(edges, views, poses, 1.5, kCamera);
+  const auto again = reobservations(edges, views, poses, Reobserving::kLater, 1.5, kCamera);
   ASSERT_EQ(again.size(), 5U);
   ASSERT_EQ(again[0].size(), 1U);
   EXPECT_EQ(again[0][0].view, 2U);

@@ -96,6 +96,19 @@ TEST(BundleSolver, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(paths[0], paths[2]);
 }
 
+/// Of the priors on the path of a SyntheticBundle.
+Eigen::MatrixXd prior_information(Eigen::Index path) {
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(path, path);
+  prior.diagonal().head<6>().array() += 1e8;
+  for (Eigen::Index i = 6; i < path; ++i) {
+    prior(i, i) += 1e4;
+    prior(i - 6, i - 6) += 1e4;
+    prior(i, i - 6) -= 1e4;
+    prior(i - 6, i) -= 1e4;
+  }
+  return prior;
+}
+
 /// The covariance of the path by the normal equations of all unknowns in one dense matrix, from the
 /// scalar residual's derivatives.
 Eigen::MatrixXd dense_covariance(const SyntheticProblem<4, 5>& problem) {
@@ -134,13 +147,7 @@ Eigen::MatrixXd dense_covariance(const SyntheticProblem<4, 5>& problem) {
                 row[a] * row[b];
       }
   }
-  square.diagonal().head<6>().array() += 1e8;
-  for (Eigen::Index i = 6; i < path; ++i) {
-    square(i, i) += 1e4;
-    square(i - 6, i - 6) += 1e4;
-    square(i, i - 6) -= 1e4;
-    square(i - 6, i) -= 1e4;
-  }
+  square.topLeftCorner(path, path) += prior_information(path);
   return square.llt().solve(Eigen::MatrixXd::Identity(all, path)).topRows(path);
 }
 
@@ -155,6 +162,35 @@ TEST(BundleSolver, CovariancesAreThoseOfTheWholeProblem) {
     const auto expected = whole.block<24, 24>(at, at);
     EXPECT_LT((covariances[i] - expected).norm(), 1e-6 * expected.norm()) << i;
   }
+}
+
+TEST(BundleSolver, WhatEdgesSayOfThePathIsWhatIsKnownBesideThePriors) {
+  SyntheticProblem<4, 5> problem({.twists = 11, .has_surface = false, .is_robust = false});
+  (void)solve_bundle(problem.bundle, BundleSolver::kStructured, {40, 1e-15});
+  const auto all = path_information(problem.bundle, 0, kEdges);
+  ASSERT_TRUE(all);
+  const Eigen::MatrixXd prior = prior_information(66);
+  const Eigen::MatrixXd covariance = (all->information + prior).inverse();
+  const Eigen::MatrixXd expected = dense_covariance(problem);
+  EXPECT_LT((covariance - expected).norm(), 1e-6 * expected.norm());
+  // At the solution edges and priors pull the path with the same force, in opposite directions.
+  const Eigen::VectorXd pull = prior * Eigen::Map<const Eigen::VectorXd>(problem.path.data(), 66);
+  EXPECT_GT(pull.norm(), 0.1);
+  EXPECT_LT((all->gradient + pull).norm(), 1e-3 * pull.norm());
+}
+
+TEST(BundleSolver, WhatSomeEdgesSayAddsUp) {
+  SyntheticProblem<2, 4> problem({.twists = 9});
+  const auto all = path_information(problem.bundle, 0, kEdges);
+  const auto first = path_information(problem.bundle, 0, 70);
+  const auto second = path_information(problem.bundle, 70, kEdges);
+  ASSERT_TRUE(all && first && second);
+  EXPECT_LT((first->information + second->information - all->information).norm(),
+            1e-10 * all->information.norm());
+  EXPECT_LT((first->gradient + second->gradient - all->gradient).norm(),
+            1e-10 * all->gradient.norm());
+  EXPECT_TRUE(all->information.isApprox(all->information.transpose(), 1e-12));
+  EXPECT_EQ(path_information(problem.bundle, 70, 70)->information.norm(), 0);
 }
 
 /// An edge whose point leaves the view, one behind the camera and one of a single event: what

@@ -18,16 +18,10 @@ using testing::kCornerDepth_m;
 constexpr double kLagEnd_s = 0.4;
 constexpr double kHeldUntil_s = 0.15;
 
-/// corner_glide(), drifting away after kHeldUntil_s: 1 % of the depth and 7 mrad in the end.
-Rigid3 drifting(double t_s) {
-  const double away = std::max(0.0, t_s - kHeldUntil_s) / (kLagEnd_s - kHeldUntil_s);
-  return corner_glide(t_s) *
-         Rigid3::exp(away * (Twist() << 0.016, -0.01, 0.015, 0.003, 0.004, -0.005).finished());
-}
-
 Trajectory drifting_path() {
   std::vector<StampedPose> poses;
-  for (double t_s = 0; t_s <= kLagEnd_s + 1e-9; t_s += 2e-3) poses.push_back({t_s, drifting(t_s)});
+  for (double t_s = 0; t_s <= kLagEnd_s + 1e-9; t_s += 2e-3)
+    poses.push_back({t_s, testing::drifting_glide(t_s, kHeldUntil_s, kLagEnd_s)});
   return Trajectory(std::move(poses));
 }
 
@@ -40,21 +34,24 @@ class FixedLag : public ::testing::Test {
 
   /// A smoother with the views at these times, of a window of 0.3 s each on the drifted path.
   FixedLagSmoother smoother(double lag_s, std::initializer_list<double> times_s) const {
-    static const Events events = world().simulate(corner_glide, 0, kLagEnd_s, 1e-3, 0.15);
     FixedLagOptions options;
     options.lag_s = lag_s;
     options.problem.edges = 300;
     options.problem.iterations = 10;
     FixedLagSmoother smoother(options, world().camera());
+    for (const double t_s : times_s) smoother.add(view(smoother, path_, t_s));
+    return smoother;
+  }
+
+  /// Of a window of 0.3 s around `t_s` that begins no earlier than the recording.
+  static EdgeView view(const FixedLagSmoother& smoother, const Trajectory& path, double t_s) {
+    static const Events events = world().simulate(corner_glide, 0, kLagEnd_s, 1e-3, 0.15);
     const DepthConfig config;
     const RayDepth depth(config.rays, config.limits, world().camera());
-    for (const double t_s : times_s) {
-      const ViewWindow window{
-          events_between(events, ns_from_seconds(t_s - 0.15), ns_from_seconds(t_s + 0.15)), &path_,
-          t_s};
-      smoother.add(smoother.view(window, depth.find_edgels(window), kHeldUntil_s));
-    }
-    return smoother;
+    const ViewWindow window{
+        events_between(events, ns_from_seconds(t_s - 0.15), ns_from_seconds(t_s + 0.15)), &path,
+        t_s};
+    return smoother.view(window, depth.find_edgels(window), kHeldUntil_s);
   }
 
   static double error_m(const Trajectory& path, double t_s) {
@@ -92,12 +89,45 @@ TEST_F(FixedLag, WhatIsOlderThanTheLagIsNoLongerPartOfIt) {
   EXPECT_EQ(smoothed->end_s(), path_.end_s());
 }
 
-TEST_F(FixedLag, OneViewAloneIsLeftToItsOwnAdjustment) {
-  FixedLagSmoother one = smoother(1, {0.2});
-  EXPECT_FALSE(one.smooth(path_, kHeldUntil_s, kCornerDepth_m));
+TEST_F(FixedLag, ViewsThatAreNotAdjustedAnyMoreStillCount) {
+  // The first view is adjusted until the second one is there, and so on.
+  FixedLagOptions options;
+  options.lag_s = 1;
+  options.fresh_s = 0.05;
+  options.problem.edges = 300;
+  FixedLagSmoother smoother(options, world().camera());
+  Trajectory path = path_;
+  for (const double t_s : {0.1, 0.2, 0.3}) {
+    smoother.add(view(smoother, path, t_s));
+    const auto smoothed = smoother.smooth(path, kHeldUntil_s, kCornerDepth_m);
+    ASSERT_TRUE(smoothed);
+    path = *smoothed;
+  }
+  // Of the last view's window half is after what the others have seen.
+  for (const double t_s : {0.25, 0.3, 0.35, 0.38})
+    EXPECT_LT(error_m(path, t_s), 0.5 * error_m(path_, t_s)) << t_s;
+}
+
+TEST_F(FixedLag, ALongerWindowOfTheSameBeginningReplacesAView) {
+  FixedLagOptions options;
+  options.lag_s = 1;
+  options.problem.edges = 300;
+  options.problem.iterations = 10;
+  FixedLagSmoother once(options, world().camera()), again(options, world().camera());
+  again.add(view(again, path_, 0.1));
+  for (FixedLagSmoother* smoother : {&once, &again}) smoother->add(view(*smoother, path_, 0.14));
+  const auto first = once.smooth(path_, kHeldUntil_s, kCornerDepth_m);
+  const auto second = again.smooth(path_, kHeldUntil_s, kCornerDepth_m);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->poses().back().world_from_camera.translation(),
+            second->poses().back().world_from_camera.translation());
+}
+
+TEST_F(FixedLag, WithoutAViewThereIsNothingToAdjustBy) {
   FixedLagSmoother none = smoother(1, {0.1, 0.2});
   none.clear();
   EXPECT_FALSE(none.smooth(path_, kHeldUntil_s, kCornerDepth_m));
+  EXPECT_TRUE(smoother(1, {0.2}).smooth(path_, kHeldUntil_s, kCornerDepth_m));
   EXPECT_FALSE(FixedLagSmoother({}, world().camera()).is_enabled());
 }
 
