@@ -68,6 +68,18 @@ std::vector<Event> of_some_pixels(std::span<const Event> events, std::size_t mos
   return kept;
 }
 
+/// A window that is shorter than usual is adjusted by more edges and more often, for about the same time: at
+/// the start depths and poses are poor.
+WindowAdjustmentOptions for_length(WindowAdjustmentOptions adjustment, double length_s,
+                                   double usual_s) {
+  constexpr double kMostEdges = 4, kMostIterations = 2;  ///< times as many
+  const double shorter = std::max(1.0, usual_s / std::max(length_s, 1e-3));
+  adjustment.edges = static_cast<int>(adjustment.edges * std::min(shorter, kMostEdges));
+  adjustment.iterations =
+      static_cast<int>(adjustment.iterations * std::min(shorter, kMostIterations));
+  return adjustment;
+}
+
 constexpr double kMostRelaxed = 9;
 
 /// Edges of `factor` times the sigma count, too.
@@ -200,12 +212,16 @@ std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& 
                                                 double typical_depth_m) const {
   std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
+  const double length_s =
+      seconds_from_ns(window.events.back().t_ns - window.events.front().t_ns);
+  const WindowAdjustmentOptions adjustment_options =
+      for_length(options_.adjustment, length_s, options_.duration_s);
   for (int i = 0; i < options_.adjust_rounds; ++i) {
     edges = depth.find_edgels(window);
     WindowAdjustment adjustment = adjust_window(
         window, *edges, camera_,
         {estimate.fixed_until_s, estimate.given_until_s, typical_depth_m, estimate.landmarks},
-        options_.adjustment);
+        adjustment_options);
     if (!adjustment.ok) break;
     path = std::move(adjustment.trajectory);
     edges = std::move(adjustment.edges);

@@ -276,18 +276,18 @@ bool Odometry::has_doubled_baseline() const {
          doubling_m() < options_.keyframe.distance * typical_depth_m_;
 }
 
-double Odometry::least_interval_s() const {
-  if (!options_.keyframe.doubles_baseline) return options_.keyframe.interval_s;
-  // Windows of a short path are short: they cost little, and with a quarter more of it depths are
-  // a quarter better.
-  const double known_s = path_.back().t_s - path_.front().t_s;
-  return std::min(options_.keyframe.interval_s, known_s / 4);
-}
-
 bool Odometry::wants_keyframe() const {
-  return has_doubled_baseline() ||
-         (path_.back().t_s >= interval_from_s_ + least_interval_s() &&
-          moved_m() >= options_.keyframe.distance * typical_depth_m_);  // d_kf
+  if (has_doubled_baseline()) return true;
+  double interval_s = options_.keyframe.interval_s;
+  double distance_m = options_.keyframe.distance * typical_depth_m_;  // d_kf
+  const double quarter_s = (path_.back().t_s - path_.front().t_s) / 4;
+  if (options_.keyframe.doubles_baseline && quarter_s < interval_s) {
+    // Windows of a short path are short: they cost little, and with a quarter more of it depths are
+    // a quarter better. Until then the camera is tracked by depths that may be poor.
+    interval_s = quarter_s;
+    distance_m = std::min(distance_m, baseline_m_ / 4);
+  }
+  return path_.back().t_s >= interval_from_s_ + interval_s && moved_m() >= distance_m;
 }
 
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {

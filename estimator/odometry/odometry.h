@@ -149,7 +149,6 @@ class Odometry {
   [[nodiscard]] double moved_m() const;  ///< since the last keyframe was begun
   [[nodiscard]] double doubling_m() const;
   [[nodiscard]] bool has_doubled_baseline() const;
-  [[nodiscard]] double least_interval_s() const;
   [[nodiscard]] bool wants_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
   [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path);
