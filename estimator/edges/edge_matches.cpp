@@ -63,7 +63,7 @@ std::optional<std::size_t> EdgeMatcher::match(const Edgel& edge) const {
 std::vector<std::vector<EdgeOfView>> reobservations(std::span<const EdgeOfView> edges,
                                                     std::span<const EdgeView> views,
                                                     std::span<const Rigid3> world_from_view,
-                                                    Reobserving which, double apart_s,
+                                                    Reobserving which,
                                                     const PinholeCamera& camera) {
   std::vector<std::vector<EdgeOfView>> observations(edges.size());
   const auto find = [&](std::size_t view) {
@@ -72,9 +72,9 @@ std::vector<std::vector<EdgeOfView>> reobservations(std::span<const EdgeOfView> 
     const auto last = std::lower_bound(first, edges.end(), view + 1, before);
     if (first == last) return;
     const Rigid3 view_from_world = world_from_view[view].inverse();
-    const double direction = which == Reobserving::kLater ? 1 : -1;
-    for (std::size_t other = 0; other < views.size(); ++other) {
-      if (other == view || direction * (views[other].t_s - views[view].t_s) < apart_s) continue;
+    const bool later = which == Reobserving::kLater;
+    for (std::size_t other = later ? view + 1 : 0; other < (later ? views.size() : view); ++other) {
+      if (views[other].shares_events_with(views[view])) continue;
       const EdgeMatcher matcher(views[other].edges, view_from_world * world_from_view[other],
                                 camera);
       for (auto edge = first; edge != last; ++edge)

@@ -47,12 +47,12 @@ struct EdgeOfView {
 /// Which of two views observes the edges of the other again.
 enum class Reobserving { kLater, kEarlier };
 
-/// Observations of each of these edges by later (earlier) views at least `apart_s` away, in order
-/// of time. `views` are in order of time, with their poses on the camera's path; `edges` are in
-/// order of their views.
+/// Observations of each of these edges by later (earlier) views that share no events with its own,
+/// in order of time. `views` are in order of time, with their poses on the camera's path; `edges`
+/// are in order of their views.
 [[nodiscard]] std::vector<std::vector<EdgeOfView>> reobservations(
     std::span<const EdgeOfView> edges, std::span<const EdgeView> views,
-    std::span<const Rigid3> world_from_view, Reobserving which, double apart_s,
+    std::span<const Rigid3> world_from_view, Reobserving which,
     const PinholeCamera& camera);
 
 }  // namespace saccade

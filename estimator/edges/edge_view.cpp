@@ -53,7 +53,13 @@ EdgeView edge_view(const ViewWindow& window, const WindowEdgels& found, const Pi
     }
   };
   parallel_for(found.edges.size(), choose, kGrain);
-  EdgeView view{window.reference_s, found.edges, {}};
+  EdgeView view;
+  view.t_s = window.reference_s;
+  view.edges = found.edges;
+  if (!window.events.empty()) {
+    view.from_s = seconds_from_ns(window.events.front().t_ns);
+    view.until_s = seconds_from_ns(window.events.back().t_ns);
+  }
   for (std::size_t i = 0; i < of_edge.size(); ++i) {
     view.edges[i].first = static_cast<std::uint32_t>(view.events.size());
     view.events.insert(view.events.end(), of_edge[i].begin(), of_edge[i].end());

@@ -22,9 +22,13 @@ struct EdgeEvent {
 /// The edges that a window shows as of one view, each with some of its events.
 struct EdgeView {
   double t_s = 0;                  ///< of the view
+  double from_s = 0, until_s = 0;  ///< of the window's first and last event
   std::vector<FittedEdgel> edges;  ///< `first` and `last` are indices into `events`
   std::vector<EdgeEvent> events;   ///< of an edge in order of time
 
+  [[nodiscard]] bool shares_events_with(const EdgeView& other) const {
+    return from_s <= other.until_s && other.from_s <= until_s;
+  }
   [[nodiscard]] std::span<const EdgeEvent> of(const FittedEdgel& edge) const {
     return std::span(events).subspan(edge.first, edge.last - edge.first);
   }

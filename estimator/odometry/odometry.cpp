@@ -323,7 +323,7 @@ void Odometry::smooth(const PathEstimate& path, Mapping& mapping) {
   Keyframe& keyframe = mapping.keyframe;
   const Trajectory adjusted = with_adjusted(path.poses, mapping, held_until_s_);
   const ViewWindow window{mapping.edges->events, &adjusted, keyframe.t_s};
-  smoother_.add(smoother_.view(window, mapping.edges->edges, held_until_s_));
+  smoother_.add(smoother_.view(window, mapping.edges->edges, held_until_s_), held_until_s_);
   const Trajectory smoothed =
       smoother_.smooth(adjusted, held_until_s_, keyframe.typical_depth_m).value_or(adjusted);
   mapping.world_from_before = smoothed.at_clamped(keyframe.end_s) *

@@ -92,13 +92,11 @@ BatchAdjustment adjust_batch(std::span<const Event> events, const BatchInput& in
   result.path = smoothed_path(input.path, options.smoothing_s);
   const std::vector<double> times_s =
       batch_views(input.keyframe_s, result.path.end_s(), options.window_s);
-  PathEdgeProblemOptions problem_options = options.problem;
-  problem_options.reobserved_apart_s = options.window_s;
   for (int i = 0; i < options.rounds; ++i) {
     const Trajectory before = result.path;
     const std::vector<EdgeView> views =
         edge_views(events, before, times_s, input, camera, depth, options);
-    PathEdgeProblem problem(before, views, input, camera.undistorted(), problem_options);
+    PathEdgeProblem problem(before, views, input, camera.undistorted(), options.problem);
     if (options.use_imu)
       problem.add_inertial_sensor(*input.imu, input.is_metric, options.imu_interval_s,
                                   options.information_ratio);

@@ -8,12 +8,6 @@
 namespace saccade {
 namespace {
 
-double first_event_s(const EdgeView& view) {
-  double first_s = view.t_s;
-  for (const EdgeEvent& event : view.events) first_s = std::min(first_s, event.t_s);
-  return first_s;
-}
-
 /// The part of a path from the last pose until `from_s` on.
 std::vector<StampedPose> part_from(const Trajectory& path, double from_s) {
   const std::size_t first = path.last_before(from_s).value_or(0);
@@ -29,20 +23,21 @@ EdgeView FixedLagSmoother::view(const ViewWindow& window, const WindowEdgels& fo
                    {options_.events_per_edge, options_.given_events_per_edge, held_until_s});
 }
 
-void FixedLagSmoother::add(EdgeView newest) {
+void FixedLagSmoother::add(EdgeView newest, double held_until_s) {
   if (newest.edges.empty()) return;
-  const auto first = std::partition_point(views_.begin(), views_.end(), [&](const EdgeView& view) {
-    return view.t_s < newest.t_s - options_.lag_s;
-  });
-  adjusted_views_ -= std::min(adjusted_views_, static_cast<std::size_t>(first - views_.begin()));
-  views_.erase(views_.begin(), first);
-  // What a longer window of the same beginning shows was found on a better path.
-  const double from_s = first_event_s(newest);
-  const auto repeated =
-      std::find_if(views_.begin() + static_cast<std::ptrdiff_t>(adjusted_views_), views_.end(),
-                   [&](const EdgeView& view) { return first_event_s(view) >= from_s; });
-  views_.erase(repeated, views_.end());
-  views_.push_back(std::move(newest));
+  std::vector<EdgeView> kept;
+  std::size_t adjusted = 0;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    // What a longer window with the same events shows was found on a better path.
+    const bool is_repeated =
+        views_[i].from_s >= newest.from_s && views_[i].until_s > held_until_s;
+    if (views_[i].t_s < newest.t_s - options_.lag_s || is_repeated) continue;
+    if (i < adjusted_views_) ++adjusted;
+    kept.push_back(std::move(views_[i]));
+  }
+  kept.push_back(std::move(newest));
+  views_ = std::move(kept);
+  adjusted_views_ = adjusted;
 }
 
 std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, double held_until_s,
@@ -53,7 +48,7 @@ std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, doubl
     return sigma_of_px(px, camera, typical_depth_m).cwiseAbs2().cwiseInverse().asDiagonal();
   };
   PathInput input;
-  input.path = part_from(path, first_event_s(views_.front()));
+  input.path = part_from(path, views_.front().from_s);
   input.typical_depth_m = typical_depth_m;
   const double from_s = input.path.front().t_s;
   const Trajectory before = smoothed_path(input.path, options_.smoothing_s);

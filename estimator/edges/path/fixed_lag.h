@@ -27,12 +27,10 @@ struct FixedLagOptions {
   /// path is known from then (MarginalPrior).
   double fresh_s = 0.65;
   /// Of these edges at most `edges` of each view. Two iterations will do: the next view goes on with
-  /// what they leave. Views of odometry are of 0.65 s: events nearer than that are shared. Edges
-  /// are observed again by earlier views, whose own are not adjusted any more.
-  PathEdgeProblemOptions problem{.edges = 800,
-                                 .reobserving = Reobserving::kEarlier,
-                                 .reobserved_apart_s = 0.65,
-                                 .iterations = 2};
+  /// what they leave. Edges are observed again by earlier views, whose own are not adjusted any
+  /// more.
+  PathEdgeProblemOptions problem{
+      .edges = 800, .reobserving = Reobserving::kEarlier, .iterations = 2};
 };
 
 /// Fixed-lag smoothing of a camera's path: of the last seconds the path and the edges of all views
@@ -51,8 +49,9 @@ class FixedLagSmoother {
   [[nodiscard]] EdgeView view(const ViewWindow& window, const WindowEdgels& found,
                               double held_until_s) const;
 
-  /// Adds the newest view; those that have left the lag are forgotten.
-  void add(EdgeView newest);
+  /// Adds the newest view. Those that have left the lag are forgotten, and those whose events it has,
+  /// unless all of them are of given poses, those until `held_until_s`.
+  void add(EdgeView newest, double held_until_s);
   /// Forgets all views, of a path that turned out to be wrong.
   void clear() {
     views_.clear();

@@ -108,8 +108,7 @@ void PathEdgeProblem::add_edges() {
   for (const PathEdge& edge : edges_) found.push_back(edge.found);
   std::vector<std::vector<EdgeOfView>> again(edges_.size());
   if (options_.reobserved_views > 0)
-    again = reobservations(found, views_, world_from_view_, options_.reobserving,
-                           options_.reobserved_apart_s, camera_);
+    again = reobservations(found, views_, world_from_view_, options_.reobserving, camera_);
   std::vector<std::vector<PathBundle::Event>> events(edges_.size());
   parallel_for(
       edges_.size(), [&](std::size_t i) { events[i] = events_of(edges_[i], again[i]); }, kGrain);

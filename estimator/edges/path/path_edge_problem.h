@@ -26,7 +26,6 @@ struct PathEdgeProblemOptions {
   Reobserving reobserving = Reobserving::kLater;
   int reobserved_views = 4;         ///< later (earlier) ones that observe an edge again, at most
   int reobserved_events = 10;       ///< of an edge in each of them, at most
-  double reobserved_apart_s = 1.6;  ///< from the edge's view to these, at least
   double correction_sigma_px = 30;  ///< of the correction from 0, as image motion
   double slope_walk_px = 30;        ///< random walk of the correction's slope within a second
   double given_sigma_px = 0.02;     ///< of the given poses, as image motion

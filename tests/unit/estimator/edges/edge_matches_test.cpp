@@ -84,7 +84,11 @@ TEST_F(EdgeMatching, NotOneElsewhereAtAnotherDepthOrTheOtherWayRound) {
 TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterViewsThatAreFarEnoughAway) {
   const std::vector<Rigid3> poses = {Rigid3(), Rigid3(), other_from_view_.inverse()};
   std::vector<EdgeView> views(3);
-  for (std::size_t i = 0; i < views.size(); ++i) views[i].t_s = static_cast<double>(i);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].t_s = static_cast<double>(i);
+    views[i].from_s = views[i].t_s - 0.75;
+    views[i].until_s = views[i].t_s + 0.75;
+  }
   views[0].edges = views[1].edges = edges_;
   // The last view sees the third edge first, and the second one not at all.
   for (const std::size_t i : {2U, 0U}) {
@@ -93,7 +97,7 @@ TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterViewsThatAreFarEnoughAway) {
     views[2].edges.push_back(*seen);
   }
   const std::vector<EdgeOfView> edges{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 0}};
-  const auto again = reobservations(edges, views, poses, Reobserving::kLater, 1.5, kCamera);
+  const auto again = reobservations(edges, views, poses, Reobserving::kLater, kCamera);
   ASSERT_EQ(again.size(), 5U);
   ASSERT_EQ(again[0].size(), 1U);
   EXPECT_EQ(again[0][0].view, 2U);
@@ -101,8 +105,13 @@ TEST_F(EdgeMatching, ReobservationsAreEdgesOfLaterViewsThatAreFarEnoughAway) {
   EXPECT_TRUE(again[1].empty());
   ASSERT_EQ(again[2].size(), 1U);
   EXPECT_EQ(again[2][0].edge, 0U);
-  EXPECT_TRUE(again[3].empty()) << "a second apart";
+  EXPECT_TRUE(again[3].empty()) << "the windows overlap";
   EXPECT_TRUE(again[4].empty()) << "none is later";
+  const auto before = reobservations(edges, views, poses, Reobserving::kEarlier, kCamera);
+  ASSERT_EQ(before[4].size(), 1U);
+  EXPECT_EQ(before[4][0].view, 0U);
+  EXPECT_EQ(before[4][0].edge, 2U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(before[i].empty());
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ class ViewOfEdges : public ::testing::Test {
 TEST_F(ViewOfEdges, HasEventsEvenlyInTime) {
   const EdgeView found = view(0, {.events_per_edge = 6, .given_events_per_edge = 0});
   EXPECT_EQ(found.t_s, 0.03);
+  EXPECT_DOUBLE_EQ(found.from_s, 0.001);
+  EXPECT_DOUBLE_EQ(found.until_s, 0.06);
   ASSERT_EQ(found.edges.size(), 2U);
   const auto events = found.of(found.edges[0]);
   ASSERT_EQ(events.size(), 6U);

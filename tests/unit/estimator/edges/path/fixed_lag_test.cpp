@@ -39,7 +39,7 @@ class FixedLag : public ::testing::Test {
     options.problem.edges = 300;
     options.problem.iterations = 10;
     FixedLagSmoother smoother(options, world().camera());
-    for (const double t_s : times_s) smoother.add(view(smoother, path_, t_s));
+    for (const double t_s : times_s) smoother.add(view(smoother, path_, t_s), kHeldUntil_s);
     return smoother;
   }
 
@@ -98,7 +98,7 @@ TEST_F(FixedLag, ViewsThatAreNotAdjustedAnyMoreStillCount) {
   FixedLagSmoother smoother(options, world().camera());
   Trajectory path = path_;
   for (const double t_s : {0.1, 0.2, 0.3}) {
-    smoother.add(view(smoother, path, t_s));
+    smoother.add(view(smoother, path, t_s), kHeldUntil_s);
     const auto smoothed = smoother.smooth(path, kHeldUntil_s, kCornerDepth_m);
     ASSERT_TRUE(smoothed);
     path = *smoothed;
@@ -114,8 +114,9 @@ TEST_F(FixedLag, ALongerWindowOfTheSameBeginningReplacesAView) {
   options.problem.edges = 300;
   options.problem.iterations = 10;
   FixedLagSmoother once(options, world().camera()), again(options, world().camera());
-  again.add(view(again, path_, 0.1));
-  for (FixedLagSmoother* smoother : {&once, &again}) smoother->add(view(*smoother, path_, 0.14));
+  again.add(view(again, path_, 0.1), kHeldUntil_s);
+  for (FixedLagSmoother* smoother : {&once, &again})
+    smoother->add(view(*smoother, path_, 0.14), kHeldUntil_s);
   const auto first = once.smooth(path_, kHeldUntil_s, kCornerDepth_m);
   const auto second = again.smooth(path_, kHeldUntil_s, kCornerDepth_m);
   ASSERT_TRUE(first && second);
