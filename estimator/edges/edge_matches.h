@@ -52,7 +52,6 @@ enum class Reobserving { kLater, kEarlier };
 /// are in order of their views.
 [[nodiscard]] std::vector<std::vector<EdgeOfView>> reobservations(
     std::span<const EdgeOfView> edges, std::span<const EdgeView> views,
-    std::span<const Rigid3> world_from_view, Reobserving which,
-    const PinholeCamera& camera);
+    std::span<const Rigid3> world_from_view, Reobserving which, const PinholeCamera& camera);
 
 }  // namespace saccade

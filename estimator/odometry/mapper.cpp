@@ -212,8 +212,7 @@ std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& 
                                                 double typical_depth_m) const {
   std::optional<WindowEdgels> edges;
   const RayDepth depth = rays();
-  const double length_s =
-      seconds_from_ns(window.events.back().t_ns - window.events.front().t_ns);
+  const double length_s = seconds_from_ns(window.events.back().t_ns - window.events.front().t_ns);
   const WindowAdjustmentOptions adjustment_options =
       for_length(options_.adjustment, length_s, options_.duration_s);
   for (int i = 0; i < options_.adjust_rounds; ++i) {

@@ -143,8 +143,8 @@ class BundleRows {
       }
       DoubleLanes weight;
       for (std::size_t lane = 0; lane < kEventLanes; ++lane)
-        weight[lane] = cauchy_root_weight(rows.residual[lane] * rows.residual[lane],
-                                          EdgeNoise::kCauchyScale);
+        weight[lane] =
+            cauchy_root_weight(rows.residual[lane] * rows.residual[lane], EdgeNoise::kCauchyScale);
       rows.residual *= weight;
       for (DoubleLanes& by : rows.by_motion) by *= weight;
       for (DoubleLanes& by : rows.by_edge) by *= weight;

@@ -29,8 +29,7 @@ void FixedLagSmoother::add(EdgeView newest, double held_until_s) {
   std::size_t adjusted = 0;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     // What a longer window with the same events shows was found on a better path.
-    const bool is_repeated =
-        views_[i].from_s >= newest.from_s && views_[i].until_s > held_until_s;
+    const bool is_repeated = views_[i].from_s >= newest.from_s && views_[i].until_s > held_until_s;
     if (views_[i].t_s < newest.t_s - options_.lag_s || is_repeated) continue;
     if (i < adjusted_views_) ++adjusted;
     kept.push_back(std::move(views_[i]));
@@ -63,7 +62,7 @@ std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, doubl
       }
   } else {
     known_.move(path_, before);
-    known_.forget_before(knots, information_of_px(options_.problem.correction_sigma_px));
+    known_.begin_with(knots, information_of_px(options_.problem.correction_sigma_px));
   }
   PathEdgeProblem problem(before, views_, input, {knots, adjusted_views_}, camera,
                           options_.problem);

@@ -16,11 +16,11 @@ namespace saccade {
 struct FixedLagOptions {
   /// How far back views are adjusted together with the newest one [s]; 0: never.
   double lag_s = 0;
-  /// Of a path that is older than the lag, how long it is held at the lag's beginning [s]: it hands
-  /// on what was known before.
+  /// Of a path of which nothing is known, as after the camera was lost, how long it is held at its
+  /// beginning [s].
   double held_s = 0.2;
   double smoothing_s = 0.025;  ///< knots of the given path, as of BatchAdjustmentOptions
-  int events_per_edge = 20;  ///< at most, evenly in time
+  int events_per_edge = 20;    ///< at most, evenly in time
   /// Beside them, while poses are given: they alone say how far away an edge is in metres.
   int given_events_per_edge = 100;
   /// How long before the newest view the edges of views are adjusted [s]. What older ones say of the
@@ -33,10 +33,11 @@ struct FixedLagOptions {
       .edges = 800, .reobserving = Reobserving::kEarlier, .iterations = 2};
 };
 
-/// Fixed-lag smoothing of a camera's path: of the last seconds the path and the edges of all views
-/// are adjusted together whenever a view is added (PathEdgeProblem), so that edges that were seen
-/// from far apart constrain each other. What is older is not changed any more: cost and memory do
-/// not grow with the path. Each view's events belong to the edges that they belonged to when it was added.
+/// Fixed-lag smoothing of a camera's path: whenever a view is added the path of the last seconds is
+/// adjusted together with the edges of the newest views (PathEdgeProblem) and what is known of it
+/// from older ones (MarginalPrior), so that edges that were seen from far apart constrain each
+/// other. What is older is not changed any more: cost and memory do not grow with the path. Each
+/// view's events belong to the edges that they belonged to when it was added.
 class FixedLagSmoother {
  public:
   /// `camera` may have a lens.
@@ -60,8 +61,8 @@ class FixedLagSmoother {
   }
 
   /// The poses of `path` from the lag's beginning to its end, adjusted with the edges of the views.
-  /// Those until `held_until_s` stay as they are. nullopt: there are not two views to adjust them
-  /// by.
+  /// Those until `held_until_s` stay as they are. nullopt: there is no view to adjust them by, or no
+  /// solution. From call to call the path may change a little, but not become shorter.
   [[nodiscard]] std::optional<Trajectory> smooth(const Trajectory& path, double held_until_s,
                                                  double typical_depth_m);
 

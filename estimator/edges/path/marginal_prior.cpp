@@ -25,8 +25,8 @@ class QuadraticCost : public ceres::CostFunction {
     constexpr double kRelativeZero = 1e-12;  ///< of rounding errors
     const double zero = kRelativeZero * std::max(pivots.maxCoeff(), 0.0);
     const Eigen::VectorXd right = factor.matrixL().solve(factor.transpositionsP() * gradient);
-    const Eigen::MatrixXd permuted = factor.transpositionsP() *
-                                     Eigen::MatrixXd::Identity(gradient.size(), gradient.size());
+    const Eigen::MatrixXd permuted =
+        factor.transpositionsP() * Eigen::MatrixXd::Identity(gradient.size(), gradient.size());
     const Eigen::MatrixXd upper = factor.matrixU() * permuted;
     const auto rows = (pivots.array() > zero).count();
     root_.resize(rows, gradient.size());
@@ -124,13 +124,19 @@ void MarginalPrior::add_pose(const SplineKnots& knots, double t_s, const Twist& 
   }
 }
 
-void MarginalPrior::forget_before(const SplineKnots& knots, const Matrix6& weak) {
+void MarginalPrior::begin_with(const SplineKnots& knots, const Matrix6& weak) {
   if (empty()) return;
   const Eigen::Index gone = 6 * (index_of(knots) - first_);
-  SACCADE_CHECK(gone >= 0);
-  if (gone == 0) return;
   first_ = index_of(knots);
   const Eigen::Index kept = gradient_.size() - gone;
+  if (gone == 0) return;
+  if (gone < 0) {
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kept, kept);
+    information.bottomRightCorner(gradient_.size(), gradient_.size()) = information_;
+    gradient_ = (Eigen::VectorXd(kept) << Eigen::VectorXd::Zero(-gone), gradient_).finished();
+    information_ = std::move(information);
+    return;
+  }
   if (kept < 24) {  // less than a segment
     information_.resize(0, 0);
     gradient_.resize(0);

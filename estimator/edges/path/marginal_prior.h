@@ -38,9 +38,10 @@ class MarginalPrior {
   void add_pose(const SplineKnots& knots, double t_s, const Twist& mean,
                 const Matrix6& information);
 
-  /// What is known of controls before `knots` is what it says of the others. `weak`: the
-  /// information that every control has beside, so that what nothing is known of may be left out.
-  void forget_before(const SplineKnots& knots, const Matrix6& weak);
+  /// The controls are those of `knots` from now on: what is known of earlier ones is marginalised out,
+  /// of yet earlier ones nothing is known. `weak`: the information that every control has beside, so
+  /// that what nothing is known of may be left out.
+  void begin_with(const SplineKnots& knots, const Matrix6& weak);
 
   /// Now about a path that was corrected by these controls.
   void correct(const SplineKnots& knots, const Eigen::VectorXd& controls);

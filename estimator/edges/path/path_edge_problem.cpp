@@ -41,10 +41,9 @@ Trajectory smoothed_path(std::span<const StampedPose> path, double smoothing_s) 
 PathEdgeProblem::PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views,
                                  const PathInput& input, const PinholeCamera& camera,
                                  const PathEdgeProblemOptions& options)
-    : PathEdgeProblem(
-          path, views, input,
-          {SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)}, camera,
-          options) {}
+    : PathEdgeProblem(path, views, input,
+                      {SplineKnots::over(path.start_s(), path.end_s(), options.knot_spacing_s)},
+                      camera, options) {}
 
 PathEdgeProblem::PathEdgeProblem(const Trajectory& path, std::span<const EdgeView> views,
                                  const PathInput& input, const PathEdgePart& part,
@@ -83,9 +82,8 @@ bool PathEdgeProblem::solve(CostLog& costs, const std::function<void()>& each) {
 std::optional<PathInformation> PathEdgeProblem::information_of_views(std::size_t first,
                                                                      std::size_t last) {
   const auto begin_of = [&](std::size_t view) {
-    const auto edge = std::partition_point(edges_.begin(), edges_.end(), [&](const PathEdge& e) {
-      return e.found.view < view;
-    });
+    const auto edge = std::partition_point(edges_.begin(), edges_.end(),
+                                           [&](const PathEdge& e) { return e.found.view < view; });
     return static_cast<std::size_t>(edge - edges_.begin());
   };
   return path_information(bundle_, begin_of(first), begin_of(last));
@@ -155,7 +153,8 @@ PathBundle::Event PathEdgeProblem::event_of(const PathEdge& edge, const EdgeEven
 }
 
 void PathEdgeProblem::add_path_priors(const std::vector<StampedPose>& given) {
-  const Matrix6 weak = root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px, camera_, depth_m_));
+  const Matrix6 weak =
+      root_of_sigma<6>(sigma_of_px(options_.correction_sigma_px, camera_, depth_m_));
   for (std::size_t k = 0; k < correction_.knots().controls(); ++k) {
     bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(weak, Twist::Zero()),
                        {correction_.data(k)});

@@ -20,9 +20,9 @@
 namespace saccade {
 
 struct PathEdgeProblemOptions {
-  double knot_spacing_s = 0.05;     ///< of the path's correction, which is slower than the motion
-  int edges = 1500;                 ///< of a view, at most, evenly chosen
-  int all_edges = 100000;           ///< of all views: some seven million events, 2 to 3 GB
+  double knot_spacing_s = 0.05;  ///< of the path's correction, which is slower than the motion
+  int edges = 1500;              ///< of a view, at most, evenly chosen
+  int all_edges = 100000;        ///< of all views: some seven million events, 2 to 3 GB
   Reobserving reobserving = Reobserving::kLater;
   int reobserved_views = 4;         ///< later (earlier) ones that observe an edge again, at most
   int reobserved_events = 10;       ///< of an edge in each of them, at most

@@ -15,8 +15,8 @@ const PinholeCamera kViewCamera{64, 48, 50, 50, 31.5, 23.5, {}};
 Events runs_of_three(int count) {
   Events events;
   for (int i = 0; i < count; ++i)
-    events.push_back({(i + 1) * TimeNs{1'000'000}, 20, 10,
-                      static_cast<std::int8_t>(i / 3 % 2 == 0 ? 1 : -1)});
+    events.push_back(
+        {(i + 1) * TimeNs{1'000'000}, 20, 10, static_cast<std::int8_t>(i / 3 % 2 == 0 ? 1 : -1)});
   return events;
 }
 
@@ -58,8 +58,8 @@ TEST_F(ViewOfEdges, HasEventsEvenlyInTime) {
 }
 
 TEST_F(ViewOfEdges, ThoseOfGivenPosesAreCountedApart) {
-  const EdgeView found = view(
-      0, {.events_per_edge = 4, .given_events_per_edge = 7, .given_until_s = 0.0205});
+  const EdgeView found =
+      view(0, {.events_per_edge = 4, .given_events_per_edge = 7, .given_until_s = 0.0205});
   const auto events = found.of(found.edges[0]);
   const auto given = std::count_if(events.begin(), events.end(),
                                    [](const EdgeEvent& event) { return event.t_s < 0.0205; });

@@ -99,7 +99,7 @@ TEST(MarginalPrior, WhatIsForgottenIsMarginalisedOut) {
   const PathInformation all = random_information(60, 4);
   prior.add(prior.knots(0.1, 0.5), all);
   const Matrix6 weak = 0.5 * Matrix6::Identity();
-  prior.forget_before(prior.knots(0.2, 0.5), weak);
+  prior.begin_with(prior.knots(0.2, 0.5), weak);
   ASSERT_EQ(prior.controls(), 8U);
   // The best of all unknowns, with any prior on those that are left, is the best of these.
   const Eigen::MatrixXd beside = 2 * Eigen::MatrixXd::Identity(48, 48);
@@ -112,10 +112,21 @@ TEST(MarginalPrior, WhatIsForgottenIsMarginalisedOut) {
   EXPECT_LT((found - best.tail(48)).norm(), 1e-9 * best.norm());
 }
 
+TEST(MarginalPrior, OfEarlierControlsNothingIsKnown) {
+  MarginalPrior prior(kSpacing_s);
+  const PathInformation all = random_information(48, 8);
+  prior.add(prior.knots(0.2, 0.45), all);
+  prior.begin_with(prior.knots(0.1, 0.45), Matrix6::Identity());
+  ASSERT_EQ(prior.controls(), 10U);
+  const PathInformation found = at(prior, Eigen::VectorXd::Zero(60));
+  expect_same({found.information.bottomRightCorner(48, 48), found.gradient.tail(48)}, all);
+  EXPECT_EQ(found.information.topRows(12).norm(), 0);
+}
+
 TEST(MarginalPrior, OfAnotherTimeNothingIsLeft) {
   MarginalPrior prior(kSpacing_s);
   prior.add(prior.knots(0.1, 0.4), random_information(48, 5));
-  prior.forget_before(prior.knots(2, 3), Matrix6::Identity());
+  prior.begin_with(prior.knots(2, 3), Matrix6::Identity());
   EXPECT_TRUE(prior.empty());
 }
 
@@ -147,8 +158,8 @@ TEST(MarginalPrior, MovesWithThePath) {
   Eigen::VectorXd controls(60);
   for (std::size_t k = 0; k < 10; ++k) {
     const double t_s = knots.time_s(k);
-    controls.segment<6>(6 * static_cast<Eigen::Index>(k))
-        << 0.002 * t_s, 1e-3, 0, 0, 0, -1e-3 * t_s;
+    controls.segment<6>(6 * static_cast<Eigen::Index>(k)) << 0.002 * t_s, 1e-3, 0, 0, 0,
+        -1e-3 * t_s;
   }
   same.correct(knots, controls);
   expect_same(at(prior, Eigen::VectorXd::Zero(60)), at(same, Eigen::VectorXd::Zero(60)), 1e-4);
