@@ -166,7 +166,7 @@ TEST(BundleSolver, CovariancesAreThoseOfTheWholeProblem) {
 
 TEST(BundleSolver, WhatEdgesSayOfThePathIsWhatIsKnownBesideThePriors) {
   SyntheticProblem<4, 5> problem({.twists = 11, .has_surface = false, .is_robust = false});
-  (void)solve_bundle(problem.bundle, BundleSolver::kStructured, {40, 1e-15});
+  (void)solve_bundle(problem.bundle, BundleSolver::kStructured, {300, 0});
   const auto all = path_information(problem.bundle, 0, kEdges);
   ASSERT_TRUE(all);
   const Eigen::MatrixXd prior = prior_information(66);
