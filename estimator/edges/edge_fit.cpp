@@ -1,5 +1,6 @@
 #include "estimator/edges/edge_fit.h"
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -12,6 +13,21 @@ namespace {
 constexpr int kIterations = 4;
 
 }  // namespace
+
+EdgePrior edge_prior(const Edgel& edge, const EdgeUnknowns& unknowns,
+                     const ProjectedLandmarks& landmarks, const LandmarkNoise& noise) {
+  constexpr double kReach_px = 1.5;
+  constexpr double kTolerance = 0.1;
+  EdgePrior prior{unknowns, EdgeNoise::prior_sigma(unknowns[0])};
+  if (noise.sigma_px <= 0) return prior;
+  if (const auto* landmark = landmarks.nearest(edge, kReach_px, kTolerance)) {
+    prior.mean[0] = landmark->inverse_depth;
+    prior.sigma[0] = std::hypot(landmark->sigma, noise.depth_sigma * landmark->inverse_depth);
+    prior.mean[1] = edge.normal.cast<double>().dot(landmark->pixel - edge.pixel.cast<double>());
+    prior.sigma[1] = noise.sigma_px;
+  }
+  return prior;
+}
 
 std::optional<EdgeUnknowns> fit_edge(std::span<const EdgeObservation> events,
                                      const PinholeCamera& camera, const EdgeUnknowns& start,

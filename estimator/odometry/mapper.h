@@ -56,6 +56,7 @@ struct PathEstimate {
   double given_until_s = kNoGivenPoses;   ///< those until then were given: they fix the scale
   std::optional<double> typical_depth_m;  ///< of the scene; nullopt: a space sweep finds it
   std::vector<Landmark> landmarks;        ///< edges known from events before those of the window
+  std::vector<Landmark> settled;          ///< edges of keyframes that do not change any more
 };
 
 /// The edges of a keyframe before their depths are fused, with the events that they were found in.

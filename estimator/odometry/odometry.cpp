@@ -283,9 +283,10 @@ bool Odometry::wants_keyframe() const {
   const double quarter_s = (path_.back().t_s - path_.front().t_s) / 4;
   if (options_.keyframe.doubles_baseline && quarter_s < interval_s) {
     // Windows of a short path are short: they cost little, and with a quarter more of it depths are
-    // a quarter better. Until then the camera is tracked by depths that may be poor.
+    // a quarter better. Until then the camera is tracked by depths that may be poor. Each of such
+    // keyframes would hand its errors on to the next, if the path were not smoothed.
     interval_s = quarter_s;
-    distance_m = std::min(distance_m, baseline_m_ / 4);
+    if (smoother_.is_enabled()) distance_m = std::min(distance_m, baseline_m_ / 4);
   }
   return path_.back().t_s >= interval_from_s_ + interval_s && moved_m() >= distance_m;
 }
@@ -306,7 +307,9 @@ void Odometry::begin_mapping(std::span<const Event> events, double now_s) {
       [this, mapped, seconds = &job_->seconds,
        path = PathEstimate{
            Trajectory(path_), fixed_until_s_, given_until_s_, typical_depth_m_,
-           map_.landmarks(now_s - options_.mapping.duration_s, path_.back().world_from_camera)}] {
+           map_.landmarks(now_s - options_.mapping.duration_s, path_.back().world_from_camera),
+           map_.landmarks(now_s - options_.smoothing.lag_s - options_.mapping.duration_s,
+                          path_.back().world_from_camera)}] {
         const ScopedTimer clock(*seconds);
         return map(mapped, path);
       });
@@ -325,7 +328,8 @@ void Odometry::smooth(const PathEstimate& path, Mapping& mapping) {
   const ViewWindow window{mapping.edges->events, &adjusted, keyframe.t_s};
   smoother_.add(smoother_.view(window, mapping.edges->edges, held_until_s_), held_until_s_);
   const Trajectory smoothed =
-      smoother_.smooth(adjusted, held_until_s_, keyframe.typical_depth_m).value_or(adjusted);
+      smoother_.smooth(adjusted, held_until_s_, keyframe.typical_depth_m, path.settled)
+          .value_or(adjusted);
   mapping.world_from_before = smoothed.at_clamped(keyframe.end_s) *
                               adjusted.at_clamped(keyframe.end_s).inverse() *
                               mapping.world_from_before;

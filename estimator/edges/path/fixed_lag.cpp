@@ -40,7 +40,8 @@ void FixedLagSmoother::add(EdgeView newest, double held_until_s) {
 }
 
 std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, double held_until_s,
-                                                   double typical_depth_m) {
+                                                   double typical_depth_m,
+                                                   std::span<const Landmark> landmarks) {
   if (views_.empty()) return std::nullopt;
   const PinholeCamera camera = camera_.undistorted();
   const auto information_of_px = [&](double px) -> Matrix6 {
@@ -49,6 +50,7 @@ std::optional<Trajectory> FixedLagSmoother::smooth(const Trajectory& path, doubl
   PathInput input;
   input.path = part_from(path, views_.front().from_s);
   input.typical_depth_m = typical_depth_m;
+  input.landmarks = landmarks;
   const double from_s = input.path.front().t_s;
   const Trajectory before = smoothed_path(input.path, options_.smoothing_s);
   const SplineKnots knots = known_.knots(from_s, before.end_s());

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
@@ -63,8 +64,11 @@ class FixedLagSmoother {
   /// The poses of `path` from the lag's beginning to its end, adjusted with the edges of the views.
   /// Those until `held_until_s` stay as they are. nullopt: there is no view to adjust them by, or no
   /// solution. From call to call the path may change a little, but not become shorter.
+  /// `landmarks`: edges known from before the lag, which stay where they are; where the camera
+  /// returns to what it has seen they stop its drift.
   [[nodiscard]] std::optional<Trajectory> smooth(const Trajectory& path, double held_until_s,
-                                                 double typical_depth_m);
+                                                 double typical_depth_m,
+                                                 std::span<const Landmark> landmarks = {});
 
  private:
   /// What views say that are not adjusted any more from now on.

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/process/parallel.h"
+#include "estimator/edges/edge_fit.h"
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/least_squares/bundle_solver.h"
 #include "estimator/edges/least_squares/prior_cost.h"
@@ -61,7 +62,7 @@ PathEdgeProblem::PathEdgeProblem(const Trajectory& path, std::span<const EdgeVie
     view_from_world_.push_back(world_from_view_.back().inverse());
   }
   choose_edges(part.first_view);
-  add_edges();
+  add_edges(input.landmarks);
   add_path_priors(input.given);
 }
 
@@ -101,7 +102,7 @@ void PathEdgeProblem::choose_edges(std::size_t first_view) {
 }
 
 /// Each edge with its own events and some of those of its matches in later views.
-void PathEdgeProblem::add_edges() {
+void PathEdgeProblem::add_edges(std::span<const Landmark> landmarks) {
   std::vector<EdgeOfView> found;
   for (const PathEdge& edge : edges_) found.push_back(edge.found);
   std::vector<std::vector<EdgeOfView>> again(edges_.size());
@@ -111,13 +112,18 @@ void PathEdgeProblem::add_edges() {
   parallel_for(
       edges_.size(), [&](std::size_t i) { events[i] = events_of(edges_[i], again[i]); }, kGrain);
   bundle_.reserve(events);
+  std::optional<ProjectedLandmarks> in_view;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     PathEdge& edge = edges_[i];
-    Unknowns sigma;
-    sigma << EdgeNoise::prior_sigma(edge.unknowns[0]), EdgeNoise::kRunSpacingSigma_px;
+    const bool is_first_of_view = i == 0 || edges_[i - 1].found.view != edge.found.view;
+    if (is_first_of_view) in_view.emplace(landmarks, view_from_world_[edge.found.view], camera_);
     const Edgel& line = this->found(edge.found).edge;
+    const EdgePrior prior = edge_prior(line, edge.unknowns.head<4>(), *in_view, {});
+    Unknowns mean, sigma;
+    mean << prior.mean, edge.unknowns[4];
+    sigma << prior.sigma, EdgeNoise::kRunSpacingSigma_px;
     bundle_.add_edge(line.pixel.cast<double>(), line.normal.cast<double>(), edge.unknowns.data(),
-                     {edge.unknowns, sigma});
+                     {mean, sigma, !landmarks.empty()});
     // An event whose ray leads away from the view, by a path that is wrong, is none of the edge.
     for (const PathBundle::Event& event : events[i]) (void)bundle_.add_event(event);
   }

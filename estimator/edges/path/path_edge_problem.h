@@ -39,6 +39,8 @@ struct PathInput {
   /// Poses that fix the position and, where there is more than one, the scale.
   std::vector<StampedPose> given;
   double typical_depth_m = 1;  ///< converts pixels to metres
+  /// Edges that are known and stay where they are.
+  std::span<const Landmark> landmarks;
 };
 
 /// Which part of a path and of its views is adjusted.
@@ -104,7 +106,7 @@ class PathEdgeProblem {
     return views_[edge.view].edges[edge.edge];
   }
   void choose_edges(std::size_t first_view);
-  void add_edges();
+  void add_edges(std::span<const Landmark> landmarks);
   [[nodiscard]] std::vector<PathBundle::Event> events_of(
       const PathEdge& edge, std::span<const EdgeOfView> reobservations) const;
   [[nodiscard]] PathBundle::Event event_of(const PathEdge& edge, const EdgeEvent& event,

@@ -148,21 +148,8 @@ class WindowProblem {
     std::vector<ObservedEvent> events;
   };
 
-  /// By the landmark that the edge lies on, where there is one.
   [[nodiscard]] EdgePrior prior_of(const FittedEdgel& fitted) const {
-    constexpr double kReach_px = 1.5;
-    constexpr double kTolerance = 0.1;
-    const Edgel& edge = fitted.edge;
-    EdgePrior prior{unknowns_of(fitted), EdgeNoise::prior_sigma(edge.inverse_depth)};
-    if (options_.landmark_sigma_px <= 0) return prior;
-    if (const auto* landmark = landmarks_.nearest(edge, kReach_px, kTolerance)) {
-      prior.mean[0] = landmark->inverse_depth;
-      prior.sigma[0] =
-          std::hypot(landmark->sigma, options_.landmark_depth_sigma * landmark->inverse_depth);
-      prior.mean[1] = edge.normal.cast<double>().dot(landmark->pixel - edge.pixel.cast<double>());
-      prior.sigma[1] = options_.landmark_sigma_px;
-    }
-    return prior;
+    return edge_prior(fitted.edge, unknowns_of(fitted), landmarks_, options_.landmarks);
   }
 
   void add_nodes() {

@@ -6,6 +6,7 @@
 #include "core/camera.h"
 #include "core/trajectory.h"
 #include "estimator/depth/rays/ray_depth.h"
+#include "estimator/edges/edge_fit.h"
 #include "estimator/edges/landmarks.h"
 #include "estimator/edges/least_squares/edge_bundle.h"
 #include "estimator/run/view_windows.h"
@@ -27,9 +28,7 @@ struct WindowAdjustmentOptions {
   /// is corrected further.
   bool fits_edges = true;
   BundleSolver solver = BundleSolver::kStructured;
-  /// Of an edge from the landmark that it lies on; 0: landmarks constrain nothing.
-  double landmark_sigma_px = 0.1;       ///< across the edge
-  double landmark_depth_sigma = 0.003;  ///< relative, beside the landmark's own
+  LandmarkNoise landmarks;
   /// Sigmas of a node from the given path and, tighter, from its neighbours.
   PriorOf prior_of = PriorOf::kImageMotion;
   double pose_sigma_px = 1;          ///< as image motion

@@ -124,6 +124,39 @@ TEST_F(FixedLag, ALongerWindowOfTheSameBeginningReplacesAView) {
             second->poses().back().world_from_camera.translation());
 }
 
+TEST_F(FixedLag, LandmarksTellWhereThePathIs) {
+  // The whole path lies 10 mm beside the truth, 0.6 px, which its own edges do not tell.
+  const Rigid3 aside(Eigen::Quaterniond::Identity(), {0.01, 0, 0});
+  std::vector<StampedPose> truth, poses;
+  for (double t_s = 0; t_s <= kLagEnd_s + 1e-9; t_s += 2e-3) {
+    truth.push_back({t_s, corner_glide(t_s)});
+    poses.push_back({t_s, aside * corner_glide(t_s)});
+  }
+  const Trajectory path(poses);
+  FixedLagOptions options;
+  options.lag_s = 1;
+  options.problem.edges = 300;
+  options.problem.iterations = 10;
+  FixedLagSmoother smoother(options, world().camera()), without(options, world().camera());
+  std::vector<Landmark> landmarks;
+  for (const FittedEdgel& fitted : view(smoother, Trajectory(truth), 0.2).edges) {
+    const auto rho = static_cast<double>(fitted.edge.inverse_depth);
+    landmarks.push_back(
+        {corner_glide(0.2) * (world().camera().ray(fitted.edge.pixel.cast<double>()) / rho),
+         static_cast<double>(fitted.sigma) / rho});
+  }
+  constexpr double kNoneHeld_s = -1;
+  for (FixedLagSmoother* each : {&smoother, &without})
+    each->add(view(*each, path, 0.2), kNoneHeld_s);
+  const auto found = smoother.smooth(path, kNoneHeld_s, kCornerDepth_m, landmarks);
+  const auto lost = without.smooth(path, kNoneHeld_s, kCornerDepth_m);
+  ASSERT_TRUE(found && lost);
+  for (const double t_s : {0.1, 0.2, 0.3}) {
+    EXPECT_LT(error_m(*found, t_s), 0.003) << t_s;
+    EXPECT_GT(error_m(*lost, t_s), 0.007) << t_s;
+  }
+}
+
 TEST_F(FixedLag, WithoutAViewThereIsNothingToAdjustBy) {
   FixedLagSmoother none = smoother(1, {0.1, 0.2});
   none.clear();
