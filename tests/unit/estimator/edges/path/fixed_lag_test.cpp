@@ -139,19 +139,19 @@ TEST_F(FixedLag, LandmarksTellWhereThePathIs) {
   options.problem.iterations = 10;
   FixedLagSmoother smoother(options, world().camera()), without(options, world().camera());
   std::vector<Landmark> landmarks;
-  for (const FittedEdgel& fitted : view(smoother, Trajectory(truth), 0.2).edges) {
+  for (const FittedEdgel& fitted : view(smoother, Trajectory(truth), 0.15).edges) {
     const auto rho = static_cast<double>(fitted.edge.inverse_depth);
     landmarks.push_back(
-        {corner_glide(0.2) * (world().camera().ray(fitted.edge.pixel.cast<double>()) / rho),
+        {corner_glide(0.15) * (world().camera().ray(fitted.edge.pixel.cast<double>()) / rho),
          static_cast<double>(fitted.sigma) / rho});
   }
   constexpr double kNoneHeld_s = -1;
   for (FixedLagSmoother* each : {&smoother, &without})
-    each->add(view(*each, path, 0.2), kNoneHeld_s);
+    each->add(view(*each, path, 0.15), kNoneHeld_s);
   const auto found = smoother.smooth(path, kNoneHeld_s, kCornerDepth_m, landmarks);
   const auto lost = without.smooth(path, kNoneHeld_s, kCornerDepth_m);
   ASSERT_TRUE(found && lost);
-  for (const double t_s : {0.1, 0.2, 0.3}) {
+  for (const double t_s : {0.1, 0.15, 0.25}) {
     EXPECT_LT(error_m(*found, t_s), 0.003) << t_s;
     EXPECT_GT(error_m(*lost, t_s), 0.007) << t_s;
   }
