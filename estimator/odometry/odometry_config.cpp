@@ -48,10 +48,9 @@ void describe_keyframe(config::Fields& fields, KeyframeOptions& options) {
           "interval_s", options.interval_s,
           "The least time between two keyframes, in seconds. It bounds the cost of the mapping. 0 "
           "leaves it to distance alone. With method edges, while windows are short and depths "
-          "still "
-          "poor, a quarter of the time since the start will do, with smoothing a quarter of the "
-          "map's baseline in place of the distance, too, and the few keyframes that double the "
-          "baseline of a short start are not counted.")
+          "still poor, a quarter of the time since the start will do, with smoothing a quarter "
+          "of the map's baseline in place of the distance, too, and the few keyframes that "
+          "double the baseline of a short start are not counted.")
       .range(0, 1e3);
   fields
       .value("handover_s", options.handover_s,
