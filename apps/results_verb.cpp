@@ -15,6 +15,7 @@
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "eval/report/filled_page.h"
+#include "eval/store/mlflow.h"
 #include "eval/store/result_diff.h"
 #include "eval/store/result_store.h"
 #include "eval/store/result_text.h"
@@ -33,6 +34,7 @@ struct ResultsOptions {
   std::vector<std::string> diff;
   std::string against;
   std::string format = "table";
+  fs::path output;
   fs::path fill;
   std::optional<std::string> missing;
   std::vector<fs::path> add;
@@ -94,6 +96,16 @@ void show_results(const ResultsOptions& options) {
   if (!runs.empty()) return add_runs(runs);
   const fs::path store = find_result_store(options.store.empty() ? "." : options.store);
   ResultReader reader(store);
+  if ((options.format == "mlflow") == options.output.empty())
+    throw InputError("--format", options.output.empty()
+                                     ? "mlflow needs the folder of MLflow's store: -o DIR"
+                                     : "-o is for mlflow, the other formats are printed");
+  if (options.format == "mlflow") {
+    const std::size_t runs = write_mlflow(reader, options.where, options.output);
+    fmt::print("wrote {} {} to {}; mlflow ui --backend-store-uri {} shows them\n", runs,
+               runs == 1 ? "run" : "runs", options.output.string(), options.output.string());
+    return;
+  }
   if (!options.fill.empty()) {
     std::ifstream file(options.fill);
     if (!file) throw InputError(options.fill.string(), "cannot be read (--fill)");
@@ -154,9 +166,10 @@ void add_results_verb(CLI::App& command) {
   verb->add_flag("--flaky", options->flaky,
                  "List metrics that differ between runs of the same commit, dataset, "
                  "configuration, window, seed and machine.");
-  verb->add_option("--format", options->format, "Output format: table, csv or json.")
-      ->check(CLI::IsMember({"table", "csv", "json"}))
+  verb->add_option("--format", options->format, "Output format: table, csv, json, or mlflow, a folder that MLflow's pages show.")
+      ->check(CLI::IsMember({"table", "csv", "json", "mlflow"}))
       ->capture_default_str();
+  verb->add_option("-o,--output", options->output, "Folder of --format mlflow.")->type_name("DIR");
   verb->add_option("--fill", options->fill,
                    "Print a text with results in place of its marks {{RUNS METRIC}} or {{RUNS "
                    "METRIC DECIMALS}}; * in the name of a run stands for any text, and several "
@@ -174,6 +187,7 @@ void add_results_verb(CLI::App& command) {
       "  saccade results runs --where \"module = 'track' and trajectory.drift_percent < 1\"\n"
       "  saccade results runs --diff best fast\n"
       "  saccade results runs --trend trajectory.dt_rel_percent.mean\n"
+      "  saccade results runs --format mlflow -o mlruns\n"
       "  saccade results runs --columns run,machine,speed.wall_s --format csv\n"
       "  saccade results runs --fill page.in.md > page.md\n"
       "  saccade results --scan runs");

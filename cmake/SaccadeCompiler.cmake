@@ -16,6 +16,10 @@ if(SACCADE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${SACCADE_CCACHE})
 endif()
 
+# Messages name sources from the root of the tree, and the cache of compiled sources serves other checkouts as well: with whole
+# paths in __FILE__ no two would compile the same text.
+add_compile_options(-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+
 # Warnings are errors in the project's code; imported targets' headers are system headers and stay silent. Some warnings
 # of GCC 12 are left to the sanitizer presets, because optimisation makes them wrong, on some processors alone: with
 # -march=native it takes the deliberately undefined registers of its own AVX-512 intrinsics for uninitialised variables (GCC bug

@@ -19,6 +19,7 @@ find_package(FastFloat REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(SlimLibzip REQUIRED)
 find_package(SQLite3 3.38 REQUIRED)
+find_package(SlimCairo REQUIRED)
 find_package(assimp REQUIRED)
 # Either version; what differs between them stands in simulator/scene/intersection/embree_api.h.
 find_package(embree 4 QUIET)

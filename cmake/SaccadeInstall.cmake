@@ -36,5 +36,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/saccadeConfig.cmake ${PROJECT_BINARY_DIR}/saccadeConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindSlimOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimLibzip.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindSlimWebP.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimHDF5.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindSlimCompression.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindSlimCompression.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSlimCairo.cmake
         DESTINATION ${package_dir})

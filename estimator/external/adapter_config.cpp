@@ -157,6 +157,23 @@ void describe(config::Fields& fields, AdapterConfig& config) {
              "Time limit of one repetition, in seconds. The program is ended after it.")
       .above(0);
   fields.value("seed", config.seed, "Value of the placeholder {seed}.");
+  fields
+      .path("container", config.container,
+            "Image of Apptainer (or Singularity) in which the command runs. It sees the run's "
+            "folder, the dataset and the folders of `files`.")
+      .must_exist();
+  fields.expect(!config.container || !config.python, "container",
+                "is for a command; a method of the Python module runs by $SACCADE_PYTHON");
+  fields.value("prepare", config.prepare,
+               "Command without placeholders that `saccade sweep --submission` runs once in the "
+               "adapter's folder, before anything else: what builds the program.");
+  fields.value("licence", config.licence, "Licence of the method. A submission must state it.");
+  fields.value("link", config.link, "Where the method is described.");
+  fields
+      .value("expected_s", config.expected_s,
+             "Time that a second of recording takes, in seconds, as its authors state it; shown "
+             "beside what was measured.")
+      .above(0);
   fields.expect(!config.name.empty(), "name", "must not be empty");
   for (const char* key : {"command", "version_command"}) {
     const std::string& text =

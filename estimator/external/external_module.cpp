@@ -18,6 +18,7 @@
 #include "core/stopwatch.h"
 #include "estimator/external/adapter_config.h"
 #include "estimator/external/command_template.h"
+#include "estimator/external/container.h"
 #include "estimator/external/external_input.h"
 #include "estimator/external/external_output.h"
 #include "estimator/external/external_process.h"
@@ -33,6 +34,13 @@ ExternalCall call_of(const AdapterConfig& config, const std::string& command,
                      const Placeholders& values, const fs::path& run) {
   ExternalCall call;
   call.words = substituted_words(command, values);
+  if (config.container) {
+    std::vector<fs::path> readable{values.at("dataset")};
+    for (const auto& [name, file] : config.files)
+      readable.push_back(fs::absolute(file).parent_path());
+    call.words =
+        words_in_container(call.words, fs::absolute(*config.container), run, readable);
+  }
   call.working_folder = run / "output";
   call.log = run / "log.txt";
   call.timeout_s = config.timeout_s;

@@ -6,13 +6,11 @@
 #include <utility>
 
 #include "core/io/files/atomic_file.h"
-#include "core/version.h"
 #include "eval/picture/canvas/canvas.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/image/event_picture.h"
-#include "eval/report/assets.h"
-#include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
+#include "eval/report/page.h"
 #include "eval/statistics/statistics_report.h"
 #include "eval/table/number_text.h"
 
@@ -133,21 +131,13 @@ void write_calibration_page(const CalibrationSummary& summary, const std::filesy
     body +=
         section("Each half of the time, predicted from the other", table_html(fold_table(summary)));
   for (const RepeatedStretch& stretch : summary.stretches) body += stretch_section(stretch);
-  const std::string title = "Calibration of " + summary.sensor.name;
-  write_atomically(file,
-                   fill_page(assets::page_html,
-                             {{"title", escape_html(title)},
-                              {"summary",
-                               "What a recording tells of its sensor, and how well the simulated "
-                               "sensor repeats it."},
-                              {"contents", ""},
-                              {"style", std::string(assets::report_css)},
-                              {"body", body + repeat_html({summary.command})},
-                              {"charts", charts_data({})},
-                              {"script", std::string(assets::report_js)},
-                              {"footer", fmt::format("Written by saccade {} ({}). Definitions: "
-                                                     "docs/calibration.md.",
-                                                     version(), git_commit())}}));
+  write_atomically(
+      file, page_text({.title = "Calibration of " + summary.sensor.name,
+                       .summary = "What a recording tells of its sensor, and how well the "
+                                  "simulated sensor repeats it.",
+                       .contents = "",
+                       .body = body + repeat_html({summary.command}),
+                       .definitions = "docs/calibration.md"}));
 }
 
 }  // namespace saccade

@@ -83,6 +83,7 @@ namespace {
 RunData open_run(const std::filesystem::path& folder, std::size_t index) {
   RunData data;
   data.id = "run" + std::to_string(index);
+  data.address = "#" + data.id;
   data.run = RunFolder::open(folder);
   const RunRecord& record = data.run.record;
   data.method =

@@ -14,7 +14,8 @@ namespace saccade {
 /// A run with everything that the page says about it, with the scores that `eval` wrote, or
 /// scored again where those are stale and its dataset is there.
 struct RunData {
-  std::string id;       ///< unique on the page, an HTML id
+  std::string id;       ///< unique in the report, an HTML id
+  std::string address;  ///< of its section, from the page of the report: "#run1", "runs/best.html"
   std::string dataset;  ///< name
   /// Module with its configuration's name, or what an external estimator is called; with what tells
   /// it from another of that name (tell_methods_apart).

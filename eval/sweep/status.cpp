@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "eval/report/assets.h"
+#include "eval/report/html.h"
 #include "eval/sweep/plan/plan.h"
 
 namespace saccade {
@@ -35,63 +37,154 @@ std::string failure_in(const fs::path& log) {
   return last.starts_with(kProgram) ? message : "";
 }
 
-struct Counts {
-  std::size_t done = 0, running = 0, waiting = 0;
-  std::vector<std::pair<std::string, std::string>> failed;  ///< job, reason
-  std::vector<double> ages_s;                               ///< of the records of the last kRecentS
-};
+enum class Condition { kDone, kRunning, kFailed, kWaiting };
 
-void count(const SweepJob& job, const fs::path& folder, Counts& counts) {
-  const fs::path job_folder = folder / "jobs" / job.name;
-  std::error_code none;
-  const auto written = fs::last_write_time(job_folder / "job.yaml", none);
-  if (!none) {
-    ++counts.done;
-    const double age_s =
-        std::chrono::duration<double>(fs::file_time_type::clock::now() - written).count();
-    if (age_s <= kRecentS) counts.ages_s.push_back(age_s);
-    return;
+std::size_t& count_of(JobCounts& counts, Condition condition) {
+  switch (condition) {
+    case Condition::kDone:
+      return counts.done;
+    case Condition::kRunning:
+      return counts.running;
+    case Condition::kFailed:
+      return counts.failed;
+    case Condition::kWaiting:
+      break;
   }
-  if (!fs::exists(job_folder / "log.txt")) {
-    ++counts.waiting;
-    return;
-  }
-  const std::string failure = failure_in(job_folder / "log.txt");
-  if (failure.empty())
-    ++counts.running;
-  else
-    counts.failed.emplace_back(job.name, failure);
+  return counts.waiting;
 }
 
-std::string rate_text(const Counts& counts) {
-  if (counts.ages_s.size() < 2) return "";
-  const double span_s = *std::max_element(counts.ages_s.begin(), counts.ages_s.end());
-  if (span_s <= 0) return "";
-  const double per_s = static_cast<double>(counts.ages_s.size()) / span_s;
-  const auto left = static_cast<double>(counts.running + counts.waiting);
-  std::string text = fmt::format("{:.3g} jobs/s over the last {:.0f} s", per_s, span_s);
-  if (left > 0) text += fmt::format(", about {:.0f} s left", left / per_s);
-  return text + "\n";
+/// Looks at the files of jobs.
+class Observer {
+ public:
+  Observer(const fs::path& folder, SweepStatus& status) : folder_(folder), status_(status) {}
+
+  void look_at(const std::vector<SweepJob>& jobs, const char* name) {
+    for (const SweepJob& job : jobs) {
+      if (job.state == JobState::kHeld) continue;
+      const Condition condition = condition_of(job);
+      ++count_of(status_.jobs, condition);
+      ++count_of(part(name != nullptr ? name : job.point.configuration), condition);
+    }
+  }
+
+  void set_rate() {
+    if (ages_s_.size() < 2) return;
+    const double span_s = *std::max_element(ages_s_.begin(), ages_s_.end());
+    if (span_s <= 0) return;
+    status_.rate_span_s = span_s;
+    status_.jobs_per_s = static_cast<double>(ages_s_.size()) / span_s;
+  }
+
+ private:
+  JobCounts& part(const std::string& name) {
+    for (auto& [known, counts] : status_.parts)
+      if (known == name) return counts;
+    return status_.parts.emplace_back(name, JobCounts{}).second;
+  }
+
+  Condition condition_of(const SweepJob& job) {
+    const fs::path job_folder = folder_ / "jobs" / job.name;
+    std::error_code none;
+    const auto written = fs::last_write_time(job_folder / "job.yaml", none);
+    if (!none) {
+      const double age_s =
+          std::chrono::duration<double>(fs::file_time_type::clock::now() - written).count();
+      if (age_s <= kRecentS) ages_s_.push_back(age_s);
+      return Condition::kDone;
+    }
+    if (!fs::exists(job_folder / "log.txt", none)) return Condition::kWaiting;
+    const std::string failure = failure_in(job_folder / "log.txt");
+    if (failure.empty()) return Condition::kRunning;
+    status_.failures.emplace_back(job.name, failure);
+    return Condition::kFailed;
+  }
+
+  const fs::path& folder_;
+  SweepStatus& status_;
+  std::vector<double> ages_s_;  ///< of the records of the last kRecentS
+};
+
+std::string rate_text(const SweepStatus& status) {
+  if (!status.jobs_per_s) return "";
+  std::string text =
+      fmt::format("{:.3g} jobs/s over the last {:.0f} s", *status.jobs_per_s, status.rate_span_s);
+  if (const auto left = status.left_s()) text += fmt::format(", about {:.0f} s left", *left);
+  return text;
+}
+
+std::string counts_text(const JobCounts& counts) {
+  return fmt::format("{} jobs: {} done, {} running, {} failed, {} waiting", counts.all(),
+                     counts.done, counts.running, counts.failed, counts.waiting);
+}
+
+/// A bar of what is done, runs and failed.
+std::string bar_html(const JobCounts& counts) {
+  const double all = std::max<double>(1, static_cast<double>(counts.all()));
+  std::string bar;
+  for (const auto& [count, colour] : {std::pair{counts.done, "--better"},
+                                      {counts.running, "--s0"},
+                                      {counts.failed, "--worse"}})
+    bar += fmt::format("<i style=\"width:{:.2f}%;background:var({})\"></i>",
+                       100 * static_cast<double>(count) / all, colour);
+  return "<div class=\"stages\" style=\"background:var(--line)\">" + bar + "</div>\n";
 }
 
 }  // namespace
 
-std::string sweep_status(const SweepConfig& sweep, const fs::path& folder) {
+std::optional<double> SweepStatus::left_s() const {
+  if (!jobs_per_s || has_ended()) return std::nullopt;
+  return static_cast<double>(jobs.running + jobs.waiting) / *jobs_per_s;
+}
+
+SweepStatus sweep_status(const SweepPlan& plan, const fs::path& folder) {
+  SweepStatus status;
+  Observer observer(folder, status);
+  observer.look_at(plan.simulations, "datasets");
+  observer.look_at(plan.runs, nullptr);
+  observer.set_rate();
+  return status;
+}
+
+SweepStatus sweep_status(const SweepConfig& sweep, const fs::path& folder) {
   if (!fs::exists(folder / "sweep.yaml"))
     throw InputError(folder.string(), "holds no sweep (no sweep.yaml)");
-  const SweepPlan plan = plan_sweep(sweep, folder);
-  Counts counts;
-  for (const auto* jobs : {&plan.simulations, &plan.runs})
-    for (const SweepJob& job : *jobs) count(job, folder, counts);
-  std::string text = fmt::format("{} jobs: {} done, {} running, {} failed, {} waiting\n",
-                                 plan.simulations.size() + plan.runs.size(), counts.done,
-                                 counts.running, counts.failed.size(), counts.waiting);
-  text += rate_text(counts);
-  for (std::size_t i = 0; i < std::min(counts.failed.size(), kShownFailures); ++i)
-    text += fmt::format("failed: {}: {}\n", counts.failed[i].first, counts.failed[i].second);
-  if (counts.failed.size() > kShownFailures)
-    text += fmt::format("and {} more\n", counts.failed.size() - kShownFailures);
+  return sweep_status(plan_sweep(sweep, folder), folder);
+}
+
+std::string status_text(const SweepStatus& status) {
+  std::string text = counts_text(status.jobs) + "\n";
+  if (const std::string rate = rate_text(status); !rate.empty()) text += rate + "\n";
+  const std::vector<std::pair<std::string, std::string>>& failed = status.failures;
+  for (std::size_t i = 0; i < std::min(failed.size(), kShownFailures); ++i)
+    text += fmt::format("failed: {}: {}\n", failed[i].first, failed[i].second);
+  if (failed.size() > kShownFailures)
+    text += fmt::format("and {} more\n", failed.size() - kShownFailures);
   return text;
+}
+
+std::string status_page(const SweepStatus& status, const std::string& title) {
+  std::string body = fmt::format("<h1>{}</h1>\n<p>{}<br>{}</p>\n", escape_html(title),
+                                 counts_text(status.jobs), rate_text(status));
+  body += bar_html(status.jobs);
+  for (const auto& [name, counts] : status.parts)
+    body += fmt::format("<h4>{}: {} of {}{}</h4>\n", escape_html(name), counts.done, counts.all(),
+                        counts.failed > 0 ? fmt::format(", {} failed", counts.failed) : "") +
+            bar_html(counts);
+  std::string failed;
+  for (std::size_t i = 0; i < std::min(status.failures.size(), kShownFailures); ++i)
+    failed += fmt::format("<li><a href=\"jobs/{0}/log.txt\">{0}</a>: {1}</li>\n",
+                          escape_html(status.failures[i].first),
+                          escape_html(status.failures[i].second));
+  if (!failed.empty())
+    body += fmt::format("<h2>Failures</h2>\n<p>The first of {}.</p>\n<ul>{}</ul>\n",
+                        status.failures.size(), failed);
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">{}"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<meta name=\"color-scheme\" content=\"light dark\"><title>{}</title>\n"
+      "<style>\n{}\n</style></head><body>\n<main>{}</main>\n</body></html>\n",
+      status.has_ended() ? "" : "<meta http-equiv=\"refresh\" content=\"5\">",
+      escape_html(title), assets::report_css, body);
 }
 
 std::string sweep_jobs_json(const SweepConfig& sweep, const fs::path& folder) {

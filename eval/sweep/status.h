@@ -1,19 +1,53 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "eval/sweep/plan/plan.h"
 #include "eval/sweep/plan/sweep_config.h"
 
 namespace saccade {
 
-/// How far a sweep is, whichever program fills its folder and wherever its jobs run, from the files
-/// in it alone: numbers of jobs that are done, running, failed or waiting, the rate of the last ten
-/// minutes with the time left, and the first failures with their reasons. A job is done where its
-/// record exists; whether the record is still current is the matter of describe_sweep(). Writes
-/// nothing. Throws InputError where `folder` is no sweep.
-[[nodiscard]] std::string sweep_status(const SweepConfig& sweep,
+/// Numbers of jobs.
+struct JobCounts {
+  std::size_t done = 0, running = 0, failed = 0, waiting = 0;
+
+  [[nodiscard]] std::size_t all() const { return done + running + failed + waiting; }
+};
+
+/// How far a sweep is, whichever program fills its folder and wherever its jobs run.
+struct SweepStatus {
+  JobCounts jobs;
+  /// The datasets, then each configuration.
+  std::vector<std::pair<std::string, JobCounts>> parts;
+  std::vector<std::pair<std::string, std::string>> failures;  ///< job, reason
+  std::optional<double> jobs_per_s;  ///< over the last ten minutes; nullopt: fewer than two ended
+  double rate_span_s = 0;            ///< over which it is known
+
+  [[nodiscard]] bool has_ended() const { return jobs.running + jobs.waiting == 0; }
+  /// At this rate; nullopt where it is not known or nothing is left.
+  [[nodiscard]] std::optional<double> left_s() const;
+};
+
+/// From the files in the folder alone. A job is done where its record exists; whether the record is
+/// still current is the matter of describe_sweep(). One that is held for good is left out.
+[[nodiscard]] SweepStatus sweep_status(const SweepPlan& plan, const std::filesystem::path& folder);
+
+/// The same of a sweep that another program may be filling. Throws InputError where `folder` is no
+/// sweep. Writes nothing.
+[[nodiscard]] SweepStatus sweep_status(const SweepConfig& sweep,
                                        const std::filesystem::path& folder);
+
+/// Lines for a terminal: the numbers, the rate with the time left, the first failures.
+[[nodiscard]] std::string status_text(const SweepStatus& status);
+
+/// A page with the same and a bar for every part. Until the sweep has ended the browser loads it
+/// again every few seconds.
+[[nodiscard]] std::string status_page(const SweepStatus& status, const std::string& title);
 
 /// The jobs for another workflow manager, as JSON:
 ///   {"folder": DIR, "threads": N, "jobs": [{"name", "needs": [names], "output", "scores", "log",

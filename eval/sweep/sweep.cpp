@@ -1,16 +1,15 @@
 #include "eval/sweep/sweep.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <chrono>
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -19,11 +18,16 @@
 #include "core/io/files/atomic_file.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
+#include "eval/metrics/metrics.h"
 #include "eval/sweep/plan/calibration_run.h"
+#include "eval/sweep/plan/disk_quota.h"
+#include "eval/sweep/plan/halving.h"
 #include "eval/sweep/plan/job_record.h"
 #include "eval/sweep/plan/plan.h"
 #include "eval/sweep/result/manifest.h"
 #include "eval/sweep/result/results.h"
+#include "eval/sweep/status.h"
+#include "eval/sweep/sweep_folder.h"
 
 namespace saccade {
 namespace {
@@ -67,35 +71,6 @@ std::string failure_of(const LaunchResult& result, const fs::path& log, const fs
   return (result.problem == "exit code 2" ? "refused: " : "failed: ") + message;
 }
 
-/// A folder with other contents is left alone.
-void check_folder(const fs::path& folder) {
-  if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is not a folder");
-  if (!fs::is_empty(folder) && !fs::exists(folder / "sweep.yaml"))
-    throw InputError(folder.string(),
-                     "is not empty and not a sweep (no sweep.yaml); choose another folder");
-}
-
-/// Keeps two programs from filling one folder at the same time; the system releases it when the
-/// program ends, however that happens.
-class FolderLock {
- public:
-  /// `folder` exists. InputError when another program holds it.
-  explicit FolderLock(const fs::path& folder)
-      : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ < 0) fail_to_write(folder, errno);
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-    ::close(descriptor_);
-    throw InputError(folder.string(), "is being filled by another program at this moment");
-  }
-  ~FolderLock() { ::close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_;
-};
-
 /// Removes what killed estimators left beside the run folders.
 void remove_half_written(const fs::path& folder) {
   std::error_code ignored;
@@ -118,7 +93,7 @@ class Phase {
   void fail_without_inputs(const std::vector<SweepJob>& simulations) {
     const auto has_failed = [](const SweepJob& job) { return job.state == JobState::kFailed; };
     for (SweepJob& job : jobs_) {
-      if (job.stage != stage_) continue;
+      if (job.stage != stage_ || job.state != JobState::kPending) continue;
       const bool no_dataset = job.made_by && has_failed(simulations[*job.made_by]);
       const bool no_source = std::any_of(job.sources.begin(), job.sources.end(),
                                          [&](std::size_t run) { return has_failed(jobs_[run]); });
@@ -129,28 +104,72 @@ class Phase {
     }
   }
 
-  /// False when it was interrupted.
-  bool run(Launcher& launcher, const LaunchLimits& limits, const std::string& label) {
+  /// False when it was interrupted. `on_wait` is called several times per second.
+  bool run(Launcher& launcher, const LaunchLimits& limits, const std::string& label,
+           const std::function<void()>& on_wait) {
     select_due();
     if (due_.empty()) return true;
     const auto all = static_cast<std::size_t>(std::count_if(
-        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) { return job.stage == stage_; }));
+        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) {
+          return job.stage == stage_ && job.state != JobState::kHeld;
+        }));
     Progress progress(label, all, "jobs", all - due_.size());
-    const auto on_end = [&](std::size_t i, const LaunchResult& result) {
-      finish(i, result, progress);
-      progress.add(1);
+    const auto launch = [&](const std::vector<std::size_t>& chosen) {
+      std::vector<LaunchJob> launches;
+      for (const std::size_t i : chosen) launches.push_back(launches_[i]);
+      const auto on_end = [&](std::size_t i, const LaunchResult& result) {
+        finish(chosen[i], result, progress);
+        progress.add(1);
+      };
+      return launcher.run(launches, limits,
+                          {on_end,
+                           [&] {
+                             progress.add(0);
+                             on_wait();
+                           },
+                           [&](const std::string& note) { progress.report("saccade: " + note); }});
     };
-    return launcher.run(launches_, limits,
-                        {on_end, [&] { progress.add(0); },
-                         [&](const std::string& note) { progress.report("saccade: " + note); }});
+    const auto [pilots, others] = pilots_and_others(launcher.wants_costs());
+    if (!pilots.empty() && !launch(pilots)) return false;
+    for (const std::size_t i : others) launches_[i].cost = cost_of_kind(i);
+    return others.empty() || launch(others);
   }
 
  private:
+  /// Jobs of one kind take about the same time and memory.
+  [[nodiscard]] std::string kind_of(std::size_t launch) const {
+    const SweepJob& job = jobs_[due_[launch]];
+    return fmt::format("{}|{}|{}|{}", job.config.string(), job.point.configuration,
+                       job.point.variant, fmt::join(job.point.grid, "|"));
+  }
+
+  /// The first job of each kind, and the rest; without `wanted` none is a pilot.
+  [[nodiscard]] std::pair<std::vector<std::size_t>, std::vector<std::size_t>> pilots_and_others(
+      bool wanted) const {
+    std::set<std::string> kinds;
+    std::vector<std::size_t> pilots, others;
+    for (std::size_t i = 0; i < launches_.size(); ++i)
+      (wanted && kinds.insert(kind_of(i)).second ? pilots : others).push_back(i);
+    return {pilots, others};
+  }
+
+  [[nodiscard]] std::optional<LaunchJob::Cost> cost_of_kind(std::size_t launch) const {
+    const auto known = costs_.find(kind_of(launch));
+    return known == costs_.end() ? std::nullopt : std::optional(known->second);
+  }
+
+  void remember_cost(std::size_t launch, const LaunchResult& result) {
+    LaunchJob::Cost cost{result.wall_s, {}};
+    const fs::path timing = jobs_[due_[launch]].output / "timing.json";
+    if (fs::exists(timing)) cost.memory_mb = read_json_metrics(timing).get("peak_memory_mb");
+    costs_.emplace(kind_of(launch), cost);
+  }
+
   void select_due() {
     JobInputs inputs;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       SweepJob& job = jobs_[i];
-      if (job.stage != stage_ || job.state == JobState::kFailed) continue;
+      if (job.stage != stage_ || job.state != JobState::kPending) continue;
       const fs::path job_folder = folder_ / "jobs" / job.name;
       Fingerprint job_inputs = inputs.of(job);
       if (why_to_run(job, job_folder / "job.yaml", job_inputs).empty()) {
@@ -171,6 +190,7 @@ class Phase {
     jobs_[i].state = result.succeeded ? JobState::kDone : JobState::kFailed;
     if (result.succeeded) {
       write_job_record(log.parent_path() / "job.yaml", jobs_[i], inputs_[launch], result.wall_s);
+      remember_cost(launch, result);
       return;
     }
     jobs_[i].failure = failure_of(result, log, fs::absolute(folder_).lexically_normal());
@@ -196,9 +216,37 @@ class Phase {
   fs::path folder_;
   std::map<std::string, std::string>
       reported_;  ///< the end of a log -> the first job that printed it
+  std::map<std::string, LaunchJob::Cost> costs_;  ///< by kind, of the first job that ended
   std::vector<std::size_t> due_;
   std::vector<Fingerprint> inputs_;  ///< of the due jobs
   std::vector<LaunchJob> launches_;  ///< of the due jobs
+};
+
+/// Keeps FOLDER/status.html up to date while jobs run, seldom enough to cost next to nothing.
+class StatusPage {
+ public:
+  StatusPage(const SweepConfig& sweep, const SweepPlan& plan, const fs::path& folder)
+      : title_(sweep.title.empty() ? "Sweep" : sweep.title), plan_(plan), folder_(folder) {}
+
+  void write_if_due() {
+    if (Clock::now() >= next_) write();
+  }
+  void write() {
+    const Clock::time_point start = Clock::now();
+    write_atomically(folder_ / "status.html", status_page(sweep_status(plan_, folder_), title_));
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max<Clock::duration>(kPeriod, kMostLoad * (end - start));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kPeriod{3};
+  static constexpr int kMostLoad = 50;  ///< the other parts of the time for each of writing
+
+  std::string title_;
+  const SweepPlan& plan_;
+  const fs::path& folder_;
+  Clock::time_point next_;
 };
 
 /// A simulation uses all cores of its machine; the many small ones of `generate` run in parallel.
@@ -243,36 +291,51 @@ void check_generated(const std::vector<SweepJob>& simulations) {
 
 SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launcher& launcher,
                        int jobs) {
-  check_folder(folder);
+  check_sweep_folder(folder);
   SweepPlan plan = plan_sweep(sweep, folder);
   fs::create_directories(folder);
-  const FolderLock lock(folder);
+  const SweepFolderLock lock(folder);
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
   if (sweep.generate) check_generated(plan.simulations);
+  StatusPage page(sweep, plan, folder);
+  const auto on_wait = [&] { page.write_if_due(); };
   bool complete = true;
-  for (int stage = 0; complete && stage < SweepPlan::stages(plan.simulations); ++stage) {
-    Phase simulations(plan.simulations, stage, folder);
-    simulations.fail_without_inputs(plan.simulations);
-    complete =
-        simulations.run(launcher, limits_of_simulations(sweep, jobs, launcher), "simulating");
-  }
-  for (int stage = 0; complete && stage < SweepPlan::stages(plan.runs); ++stage) {
-    Phase runs(plan.runs, stage, folder);
-    runs.fail_without_inputs(plan.simulations);
-    complete = runs.run(launcher, limits_of_runs(sweep, jobs, launcher),
-                        stage == 0 ? "running" : "running on");
-  }
+  std::optional<DiskQuota> quota;
+  if (sweep.generate && sweep.generate->disk_gb)
+    quota.emplace(*sweep.generate->disk_gb, plan.simulations);
+  do {
+    for (int stage = 0; complete && stage < SweepPlan::stages(plan.simulations); ++stage) {
+      Phase simulations(plan.simulations, stage, folder);
+      simulations.fail_without_inputs(plan.simulations);
+      complete = simulations.run(launcher, limits_of_simulations(sweep, jobs, launcher),
+                                 "simulating", on_wait);
+    }
+  } while (complete && quota && quota->release_next());
+  if (quota && !quota->message().empty()) show_notice(quota->message());
+  std::optional<Halving> halving;
+  if (sweep.halving) halving.emplace(*sweep.halving, sweep.reference, plan.runs);
+  do {
+    for (int stage = 0; complete && stage < SweepPlan::stages(plan.runs); ++stage) {
+      Phase runs(plan.runs, stage, folder);
+      runs.fail_without_inputs(plan.simulations);
+      complete = runs.run(launcher, limits_of_runs(sweep, jobs, launcher),
+                          stage == 0 ? "running" : "running on", on_wait);
+    }
+  } while (complete && halving && halving->release_next());
+  const std::vector<StoppedRow> stopped = halving ? halving->stopped() : std::vector<StoppedRow>{};
   SweepSummary summary{count(plan, JobState::kDone), count(plan, JobState::kSkipped),
-                       count(plan, JobState::kFailed), 0, !complete};
+                       count(plan, JobState::kFailed),
+                       halving ? count(plan, JobState::kHeld) : 0, 0, !complete};
+  page.write();
   if (sweep.generate) write_manifest(sweep, plan, folder);
   if (complete && (!sweep.generate || !plan.runs.empty()))
-    summary.missed = write_sweep_results(sweep, plan, folder);
+    summary.missed = write_sweep_results(sweep, plan, stopped, folder);
   return summary;
 }
 
 std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder, int jobs) {
-  check_folder(folder);
+  check_sweep_folder(folder);
   const SweepPlan plan = plan_sweep(sweep, folder);
   JobInputs inputs;
   std::vector<const SweepJob*> due;
@@ -290,7 +353,7 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
 }
 
 std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {
-  check_folder(folder);
+  check_sweep_folder(folder);
   const SweepPlan plan = plan_sweep(sweep, folder);
   JobInputs inputs;
   std::string text;

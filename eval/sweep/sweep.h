@@ -13,6 +13,7 @@ struct SweepSummary {
   std::size_t done = 0;     ///< by this call
   std::size_t skipped = 0;  ///< done before, with the same inputs
   std::size_t failed = 0;
+  std::size_t stopped = 0;  ///< of rows that halving gave up
   std::size_t missed = 0;  ///< expected metrics
   bool interrupted = false;
 };

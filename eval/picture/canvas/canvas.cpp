@@ -66,6 +66,13 @@ void Canvas::disc(const Eigen::Vector2d& centre, double radius, const Rgb8& colo
              kSubPixelBits);
 }
 
+void Canvas::rectangle(const Eigen::Vector2d& top_left, const Eigen::Vector2d& size,
+                       const Rgb8& colour) {
+  const int width = std::max(1, static_cast<int>(size.x()));
+  paste(ImageRgb8(width, static_cast<int>(size.y()), colour), static_cast<int>(top_left.x()),
+        static_cast<int>(top_left.y()));
+}
+
 void Canvas::text(const std::string& text, const Eigen::Vector2d& baseline_left, const Rgb8& colour,
                   double height) {
   cv::Mat view = view_of(image_);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,5 +27,8 @@ struct BarChart {
 /// Lying bars, a row for each category, panels side by side above the names. A range is drawn as a
 /// line over its bar. A bar on a logarithmic axis begins at the low end.
 [[nodiscard]] ImageRgb8 draw(const BarChart& chart, const Theme& theme);
+
+/// Writes it for papers into files that end with .pdf or .svg (VectorDrawing::save()).
+void save(const BarChart& chart, std::span<const std::filesystem::path> files);
 
 }  // namespace saccade

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "eval/picture/canvas/canvas.h"
+#include "eval/picture/canvas/drawing.h"
 #include "eval/picture/canvas/colour.h"
 #include "eval/picture/chart/axis.h"
 
 namespace saccade {
 
-/// Height of the letters in charts, for Canvas::text().
+/// Height of the letters in charts, for Drawing::text().
 inline constexpr double kChartLetters = 9;
 
 /// Colour of the numbers at the ticks.
@@ -17,14 +17,16 @@ inline constexpr double kChartLetters = 9;
 
 /// Draws the grid lines of a horizontal axis inside a plot, and the numbers below it; numbers that
 /// would overlap are left out.
-void draw_x_axis(Canvas& canvas, const Axis& axis, const Eigen::Vector2d& top_left,
+void draw_x_axis(Drawing& drawing, const Axis& axis, const Eigen::Vector2d& top_left,
                  const Eigen::Vector2d& size, double letters, const Theme& theme);
 
-/// Height of the legend in a picture of this width [px].
-[[nodiscard]] int legend_height(const std::vector<std::string>& names, int width);
+/// Height of the legend of a chart of this width [px], in the letters of `drawing`.
+[[nodiscard]] int legend_height(const Drawing& drawing, const std::vector<std::string>& names,
+                                int width);
 
-/// Draws the names, each after a line of its colour, into the rows from `top` on.
-void draw_legend(Canvas& canvas, const std::vector<std::string>& names, int top,
+/// Draws the names, each after a line of its colour, into the rows from `top` on of a chart of this
+/// width.
+void draw_legend(Drawing& drawing, const std::vector<std::string>& names, int width, int top,
                  const Theme& theme);
 
 }  // namespace saccade

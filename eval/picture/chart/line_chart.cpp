@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "eval/picture/canvas/canvas.h"
+#include "eval/picture/canvas/vector_drawing.h"
 #include "eval/picture/chart/chart_elements.h"
 
 namespace saccade {
@@ -18,9 +19,9 @@ constexpr double kLeft = 62, kRight = 18, kTop = 34, kBottom = 46;
 /// One panel with its two axes.
 class LinePlot {
  public:
-  LinePlot(Canvas& canvas, const LineChart& chart, const LineChart::Panel& panel, double left,
+  LinePlot(Drawing& drawing, const LineChart& chart, const LineChart::Panel& panel, double left,
            const Theme& theme)
-      : canvas_(canvas),
+      : drawing_(drawing),
         panel_(panel),
         is_over_time_(chart.is_over_time),
         left_(left + kLeft),
@@ -55,15 +56,15 @@ class LinePlot {
     const double right = left_ + width(), bottom = kTop + height();
     const Rgb8 grey = tick_colour(theme_);
     for (const double tick : y_.ticks()) {
-      canvas_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
+      drawing_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
       const std::string text = Axis::text(tick);
-      canvas_.text(text, {left_ - 6 - Canvas::text_width(text, kChartLetters), row(tick) + 4}, grey,
+      drawing_.text(text, {left_ - 6 - drawing_.extent_of(text, kChartLetters), row(tick) + 4}, grey,
                    kChartLetters);
     }
-    draw_x_axis(canvas_, x_, {left_, kTop}, {width(), height()}, kChartLetters, theme_);
-    canvas_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
-    const double middle = left_ + width() / 2 - Canvas::text_width(x_label, kChartLetters) / 2.0;
-    canvas_.text(x_label, {middle, bottom + 36}, theme_.text, kChartLetters);
+    draw_x_axis(drawing_, x_, {left_, kTop}, {width(), height()}, kChartLetters, theme_);
+    drawing_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
+    const double middle = left_ + width() / 2 - drawing_.extent_of(x_label, kChartLetters) / 2;
+    drawing_.text(x_label, {middle, bottom + 36}, theme_.text, kChartLetters);
   }
 
   void draw_line(std::size_t index) {
@@ -71,15 +72,15 @@ class LinePlot {
     std::vector<Vector2d> points;
     for (const LineChart::Point& point : panel_.lines[index])
       points.emplace_back(column(point.x), row(point.y.value));
-    if (is_over_time_) return canvas_.polyline(points, colour);
+    if (is_over_time_) return drawing_.polyline(points, colour);
     for (const LineChart::Point& point : panel_.lines[index])
-      canvas_.line({column(point.x), row(point.y.low)}, {column(point.x), row(point.y.high)},
+      drawing_.line({column(point.x), row(point.y.low)}, {column(point.x), row(point.y.high)},
                    mix(theme_.background, colour, 0.5), 2);
-    canvas_.polyline(points, colour, 2);
-    for (const Vector2d& point : points) canvas_.disc(point, 3.2, colour);
+    drawing_.polyline(points, colour, 2);
+    for (const Vector2d& point : points) drawing_.disc(point, 3.2, colour);
   }
 
-  Canvas& canvas_;
+  Drawing& drawing_;
   const LineChart::Panel& panel_;
   bool is_over_time_;
   double left_;
@@ -88,17 +89,34 @@ class LinePlot {
   Axis y_;
 };
 
+int plots_height(const LineChart& chart) { return chart.panels.empty() ? 0 : kPanelHeight; }
+
+Eigen::Vector2i size_of(const LineChart& chart, const Drawing& drawing) {
+  const int width = kPanelWidth * std::max(1, static_cast<int>(chart.panels.size()));
+  return {width, plots_height(chart) + legend_height(drawing, chart.names, width)};
+}
+
+void draw_on(Drawing& drawing, const LineChart& chart, int width, const Theme& theme) {
+  for (std::size_t i = 0; i < chart.panels.size(); ++i)
+    const LinePlot plot(drawing, chart, chart.panels[i], static_cast<double>(i) * kPanelWidth,
+                        theme);
+  draw_legend(drawing, chart.names, width, plots_height(chart), theme);
+}
+
 }  // namespace
 
 ImageRgb8 draw(const LineChart& chart, const Theme& theme) {
-  const int width = kPanelWidth * std::max(1, static_cast<int>(chart.panels.size()));
-  const int plots = chart.panels.empty() ? 0 : kPanelHeight;
-  Canvas canvas(width, plots + legend_height(chart.names, width), theme.background);
-  for (std::size_t i = 0; i < chart.panels.size(); ++i)
-    const LinePlot plot(canvas, chart, chart.panels[i], static_cast<double>(i) * kPanelWidth,
-                        theme);
-  draw_legend(canvas, chart.names, plots, theme);
+  const Eigen::Vector2i size = size_of(chart, Canvas(1, 1, theme.background));
+  Canvas canvas(size.x(), size.y(), theme.background);
+  draw_on(canvas, chart, size.x(), theme);
   return canvas.image();
+}
+
+void save(const LineChart& chart, std::span<const std::filesystem::path> files) {
+  VectorDrawing drawing;
+  const Eigen::Vector2i size = size_of(chart, drawing);
+  draw_on(drawing, chart, size.x(), kLightTheme);
+  for (const std::filesystem::path& file : files) drawing.save(file, size.x(), size.y());
 }
 
 }  // namespace saccade

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,5 +32,8 @@ struct LineChart {
 
 /// Panels side by side above the legend. The range of a value is a vertical bar.
 [[nodiscard]] ImageRgb8 draw(const LineChart& chart, const Theme& theme);
+
+/// Writes it for papers into files that end with .pdf or .svg (VectorDrawing::save()).
+void save(const LineChart& chart, std::span<const std::filesystem::path> files);
 
 }  // namespace saccade

@@ -46,7 +46,7 @@ Cell factor_cell(const Number& factor) {
 
 Cell run_cell(const RunData& data) {
   Cell cell{data.run.name(), {}, data.run.record.module + " on " + data.dataset};
-  cell.link = "#" + data.id;
+  cell.link = data.address;
   return cell;
 }
 

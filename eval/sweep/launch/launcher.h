@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ struct LaunchJob {
   std::vector<std::vector<std::string>> commands;  ///< their arguments
   std::filesystem::path log;                       ///< receives their output; replaced
   std::string identity;  ///< hash of everything that the result depends on
+  /// What a job like this one took; nullopt: not known.
+  struct Cost {
+    double wall_s = 0;
+    std::optional<double> memory_mb;
+  };
+  std::optional<Cost> cost = {};
 };
 
 /// The result of a job.
@@ -60,6 +67,9 @@ class Launcher {
   /// The number of jobs of `threads` >= 0 threads (0: a whole machine) that run in parallel by
   /// default.
   [[nodiscard]] virtual int default_parallel_jobs(int threads) const = 0;
+  /// Whether it wants to know LaunchJob::cost, so that one job of each kind is to run before the
+  /// others.
+  [[nodiscard]] virtual bool wants_costs() const { return false; }
 };
 
 /// Settings of the launchers.

@@ -50,11 +50,11 @@ call() {
   echo "$(hostname) $number" >"$here/$i.started"
   printf '%s\n' "$1" >>"$log"
   shift
-  if [[ $(stat -Lc '%s %Y' "$program") != "$build" ]]; then
-    echo "$program is not there or was built anew after this job had been submitted" >>"$log"
+  if [[ $(stat -Lc '%s %Y' "$image") != "$build" ]]; then
+    echo "$image is not there or was built anew after this job had been submitted" >>"$log"
     finish 125
   fi
-  "$program" "$@" >>"$log" 2>&1 </dev/null || finish $?
+  "${program[@]}" "$@" >>"$log" 2>&1 </dev/null || finish $?
   number=$((number + 1))
 }
 )sh";
@@ -76,13 +76,21 @@ exit 0
 /// The script of an array whose folder is `here`: task N runs HERE/I.sh for its `jobs_per_task`
 /// jobs, one after another, of `jobs` in all. A job writes I.started ("node call") and, unless it
 /// was killed with its task, I.exit ("status call microseconds"). It refuses to run a build of
-/// `program` other than the current one.
-std::string array_script(const fs::path& here, const fs::path& program, std::size_t jobs,
-                         int jobs_per_task) {
+/// `program` (or an image `container`) other than the current one.
+std::string array_script(const fs::path& here, const fs::path& program, const fs::path& container,
+                         std::size_t jobs, int jobs_per_task) {
+  const fs::path& image = container.empty() ? program : container;
+  // The sweep's folder is not among those that Apptainer shows a container by itself.
+  const std::string called =
+      container.empty() ? "\"$image\""
+                        : fmt::format("\"$(command -v apptainer || command -v singularity || echo "
+                                      "apptainer)\" exec --bind {} \"$image\" saccade",
+                                      quoted(here.parent_path().parent_path().string()));
   return "#!/bin/bash\n" +
-         fmt::format("# An array of {} jobs of `saccade sweep`.\nhere={}\nprogram={}\nbuild={}\n",
-                     jobs, quoted(here.string()), quoted(program.string()),
-                     quoted(size_and_second(program))) +
+         fmt::format("# An array of {} jobs of `saccade sweep`.\nhere={}\nimage={}\nbuild={}\n"
+                     "program=({})\n",
+                     jobs, quoted(here.string()), quoted(image.string()),
+                     quoted(size_and_second(image)), called) +
          fmt::format("jobs={} at_a_time={}\n", jobs, jobs_per_task) + kFunctions + kLoop;
 }
 
@@ -104,6 +112,10 @@ void describe(config::Fields& fields, SlurmArrayJob& job) {
   fields.value("name", job.name, "Name of the job.").required();
   fields.value("identity", job.identity, "Hash of everything that the result depends on.");
   fields.value("attempt", job.attempt, "Number of the attempt, from 1.");
+  fields
+      .value("request_factor", job.request_factor,
+             "How many times the usual time and memory it may use.")
+      .range(1, 1024);
 }
 
 void describe(config::Fields& fields, SlurmArrayRecord& record) {
@@ -114,12 +126,14 @@ void describe(config::Fields& fields, SlurmArrayRecord& record) {
 }
 
 SlurmArray::SlurmArray(const fs::path& parent, SlurmArrayRecord record,
-                       std::span<const LaunchJob* const> jobs, const fs::path& program)
+                       std::span<const LaunchJob* const> jobs, const fs::path& program,
+                       const fs::path& container)
     : folder_(parent / record.array), record_(std::move(record)), reported_(jobs.size(), false) {
   SACCADE_CHECK(jobs.size() == record_.jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i)
     write_atomically(file(i, "sh"), job_script(*jobs[i]));
-  write_atomically(script(), array_script(folder_, program, jobs.size(), record_.jobs_per_task));
+  write_atomically(script(), array_script(folder_, program, container, jobs.size(),
+                                          record_.jobs_per_task));
   write_atomically(folder_ / kRecordFile, config::print(record_));
 }
 

@@ -17,6 +17,8 @@ struct SlurmArrayJob {
   std::string name;
   std::string identity;  ///< LaunchJob's
   int attempt = 1;
+  /// How many times the request of its kind it was given, after it exceeded less.
+  int request_factor = 1;
 };
 
 /// The contents of batch.yaml.
@@ -46,9 +48,11 @@ struct SlurmStart {
 /// alone, since a cluster need not keep accounts.
 class SlurmArray {
  public:
-  /// Writes the folder of a new array. `jobs`: those of the record, in the same order.
+  /// Writes the folder of a new array. `jobs`: those of the record, in the same order. `container`:
+  /// SlurmOptions::container.
   SlurmArray(const std::filesystem::path& parent, SlurmArrayRecord record,
-             std::span<const LaunchJob* const> jobs, const std::filesystem::path& program);
+             std::span<const LaunchJob* const> jobs, const std::filesystem::path& program,
+             const std::filesystem::path& container = {});
   /// The arrays that earlier programs left in `parent`.
   [[nodiscard]] static std::vector<SlurmArray> find(const std::filesystem::path& parent);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -91,7 +92,10 @@ void SlurmJobs::adopt(std::size_t array) {
     if (earlier)
       arrays_[array].mark_reported(found->second);
     else
-      jobs_[i] = {State::kSubmitted, array, found->second, attempt, {}};
+      jobs_[i] = {State::kSubmitted, array,
+                  found->second,     attempt,
+                  arrays_[array].jobs()[found->second].request_factor,
+                  {},                {}};
   }
 }
 
@@ -114,14 +118,36 @@ SlurmArray SlurmJobs::write_array(const std::vector<std::size_t>& chosen) const 
   std::vector<const LaunchJob*> launches;
   for (const std::size_t i : chosen) {
     launches.push_back(&launches_[i]);
-    record.jobs.push_back({launches_[i].name, launches_[i].identity, jobs_[i].attempts + 1});
+    record.jobs.push_back({launches_[i].name, launches_[i].identity, jobs_[i].attempts + 1,
+                           jobs_[i].request_factor});
     if (jobs_[i].attempts == 0) write_atomically(launches_[i].log, "");
   }
-  return {options_.folder, std::move(record), launches, options_.program};
+  return {options_.folder, std::move(record), launches, options_.program, options_.slurm.container};
+}
+
+SlurmRequest SlurmJobs::request_of(std::size_t index) const {
+  SlurmRequest request = options_.slurm.request;
+  if (const std::optional<LaunchJob::Cost>& cost = launches_[index].cost)
+    request = request_like(cost->wall_s, cost->memory_mb);
+  for (int factor = jobs_[index].request_factor; factor > 1; factor /= 2)
+    request = request.doubled();
+  return request;
+}
+
+std::vector<std::size_t> SlurmJobs::next_of_one_request() const {
+  const Clock::time_point now = Clock::now();
+  std::vector<std::size_t> chosen;
+  SlurmRequest request;
+  for (const std::size_t i : in_state(State::kPending)) {
+    if (jobs_[i].not_before && now < *jobs_[i].not_before) continue;
+    if (chosen.empty()) request = request_of(i);
+    if (request_of(i) == request) chosen.push_back(i);
+  }
+  return chosen;
 }
 
 void SlurmJobs::submit() {
-  std::vector<std::size_t> chosen = in_state(State::kPending);
+  std::vector<std::size_t> chosen = next_of_one_request();
   const bool submitted = !in_state(State::kSubmitted).empty();
   // Slurm applies the limit within one array; there must not be a second one.
   if (chosen.empty() || (submitted && limits_.parallel_jobs != LaunchLimits::kUnlimited)) return;
@@ -130,7 +156,7 @@ void SlurmJobs::submit() {
   chosen.resize(std::min(chosen.size(), room));
   const SlurmArray array = write_array(chosen);
   std::vector<std::string> words = array.options(limits_.parallel_jobs);
-  for (std::string& option : sbatch_options(options_.slurm, limits_.threads))
+  for (std::string& option : sbatch_options(options_.slurm, limits_.threads, request_of(chosen.front())))
     words.push_back(std::move(option));
   const std::string refusal = cluster_.submit(array.script(), words);
   if (!refusal.empty()) {
@@ -140,7 +166,7 @@ void SlurmJobs::submit() {
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     Job& job = jobs_[chosen[i]];
-    job = {State::kSubmitted, arrays_.size(), i, job.attempts + 1, {}};
+    job = {State::kSubmitted, arrays_.size(), i, job.attempts + 1, job.request_factor, {}, {}};
   }
   arrays_.push_back(array);
 }
@@ -177,7 +203,10 @@ void SlurmJobs::resolve(std::size_t index, const std::string& state) {
   Job& job = jobs_[index];
   const SlurmArray& array = arrays_[job.array];
   const std::string problem = final_problem(state);
-  if (const std::optional<SlurmExit> exit = array.exit_of(job.index)) {
+  if (retry_with_more(index, state)) {
+    jobs_[index].request_factor *= 2;
+    make_pending(job);
+  } else if (const std::optional<SlurmExit> exit = array.exit_of(job.index)) {
     finish_by_exit(index, *exit, problem);
   } else if (problem.empty()) {
     handle_lost(index, state);
@@ -187,6 +216,25 @@ void SlurmJobs::resolve(std::size_t index, const std::string& state) {
     --job.attempts;  // an earlier job of the task caused its end
     make_pending(job);
   }
+}
+
+bool SlurmJobs::retry_with_more(std::size_t index, const std::string& state) {
+  const Job& job = jobs_[index];
+  const SlurmRequest request = request_of(index);
+  const bool was_exceeded = (state == "TIMEOUT" && request.minutes) ||
+                            (state == "OUT_OF_MEMORY" && request.memory_mb);
+  const std::optional<SlurmExit> exit = arrays_[job.array].exit_of(job.index);
+  const bool ended_by_itself = exit && !may_be_killed_by_slurm(exit->status);
+  if (!was_exceeded || ended_by_itself || job.attempts >= kMaxAttempts ||
+      !first_unfinished_of_task(job))
+    return false;
+  const SlurmRequest more = request.doubled();
+  callbacks_.on_note(fmt::format(
+      "job {} exceeded its {}; attempt {} of {} follows with {}", launches_[index].name,
+      state == "TIMEOUT" ? "time" : "memory", job.attempts + 1, kMaxAttempts,
+      state == "TIMEOUT" ? fmt::format("{:.0f} minutes", *more.minutes)
+                         : fmt::format("{:.0f} MB", *more.memory_mb)));
+  return true;
 }
 
 void SlurmJobs::handle_lost(std::size_t index, const std::string& state) {
@@ -199,9 +247,14 @@ void SlurmJobs::handle_lost(std::size_t index, const std::string& state) {
     --job.attempts;
     make_pending(job);
   } else if (job.attempts < kMaxAttempts) {
-    callbacks_.on_note(fmt::format("job {} {}; attempt {} of {} follows", launches_[index].name,
-                                   what, job.attempts + 1, kMaxAttempts));
+    // What ended it may last: a node that is down, a partition that others preempt.
+    const double wait_s = options_.slurm.backoff_s * std::pow(2, job.attempts - 1);
+    callbacks_.on_note(fmt::format("job {} {}; attempt {} of {} follows in {:.0f} s",
+                                   launches_[index].name, what, job.attempts + 1, kMaxAttempts,
+                                   wait_s));
     make_pending(job);
+    job.not_before = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                        std::chrono::duration<double>(wait_s));
   } else {
     fail(index, fmt::format("{}, in the last of {} attempts", what, job.attempts));
   }

@@ -42,12 +42,19 @@ class SlurmJobs {
     std::size_t array = 0;
     std::size_t index = 0;  ///< in the array
     int attempts = 0;
+    int request_factor = 1;                       ///< SlurmArrayJob's
+    std::optional<Clock::time_point> not_before;  ///< it waits after it was lost
     std::optional<Clock::time_point> inactive_since;  ///< it left the queue
   };
 
   void adopt(std::size_t array);
   [[nodiscard]] bool is_outdated(const SlurmArray& array) const;
   [[nodiscard]] std::vector<std::size_t> in_state(State state) const;
+  /// The pending jobs that may be submitted now and request the same as the first of them.
+  [[nodiscard]] std::vector<std::size_t> next_of_one_request() const;
+  [[nodiscard]] SlurmRequest request_of(std::size_t index) const;
+  /// True where a job that exceeded its request is to be tried with twice as much.
+  [[nodiscard]] bool retry_with_more(std::size_t index, const std::string& state);
   [[nodiscard]] std::vector<std::string> submitted_arrays() const;
   void cancel_arrays(const std::vector<std::string>& names);
   [[nodiscard]] SlurmArray write_array(const std::vector<std::size_t>& chosen) const;

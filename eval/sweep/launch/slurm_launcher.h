@@ -11,7 +11,8 @@ namespace saccade {
 /// Job arrays of Slurm, on nodes that see the same files under the same paths. Submitted jobs
 /// outlive this program: after SIGKILL and SIGHUP they continue, and the next call adopts them;
 /// SIGINT and SIGTERM cancel them. A job whose node failed or whose script was killed is submitted
-/// again, up to three times in all.
+/// again after a while, one that exceeded the time or memory that
+/// was requested for it with twice as much, up to three times in all.
 class SlurmLauncher : public Launcher {
  public:
   /// `period`: between two checks for results; the queue is polled every five periods.
@@ -23,6 +24,7 @@ class SlurmLauncher : public Launcher {
                          const LaunchCallbacks& callbacks) override;
   /// Unlimited: Slurm decides.
   [[nodiscard]] int default_parallel_jobs(int threads) const override;
+  [[nodiscard]] bool wants_costs() const override { return options_.slurm.pilot; }
 
  private:
   LauncherOptions options_;

@@ -12,9 +12,9 @@ constexpr std::array<std::string_view, 7> kLostStates{
     "COMPLETED", "FAILED", "NODE_FAIL", "BOOT_FAIL", "PREEMPTED", "REVOKED", "LAUNCH_FAILED"};
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kFinalStates{{
-    {"TIMEOUT", "Slurm's time limit (--slurm-option=--time=MINUTES, or that of the partition)"},
+    {"TIMEOUT", "Slurm's time limit (--slurm-minutes, or that of the partition)"},
     {"DEADLINE", "Slurm's deadline"},
-    {"OUT_OF_MEMORY", "out of memory (--slurm-option=--mem=MEGABYTES, or the partition's default)"},
+    {"OUT_OF_MEMORY", "out of memory (--slurm-memory-mb, or the partition's default)"},
     {"CANCELLED", "a cancellation (scancel)"},
 }};
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +45,7 @@ struct GenerateConfig {
   int count = 0;
   std::uint64_t seed = 1;
   GenerateSplit split;
+  std::optional<double> disk_gb;     ///< space for all datasets; nullopt: not limited
   int shards = 1;                    ///< folders that the datasets are divided among
   std::vector<std::string> classes;  ///< of all scenes; empty: as they state them
   std::vector<GenerateScene> scenes;

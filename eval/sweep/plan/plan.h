@@ -27,7 +27,13 @@ struct SweepPoint {
 };
 
 /// What became of a job in this call.
-enum class JobState { kPending, kDone, kSkipped, kFailed };
+enum class JobState {
+  kPending,
+  kDone,
+  kSkipped,
+  kFailed,
+  kHeld,  ///< waits for what others give, or was given up (Halving)
+};
 
 /// One dataset or run, made by one or more commands of `saccade`.
 struct SweepJob {

@@ -111,6 +111,20 @@ void check_truths(config::Fields& fields, const SweepConfig& sweep) {
   }
 }
 
+/// Rows are stopped one by one, so that none may be what another starts from.
+void check_halving(config::Fields& fields, const SweepConfig& sweep) {
+  if (!sweep.halving) return;
+  fields.expect(!sweep.configurations.empty(), "halving", "needs 'configurations' to compare");
+  fields.expect(!sweep.timing, "halving",
+                "goes not with 'timing', whose speeds would be those of different pairs");
+  for (const SweepConfiguration& configuration : sweep.configurations)
+    fields.expect(configuration.from.empty() && configuration.poses_from.empty() &&
+                      configuration.depth_from.empty(),
+                  "halving",
+                  fmt::format("goes not with '{}', which starts from another run",
+                              configuration.name));
+}
+
 void check_configurations(config::Fields& fields, const SweepConfig& sweep) {
   for (std::size_t i = 0; i < sweep.configurations.size(); ++i) {
     const SweepConfiguration& configuration = sweep.configurations[i];
@@ -294,6 +308,9 @@ void describe_axes(config::Fields& fields, SweepConfig& sweep) {
                 {{"factorial", GridPlan::kFactorial}, {"one_at_a_time", GridPlan::kOneAtATime}},
                 "Points of the grid: every combination, or the first values of all keys and every "
                 "other value of one key beside them.");
+  fields.section("halving", sweep.halving,
+                 "Stops rows without hope early (successive halving): all rows run over few pairs "
+                 "of dataset and seed, the better of them over twice as many, and so on.");
   fields.value("seeds", sweep.seeds,
                "Seeds of the runs. Results are averaged over them. Default: the configuration's.");
 }
@@ -340,6 +357,8 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   expect_no_seed(fields, "grid", sweep.grid);
   fields.expect(!sweep.timing || sweep.threads == 1, "threads", "must be 1 where 'timing' is true");
   const bool generates = sweep.generate.has_value();
+  fields.expect(!generates || !sweep.generate->disk_gb || sweep.configurations.empty(), "generate",
+                "with 'disk_gb' makes datasets alone, without 'configurations'");
   fields.expect(!generates || sweep.datasets.empty(), "generate", "takes the place of 'datasets'");
   for (const SweepConfiguration& configuration : sweep.configurations)
     fields.expect(generates || configuration.every == 1, "configurations",
@@ -357,6 +376,7 @@ void describe(config::Fields& fields, SweepConfig& sweep) {
   if (!fields.reading()) return;
   check_truths(fields, sweep);
   check_reference(fields, sweep);
+  check_halving(fields, sweep);
   check_configurations(fields, sweep);
   check_expected(fields, sweep);
 }

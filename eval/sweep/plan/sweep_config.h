@@ -8,6 +8,7 @@
 
 #include "core/config/fields.h"
 #include "eval/sweep/plan/generate.h"
+#include "eval/sweep/plan/halving_config.h"
 #include "eval/sweep/plan/settings.h"
 
 namespace saccade {
@@ -75,6 +76,7 @@ struct SweepConfig {
   std::vector<SweepVariant> variants;
   Grid grid;
   GridPlan plan = GridPlan::kFactorial;
+  std::optional<HalvingConfig> halving;
   std::string reference;  ///< variant or configuration that the others are tested against; empty:
                           ///< none
   std::vector<std::uint64_t> seeds;  ///< empty: the one that the configuration states

@@ -1,6 +1,9 @@
 #include "eval/sweep/result/charts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/config/convert.h"
@@ -131,7 +134,7 @@ std::string file_of(const std::string& axis) {
   std::replace_if(
       name.begin(), name.end(),
       [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_'; }, '_');
-  return "over_" + name + ".png";
+  return "over_" + name;
 }
 
 bool varies(const SweepResults& results) {
@@ -155,18 +158,18 @@ std::vector<std::string> write_charts(const SweepResults& results,
                                       const std::filesystem::path& folder) {
   std::vector<std::string> images;
   if (!varies(results) || charted_metrics(results).empty()) return images;
-  const auto write = [&](const ImageRgb8& chart, const std::string& file,
-                         const std::string& caption) {
-    write_png(folder / file, chart);
-    images.push_back("![" + caption + "](" + file + ")");
+  const auto write = [&](const auto& chart, const std::string& stem, const std::string& caption) {
+    write_png(folder / (stem + ".png"), draw(chart, kLightTheme));
+    save(chart, std::array{folder / (stem + ".pdf"), folder / (stem + ".svg")});
+    images.push_back(fmt::format("![{0}]({1}.png) ([PDF]({1}.pdf), [SVG]({1}.svg))", caption, stem));
   };
   for (std::size_t axis = 0; axis < results.sweep.grid.size(); ++axis)
     if (is_numeric(results.sweep.grid[axis])) {
       const std::string& key = results.plan.axes[axis];
-      write(draw(line_chart(results, axis), kLightTheme), file_of(key), "Over " + key);
+      write(line_chart(results, axis), file_of(key), "Over " + key);
     }
   if (images.empty() && !has_several_modules(results))
-    write(draw(bar_chart(results), kLightTheme), "compared.png", "All rows compared");
+    write(bar_chart(results), "compared", "All rows compared");
   return images;
 }
 

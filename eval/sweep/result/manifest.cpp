@@ -12,6 +12,7 @@
 #include "core/io/files/sha256.h"
 #include "core/io/tables/csv_file.h"
 #include "core/version.h"
+#include "eval/sweep/plan/disk_quota.h"
 #include "eval/sweep/plan/generate.h"
 #include "eval/sweep/result/dataset_card.h"
 
@@ -25,7 +26,7 @@ constexpr const char* kSampledKey = "drawn";
 
 const char* status_text(JobState state) {
   if (state == JobState::kFailed) return "failed";
-  return state == JobState::kPending ? "waiting" : "ok";
+  return state == JobState::kPending || state == JobState::kHeld ? "waiting" : "ok";
 }
 
 /// A number where the text is one, an integer where it is written as one.
@@ -34,13 +35,6 @@ Json json_value(const std::string& text) {
   if (!number) return text;
   const bool whole = text.find_first_not_of("-0123456789") == std::string::npos;
   return whole ? Json(static_cast<std::int64_t>(*number)) : Json(*number);
-}
-
-std::uintmax_t bytes_in(const fs::path& folder) {
-  std::uintmax_t bytes = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) bytes += entry.file_size();
-  return bytes;
 }
 
 void add_facts(const fs::path& folder, Json& row) {
@@ -63,7 +57,7 @@ void add_facts(const fs::path& folder, Json& row) {
   row["imu_samples"] = counts.imu_samples;
   row["path_length_m"] = record.path_length_m ? Json(*record.path_length_m) : Json();
   row["mean_scene_depth_m"] = record.mean_scene_depth_m ? Json(*record.mean_scene_depth_m) : Json();
-  row["bytes"] = bytes_in(folder);
+  row["bytes"] = bytes_below(folder);
   row["dataset_yaml_sha256"] = sha256_of_file(folder / "dataset.yaml");
   row["config_sha256"] = sha256(std::as_bytes(std::span(record.config_yaml)));
 }

@@ -129,7 +129,8 @@ void add_information(const DatasetInformation& information, std::vector<SweepRow
 SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
   SweepResults results{sweep, plan, {}, {}, sweep.metrics};
   for (const SweepJob& job : plan.rows())
-    results.rows.push_back(job.state == JobState::kFailed ? failed_row(job) : read_row(job));
+    if (job.state != JobState::kHeld)
+      results.rows.push_back(job.state == JobState::kFailed ? failed_row(job) : read_row(job));
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
     for (const MetricInfo& metric : default_metrics())
@@ -192,8 +193,10 @@ std::vector<ExpectationResult> check_expectations(const SweepResults& results) {
 }
 
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const std::vector<StoppedRow>& stopped,
                                 const std::filesystem::path& folder) {
   SweepResults results = collect_results(sweep, plan);
+  results.stopped = stopped;
   if (sweep.generate) add_information(dataset_information(plan, folder), results.rows);
   warn_of_unknown(results);
   sweep_csv(results).save(folder / "sweep.csv");

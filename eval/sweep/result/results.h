@@ -11,6 +11,7 @@
 #include "eval/information/information.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/outcome.h"
+#include "eval/sweep/plan/halving.h"
 #include "eval/sweep/plan/plan.h"
 
 namespace saccade {
@@ -64,6 +65,7 @@ struct SweepResults {
   std::vector<SweepRow> rows;
   std::vector<SweepGroup> groups;
   std::vector<std::string> metrics;  ///< keys that the sweep states, or the usual ones that it has
+  std::vector<StoppedRow> stopped = {};  ///< rows that halving stopped
 };
 
 /// An expected metric and its value on one dataset.
@@ -81,7 +83,9 @@ struct ExpectationResult {
 /// FOLDER/information.csv (dataset_information.h), FOLDER/sweep.md (what failed, one
 /// row per group with `metrics`, the leaderboard, and the expected metrics) and FOLDER/*.png.
 /// Returns the number of expected metrics that were missed.
+/// `stopped`: rows of which some runs were never made.
 std::size_t write_sweep_results(const SweepConfig& sweep, const SweepPlan& plan,
+                                const std::vector<StoppedRow>& stopped,
                                 const std::filesystem::path& folder);
 
 }  // namespace saccade

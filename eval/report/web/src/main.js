@@ -4,6 +4,7 @@ import { Chart } from "./chart.js";
 import { drawAll } from "./lazy.js";
 import { unpackWhenNear } from "./packed.js";
 import { showRun } from "./run_views.js";
+import { startSearch } from "./search.js";
 import { settle } from "./settle.js";
 import { startTable } from "./tables.js";
 import { startTheme } from "./theme.js";
@@ -19,5 +20,6 @@ start(document);
 document.querySelectorAll("script.packed").forEach((script) => unpackWhenNear(script, start));
 for (const spec of JSON.parse(document.getElementById("charts").textContent))
   new Chart(document.querySelector(`[data-chart="${CSS.escape(spec.id)}"]`), () => spec);
+startSearch();
 settle();
 document.documentElement.dataset.ready = "yes";

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <deque>
@@ -16,9 +17,11 @@ namespace saccade {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::error_of;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::read_file;
 using testing::TemporaryFolder;
 
@@ -78,7 +81,10 @@ class FakeCluster : public SlurmCluster {
 /// Jobs whose calls are scripts of the shell.
 class SlurmLaunching : public ::testing::Test {
  protected:
-  SlurmLaunching() { options_.file_lag_s = 0; }
+  SlurmLaunching() {
+    options_.file_lag_s = 0;
+    options_.backoff_s = 0.01;
+  }
 
   void add(const std::string& name, const std::vector<std::string>& scripts) {
     LaunchJob job{name, {}, folder_.path() / "jobs" / name / "log.txt", "made of this"};
@@ -164,7 +170,7 @@ TEST_F(SlurmLaunching, TellsSlurmWhatWasAskedFor) {
                           "--nodes=1", "--ntasks=1", "--no-requeue", "--cpus-per-task=4",
                           "--partition=long", "--account=vision"));
   EXPECT_EQ(results_.size(), 5U);
-  EXPECT_EQ(sbatch_options({}, 0).back(), "--exclusive");
+  EXPECT_EQ(sbatch_options({}, 0, {}).back(), "--exclusive");
 }
 
 TEST_F(SlurmLaunching, SplitsWhatIsMoreThanAnArrayTakes) {
@@ -201,6 +207,79 @@ TEST_F(SlurmLaunching, SaysWhySlurmEndedAJob) {
   EXPECT_THAT(results_.at("large").problem, HasSubstr("out of memory"));
   EXPECT_THAT(results_.at("unwanted").problem, HasSubstr("cancel"));
   EXPECT_EQ(cluster_.arrays.size(), 1U) << "none of them is tried again";
+}
+
+TEST_F(SlurmLaunching, WhatExceedsItsRequestIsTriedWithTwiceAsMuch) {
+  options_.request = {10, 2000};
+  add("slow", {count("slow")});
+  add("large", {count("large")});
+  add("endless", {count("endless")});
+  // All three, then one by one, since they request different things.
+  cluster_.orders = {"TIMEOUT",   "OUT_OF_MEMORY", "TIMEOUT", "COMPLETED",
+                     "COMPLETED", "TIMEOUT",       "TIMEOUT"};
+  EXPECT_TRUE(run());
+  EXPECT_THAT(cluster_.submitted.at(0), Contains("--time=10"));
+  EXPECT_THAT(cluster_.submitted.at(0), Contains("--mem=2000M"));
+  EXPECT_THAT(cluster_.submitted.at(1), Contains("--time=20"));
+  EXPECT_THAT(cluster_.submitted.at(1), Contains("--mem=4000M"));
+  EXPECT_THAT(cluster_.submitted.at(2), Contains("--time=40"));
+  EXPECT_TRUE(results_.at("slow").succeeded);
+  EXPECT_TRUE(results_.at("large").succeeded);
+  EXPECT_THAT(results_.at("endless").problem, HasSubstr("time limit"));
+  EXPECT_THAT(notes_,
+              AllOf(HasSubstr("job slow exceeded its time; attempt 2 of 3 follows with 20 minutes"),
+                    HasSubstr("job large exceeded its memory; attempt 2 of 3 follows with 4000 MB")));
+}
+
+TEST_F(SlurmLaunching, ALostJobWaitsBeforeTheNextAttempt) {
+  options_.backoff_s = 0.3;
+  add("a", {count("a")});
+  cluster_.orders = {"PREEMPTED"};
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_TRUE(run());
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(300));
+  EXPECT_THAT(notes_, HasSubstr("attempt 2 of 3 follows in 0 s"));
+  EXPECT_TRUE(results_.at("a").succeeded);
+}
+
+TEST_F(SlurmLaunching, JobsOfKnownCostRequestWhatTheyNeed) {
+  for (const char* name : {"a", "b", "c"}) add(name, {"true"});
+  jobs_[0].cost = jobs_[2].cost = LaunchJob::Cost{60, 1000};
+  jobs_[1].cost = LaunchJob::Cost{6000, {}};
+  EXPECT_TRUE(run());
+  ASSERT_EQ(cluster_.submitted.size(), 2U) << "an array for each request";
+  EXPECT_THAT(cluster_.submitted.at(0), Contains("--array=0-1"));
+  EXPECT_THAT(cluster_.submitted.at(0), Contains("--time=4"));  // three minutes, rounded up
+  EXPECT_THAT(cluster_.submitted.at(0), Contains("--mem=2048M"));
+  EXPECT_THAT(cluster_.submitted.at(1), Contains("--time=363"));
+  EXPECT_THAT(cluster_.submitted.at(1), Not(Contains(HasSubstr("--mem"))));
+}
+
+TEST(SlurmRequest, IsTheSameForJobsOfAboutOneSize) {
+  EXPECT_EQ(request_like(100, 900), request_like(110, 920));
+  EXPECT_FALSE(request_like(100, 900) == request_like(400, 900));
+  EXPECT_GE(*request_like(600, {}).minutes, 30);
+  EXPECT_LE(*request_like(600, {}).minutes, 43);
+  EXPECT_GE(*request_like(0.01, {}).minutes, 2);
+}
+
+TEST_F(SlurmLaunching, RunsInsideAContainer) {
+  // In place of Apptainer what shows how it is called, and runs the command without a container.
+  const std::filesystem::path runtime = folder_.write(
+      "bin/apptainer",
+      "#!/bin/bash\necho \"$@\" >> " + (folder_.path() / "calls.txt").string() +
+          "\n[[ $1 == exec && $2 == --bind && $5 == saccade ]] || exit 9\nshift 5\nexec /bin/sh \"$@\"\n");
+  std::filesystem::permissions(runtime, std::filesystem::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  setenv("PATH", (runtime.parent_path().string() + ":" + before).c_str(), 1);
+  options_.container = folder_.write("image.sif", "an image");
+  add("a", {"echo inside"});
+  EXPECT_TRUE(run());
+  setenv("PATH", before.c_str(), 1);
+  EXPECT_TRUE(results_.at("a").succeeded) << log("a");
+  EXPECT_THAT(log("a"), HasSubstr("inside\n"));
+  EXPECT_THAT(read_file(folder_.path() / "calls.txt"),
+              AllOf(HasSubstr("--bind " + folder_.path().string()), HasSubstr("image.sif saccade -c")));
 }
 
 TEST_F(SlurmLaunching, ATimeLimitIsTheFaultOfTheJobThatRan) {

@@ -1,0 +1,142 @@
+#include "eval/picture/canvas/vector_drawing.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/check.h"
+#include "core/error.h"
+#include "core/io/files/atomic_file.h"
+
+namespace saccade {
+namespace {
+
+constexpr double kPointsPerPixel = 0.75;
+/// Files name no moment at which they were made, so that equal figures are equal files.
+constexpr const char* kDate = "2000-01-01T00:00:00Z";
+/// A font is measured at a size at which its hinting does not matter.
+constexpr double kMeasuredSize = 1000;
+
+cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+void check(cairo_status_t status) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw InputError("figure", std::string("cannot be drawn: ") + cairo_status_to_string(status));
+}
+
+}  // namespace
+
+void VectorDrawing::DestroyContext::operator()(_cairo* context) const { cairo_destroy(context); }
+void VectorDrawing::DestroySurface::operator()(_cairo_surface* surface) const {
+  cairo_surface_destroy(surface);
+}
+
+VectorDrawing::VectorDrawing()
+    : surface_(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr)),
+      context_(cairo_create(surface_.get())) {
+  cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_font_options_t* options = cairo_font_options_create();
+  // Widths that do not depend on the size: the same letters for every magnification.
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_set_font_options(context_.get(), options);
+  cairo_font_options_destroy(options);
+  cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
+  cairo_set_font_size(context_.get(), kMeasuredSize);
+  cairo_text_extents_t extents;
+  cairo_text_extents(context_.get(), "H", &extents);
+  check(cairo_status(context_.get()));
+  if (extents.height > 0) capital_height_ = extents.height / kMeasuredSize;
+}
+
+void VectorDrawing::set_font(double height) const {
+  cairo_set_font_size(context_.get(), height / capital_height_);
+}
+
+void VectorDrawing::set_colour(const Rgb8& colour) {
+  cairo_set_source_rgb(context_.get(), colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
+}
+
+void VectorDrawing::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                         const Rgb8& colour, int thickness) {
+  const Eigen::Vector2d points[] = {from, to};
+  polyline(points, colour, thickness);
+}
+
+void VectorDrawing::polyline(std::span<const Eigen::Vector2d> points, const Rgb8& colour,
+                             int thickness) {
+  bool has_point = false;
+  for (const Eigen::Vector2d& point : points) {
+    if (!point.allFinite()) continue;
+    if (has_point)
+      cairo_line_to(context_.get(), point.x(), point.y());
+    else
+      cairo_move_to(context_.get(), point.x(), point.y());
+    has_point = true;
+  }
+  set_colour(colour);
+  cairo_set_line_width(context_.get(), thickness);
+  cairo_stroke(context_.get());
+}
+
+void VectorDrawing::disc(const Eigen::Vector2d& centre, double radius, const Rgb8& colour) {
+  if (!centre.allFinite()) return;
+  set_colour(colour);
+  cairo_arc(context_.get(), centre.x(), centre.y(), radius, 0, 2 * std::numbers::pi);
+  cairo_fill(context_.get());
+}
+
+void VectorDrawing::rectangle(const Eigen::Vector2d& top_left, const Eigen::Vector2d& size,
+                              const Rgb8& colour) {
+  set_colour(colour);
+  cairo_rectangle(context_.get(), top_left.x(), top_left.y(), size.x(), size.y());
+  cairo_fill(context_.get());
+}
+
+void VectorDrawing::text(const std::string& text, const Eigen::Vector2d& baseline_left,
+                         const Rgb8& colour, double height) {
+  set_colour(colour);
+  set_font(height);
+  cairo_move_to(context_.get(), baseline_left.x(), baseline_left.y());
+  cairo_show_text(context_.get(), text.c_str());
+}
+
+double VectorDrawing::extent_of(const std::string& text, double height) const {
+  set_font(height);
+  cairo_text_extents_t extents;
+  cairo_text_extents(context_.get(), text.c_str(), &extents);
+  return extents.x_advance;
+}
+
+void VectorDrawing::save(const std::filesystem::path& file, int width, int height) const {
+  const bool is_pdf = file.extension() == ".pdf";
+  SACCADE_CHECK(is_pdf || file.extension() == ".svg");
+  check(cairo_status(context_.get()));
+  const double width_pt = width * kPointsPerPixel, height_pt = height * kPointsPerPixel;
+  std::string bytes;
+  const std::unique_ptr<_cairo_surface, DestroySurface> page(
+      is_pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width_pt, height_pt)
+             : cairo_svg_surface_create_for_stream(append, &bytes, width_pt, height_pt));
+  if (is_pdf) cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATE_DATE, kDate);
+  {
+    const std::unique_ptr<_cairo, DestroyContext> onto(cairo_create(page.get()));
+    cairo_scale(onto.get(), kPointsPerPixel, kPointsPerPixel);
+    cairo_set_source_surface(onto.get(), surface_.get(), 0, 0);
+    cairo_paint(onto.get());
+    check(cairo_status(onto.get()));
+  }
+  cairo_surface_finish(page.get());
+  check(cairo_surface_status(page.get()));
+  write_atomically(file, bytes);
+}
+
+}  // namespace saccade

@@ -1,0 +1,130 @@
+#include "eval/sweep/merge.h"
+
+#include <map>
+#include <string>
+#include <system_error>
+
+#include "core/config/config.h"
+#include "core/error.h"
+#include "core/io/files/atomic_file.h"
+#include "core/io/run/run_record.h"
+#include "core/process/progress.h"
+#include "eval/sweep/plan/job_record.h"
+#include "eval/sweep/plan/plan.h"
+#include "eval/sweep/sweep_folder.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Other machines keep files elsewhere: of a file's path the name counts.
+Fingerprint without_folders(const Fingerprint& inputs) {
+  Fingerprint result;
+  for (const auto& [name, content] : inputs) {
+    const bool is_path = name.starts_with('/');
+    std::string key = is_path ? fs::path(name).filename().string() : name;
+    // Two files of one name in two folders, as scene.yaml: both count.
+    while (result.contains(key) && result.at(key) != content) key += " (another)";
+    // Neighbours of a scene are told by size and time, which copying changes.
+    if (!is_path || content.find(" bytes of ") == std::string::npos) result[key] = content;
+  }
+  return result;
+}
+
+class Merger {
+ public:
+  Merger(const fs::path& folder, MergeSummary& summary) : folder_(folder), summary_(summary) {}
+
+  /// Whether the job is done here afterwards.
+  bool take(const SweepJob& job, std::span<const fs::path> others) {
+    if (why_to_run(job, record_in(folder_, job), inputs_of(job)).empty()) {
+      ++summary_.there;
+      return true;
+    }
+    std::string reason;
+    for (const fs::path& other : others) {
+      if (!fs::exists(record_in(other, job))) continue;
+      reason = take_from(other, job);
+      if (reason.empty()) {
+        ++summary_.taken;
+        return true;
+      }
+    }
+    if (!reason.empty()) summary_.refused.emplace_back(job.name, reason);
+    return false;
+  }
+
+ private:
+  static fs::path record_in(const fs::path& folder, const SweepJob& job) {
+    return folder / "jobs" / job.name / "job.yaml";
+  }
+
+  /// Computed anew for each job: the merge itself brings their datasets.
+  static Fingerprint inputs_of(const SweepJob& job) { return JobInputs().of(job); }
+
+  std::string take_from(const fs::path& other, const SweepJob& job) {
+    try {
+      const auto record = config::read<JobRecord>(config::load(record_in(other, job)));
+      const Fingerprint inputs = inputs_of(job);
+      const std::string why =
+          difference(without_folders(record.inputs), without_folders(inputs));
+      if (!why.empty()) return why;
+      const fs::path source = other / job.output.lexically_relative(folder_);
+      if (!fs::exists(source / job.marker())) return "its output is gone";
+      if (job.makes_run)
+        copy_run(source, job);
+      else
+        link_dataset(source, job);
+      write_job_record(record_in(folder_, job), job, inputs, record.wall_s);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  static void copy_run(const fs::path& source, const SweepJob& job) {
+    AtomicFolder copy(job.output, job.marker());
+    fs::copy(source, copy.path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    RunRecord record = read_run_record(copy.path() / "run.yaml");
+    record.dataset = job.dataset;
+    write_run_record(copy.path() / "run.yaml", record);
+    copy.commit();
+  }
+
+  static void link_dataset(const fs::path& source, const SweepJob& job) {
+    fs::create_directories(job.output.parent_path());
+    std::error_code ignored;
+    fs::remove_all(job.output, ignored);
+    fs::create_directory_symlink(fs::canonical(source), job.output);
+  }
+
+  const fs::path& folder_;
+  MergeSummary& summary_;
+};
+
+}  // namespace
+
+MergeSummary merge_sweeps(const SweepConfig& sweep, const fs::path& folder,
+                          std::span<const fs::path> others) {
+  check_sweep_folder(folder);
+  for (const fs::path& other : others)
+    if (!fs::exists(other / "sweep.yaml"))
+      throw InputError(other.string(), "holds no sweep (no sweep.yaml) (--merge)");
+  const fs::path here = fs::absolute(folder).lexically_normal();
+  const SweepPlan plan = plan_sweep(sweep, here);
+  fs::create_directories(here);
+  const SweepFolderLock lock(here);
+  write_atomically(here / "sweep.yaml", config::print(sweep));
+  MergeSummary summary;
+  Merger merger(here, summary);
+  Progress progress("merging", plan.simulations.size() + plan.runs.size(), "jobs");
+  for (const auto* jobs : {&plan.simulations, &plan.runs})
+    for (const SweepJob& job : *jobs) {
+      merger.take(job, others);
+      progress.add(1);
+    }
+  return summary;
+}
+
+}  // namespace saccade
