@@ -101,9 +101,9 @@ void show_results(const ResultsOptions& options) {
                                      ? "mlflow needs the folder of MLflow's store: -o DIR"
                                      : "-o is for mlflow, the other formats are printed");
   if (options.format == "mlflow") {
-    const std::size_t runs = write_mlflow(reader, options.where, options.output);
-    fmt::print("wrote {} {} to {}; mlflow ui --backend-store-uri {} shows them\n", runs,
-               runs == 1 ? "run" : "runs", options.output.string(), options.output.string());
+    const std::size_t count = write_mlflow(reader, options.where, options.output);
+    fmt::print("wrote {} {} to {}; mlflow ui --backend-store-uri {} shows them\n", count,
+               count == 1 ? "run" : "runs", options.output.string(), options.output.string());
     return;
   }
   if (!options.fill.empty()) {
@@ -166,7 +166,8 @@ void add_results_verb(CLI::App& command) {
   verb->add_flag("--flaky", options->flaky,
                  "List metrics that differ between runs of the same commit, dataset, "
                  "configuration, window, seed and machine.");
-  verb->add_option("--format", options->format, "Output format: table, csv, json, or mlflow, a folder that MLflow's pages show.")
+  verb->add_option("--format", options->format,
+                   "Output format: table, csv, json, or mlflow, a folder that MLflow's pages show.")
       ->check(CLI::IsMember({"table", "csv", "json", "mlflow"}))
       ->capture_default_str();
   verb->add_option("-o,--output", options->output, "Folder of --format mlflow.")->type_name("DIR");

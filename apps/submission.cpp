@@ -85,7 +85,7 @@ void add_submissions(SweepConfig& sweep, std::span<const fs::path> folders) {
   }
 }
 
-void prepare_submissions(std::span<const fs::path> submissions, const fs::path& folder) {
+void prepare_submissions(std::span<const fs::path> submissions) {
   for (const fs::path& submission : submissions) {
     const AdapterConfig adapter = read_submission(submission);
     if (adapter.prepare.empty()) continue;
@@ -93,9 +93,10 @@ void prepare_submissions(std::span<const fs::path> submissions, const fs::path& 
     ExternalCall call;
     call.words = shell_words(adapter.prepare);
     call.working_folder = fs::absolute(submission);
-    call.log = fs::absolute(folder) / "submissions" / (name + ".log");
+    call.log = call.working_folder / "prepare.log";
     call.timeout_s = kPrepareTimeoutS;
-    fs::create_directories(call.log.parent_path());
+    std::error_code none;
+    fs::remove(call.log, none);
     Progress progress("preparing " + name, 1, "commands");
     const ExternalEnd end = run_external_program(call);
     if (end.timed_out || end.end.exit_code != 0)

@@ -13,14 +13,13 @@ namespace saccade {
 /// sweep varies keys that an adapter does not have.
 void add_submissions(SweepConfig& sweep, std::span<const std::filesystem::path> folders);
 
-/// Runs the commands that prepare them, in their folders; what they print goes to
-/// FOLDER/submissions/NAME.log. Throws InputError where one fails.
-void prepare_submissions(std::span<const std::filesystem::path> submissions,
-                         const std::filesystem::path& folder);
+/// Runs the commands that prepare them, in their folders, where what they print becomes prepare.log.
+/// Throws InputError where one fails.
+void prepare_submissions(std::span<const std::filesystem::path> submissions);
 
 /// A line for each: licence, link, and its time beside the one that its authors state.
-[[nodiscard]] std::string describe_submissions(
-    std::span<const std::filesystem::path> submissions, const SweepConfig& sweep,
-    const std::filesystem::path& folder);
+[[nodiscard]] std::string describe_submissions(std::span<const std::filesystem::path> submissions,
+                                               const SweepConfig& sweep,
+                                               const std::filesystem::path& folder);
 
 }  // namespace saccade

@@ -60,8 +60,8 @@ SweepConfig load(const SweepVerbOptions& options) {
 void show(const SweepVerbOptions& options, const SweepSummary& summary, bool generates) {
   const char* table = generates ? "manifest" : "sweep";
   const char* page = generates ? "json" : "md";
-  fmt::print("{}: {} jobs done, {} done before, {} failed{}\n", options.output.string(), summary.done,
-             summary.skipped, summary.failed,
+  fmt::print("{}: {} jobs done, {} done before, {} failed{}\n", options.output.string(),
+             summary.done, summary.skipped, summary.failed,
              summary.stopped > 0 ? fmt::format(", {} stopped early", summary.stopped) : "");
   fmt::print("wrote {} and {}\n", (options.output / table).string() + "." + page,
              (options.output / table).string() + ".csv");
@@ -147,12 +147,13 @@ void sweep(SweepVerbOptions options) {
                                      : describe_sweep(config, options.output));
     return;
   }
-  prepare_submissions(options.submissions, options.output);
+  prepare_submissions(options.submissions);
   const SweepSummary summary = run_sweep(config, options.output, *launcher, options.jobs);
   if (summary.interrupted)
     throw std::runtime_error("interrupted; the same command goes on from here");
   if (!options.quiet) show(options, summary, config.generate && config.configurations.empty());
-  fmt::print("{}", options.quiet ? "" : describe_submissions(options.submissions, config, options.output));
+  fmt::print(
+      "{}", options.quiet ? "" : describe_submissions(options.submissions, config, options.output));
   if (summary.failed > 0)
     throw std::runtime_error(fmt::format("{} {} failed; what they printed is in {}/NAME/log.txt",
                                          summary.failed, summary.failed == 1 ? "job" : "jobs",
@@ -215,9 +216,10 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
                   "Write the jobs with their commands and what each needs as JSON, for another "
                   "workflow manager, and stop.")
       ->type_name("FILE");
-  verb.add_option("--submission", options.submissions,
-                  "Also run the method in this folder, which holds an adapter.yaml with its licence "
-                  "and class (repeatable); sweep.md ranks it in its class.")
+  verb.add_option(
+          "--submission", options.submissions,
+          "Also run the method in this folder, which holds an adapter.yaml with its licence "
+          "and class (repeatable); sweep.md ranks it in its class.")
       ->type_name("DIR")
       ->take_all()
       ->allow_extra_args(false);

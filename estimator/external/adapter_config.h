@@ -49,9 +49,9 @@ struct AdapterConfig {
   double timeout_s = 3600;
   std::uint64_t seed = 1;
   std::optional<std::filesystem::path> container;  ///< image of Apptainer that it runs in
-  std::string prepare;  ///< command that is run once before a submission's first run
-  std::string licence;  ///< of the method, "MIT"
-  std::string link;     ///< where it is described
+  std::string prepare;               ///< command that is run once before a submission's first run
+  std::string licence;               ///< of the method, "MIT"
+  std::string link;                  ///< where it is described
   std::optional<double> expected_s;  ///< that a second of recording takes, as its authors state
 };
 

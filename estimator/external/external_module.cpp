@@ -38,8 +38,7 @@ ExternalCall call_of(const AdapterConfig& config, const std::string& command,
     std::vector<fs::path> readable{values.at("dataset")};
     for (const auto& [name, file] : config.files)
       readable.push_back(fs::absolute(file).parent_path());
-    call.words =
-        words_in_container(call.words, fs::absolute(*config.container), run, readable);
+    call.words = words_in_container(call.words, fs::absolute(*config.container), run, readable);
   }
   call.working_folder = run / "output";
   call.log = run / "log.txt";

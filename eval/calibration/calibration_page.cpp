@@ -131,13 +131,13 @@ void write_calibration_page(const CalibrationSummary& summary, const std::filesy
     body +=
         section("Each half of the time, predicted from the other", table_html(fold_table(summary)));
   for (const RepeatedStretch& stretch : summary.stretches) body += stretch_section(stretch);
-  write_atomically(
-      file, page_text({.title = "Calibration of " + summary.sensor.name,
-                       .summary = "What a recording tells of its sensor, and how well the "
-                                  "simulated sensor repeats it.",
-                       .contents = "",
-                       .body = body + repeat_html({summary.command}),
-                       .definitions = "docs/calibration.md"}));
+  write_atomically(file,
+                   page_text({.title = "Calibration of " + summary.sensor.name,
+                              .summary = "What a recording tells of its sensor, and how well the "
+                                         "simulated sensor repeats it.",
+                              .contents = "",
+                              .body = body + repeat_html({summary.command}),
+                              .definitions = "docs/calibration.md"}));
 }
 
 }  // namespace saccade

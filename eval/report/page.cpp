@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kHashDigits = 8;
 
 std::string hashed_name(std::string_view text, const char* ending) {
-  return fmt::format("report-{}.{}",
-                     sha256(std::as_bytes(std::span(text))).substr(0, kHashDigits), ending);
+  return fmt::format("report-{}.{}", sha256(std::as_bytes(std::span(text))).substr(0, kHashDigits),
+                     ending);
 }
 
 std::string style_of(const Page& page) {

@@ -52,12 +52,11 @@ std::string sections(const ReportContent& content, bool film) {
 void write_report(std::span<const std::filesystem::path> run_folders,
                   const std::filesystem::path& output, const ReportOptions& options) {
   const ReportContent content = gather_report(run_folders, options, RunPages::kTogether);
-  write_atomically(output,
-                   page_text({.title = options.title,
-                              .summary = content.summary,
-                              .contents = overview_links(content) + run_links(content.runs),
-                              .body = content.overview + sections(content, options.film),
-                              .charts = content.charts}));
+  write_atomically(output, page_text({.title = options.title,
+                                      .summary = content.summary,
+                                      .contents = overview_links(content) + run_links(content.runs),
+                                      .body = content.overview + sections(content, options.film),
+                                      .charts = content.charts}));
   if (!options.exports.empty()) export_tables(content.tables, options.exports);
 }
 

@@ -92,8 +92,7 @@ std::map<std::string, Archive> archives_of(const SweepConfig& sweep, const Sweep
   for (std::size_t i = 0; i < plan.simulations.size(); ++i) {
     const SweepJob& job = plan.simulations[i];
     if (!fs::exists(job.output / "dataset.yaml")) continue;
-    const GeneratedDataset dataset =
-        generated_dataset(*sweep.generate, sweep.generate->first + i);
+    const GeneratedDataset dataset = generated_dataset(*sweep.generate, sweep.generate->first + i);
     Archive& archive = archives[fmt::format("{}-{:02}", dataset.split, dataset.shard)];
     archive.folder = job.output.parent_path();
     archive.datasets.push_back(job.name);
@@ -150,7 +149,8 @@ CleanSummary clean_generated(const SweepConfig& sweep, const fs::path& folder) {
   for (const SweepJob& job : plan_sweep(sweep, here).simulations) {
     planned.insert(job.output);
     // What an interrupted simulation left is gone on with.
-    planned.insert(job.output.parent_path() / ("." + job.output.filename().string() + ".unfinished"));
+    planned.insert(job.output.parent_path() /
+                   ("." + job.output.filename().string() + ".unfinished"));
   }
   std::vector<fs::path> candidates = folders_in(here / "data");
   for (const fs::path& shard : folders_in(here / "data"))

@@ -67,8 +67,7 @@ class Merger {
     try {
       const auto record = config::read<JobRecord>(config::load(record_in(other, job)));
       const Fingerprint inputs = inputs_of(job);
-      const std::string why =
-          difference(without_folders(record.inputs), without_folders(inputs));
+      const std::string why = difference(without_folders(record.inputs), without_folders(inputs));
       if (!why.empty()) return why;
       const fs::path source = other / job.output.lexically_relative(folder_);
       if (!fs::exists(source / job.marker())) return "its output is gone";
@@ -85,7 +84,8 @@ class Merger {
 
   static void copy_run(const fs::path& source, const SweepJob& job) {
     AtomicFolder copy(job.output, job.marker());
-    fs::copy(source, copy.path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    fs::copy(source, copy.path(),
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     RunRecord record = read_run_record(copy.path() / "run.yaml");
     record.dataset = job.dataset;
     write_run_record(copy.path() / "run.yaml", record);

@@ -121,9 +121,8 @@ std::string counts_text(const JobCounts& counts) {
 std::string bar_html(const JobCounts& counts) {
   const double all = std::max<double>(1, static_cast<double>(counts.all()));
   std::string bar;
-  for (const auto& [count, colour] : {std::pair{counts.done, "--better"},
-                                      {counts.running, "--s0"},
-                                      {counts.failed, "--worse"}})
+  for (const auto& [count, colour] :
+       {std::pair{counts.done, "--better"}, {counts.running, "--s0"}, {counts.failed, "--worse"}})
     bar += fmt::format("<i style=\"width:{:.2f}%;background:var({})\"></i>",
                        100 * static_cast<double>(count) / all, colour);
   return "<div class=\"stages\" style=\"background:var(--line)\">" + bar + "</div>\n";
@@ -172,9 +171,9 @@ std::string status_page(const SweepStatus& status, const std::string& title) {
             bar_html(counts);
   std::string failed;
   for (std::size_t i = 0; i < std::min(status.failures.size(), kShownFailures); ++i)
-    failed += fmt::format("<li><a href=\"jobs/{0}/log.txt\">{0}</a>: {1}</li>\n",
-                          escape_html(status.failures[i].first),
-                          escape_html(status.failures[i].second));
+    failed +=
+        fmt::format("<li><a href=\"jobs/{0}/log.txt\">{0}</a>: {1}</li>\n",
+                    escape_html(status.failures[i].first), escape_html(status.failures[i].second));
   if (!failed.empty())
     body += fmt::format("<h2>Failures</h2>\n<p>The first of {}.</p>\n<ul>{}</ul>\n",
                         status.failures.size(), failed);
@@ -183,8 +182,8 @@ std::string status_page(const SweepStatus& status, const std::string& title) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<meta name=\"color-scheme\" content=\"light dark\"><title>{}</title>\n"
       "<style>\n{}\n</style></head><body>\n<main>{}</main>\n</body></html>\n",
-      status.has_ended() ? "" : "<meta http-equiv=\"refresh\" content=\"5\">",
-      escape_html(title), assets::report_css, body);
+      status.has_ended() ? "" : "<meta http-equiv=\"refresh\" content=\"5\">", escape_html(title),
+      assets::report_css, body);
 }
 
 std::string sweep_jobs_json(const SweepConfig& sweep, const fs::path& folder) {

@@ -110,9 +110,8 @@ class Phase {
     select_due();
     if (due_.empty()) return true;
     const auto all = static_cast<std::size_t>(std::count_if(
-        jobs_.begin(), jobs_.end(), [&](const SweepJob& job) {
-          return job.stage == stage_ && job.state != JobState::kHeld;
-        }));
+        jobs_.begin(), jobs_.end(),
+        [&](const SweepJob& job) { return job.stage == stage_ && job.state != JobState::kHeld; }));
     Progress progress(label, all, "jobs", all - due_.size());
     const auto launch = [&](const std::vector<std::size_t>& chosen) {
       std::vector<LaunchJob> launches;
@@ -324,9 +323,12 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
     }
   } while (complete && halving && halving->release_next());
   const std::vector<StoppedRow> stopped = halving ? halving->stopped() : std::vector<StoppedRow>{};
-  SweepSummary summary{count(plan, JobState::kDone), count(plan, JobState::kSkipped),
+  SweepSummary summary{count(plan, JobState::kDone),
+                       count(plan, JobState::kSkipped),
                        count(plan, JobState::kFailed),
-                       halving ? count(plan, JobState::kHeld) : 0, 0, !complete};
+                       halving ? count(plan, JobState::kHeld) : 0,
+                       0,
+                       !complete};
   page.write();
   if (sweep.generate) write_manifest(sweep, plan, folder);
   if (complete && (!sweep.generate || !plan.runs.empty()))

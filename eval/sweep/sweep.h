@@ -14,7 +14,7 @@ struct SweepSummary {
   std::size_t skipped = 0;  ///< done before, with the same inputs
   std::size_t failed = 0;
   std::size_t stopped = 0;  ///< of rows that halving gave up
-  std::size_t missed = 0;  ///< expected metrics
+  std::size_t missed = 0;   ///< expected metrics
   bool interrupted = false;
 };
 

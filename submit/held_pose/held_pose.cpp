@@ -25,12 +25,14 @@ int main(int argc, char** argv) try {
     std::fputs("usage: held_pose EVENTS.h5 WIDTH HEIGHT START.txt TRAJECTORY.txt\n", stderr);
     return 2;
   }
-  const saccade::Events events = saccade::read_events(argv[1], {std::atoi(argv[2]), std::atoi(argv[3])});
+  const saccade::Events events =
+      saccade::read_events(argv[1], {std::atoi(argv[2]), std::atoi(argv[3])});
   const saccade::Trajectory start = saccade::read_tum_trajectory(argv[4]);
   std::vector<saccade::StampedPose> poses;
   for (const saccade::Event& event : events) {
     const double t_s = saccade::seconds_from_ns(event.t_ns);
-    if (poses.empty() || t_s >= poses.back().t_s + kPoseEveryS) poses.push_back(pose_at(t_s, start));
+    if (poses.empty() || t_s >= poses.back().t_s + kPoseEveryS)
+      poses.push_back(pose_at(t_s, start));
   }
   saccade::write_tum_trajectory(argv[5], poses);
   return 0;

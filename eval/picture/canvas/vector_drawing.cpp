@@ -4,9 +4,11 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
-#include <cmath>
+#include <algorithm>
+#include <map>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 #include "core/check.h"
 #include "core/error.h"
@@ -24,6 +26,24 @@ constexpr double kMeasuredSize = 1000;
 cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
+}
+
+/// cairo numbers the surfaces of a process, whatever they are of: here they count from 1.
+std::string with_own_numbers(const std::string& svg) {
+  constexpr std::string_view kSurface = "surface";
+  std::map<std::string, std::size_t> numbers;
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t found; (found = svg.find(kSurface, at)) != std::string::npos;) {
+    const std::size_t begin = found + kSurface.size();
+    const std::size_t end = std::min(svg.find_first_not_of("0123456789", begin), svg.size());
+    const std::string number = svg.substr(begin, end - begin);
+    result.append(svg, at, begin - at);
+    if (!number.empty())
+      result += std::to_string(numbers.emplace(number, numbers.size() + 1).first->second);
+    at = end;
+  }
+  return result.append(svg, at);
 }
 
 void check(cairo_status_t status) {
@@ -66,8 +86,8 @@ void VectorDrawing::set_colour(const Rgb8& colour) {
   cairo_set_source_rgb(context_.get(), colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
 }
 
-void VectorDrawing::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                         const Rgb8& colour, int thickness) {
+void VectorDrawing::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Rgb8& colour,
+                         int thickness) {
   const Eigen::Vector2d points[] = {from, to};
   polyline(points, colour, thickness);
 }
@@ -136,7 +156,7 @@ void VectorDrawing::save(const std::filesystem::path& file, int width, int heigh
   }
   cairo_surface_finish(page.get());
   check(cairo_surface_status(page.get()));
-  write_atomically(file, bytes);
+  write_atomically(file, is_pdf ? bytes : with_own_numbers(bytes));
 }
 
 }  // namespace saccade

@@ -73,7 +73,7 @@ class BarPlot {
     if (bar.low < bar.high)
       drawing_.line({column(bar.low), middle}, {column(bar.high), middle}, theme_.text, 1);
     drawing_.text(rounded(bar.value), {std::max(to, column(bar.high)) + 5, middle + 4}, theme_.text,
-                 kChartLetters - 1);
+                  kChartLetters - 1);
   }
 
   Drawing& drawing_;

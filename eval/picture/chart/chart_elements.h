@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "eval/picture/canvas/drawing.h"
 #include "eval/picture/canvas/colour.h"
+#include "eval/picture/canvas/drawing.h"
 #include "eval/picture/chart/axis.h"
 
 namespace saccade {

@@ -58,8 +58,8 @@ class LinePlot {
     for (const double tick : y_.ticks()) {
       drawing_.line({left_, row(tick)}, {right, row(tick)}, theme_.faint);
       const std::string text = Axis::text(tick);
-      drawing_.text(text, {left_ - 6 - drawing_.extent_of(text, kChartLetters), row(tick) + 4}, grey,
-                   kChartLetters);
+      drawing_.text(text, {left_ - 6 - drawing_.extent_of(text, kChartLetters), row(tick) + 4},
+                    grey, kChartLetters);
     }
     draw_x_axis(drawing_, x_, {left_, kTop}, {width(), height()}, kChartLetters, theme_);
     drawing_.text(panel_.title, {left_, kTop - 13}, theme_.text, kChartLetters + 1);
@@ -75,7 +75,7 @@ class LinePlot {
     if (is_over_time_) return drawing_.polyline(points, colour);
     for (const LineChart::Point& point : panel_.lines[index])
       drawing_.line({column(point.x), row(point.y.low)}, {column(point.x), row(point.y.high)},
-                   mix(theme_.background, colour, 0.5), 2);
+                    mix(theme_.background, colour, 0.5), 2);
     drawing_.polyline(points, colour, 2);
     for (const Vector2d& point : points) drawing_.disc(point, 3.2, colour);
   }

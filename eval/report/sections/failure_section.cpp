@@ -66,8 +66,8 @@ std::string caption(const WorstWindow& window) {
     error = fmt::format("{} % of the depth, ", significant(errors.dt_rel_percent[at])) + error;
   return fmt::format(
       "<a href=\"{}\">{}</a>, {:.3f} to {:.3f} s{}; drawn at {:.3f} s, where it errs by {}",
-      escape_html(window.run->address), escape_html(window.run->run.name()), window.from_s, window.until_s,
-      window.severity > 1 ? ", lost" : "", window.peak_s, error);
+      escape_html(window.run->address), escape_html(window.run->run.name()), window.from_s,
+      window.until_s, window.severity > 1 ? ", lost" : "", window.peak_s, error);
 }
 
 std::string picture_of(const WorstWindow& window) {

@@ -41,15 +41,14 @@ void check_site(const fs::path& site) {
 }
 
 std::string run_page(const RunData& data, const std::string& title, const RunSectionParts& parts) {
-  return page_text(
-      {.title = data.run.name(),
-       .summary = fmt::format("{} on {}. <a href=\"../index.html#{}\">{}</a>",
-                              escape_html(data.method), escape_html(data.dataset), data.id,
-                              escape_html(title)),
-       .contents = "",
-       .body = fmt::format("<section class=\"run\" id=\"{}\">", data.id) +
-               run_section(data, parts) + "</section>\n",
-       .assets = kFromRun});
+  return page_text({.title = data.run.name(),
+                    .summary = fmt::format("{} on {}. <a href=\"../index.html#{}\">{}</a>",
+                                           escape_html(data.method), escape_html(data.dataset),
+                                           data.id, escape_html(title)),
+                    .contents = "",
+                    .body = fmt::format("<section class=\"run\" id=\"{}\">", data.id) +
+                            run_section(data, parts) + "</section>\n",
+                    .assets = kFromRun});
 }
 
 /// Of every dataset what is in its events, and the runs over it.
@@ -73,9 +72,9 @@ void write_run_pages(const ReportContent& content, const ReportOptions& options,
     progress.emplace("drawing", content.runs.size(), "runs");
   const auto write = [&](std::size_t i) {
     const RunData& data = content.runs[i];
-    write_atomically(folder / data.address,
-                     run_page(data, options.title,
-                              {content.with_pictures.contains(&data), options.film}));
+    write_atomically(
+        folder / data.address,
+        run_page(data, options.title, {content.with_pictures.contains(&data), options.film}));
     if (progress) progress->add(1);
   };
   // Films show their own progress and are encoded with all threads: one after the other.
@@ -86,14 +85,14 @@ void write_report_folder(const ReportContent& content, const PublishedReport& re
                          const ReportOptions& options, const fs::path& folder) {
   AtomicFolder output(folder, std::string(kPublishedScores));
   write_run_pages(content, options, output.path());
-  write_atomically(output.path() / "index.html",
-                   page_text({.title = options.title,
-                              .summary = content.summary +
-                                         " <a href=\"../../index.html\">All reports</a>",
-                              .contents = overview_links(content) + run_links(content.runs),
-                              .body = content.overview + dataset_sections(content),
-                              .charts = content.charts,
-                              .assets = kFromReport}));
+  write_atomically(
+      output.path() / "index.html",
+      page_text({.title = options.title,
+                 .summary = content.summary + " <a href=\"../../index.html\">All reports</a>",
+                 .contents = overview_links(content) + run_links(content.runs),
+                 .body = content.overview + dataset_sections(content),
+                 .charts = content.charts,
+                 .assets = kFromReport}));
   write_atomically(output.path() / kPublishedScores, to_json(report));
   output.commit();
 }

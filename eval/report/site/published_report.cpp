@@ -58,8 +58,7 @@ std::map<std::string, double> scores_of(const Metrics& metrics) {
   std::map<std::string, double> scores;
   for (const MetricInfo& metric : metric_catalogue()) {
     if (metric.board.empty()) continue;
-    const auto value =
-        metric.is_speed ? speed_value(metrics, metric.key) : metrics.get(metric.key);
+    const auto value = metric.is_speed ? speed_value(metrics, metric.key) : metrics.get(metric.key);
     if (value) scores[metric.key] = *value;
   }
   return scores;
@@ -71,9 +70,9 @@ std::string now_utc() {
 }
 
 Json run_json(const PublishedRun& run) {
-  return {{"run", run.name},       {"page", run.page},       {"method", run.method},
-          {"module", run.module},  {"dataset", run.dataset}, {"commit", run.commit},
-          {"seed", run.seed},      {"problem", run.problem}, {"scores", run.scores}};
+  return {{"run", run.name},      {"page", run.page},       {"method", run.method},
+          {"module", run.module}, {"dataset", run.dataset}, {"commit", run.commit},
+          {"seed", run.seed},     {"problem", run.problem}, {"scores", run.scores}};
 }
 
 PublishedRun run_of(const Json& json) {

@@ -18,15 +18,15 @@ struct PublishedRun {
   std::string method;
   std::string module;
   std::string dataset;
-  std::string commit;   ///< "1234567890ab"; the version where there is none
+  std::string commit;  ///< "1234567890ab"; the version where there is none
   std::uint64_t seed = 0;
-  std::string problem;  ///< why it came to nothing; empty where all is well
+  std::string problem;                   ///< why it came to nothing; empty where all is well
   std::map<std::string, double> scores;  ///< of the metrics that have a leaderboard
 };
 
 /// What a site knows of one of its reports: scores.json in the report's folder.
 struct PublishedReport {
-  std::string name;       ///< of its folder, part of its address for good
+  std::string name;  ///< of its folder, part of its address for good
   std::string title;
   std::string published;  ///< UTC, "2026-01-31T12:00:00Z"
   std::string version;    ///< of the program that wrote it

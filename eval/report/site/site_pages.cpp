@@ -100,7 +100,9 @@ Table report_list(std::span<const PublishedReport> reports) {
 
 Table method_list(std::span<const PublishedReport> reports) {
   const std::map<std::string, std::string> files = method_files(reports);
-  Table table{"methods", "Methods", {{"method"}, {"module"}, {"datasets"}, {"latest report"}}};
+  Table table{"methods",
+              fmt::format("Methods by name ({})", files.size()),
+              {{"method"}, {"module"}, {"datasets"}, {"latest report"}}};
   table.add_numeric({"reports"});
   for (const auto& [name, method] : methods_of(reports))
     table.rows.push_back({linked(name, "methods/" + files.at(name)),
@@ -256,17 +258,20 @@ Table change_list(const std::vector<MethodMetric>& metrics) {
 
 /// Where the runs of the method are, the latest report first.
 Table run_list(const std::string& method, std::span<const PublishedReport> reports) {
-  Table table{"runs", "Runs", {{"run"}, {"dataset"}, {"report"}, {"commit"}, {"outcome"}}};
+  Table table{"runs",
+              "Those of the newest report first",
+              {{"run"}, {"dataset"}, {"report"}, {"commit"}, {"outcome"}}};
   table.add_numeric({"seed"});
   for (auto report = reports.rbegin(); report != reports.rend(); ++report)
     for (const PublishedRun& run : report->runs)
       if (run.method == method)
-        table.rows.push_back({linked(run.name, "../reports/" + report->name + "/" + run.page),
-                              {run.dataset},
-                              linked(report->title, "../" + report_address(*report)),
-                              {run.commit},
-                              {run.problem.empty() ? "ok" : run.problem},
-                              number_cell(static_cast<double>(run.seed), std::to_string(run.seed))});
+        table.rows.push_back(
+            {linked(run.name, "../reports/" + report->name + "/" + run.page),
+             {run.dataset},
+             linked(report->title, "../" + report_address(*report)),
+             {run.commit},
+             {run.problem.empty() ? "ok" : run.problem},
+             number_cell(static_cast<double>(run.seed), std::to_string(run.seed))});
   return table;
 }
 
@@ -299,7 +304,8 @@ std::string site_index(std::span<const PublishedReport> reports) {
                     .summary = "Runs scored against ground truth: reports, methods, and every run "
                                "with a page of its own.",
                     .contents = "<a href=\"#reports\">Reports</a><a href=\"#methods\">Methods</a>",
-                    .body = search + section("reports", "Reports", table_html(report_list(reports))) +
+                    .body = search +
+                            section("reports", "Reports", table_html(report_list(reports))) +
                             section("methods", "Methods", table_html(method_list(reports))),
                     .assets = "assets"});
 }
@@ -339,9 +345,9 @@ std::string search_script(std::span<const PublishedReport> reports) {
   Json runs = Json::array();
   for (auto report = reports.rbegin(); report != reports.rend(); ++report)
     for (const PublishedRun& run : report->runs)
-      runs.push_back({fmt::format("{}, {} on {} ({})", run.name, run.method, run.dataset,
-                                  report->title),
-                      "reports/" + report->name + "/" + run.page});
+      runs.push_back(
+          {fmt::format("{}, {} on {} ({})", run.name, run.method, run.dataset, report->title),
+           "reports/" + report->name + "/" + run.page});
   return "globalThis.saccadeRuns = " + runs.dump(-1, ' ', false, Json::error_handler_t::replace) +
          ";\n";
 }

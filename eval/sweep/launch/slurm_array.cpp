@@ -81,16 +81,18 @@ std::string array_script(const fs::path& here, const fs::path& program, const fs
                          std::size_t jobs, int jobs_per_task) {
   const fs::path& image = container.empty() ? program : container;
   // The sweep's folder is not among those that Apptainer shows a container by itself.
-  const std::string called =
-      container.empty() ? "\"$image\""
-                        : fmt::format("\"$(command -v apptainer || command -v singularity || echo "
-                                      "apptainer)\" exec --bind {} \"$image\" saccade",
-                                      quoted(here.parent_path().parent_path().string()));
+  const std::string called = container.empty()
+                                 ? "\"$image\""
+                                 : fmt::format(
+                                       "\"$(command -v apptainer || command -v singularity || echo "
+                                       "apptainer)\" exec --bind {} \"$image\" saccade",
+                                       quoted(here.parent_path().parent_path().string()));
   return "#!/bin/bash\n" +
-         fmt::format("# An array of {} jobs of `saccade sweep`.\nhere={}\nimage={}\nbuild={}\n"
-                     "program=({})\n",
-                     jobs, quoted(here.string()), quoted(image.string()),
-                     quoted(size_and_second(image)), called) +
+         fmt::format(
+             "# An array of {} jobs of `saccade sweep`.\nhere={}\nimage={}\nbuild={}\n"
+             "program=({})\n",
+             jobs, quoted(here.string()), quoted(image.string()), quoted(size_and_second(image)),
+             called) +
          fmt::format("jobs={} at_a_time={}\n", jobs, jobs_per_task) + kFunctions + kLoop;
 }
 
@@ -132,8 +134,8 @@ SlurmArray::SlurmArray(const fs::path& parent, SlurmArrayRecord record,
   SACCADE_CHECK(jobs.size() == record_.jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i)
     write_atomically(file(i, "sh"), job_script(*jobs[i]));
-  write_atomically(script(), array_script(folder_, program, container, jobs.size(),
-                                          record_.jobs_per_task));
+  write_atomically(script(),
+                   array_script(folder_, program, container, jobs.size(), record_.jobs_per_task));
   write_atomically(folder_ / kRecordFile, config::print(record_));
 }
 

@@ -92,10 +92,13 @@ void SlurmJobs::adopt(std::size_t array) {
     if (earlier)
       arrays_[array].mark_reported(found->second);
     else
-      jobs_[i] = {State::kSubmitted, array,
-                  found->second,     attempt,
+      jobs_[i] = {State::kSubmitted,
+                  array,
+                  found->second,
+                  attempt,
                   arrays_[array].jobs()[found->second].request_factor,
-                  {},                {}};
+                  {},
+                  {}};
   }
 }
 
@@ -118,8 +121,8 @@ SlurmArray SlurmJobs::write_array(const std::vector<std::size_t>& chosen) const 
   std::vector<const LaunchJob*> launches;
   for (const std::size_t i : chosen) {
     launches.push_back(&launches_[i]);
-    record.jobs.push_back({launches_[i].name, launches_[i].identity, jobs_[i].attempts + 1,
-                           jobs_[i].request_factor});
+    record.jobs.push_back(
+        {launches_[i].name, launches_[i].identity, jobs_[i].attempts + 1, jobs_[i].request_factor});
     if (jobs_[i].attempts == 0) write_atomically(launches_[i].log, "");
   }
   return {options_.folder, std::move(record), launches, options_.program, options_.slurm.container};
@@ -156,7 +159,8 @@ void SlurmJobs::submit() {
   chosen.resize(std::min(chosen.size(), room));
   const SlurmArray array = write_array(chosen);
   std::vector<std::string> words = array.options(limits_.parallel_jobs);
-  for (std::string& option : sbatch_options(options_.slurm, limits_.threads, request_of(chosen.front())))
+  for (std::string& option :
+       sbatch_options(options_.slurm, limits_.threads, request_of(chosen.front())))
     words.push_back(std::move(option));
   const std::string refusal = cluster_.submit(array.script(), words);
   if (!refusal.empty()) {
@@ -221,19 +225,19 @@ void SlurmJobs::resolve(std::size_t index, const std::string& state) {
 bool SlurmJobs::retry_with_more(std::size_t index, const std::string& state) {
   const Job& job = jobs_[index];
   const SlurmRequest request = request_of(index);
-  const bool was_exceeded = (state == "TIMEOUT" && request.minutes) ||
-                            (state == "OUT_OF_MEMORY" && request.memory_mb);
+  const bool was_exceeded =
+      (state == "TIMEOUT" && request.minutes) || (state == "OUT_OF_MEMORY" && request.memory_mb);
   const std::optional<SlurmExit> exit = arrays_[job.array].exit_of(job.index);
   const bool ended_by_itself = exit && !may_be_killed_by_slurm(exit->status);
   if (!was_exceeded || ended_by_itself || job.attempts >= kMaxAttempts ||
       !first_unfinished_of_task(job))
     return false;
   const SlurmRequest more = request.doubled();
-  callbacks_.on_note(fmt::format(
-      "job {} exceeded its {}; attempt {} of {} follows with {}", launches_[index].name,
-      state == "TIMEOUT" ? "time" : "memory", job.attempts + 1, kMaxAttempts,
-      state == "TIMEOUT" ? fmt::format("{:.0f} minutes", *more.minutes)
-                         : fmt::format("{:.0f} MB", *more.memory_mb)));
+  callbacks_.on_note(fmt::format("job {} exceeded its {}; attempt {} of {} follows with {}",
+                                 launches_[index].name, state == "TIMEOUT" ? "time" : "memory",
+                                 job.attempts + 1, kMaxAttempts,
+                                 state == "TIMEOUT" ? fmt::format("{:.0f} minutes", *more.minutes)
+                                                    : fmt::format("{:.0f} MB", *more.memory_mb)));
   return true;
 }
 

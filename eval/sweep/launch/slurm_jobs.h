@@ -42,8 +42,8 @@ class SlurmJobs {
     std::size_t array = 0;
     std::size_t index = 0;  ///< in the array
     int attempts = 0;
-    int request_factor = 1;                       ///< SlurmArrayJob's
-    std::optional<Clock::time_point> not_before;  ///< it waits after it was lost
+    int request_factor = 1;                           ///< SlurmArrayJob's
+    std::optional<Clock::time_point> not_before;      ///< it waits after it was lost
     std::optional<Clock::time_point> inactive_since;  ///< it left the queue
   };
 

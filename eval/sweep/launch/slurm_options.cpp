@@ -16,6 +16,9 @@ constexpr double kMemoryMargin = 1.5;
 constexpr double kLeastMinutes = 2;
 constexpr double kLeastMemoryMb = 500;
 
+/// A whole number; what is one but for rounding stays.
+double whole(double value) { return std::ceil(value - 1e-6); }
+
 double rounded_up(double value) {
   const double steps = std::ceil(std::log(value) / std::log(std::numbers::sqrt2) - 1e-9);
   return std::pow(std::numbers::sqrt2, steps);
@@ -37,10 +40,8 @@ std::vector<std::string> sbatch_options(const SlurmOptions& options, int threads
   words.insert(words.end(), options.options.begin(), options.options.end());
   // A task runs several jobs one after another: their times add up.
   if (request.minutes)
-    words.push_back(
-        fmt::format("--time={:.0f}", std::ceil(*request.minutes * options.jobs_per_task)));
-  if (request.memory_mb)
-    words.push_back(fmt::format("--mem={:.0f}M", std::ceil(*request.memory_mb)));
+    words.push_back(fmt::format("--time={:.0f}", whole(*request.minutes * options.jobs_per_task)));
+  if (request.memory_mb) words.push_back(fmt::format("--mem={:.0f}M", whole(*request.memory_mb)));
   return words;
 }
 

@@ -21,7 +21,7 @@ struct SlurmRequest {
 struct SlurmOptions {
   std::vector<std::string> options;  ///< come after all others
   int jobs_per_task = 1;             ///< that a task of an array runs one after another
-  SlurmRequest request;              ///< of every task; one that exceeds it is tried with twice that
+  SlurmRequest request;  ///< of every task; one that exceeds it is tried with twice that
   /// The first job of each kind runs alone, and what it took becomes the request of the others.
   bool pilot = false;
   /// Image of Apptainer in which the jobs run, with `saccade` on its search path; empty: none.

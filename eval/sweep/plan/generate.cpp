@@ -159,9 +159,10 @@ void describe(config::Fields& fields, GenerateConfig& generate) {
       "their sum, after division by their greatest common divisor, each part gets exactly "
       "its number, in an order that the seed shuffles.");
   fields
-      .value("disk_gb", generate.disk_gb,
-             "Space that the datasets may take, in gigabytes: as many are made as fit by the mean of "
-             "those that are there. Default: not limited.")
+      .value(
+          "disk_gb", generate.disk_gb,
+          "Space that the datasets may take, in gigabytes: as many are made as fit by the mean of "
+          "those that are there. Default: not limited.")
       .above(0);
   fields
       .value("shards", generate.shards,

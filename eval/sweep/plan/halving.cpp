@@ -82,8 +82,9 @@ void describe(config::Fields& fields, HalvingConfig& halving) {
              "Few may stop the best by chance.")
       .range(1, 1e6);
   fields
-      .value("keep", halving.keep,
-             "Share of the rows that goes on after each round, which runs over twice as many pairs.")
+      .value(
+          "keep", halving.keep,
+          "Share of the rows that goes on after each round, which runs over twice as many pairs.")
       .range(0.05, 0.95);
 }
 

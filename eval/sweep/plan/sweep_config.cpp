@@ -118,11 +118,11 @@ void check_halving(config::Fields& fields, const SweepConfig& sweep) {
   fields.expect(!sweep.timing, "halving",
                 "goes not with 'timing', whose speeds would be those of different pairs");
   for (const SweepConfiguration& configuration : sweep.configurations)
-    fields.expect(configuration.from.empty() && configuration.poses_from.empty() &&
-                      configuration.depth_from.empty(),
-                  "halving",
-                  fmt::format("goes not with '{}', which starts from another run",
-                              configuration.name));
+    fields.expect(
+        configuration.from.empty() && configuration.poses_from.empty() &&
+            configuration.depth_from.empty(),
+        "halving",
+        fmt::format("goes not with '{}', which starts from another run", configuration.name));
 }
 
 void check_configurations(config::Fields& fields, const SweepConfig& sweep) {

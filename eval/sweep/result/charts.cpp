@@ -161,7 +161,8 @@ std::vector<std::string> write_charts(const SweepResults& results,
   const auto write = [&](const auto& chart, const std::string& stem, const std::string& caption) {
     write_png(folder / (stem + ".png"), draw(chart, kLightTheme));
     save(chart, std::array{folder / (stem + ".pdf"), folder / (stem + ".svg")});
-    images.push_back(fmt::format("![{0}]({1}.png) ([PDF]({1}.pdf), [SVG]({1}.svg))", caption, stem));
+    images.push_back(
+        fmt::format("![{0}]({1}.png) ([PDF]({1}.pdf), [SVG]({1}.svg))", caption, stem));
   };
   for (std::size_t axis = 0; axis < results.sweep.grid.size(); ++axis)
     if (is_numeric(results.sweep.grid[axis])) {

@@ -11,9 +11,9 @@
 #include "eval/sweep/result/ablation.h"
 #include "eval/sweep/result/dataset_information.h"
 #include "eval/sweep/result/failures.h"
-#include "eval/sweep/result/stopped_rows.h"
 #include "eval/sweep/result/leaderboards.h"
 #include "eval/sweep/result/pooled_table.h"
+#include "eval/sweep/result/stopped_rows.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
@@ -236,8 +236,7 @@ std::string sweep_markdown(const SweepResults& results, std::span<const std::str
                            const std::vector<Table>& ablation) {
   const std::string title = results.sweep.title.empty() ? "Sweep" : results.sweep.title;
   std::string text = "# " + title + "\n\n" + method_text(results) + failures_section(results) +
-                     stopped_section(results) +
-                     too_little_section(results);
+                     stopped_section(results) + too_little_section(results);
   const auto parts = by_dataset(results);
   if (results.plan.runs.empty() || parts.size() == results.groups.size()) {
     // One row per dataset: a single table.

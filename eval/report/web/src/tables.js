@@ -30,7 +30,9 @@ export function startTable(table) {
     });
   }
   const { name, csv, latex } = table.dataset;
-  table.closest(".scroll").before(buttons({
+  const scroll = table.closest(".scroll"), caption = scroll.previousElementSibling;
+  // Beside the caption: beside the table they would make it narrower.
+  (caption?.matches("h4") ? caption : scroll).before(buttons({
     CSV: () => download(`${name}.csv`, "text/csv", csv),
     LaTeX: () => download(`${name}.tex`, "application/x-tex", latex),
   }));

@@ -22,9 +22,10 @@ using testing::TemporaryFolder;
 class Status : public ::testing::Test {
  protected:
   Status() {
-    sweep_ = read_sweep(folder_,
-                        "title: A <b>sweep</b>\ndatasets: [{path: recorded}]\n"
-                        "configurations: [{file: fast.yaml}, {file: accurate.yaml}]\nseeds: [1, 2]\n");
+    sweep_ =
+        read_sweep(folder_,
+                   "title: A <b>sweep</b>\ndatasets: [{path: recorded}]\n"
+                   "configurations: [{file: fast.yaml}, {file: accurate.yaml}]\nseeds: [1, 2]\n");
     fs::create_directories(out());
     std::ofstream(out() / "sweep.yaml") << "a: 1\n";
     leave("recorded_fast_seed-1", "job.yaml", "");
@@ -52,8 +53,7 @@ TEST_F(Status, IsToldFromFilesAlone) {
   EXPECT_EQ(status.parts[0].first, "fast");
   EXPECT_EQ(status.parts[0].second.done, 1U);
   EXPECT_FALSE(status.has_ended());
-  EXPECT_THAT(status_text(status),
-              HasSubstr("4 jobs: 1 done, 1 running, 1 failed, 1 waiting\n"));
+  EXPECT_THAT(status_text(status), HasSubstr("4 jobs: 1 done, 1 running, 1 failed, 1 waiting\n"));
   EXPECT_THAT(status_text(status), HasSubstr("failed: recorded_accurate_seed-1: a: is <no> key"));
 }
 
@@ -72,9 +72,9 @@ TEST_F(Status, AsAPageItIsLoadedAgainUntilTheEnd) {
 }
 
 TEST_F(Status, OfAnotherFolderIsAnError) {
-  EXPECT_THAT(testing::error_of(
-                  [&] { static_cast<void>(sweep_status(sweep_, folder_.path() / "none")); }),
-              HasSubstr("holds no sweep"));
+  EXPECT_THAT(
+      testing::error_of([&] { static_cast<void>(sweep_status(sweep_, folder_.path() / "none")); }),
+      HasSubstr("holds no sweep"));
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace saccade {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using testing::read_file;
+using ::testing::StartsWith;
 using testing::TemporaryFolder;
 
 LineChart chart() {
@@ -80,9 +80,8 @@ TEST(VectorDrawing, NamesTheFileThatItCannotWrite) {
   bars.panels = {{"error", {{ChartValue{1, 1, 1}}}}};
   const TemporaryFolder folder;
   folder.write("file", "");
-  EXPECT_THAT(
-      testing::error_of([&] { save(bars, std::array{folder.path() / "file" / "a.pdf"}); }),
-      HasSubstr("a.pdf"));
+  EXPECT_THAT(testing::error_of([&] { save(bars, std::array{folder.path() / "file" / "a.pdf"}); }),
+              HasSubstr("a.pdf"));
 }
 
 }  // namespace

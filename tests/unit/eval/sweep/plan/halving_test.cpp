@@ -13,8 +13,8 @@ namespace saccade {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using testing::error_of;
+using ::testing::HasSubstr;
 using testing::read_sweep;
 using testing::TemporaryFolder;
 

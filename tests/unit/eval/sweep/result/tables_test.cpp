@@ -160,7 +160,7 @@ TEST_F(SweepTables, NumbersBecomeALineChart) {
   fill("a.b: [1, 2]");
   const auto charts = write_charts(results_, folder_.path());
   ASSERT_EQ(charts.size(), 1U);
-  EXPECT_EQ(charts[0], "![Over a.b](over_a_b.png)");
+  EXPECT_EQ(charts[0], "![Over a.b](over_a_b.png) ([PDF](over_a_b.pdf), [SVG](over_a_b.svg))");
   EXPECT_GT(std::filesystem::file_size(folder_.path() / "over_a_b.png"), 1000U);
 }
 
@@ -168,7 +168,8 @@ TEST_F(SweepTables, WordsBecomeABarChart) {
   fill("a.b: [dense, sparse]");
   const auto charts = write_charts(results_, folder_.path());
   ASSERT_EQ(charts.size(), 1U);
-  EXPECT_EQ(charts[0], "![All rows compared](compared.png)");
+  EXPECT_EQ(charts[0],
+            "![All rows compared](compared.png) ([PDF](compared.pdf), [SVG](compared.svg))");
 }
 
 TEST_F(SweepTables, ManyDatasetsBecomeRows) {
